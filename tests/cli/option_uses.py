@@ -410,12 +410,16 @@ MODES = {
             "--gain": "2",
             "--amplitude": "20um",
             "--set": "radius=10mm",
-            "--tune": "radius",
             "--mode": "axial 2",
             "--axis": "x",
             "--tool-mass": "50g",
             "--tolerance": "-1",
         },
+    ),
+    "horn of even thickness": Mode(
+        "horn design",
+        ("cylinder", "--frequency", "20kHz", "--material", "titanium_6al4v", "--tolerance", "0.3"),
+        {"--tune": "radius"},
     ),
     "friction of recordings": Mode(
         "measure friction",
