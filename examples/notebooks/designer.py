@@ -31,7 +31,7 @@ amplitude = 20e-6
 # %%
 wave_speed = np.sqrt(titanium.value("youngs_modulus") / titanium.value("density"))
 body = horn_body(
-    "exponential",
+    "exponential_horn",
     frequency=20e3,
     wave_speed=wave_speed,
     sizes={"radius": 20e-3, "end_radius": 6.6e-3},
