@@ -8,6 +8,8 @@ from .devices import (
     DriveSource as DriveSource,
     Motor as Motor,
     SamplesLost as SamplesLost,
+    connect_devices as connect_devices,
+    switch_outputs_off as switch_outputs_off,
 )
 from .interlocks import Interlock as Interlock, Trip as Trip, first_trip as first_trip, interlocks_for as interlocks_for
 from .runner import RunControl as RunControl, RunResult as RunResult, run_protocol as run_protocol

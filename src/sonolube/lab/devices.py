@@ -142,3 +142,40 @@ class Devices:
     description: Mapping[str, str]
     groove_diameter: float
     simulated: bool = False
+
+
+def connect_devices(devices: Devices) -> None:
+    """Connect all devices, outputs off; drive and motor first, so that what ran before is off.
+
+    Parameters
+    ----------
+    devices : Devices
+
+    Raises
+    ------
+    DeviceError
+        If a device does not answer.
+    """
+    for device in (devices.drive, devices.motor, devices.acquisition):
+        device.connect()
+
+
+def switch_outputs_off(devices: Devices) -> list[str]:
+    """Switch drive and motor off, each whatever becomes of the other; never raises.
+
+    Parameters
+    ----------
+    devices : Devices
+
+    Returns
+    -------
+    list of str
+        Outputs that did not confirm to be off, with the reason.
+    """
+    failures = []
+    for device in (devices.drive, devices.motor):
+        try:
+            device.off()
+        except Exception as failure:  # whatever a driver raises, the next device must be switched off
+            failures.append(f"{device.name}: {failure}")
+    return failures

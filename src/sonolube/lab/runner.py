@@ -9,7 +9,7 @@ from typing import Final
 
 from sonolube.errors import SonolubeError
 from sonolube.interruption import asked_by_signal, undone_at_signal
-from sonolube.lab.devices import DeviceError, Devices, DriveSetting
+from sonolube.lab.devices import DeviceError, Devices, DriveSetting, connect_devices, switch_outputs_off
 from sonolube.lab.interlocks import Trip, interlocks_for
 from sonolube.lab.sampling import BLOCK_DURATION, Recorder, Sampling
 from sonolube.lab.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
@@ -154,8 +154,7 @@ class _Run:
         """Follow the protocol to its end, whatever that is."""
         try:
             self._happens(Event.START)
-            for device in (self._devices.drive, self._devices.motor, self._devices.acquisition):
-                device.connect()
+            connect_devices(self._devices)
             self._happens(Event.PREPARED)
             for point, following in pairwise(self._points):
                 self._reach(point)
@@ -175,12 +174,7 @@ class _Run:
 
     def switch_off(self) -> list[str]:
         """Switch drive and motor off, and return what failed; never raises."""
-        failures = []
-        for device in (self._devices.drive, self._devices.motor):
-            try:
-                device.off()
-            except Exception as failure:  # whatever a driver raises, the next device must be switched off
-                failures.append(f"{device.name}: {failure}")
+        failures = switch_outputs_off(self._devices)
         self._drive, self._turns = None, 0.0
         return failures
 

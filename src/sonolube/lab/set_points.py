@@ -1,4 +1,4 @@
-"""What the set points of a protocol ask of devices, and whether these can give it."""
+"""Rotation speeds and drive settings of set points, held to the limits of devices."""
 
 from math import pi
 

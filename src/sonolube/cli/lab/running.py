@@ -1,4 +1,4 @@
-"""What `lab run` and `lab virtual` share: the operator, the record of a run, and its answer."""
+"""Runs of protocols from the command line: plan, operator, record and answer of `lab run` and `lab virtual`."""
 
 import select
 import sys
@@ -243,6 +243,6 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
     if rig is not None:
         facts |= {"normal_load": rig.normal_load, "rig_title": rig.title}
         facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
-        if not devices.simulated:
-            facts["rig"] = rig.title
+    if plan.device_file is not None:
+        facts["rig"] = plan.device_file.stem  # one run at a time on the devices of a map, whatever rig file is given
     return facts

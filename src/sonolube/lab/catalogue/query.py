@@ -11,7 +11,7 @@ from sonolube.units import to_si
 Range = tuple[float, float]
 
 QUERY_KEYS: Final = ("material", "load", "speed", "since", "until", "tag", "text", "outcome")
-"""What runs are searched by."""
+"""Conditions by which runs are searched."""
 
 _TOLERANCE: Final = 0.01  # of a load or speed that is no range
 

@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.lab.block import Block
 from sonolube.lab.closed_loop.record import FrictionHold, HeldFriction
-from sonolube.lab.devices import DeviceError, Devices, DriveSetting, SamplesLost
+from sonolube.lab.devices import DeviceError, Devices, DriveSetting, SamplesLost, connect_devices, switch_outputs_off
 from sonolube.lab.interlocks import first_trip, interlocks_for
 from sonolube.lab.runner import Advance, RunControl
 from sonolube.lab.sampling import Recorder
@@ -88,8 +88,7 @@ class _Loop:
         """Run the loop to its end, whatever that is."""
         try:
             self._happens(Event.START)
-            for device in (self._devices.drive, self._devices.motor, self._devices.acquisition):
-                device.connect()
+            connect_devices(self._devices)
             self._happens(Event.PREPARED)
             self._sample()
             self._control_friction(self._running_in(), advance)
@@ -110,13 +109,7 @@ class _Loop:
 
     def switch_off(self) -> list[str]:
         """Switch drive and motor off, and return what failed; never raises."""
-        failures = []
-        for device in (self._devices.drive, self._devices.motor):
-            try:
-                device.off()
-            except Exception as failure:  # whatever a driver raises, the next device must be switched off
-                failures.append(f"{device.name}: {failure}")
-        return failures
+        return switch_outputs_off(self._devices)
 
     def _happens(self, event: Event, reason: str = "") -> None:
         """Take an event into the state of the loop."""

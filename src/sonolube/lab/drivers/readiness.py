@@ -1,4 +1,4 @@
-"""What is missing to run a device map or a protocol on it, and a first look at the devices with everything off."""
+"""Readiness of a device map: packages and drivers missing, demands of a protocol beyond it, a first block read."""
 
 from contextlib import ExitStack
 from math import ceil

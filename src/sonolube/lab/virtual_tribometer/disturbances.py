@@ -1,4 +1,4 @@
-"""What disturbs a friction test beside vibration, with its size: wobble, run-in, stick-slip, noise, drift, lags."""
+"""Disturbances of a friction test with their sizes: wobble, run-in, stick-slip, noise, drift, lags."""
 
 from dataclasses import dataclass, replace
 from math import pi, sqrt
