@@ -347,7 +347,7 @@ def test_the_figure_shows_friction_drive_and_speed_with_units(held: HeldFriction
 def test_friction_of_the_virtual_tribometer_is_held_under_a_step_of_speed(seed: int) -> None:
     rig = read_rig(TRIBOMETER)
     virtual = virtual_tribometer(rig, seed=seed)
-    reference = 0.8 * virtual.truth().attrs["friction_coefficient"] * rig.normal_load
+    reference = 0.8 * float(virtual.truth()["friction_coefficient"]) * rig.normal_load
     settings = ControlSettings(
         amplifier=Amplifier(voltage_maximum=28.0), sample_interval=INTERVAL, dead_time=0.0, duration=10.0
     )

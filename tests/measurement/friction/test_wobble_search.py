@@ -31,3 +31,12 @@ def test_a_wave_in_one_part_only_is_no_rotation() -> None:
     rng = np.random.default_rng(6)
     forces = [0.01 * rng.standard_normal(t.size) + (j == 2) * np.sin(2 * np.pi * 2 * t) for j, t in enumerate(PARTS)]
     assert find_rotation_speed(PARTS, forces) is None
+
+
+def test_a_wobble_in_proportion_to_friction_is_found_where_little_friction_is_left() -> None:
+    rng = np.random.default_rng(7)
+    forces = [
+        level * (1 + 0.05 * np.cos(2 * np.pi * 0.75 * t)) + 0.004 * rng.standard_normal(t.size)
+        for level, t in zip((0.9, 0.35, 0.2, 0.15), PARTS, strict=True)
+    ]
+    assert find_rotation_speed(PARTS, forces) == approx(0.75, abs=0.1 / 24)

@@ -6,61 +6,14 @@ from math import ceil
 
 import numpy as np
 
-from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.checks import Floats
+from sonolube.lab.heating_assumptions import HeatingAssumptions as HeatingAssumptions
 from sonolube.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
 from sonolube.thermal.contact_history import contact_temperature_history
 from sonolube.thermal.network import network_rise
 
 _POINTS = 400  # of the time line, at least
 _MOST_PARTS = 200  # of one interval between set points
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class HeatingAssumptions:
-    """Thermal properties that a rig file does not hold; each body has one temperature (first order).
-
-    Parameters
-    ----------
-    pin_heat_capacity : float
-        Heat that warms the pin by a kelvin, in J/K; that of `sonolube thermal`.
-    pin_conductance : float
-        Heat that leaves the pin per kelvin, in W/K; that of `sonolube thermal`.
-    actuator_heat_capacity : float
-        Heat that warms the actuator by a kelvin, in J/K; 70 g of PZT at 350 J/(kg K).
-    actuator_conductance : float
-        Heat that leaves the actuator per kelvin, in W/K; 20 cm2 in an air stream at 50 W/(m2 K).
-    loss_factor : float
-        Heat of the actuator over its capacitive power.
-    ambient_temperature : float
-        21 degC by D Table 2.2. [K]
-    pin_material, disc_material : str or None
-        Of the catalogue, instead of those of rig and protocol.
-
-    Notes
-    -----
-    The loss factor holds dielectric and mechanical losses together. It is the one with which 28 V peak to peak at
-    22 kHz on 360 nF warm the actuator by the 10 K of D Table 2.2 (31 against 21 degC, cooled by air) at this
-    conductance. Dielectric loss alone would be near 0.02.
-    """
-
-    pin_heat_capacity: float = 1.5
-    pin_conductance: float = 0.05
-    actuator_heat_capacity: float = 24.5
-    actuator_conductance: float = 0.1
-    loss_factor: float = 0.205
-    ambient_temperature: float = 294.15
-    pin_material: str | None = None
-    disc_material: str | None = None
-
-    def __post_init__(self) -> None:
-        require_positive(
-            pin_heat_capacity=self.pin_heat_capacity,
-            pin_conductance=self.pin_conductance,
-            actuator_heat_capacity=self.actuator_heat_capacity,
-            actuator_conductance=self.actuator_conductance,
-            ambient_temperature=self.ambient_temperature,
-        )
-        require_non_negative(loss_factor=self.loss_factor)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,108 +1,120 @@
 """Disturbances of a friction test with their sizes: wobble, run-in, stick-slip, noise, drift, lags."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, fields, replace
 from math import pi, sqrt
-from typing import Final
+from types import MappingProxyType
+from typing import Any, Final
 
 import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive
+from sonolube.errors import InvalidInput
+
+
+def _size(default: float, unit: str) -> Any:
+    """Field with its unit."""
+    return field(default=default, metadata={"units": unit})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Disturbances:
-    """Disturbances of a test. Zero switches one off. All sizes are assumed; the text says after what.
+    """Disturbances of a test. Zero switches one off. The text says after what a size is; else it is assumed.
 
     Parameters
     ----------
     wobble_1, wobble_2 : float
-        Amplitude of the first and second harmonic of the rotation in the friction force, over its mean, by run-out of
-        the disc: a few per cent in the recordings of D 4.1.
+        Amplitude of the first and second harmonic of the rotation in load and friction, over their mean, by run-out of
+        the disc. D Tables 2.3 and 4.2 have standard deviations of 4 to 11 % with it, the first of windows of 2 s.
     run_in_share : float
-        Friction at first contact over that of the worn-in track, less one.
+        Friction at first contact over that of the worn-in track, less one; negative where friction rises, as D 2.3.3.
     run_in_distance : float
-        Sliding distance over which that falls by a factor e, in m.
-    stick_slip_share : float
-        Fall of the force at a slip without vibration, over its mean; zero for steady sliding.
+        Sliding distance over which that falls by a factor e, in m. D Table 2.3 has 3 to 12 m until aluminium is steady.
+    static_share : float
+        Friction at rest over that of sliding, less one: 1.2 N over 0.89 N in D 4.1.2. It is the peak as sliding begins,
+        and at low speed the cause of stick-slip, both without vibration.
     holder_stiffness : float
-        Of the holder of the pin, by which force rises while the pin sticks, as in the design of controllers. [N/m]
+        Of the holder of the pin along the sliding, as in the design of controllers. [N/m]
     holder_mass : float
-        Mass that swings on it. [kg]
+        Mass that swings on it; both together swing at the 100 Hz of the stick-slip in D 2.3.4. [kg]
     holder_damping_ratio : float
-        Of that motion.
+        Of that motion, likewise.
     friction_noise : float
         Standard deviation of slow fluctuations of friction, over its mean.
     noise_time : float
         Correlation time of these, in s.
     ringing : float
-        Standard deviation of the force at the natural frequency of the holder, over mean friction.
+        Standard deviation of the force at the natural frequency of the loading arm, over mean friction; frequency and
+        damping by the structure of the rig, else those of the holder.
     sensor_noise : float
-        Standard deviation of white noise of the force gauge, in N.
+        Standard deviation of white noise of the force gauge, in N: D Table 4.2 has 0.04 N even where friction is
+        0.04 N, of which this is the part without the others.
     drift_rate : float
         Standard deviation over tests of the drift of the force gauge, in N/s: about 1 mN in a minute.
     hysteresis : float
         Half the width of the play of the force gauge, in N.
     magnets : int
-        At the rim of the disc, each a pulse of the Hall probe.
+        At the rim of the disc, each a pulse of the Hall probe; one in D 4.1.2.
     flux_noise : float
         Of the Hall probe, over the height of a pulse.
     motor_time : float
         Time constant of the motor, in s.
     vibration_time : float
         Time constant with which the vibration follows the drive, in s.
-    ambient_temperature : float
-        [K]
-    heat_share : float
-        Share of the power drawn by the actuator that heats it: losses of hard ceramics of several per cent.
-    thermal_resistance : float
-        From the actuator to the room, in K/W.
-    thermal_time : float
-        Time constant of its warming, the thermocouple included, in s.
+    contact_share : float
+        Place of the thermocouple: 0 on the actuator (D Table 2.2), 1 in the contact (D 4.3).
+    thermocouple_time : float
+        Time constant of the thermocouple, in s.
     temperature_noise : float
         Of the thermocouple, in K.
     voltage_noise : float
         Of the monitor of the amplifier, over the voltage.
+    current_noise : float
+        Of the current probe, in A.
     clock_error : float
         Relative deviation of the generator's clock from that of the acquisition.
 
     Raises
     ------
     InvalidInput
-        If a size is negative, or a time constant is not positive.
+        If a size is negative or above its range, or a time constant is not positive.
     """
 
-    wobble_1: float = 0.03
-    wobble_2: float = 0.01
-    run_in_share: float = 0.08
-    run_in_distance: float = 0.15
-    stick_slip_share: float = 0.0
-    holder_stiffness: float = 20e3
-    holder_mass: float = 0.05
-    holder_damping_ratio: float = 0.05
-    friction_noise: float = 0.01
-    noise_time: float = 0.02
-    ringing: float = 0.005
-    sensor_noise: float = 2e-3
-    drift_rate: float = 2e-5
-    hysteresis: float = 2e-4
-    magnets: int = 4
-    flux_noise: float = 0.02
-    motor_time: float = 0.02
-    vibration_time: float = 2e-3
-    ambient_temperature: float = 295.0
-    heat_share: float = 0.05
-    thermal_resistance: float = 20.0
-    thermal_time: float = 20.0
-    temperature_noise: float = 0.05
-    voltage_noise: float = 2e-3
-    clock_error: float = 1e-5
+    wobble_1: float = _size(0.04, "1")
+    wobble_2: float = _size(0.015, "1")
+    run_in_share: float = _size(0.08, "1")
+    run_in_distance: float = _size(0.15, "m")
+    static_share: float = _size(0.35, "1")
+    holder_stiffness: float = _size(20e3, "N/m")
+    holder_mass: float = _size(0.05, "kg")
+    holder_damping_ratio: float = _size(0.01, "1")
+    friction_noise: float = _size(0.01, "1")
+    noise_time: float = _size(0.02, "s")
+    ringing: float = _size(0.005, "1")
+    sensor_noise: float = _size(0.03, "N")
+    drift_rate: float = _size(2e-5, "N/s")
+    hysteresis: float = _size(2e-4, "N")
+    magnets: int = _size(1, "1")
+    flux_noise: float = _size(0.02, "1")
+    motor_time: float = _size(0.02, "s")
+    vibration_time: float = _size(2e-3, "s")
+    contact_share: float = _size(0.0, "1")
+    thermocouple_time: float = _size(0.5, "s")
+    temperature_noise: float = _size(0.05, "K")
+    voltage_noise: float = _size(2e-3, "1")
+    current_noise: float = _size(1e-4, "A")
+    clock_error: float = _size(1e-5, "1")
 
     def __post_init__(self) -> None:
-        times = ("run_in_distance", "noise_time", "motor_time", "vibration_time", "thermal_time")
-        stiff = ("holder_stiffness", "holder_mass")
-        require_positive(**{name: getattr(self, name) for name in (*times, *stiff)})
-        others = [name for name in self.__slots__ if name not in (*times, *stiff)]
+        times = ("noise_time", "motor_time", "vibration_time", "thermocouple_time")
+        positive = (*times, "run_in_distance", "holder_stiffness", "holder_mass")
+        require_positive(**{name: getattr(self, name) for name in positive})
+        others = [name for name in DISTURBANCE_UNITS if name not in (*positive, "run_in_share")]
         require_non_negative(**{name: getattr(self, name) for name in others})
+        if not self.run_in_share > -1:
+            raise InvalidInput(f"run_in_share must be above -1, got {self.run_in_share:g}")
+        for name in ("contact_share", "holder_damping_ratio"):
+            if getattr(self, name) > 1:
+                raise InvalidInput(f"{name} must not be above 1, got {getattr(self, name):g}")
 
     @property
     def natural_frequency(self) -> float:
@@ -126,13 +138,17 @@ class Disturbances:
         )
 
 
-_DRAWN: Final = ("wobble_1", "wobble_2", "run_in_share", "run_in_distance", "stick_slip_share", "ringing")
+DISTURBANCE_UNITS: Final = MappingProxyType({each.name: str(each.metadata["units"]) for each in fields(Disturbances)})
+"""SI unit of each size."""
+
+_DRAWN: Final = ("wobble_1", "wobble_2", "run_in_share", "run_in_distance", "static_share", "ringing")
 _SPREAD: Final = 0.3  # of the logarithm of a size, from test to test
 
 UNDISTURBED: Final = Disturbances(
     wobble_1=0.0,
     wobble_2=0.0,
     run_in_share=0.0,
+    static_share=0.0,
     friction_noise=0.0,
     ringing=0.0,
     sensor_noise=0.0,
@@ -141,6 +157,7 @@ UNDISTURBED: Final = Disturbances(
     flux_noise=0.0,
     temperature_noise=0.0,
     voltage_noise=0.0,
+    current_noise=0.0,
     clock_error=0.0,
 )
 """No disturbance but the lags of motor, vibration and temperature."""

@@ -20,7 +20,7 @@ _CLOSE: Final = 0.02  # of the rig's voltage, between two known ones of which a 
 
 @dataclass(frozen=True, slots=True)
 class FrictionLevel:
-    """Mean friction, wear and power at one setting of drive and motor.
+    """Mean friction and wear at one setting of drive and motor.
 
     Parameters
     ----------
@@ -29,18 +29,15 @@ class FrictionLevel:
     friction_ratio : float
         Over that without vibration. []
     vibration_amplitude : float
-        Zero to peak. [m]
+        Zero to peak; NaN at rest, where it is not computed. [m]
     wear_rate : float
         Volume per sliding distance. [m2]
-    actuator_power : float
-        Drawn by the actuator; 0 where the rig does not say. [W]
     """
 
     friction_force: float
     friction_ratio: float
     vibration_amplitude: float
     wear_rate: float
-    actuator_power: float
 
 
 class FrictionDraw:
@@ -93,9 +90,8 @@ class FrictionDraw:
             return FrictionLevel(
                 friction_force=self.friction_coefficient * self._rig.normal_load,
                 friction_ratio=1.0,
-                vibration_amplitude=0.0,
+                vibration_amplitude=0.0 if setting is None else float("nan"),
                 wear_rate=self._wear_rate,
-                actuator_power=0.0,
             )
         known = self._known[setting.frequency, setting.waveform, sliding_speed]
         voltage = setting.voltage_peak_to_peak
@@ -129,7 +125,6 @@ class FrictionDraw:
             friction_ratio=ratio,
             vibration_amplitude=inputs.amplitude.value,
             wear_rate=self._wear_rate if worn is None or not np.isfinite(worn) else float(worn),
-            actuator_power=inputs.point.actuator_power or 0.0,
         )
 
     def _set(self, setting: DriveSetting, sliding_speed: float) -> Rig:

@@ -44,6 +44,40 @@ class Approach:
         return Approach(time, float(self.at(np.asarray(time))), target, self.time_constant)
 
 
+@dataclass(frozen=True, slots=True)
+class Lagged:
+    """Reading of a first-order sensor of a value that approaches its target.
+
+    Parameters
+    ----------
+    source : Approach
+        The value.
+    reading : float
+        At the start of `source`.
+    time_constant : float
+        Of the sensor, other than that of `source`. [s]
+    """
+
+    source: Approach
+    reading: float
+    time_constant: float
+
+    def at(self, time: Floats) -> Floats:
+        """Reading at times at or after the start."""
+        source = self.source
+        since = time - source.start
+        carried = source.time_constant / (source.time_constant - self.time_constant) * (source.value - source.target)
+        left = self.reading - source.target - carried
+        return np.asarray(
+            source.target + carried * np.exp(-since / source.time_constant) + left * np.exp(-since / self.time_constant)
+        )
+
+    def towards(self, target: float, *, time: float) -> "Lagged":
+        """Return the reading of the value that approaches another target from a time on."""
+        reading = float(self.at(np.asarray(time)))
+        return Lagged(self.source.towards(target, time=time), reading, self.time_constant)
+
+
 def waveform(*, periods: Floats, shape: str) -> Floats:
     """Waveform between -1 and 1 over its periods.
 
@@ -85,23 +119,6 @@ def hall_pulses(*, revolutions: Floats, magnets: int, pulse: float = 0.06) -> Fl
     """
     from_centre = (revolutions * magnets) % 1.0 - 0.5
     return np.asarray(np.exp(-0.5 * (from_centre / pulse) ** 2))
-
-
-def sawtooth_of_stick_slip(*, distance: Floats, pitch: float) -> Floats:
-    """Force between slips over the drawn distance: a straight rise from -1/2 to 1/2, then a fall.
-
-    Parameters
-    ----------
-    distance : ndarray
-        Drawn by the holder, in m.
-    pitch : float
-        Fall of the force over the stiffness of the holder, in m.
-
-    Returns
-    -------
-    ndarray
-    """
-    return np.asarray((distance / pitch) % 1.0 - 0.5)
 
 
 @dataclass(slots=True)

@@ -1,7 +1,6 @@
 """Virtual rig: what its channels read over time, as motor and drive are set between blocks."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from math import pi
 from time import monotonic, sleep
 from typing import TYPE_CHECKING, Final
@@ -11,9 +10,11 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.lab.block import Block, Channel, quantity_of
 from sonolube.lab.devices import DeviceError, DeviceLost, DriveSetting, SamplesLost
+from sonolube.lab.heating_assumptions import HeatingAssumptions
+from sonolube.lab.virtual_tribometer.arm_resonance import arm_resonance
 from sonolube.lab.virtual_tribometer.disturbances import Disturbances
 from sonolube.lab.virtual_tribometer.faults import Fault
-from sonolube.lab.virtual_tribometer.friction_draw import FrictionDraw, FrictionLevel
+from sonolube.lab.virtual_tribometer.friction_draw import FrictionDraw
 from sonolube.lab.virtual_tribometer.signals import (
     Approach,
     ColouredNoise,
@@ -21,10 +22,13 @@ from sonolube.lab.virtual_tribometer.signals import (
     hall_pulses,
     play,
     resonant,
-    sawtooth_of_stick_slip,
     waveform,
 )
+from sonolube.lab.virtual_tribometer.stick_slip import StickSlip
+from sonolube.lab.virtual_tribometer.temperatures import Temperatures, Thermocouple
+from sonolube.lab.virtual_tribometer.truth import TruthSetting, truth_dataset
 from sonolube.rig import Rig
+from sonolube.rig.excitation import actuator_capacitance
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,6 +52,7 @@ class VirtualRig:
     friction : FrictionDraw
     disturbances : Disturbances
         Of this test.
+    heating : HeatingAssumptions
     streams : sequence of numpy.random.SeedSequence
         Of the noises, in the order of `CHANNELS`, and of the phases.
     groove_diameter : float
@@ -61,6 +66,7 @@ class VirtualRig:
         rig: Rig,
         friction: FrictionDraw,
         disturbances: Disturbances,
+        heating: HeatingAssumptions,
         streams: Sequence[np.random.SeedSequence],
         groove_diameter: float,
         real_time: bool,
@@ -78,36 +84,33 @@ class VirtualRig:
         self._names: tuple[str, ...] = ()
         self._setting: DriveSetting | None = None
         self._level = friction.at(None, 0.0)
-        room = disturbances.ambient_temperature
         self._turning = Approach(0.0, 0.0, 0.0, disturbances.motor_time)
         self._revolutions, self._began_to_slide, self._volume = 0.0, 0.0, 0.0
         self._ratio = Approach(0.0, 1.0, 1.0, disturbances.vibration_time)
-        self._heated = Approach(0.0, room, room, disturbances.thermal_time)
+        thermocouple = Thermocouple(disturbances.contact_share, disturbances.thermocouple_time)
+        self._temperatures = Temperatures(rig, heating, thermocouple)
+        self._capacitance = actuator_capacitance(rig)
+        held = None if rig.structure is None else arm_resonance(rig.structure)
+        self._arm = held or (disturbances.natural_frequency, disturbances.holder_damping_ratio)
+        self._stick_slip = self._sticking(0.0)
         self._gauge = 0.0
         self._noises: dict[str, ColouredNoise] = {}
-        self._settings: list[tuple[float, float, FrictionLevel, DriveSetting | None]] = []
+        self._settings: list[TruthSetting] = []
 
     def truth(self) -> "xr.Dataset":
         """What the recording was made of, as `VirtualTribometer.truth`."""
-        import xarray as xr
-
-        known = self._settings
-        columns = {
-            "start_time": ([time for time, *_ in known], "s"),
-            "sliding_speed": ([speed for _, speed, *_ in known], "m/s"),
-            "voltage_peak_to_peak": ([s.voltage_peak_to_peak if s else 0.0 for *_, s in known], "V"),
-            "vibration_amplitude": ([level.vibration_amplitude for *_, level, _ in known], "m"),
-            "friction_force": ([level.friction_force for *_, level, _ in known], "N"),
-            "friction_ratio": ([level.friction_ratio for *_, level, _ in known], "1"),
+        actuator, pin = self._temperatures.rises(self._time)
+        single = {
+            "friction_coefficient": (self._friction.friction_coefficient, "1"),
+            "force_drift_rate": (self._drift, "N/s"),
+            "arm_frequency": (self._arm[0], "Hz"),
+            "arm_damping_ratio": (self._arm[1], "1"),
+            "wear_volume": (self._worn(self._time), "m3"),
+            "sliding_distance": (float(self._distance(np.asarray(self._time))), "m"),
+            "actuator_temperature_rise": (actuator, "K"),
+            "pin_temperature_rise": (pin, "K"),
         }
-        data = {name: ("setting", values, {"units": unit}) for name, (values, unit) in columns.items()}
-        drawn = {
-            "friction_coefficient": self._friction.friction_coefficient,
-            "drift_rate": self._drift,
-            "wear_volume": self._worn(self._time),
-            "sliding_distance": float(self._distance(np.asarray(self._time))),
-        }
-        return xr.Dataset(data, attrs={"title": f"Truth of {self._rig.title}", **asdict(self._sizes), **drawn})
+        return truth_dataset(self._settings, sizes=self._sizes, single=single, title=f"Truth of {self._rig.title}")
 
     def start(self, names: Sequence[str], sample_rate: float) -> None:
         """Begin to sample."""
@@ -116,9 +119,7 @@ class VirtualRig:
         sizes = self._sizes
         feedback = {
             "friction noise": correlated(time_constant=sizes.noise_time, sample_rate=sample_rate),
-            "ringing": resonant(
-                frequency=sizes.natural_frequency, damping_ratio=sizes.holder_damping_ratio, sample_rate=sample_rate
-            ),
+            "ringing": resonant(frequency=self._arm[0], damping_ratio=self._arm[1], sample_rate=sample_rate),
         }
         kinds = (*CHANNELS, *feedback)
         for kind, stream in zip(kinds, self._streams, strict=False):
@@ -190,9 +191,23 @@ class VirtualRig:
         self._volume_until_now()
         self._level = self._friction.at(self._setting, speed)
         self._ratio = self._ratio.towards(self._level.friction_ratio, time=self._time)
-        rise = self._level.actuator_power * self._sizes.heat_share * self._sizes.thermal_resistance
-        self._heated = self._heated.towards(self._sizes.ambient_temperature + rise, time=self._time)
-        self._settings.append((self._time, speed, self._level, self._setting))
+        self._stick_slip = self._sticking(speed)
+        flash = self._temperatures.set(
+            self._time, setting=self._setting, friction_force=self._level.friction_force, sliding_speed=speed
+        )
+        self._settings.append(TruthSetting(self._time, speed, self._setting, self._level, flash))
+
+    def _sticking(self, sliding_speed: float) -> StickSlip:
+        """Stick-slip without vibration at a speed."""
+        sizes = self._sizes
+        mean = self._friction.friction_coefficient * self._rig.normal_load
+        return StickSlip(
+            excess_force=sizes.static_share * mean,
+            stiffness=sizes.holder_stiffness,
+            mass=sizes.holder_mass,
+            damping_ratio=sizes.holder_damping_ratio,
+            sliding_speed=sliding_speed,
+        )
 
     def _volume_until_now(self) -> None:
         """Add the wear of the setting that ends, and begin anew from here."""
@@ -224,7 +239,9 @@ class VirtualRig:
             "voltage": lambda: self._voltage(time),
             "voltage_peak_to_peak": lambda: self._monitor(time),
             "current": lambda: self._current(time),
-            "temperature": lambda: self._heated.at(time) + self._white("temperature", sizes.temperature_noise, time),
+            "temperature": lambda: (
+                self._temperatures.reading(time) + self._white("temperature", sizes.temperature_noise, time)
+            ),
             "gaussmeter": lambda: self._flux(time),
         }
         return np.stack([of_name[name]() for name in self._names], axis=1)
@@ -251,13 +268,11 @@ class VirtualRig:
         level = mean * wobble * ratio * (1 + sizes.run_in_share * np.exp(-distance / sizes.run_in_distance))
         noise = sizes.friction_noise * self._noises["friction noise"].next(time.size)
         force = level * (1 + noise + sizes.ringing * self._noises["ringing"].next(time.size))
-        fall = sizes.stick_slip_share * mean
-        if fall > 0:
-            sticks = self._setting is None
-            force += sticks * fall * sawtooth_of_stick_slip(distance=distance, pitch=fall / sizes.holder_stiffness)
+        if self._setting is None and self._stick_slip.occurs:
+            force += self._stick_slip.force(time - self._turning.start)
         turning = self._turning.at(time)
         drawn = sizes.holder_stiffness * (distance - self._began_to_slide)  # while the pin still sticks
-        force = np.minimum(force, drawn) * (turning / (turning + _STANDS))
+        force = np.where(drawn < (1 + sizes.static_share) * level, drawn, force) * (turning / (turning + _STANDS))
         reading = force + self._drift * time + self._white("friction_force", sizes.sensor_noise, time)
         if sizes.hysteresis > 0:
             reading = play(reading, sizes.hysteresis, self._gauge)
@@ -285,8 +300,8 @@ class VirtualRig:
 
     def _current(self, time: Floats) -> Floats:
         """Current into the capacitance of the actuator, without that of its motion."""
-        noise = self._white("current", 1e-4, time)
-        setting, capacitance = self._setting, self._rig.capacitance
+        noise = self._white("current", self._sizes.current_noise, time)
+        setting, capacitance = self._setting, self._capacitance
         if setting is None or capacitance is None:
             return noise
         step = 1 / (400 * setting.frequency)

@@ -8,6 +8,7 @@ import numpy as np
 
 from sonolube.lab.block import Block, Channel
 from sonolube.lab.devices import DeviceError, Devices, DriveSetting
+from sonolube.lab.heating_assumptions import HeatingAssumptions
 from sonolube.lab.virtual_tribometer.disturbances import Disturbances
 from sonolube.lab.virtual_tribometer.faults import Fault
 from sonolube.lab.virtual_tribometer.friction_draw import FrictionDraw
@@ -33,6 +34,7 @@ def virtual_tribometer(
     disturbances: Disturbances | None = None,
     groove_diameter: float = GROOVE_DIAMETER,
     fault: Fault | None = None,
+    heating: HeatingAssumptions | None = None,
 ) -> "VirtualTribometer":
     """Virtual tribometer of a rig.
 
@@ -50,6 +52,8 @@ def virtual_tribometer(
         Of the circle under the pin. [m]
     fault : Fault, optional
         Of the hardware.
+    heating : HeatingAssumptions, optional
+        Thermal properties that a rig file does not hold; as in a dry run by default.
 
     Returns
     -------
@@ -62,7 +66,9 @@ def virtual_tribometer(
     """
     streams = np.random.SeedSequence(seed).spawn(len(CHANNELS) + 4)
     drawn = (disturbances or Disturbances()).drawn(np.random.default_rng(streams[-1]))
-    virtual = VirtualRig(rig, FrictionDraw(rig, seed=seed), drawn, streams, groove_diameter, real_time, fault)
+    assumed = heating or HeatingAssumptions()
+    friction = FrictionDraw(rig, seed=seed)
+    virtual = VirtualRig(rig, friction, drawn, assumed, streams, groove_diameter, real_time, fault)
     described = {
         "device": "virtual tribometer",
         "rig": rig.title,
@@ -92,8 +98,9 @@ class VirtualTribometer:
         Returns
         -------
         xarray.Dataset
-            Over `setting`: start time, speed, voltage, amplitude, friction force and ratio; the wear volume and the
-            sizes are attributes, in SI.
+            Over `setting`: start time, speed, drive, amplitude, friction force and ratio, wear rate and flash rise; as
+            numbers the wear volume, the sliding distance, temperatures and every size of the disturbances. All in SI,
+            with their units.
         """
         return self._virtual.truth()
 

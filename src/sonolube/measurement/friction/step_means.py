@@ -8,7 +8,12 @@ from scipy.optimize import minimize_scalar
 
 from sonolube.checks import Floats
 from sonolube.measurement.friction.stick_slip import StickSlipEstimate
-from sonolube.measurement.friction.wobble_search import find_rotation_speed, harmonic_columns, refined_speed
+from sonolube.measurement.friction.wobble_search import (
+    find_rotation_speed,
+    harmonic_columns,
+    refined_speed,
+    scaled_waves,
+)
 from sonolube.measurement.statistics.correlated_regression import CorrelatedRegression, correlated_regression
 
 _BLOCK = 0.016  # s, over which samples are averaged
@@ -124,10 +129,9 @@ def _additive_or_proportional(parts: SampledParts, waves: list[Floats]) -> list[
     A tilted gauge adds the same wobble at every level; a load that varies with the turn, or a track that does, wobbles
     the force in proportion.
     """
-    levels = np.array([np.mean(force) for force in parts.forces])
-    if not (levels > 0).all():
+    proportional = scaled_waves(waves, parts.forces)
+    if proportional is None:
         return waves
-    proportional = [wave * level / levels.max() for wave, level in zip(waves, levels, strict=True)]
 
     def left(columns: list[Floats]) -> float:
         """Return the sum of squares that remains of the blocks."""

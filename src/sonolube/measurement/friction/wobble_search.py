@@ -58,8 +58,9 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
     -----
     At each frequency the power P is that explained by cosine and sine beside the means of the parts, and the noise S
     its running median. The sum of :math:`P/S` over the harmonics must exceed 50, and the wobble must improve the fit in
-    70 % of the time with one amplitude and phase: stick-slip keeps no phase over a recording. Of equally good speeds
-    the highest is taken, since subharmonics explain as much. Sought are 2 turns per recording to 5 turns per second.
+    70 % of the time with one phase and one amplitude, or one in proportion to the level: stick-slip keeps no phase. Of
+    equally good speeds the highest is taken, since subharmonics explain as much. Sought are 2 turns per recording to 5
+    turns per second.
     """
     t, y = np.concatenate(times), np.concatenate([force - force.mean() for force in forces])
     duration = float(t[-1] - t[0])
@@ -138,13 +139,44 @@ def _explained_power(times: Sequence[Floats], forces: Sequence[Floats]) -> tuple
     return half / (size * interval), np.asarray(power)
 
 
+def scaled_waves(waves: Sequence[Floats], forces: Sequence[Floats]) -> list[Floats] | None:
+    """Return harmonics in proportion to the level of each part, 1 at the highest; None where a level is not positive.
+
+    Parameters
+    ----------
+    waves : sequence of ndarray, shape (samples, columns)
+        Of each part.
+    forces : sequence of ndarray
+        Friction force of each part, in N.
+
+    Returns
+    -------
+    list of ndarray or None
+    """
+    levels = np.array([force.mean() for force in forces])
+    if not (levels > 0).all():
+        return None
+    return [wave * level / levels.max() for wave, level in zip(waves, levels, strict=True)]
+
+
 def _residuals(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> list[Floats]:
-    """Return the residuals of the fit of levels and harmonics in each part."""
+    """Return what levels and harmonics leave of each part, with one amplitude or one in proportion to the level.
+
+    The one that leaves less is taken: a tilted gauge adds the same wobble at every level, a load that varies with the
+    turn wobbles the force in proportion, and of one amplitude would be worse than none where vibration takes most of
+    the friction away.
+    """
     waves = [harmonic_columns(revolutions=speed * t, harmonics=harmonics) for t in times]
+    tried = [each for each in (waves, scaled_waves(waves, forces)) if each is not None]
+    return min((_left(each, forces) for each in tried), key=lambda left: sum(float(e @ e) for e in left))
+
+
+def _left(waves: Sequence[Floats], forces: Sequence[Floats]) -> list[Floats]:
+    """Return the residuals of the fit of levels and columns in each part."""
     centred = np.concatenate([wave - wave.mean(axis=0) for wave in waves])
     y = np.concatenate([force - force.mean() for force in forces])
     solution, _, _, _ = np.linalg.lstsq(centred, y)
-    ends = np.cumsum([t.size for t in times])[:-1]
+    ends = np.cumsum([force.size for force in forces])[:-1]
     return np.split(y - centred @ solution, ends)
 
 
