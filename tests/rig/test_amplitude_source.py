@@ -1,5 +1,6 @@
 """One amplitude for every command: measured first, then computed, then per volt, and the same friction everywhere."""
 
+import tomllib
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -21,6 +22,7 @@ from sonolube.rig import (
     point_batch,
     read_rig,
     resolved_vibration,
+    rig_from,
     simulate,
     steady_vibration,
     temperature_point,
@@ -180,3 +182,24 @@ def test_the_balance_of_energy_says_which_power_is_which() -> None:
     assert result.vibration.dissipated_power > result.friction.actuator_power
     assert "6.21 W charges the actuator's capacitance alone" in (result.energy_balance or "")
     assert "must supply the larger" in (result.energy_balance or "")
+
+
+@pytest.mark.parametrize("held", ["tip", "reaction", "arm"])
+def test_many_points_agree_where_springs_to_the_ground_carry_a_part_of_the_load(held: str) -> None:
+    chain = {
+        "kind": "chain",
+        "masses": {"tip": "0.1093 kg", "reaction": "2.41 kg", "arm": "602 g"},
+        "springs": [
+            {"between": ["reaction", "arm"], "spring_stiffness": "4.56e5 N/m"},
+            {"between": [held, "ground"], "spring_stiffness": "1e6 N/m"},
+        ],
+        "dampers": [{"between": ["tip", "ground"], "viscous_damping": "702 N s/m"}],
+        "stack_between": ["tip", "reaction"],
+        "contact": "tip",
+        "loaded": "arm",
+    }
+    content = tomllib.loads(TRIBOMETER.read_text(encoding="utf-8")) | {"structure": chain}
+    rig = rig_from({name: table for name, table in content.items() if name not in ("vibration", "assumptions")})
+    assert abs(np.mean(steady_vibration(rig).motions[0].normal_force) / rig.normal_load - 1) > 0.01
+    expected = friction_point(rig).friction_ratio
+    assert point_batch(rig).numbers["friction_ratio"] == approx(expected, rel=CLOSE)

@@ -4,7 +4,7 @@ The record in which `sonolube.dynamics` hands over a vibration and which the mod
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -100,6 +100,8 @@ class GapMotionBatch:
         Complex amplitudes X_k of the displacement, in m.
     frequency : ndarray, shape (m,)
         Fundamental frequency. [Hz]
+    mean_force_ratio : ndarray, shape (m,), optional
+        Mean normal force over the load; 1 by default, as under a dead load. Springs to the ground carry a part. []
 
     Raises
     ------
@@ -114,6 +116,7 @@ class GapMotionBatch:
     mean_displacement: Floats
     harmonics: Complexes
     frequency: Floats
+    mean_force_ratio: Floats = field(default_factory=lambda: np.ones(1))
 
     def __post_init__(self) -> None:
         mean = np.atleast_1d(require_finite(mean_displacement=self.mean_displacement))
@@ -124,7 +127,12 @@ class GapMotionBatch:
                 "mean_displacement, frequency and harmonics must have one row per motion, got shapes"
                 f" {mean.shape}, {f.shape} and {coefficients.shape}"
             )
-        for name, value in (("mean_displacement", mean), ("harmonics", coefficients), ("frequency", f)):
+        ratio = np.atleast_1d(require_non_negative(mean_force_ratio=self.mean_force_ratio))
+        if ratio.shape not in {(1,), mean.shape}:
+            raise InvalidInput(f"mean_force_ratio must have one value or one per motion, got shape {ratio.shape}")
+        ratio = np.broadcast_to(ratio, mean.shape)
+        columns = (("mean_displacement", mean), ("harmonics", coefficients), ("frequency", f))
+        for name, value in (*columns, ("mean_force_ratio", ratio)):
             object.__setattr__(self, name, value)
 
 
@@ -146,6 +154,7 @@ def gap_harmonics(motion: GapMotion) -> GapMotionBatch:
         mean_displacement=np.array([coefficients[0].real]),
         harmonics=2 * coefficients[np.newaxis, 1 : (n + 1) // 2],
         frequency=np.array([motion.frequency]),
+        mean_force_ratio=np.array([np.mean(motion.normal_force) / motion.normal_load]),
     )
 
 

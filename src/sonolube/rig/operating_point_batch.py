@@ -269,10 +269,12 @@ def _batched_friction(
 ) -> CheckedRatio:
     """Return the friction ratio at each of some moving points by the model's batched form; NaN where it has none."""
     known = states.status != Status.NOT_CONVERGED
+    mean_force_ratio = states.mean_normal_force / states.normal_load
     motions = GapMotionBatch(
         mean_displacement=states.mean_displacement[known],
         harmonics=states.harmonics[known],
         frequency=states.frequency[known],
+        mean_force_ratio=mean_force_ratio[known],
     )
     row = np.cumsum(known) - 1
     raw = rig.friction_model.batched_ratio(
@@ -283,7 +285,6 @@ def _batched_friction(
         friction_coefficient=rig.friction_coefficient,
         tolerance=tolerance,
     )
-    mean_force_ratio = (states.mean_normal_force / states.normal_load)[place]
     return checked_ratio(
-        rig.friction_model, raw, mean_force_ratio=mean_force_ratio, gap_closed=states.gap_closed[place]
+        rig.friction_model, raw, mean_force_ratio=mean_force_ratio[place], gap_closed=states.gap_closed[place]
     )

@@ -53,6 +53,33 @@ def ratios(harmonics: np.ndarray, speeds: np.ndarray) -> np.ndarray:
     )
 
 
+@pytest.mark.parametrize("harmonics", [[3e-6 + 0j], [3e-6 + 0j, 1e-7j], [1e-6 + 0j, 1e-12j]])
+@pytest.mark.parametrize("raised", [-1e-6, 2e-6])
+@pytest.mark.parametrize("tolerance", [1e-7, SINE_TOLERANCE])
+def test_a_gap_about_a_wider_mean_scales_friction_as_it_scales_the_normal_force(
+    harmonics: list[complex], raised: float, tolerance: float
+) -> None:
+    mean, factor = balanced_mean(np.array(harmonics)), np.exp(-raised / DECAY_LENGTH)
+    balanced, shifted = (
+        batched_stick_slip_ratio(
+            GapMotionBatch(
+                mean_displacement=np.array([mean + by]),
+                harmonics=np.array([harmonics]),
+                frequency=np.array([FREQUENCY]),
+                mean_force_ratio=np.array([np.exp(-by / DECAY_LENGTH)]),
+            ),
+            decay_length=DECAY_LENGTH,
+            sliding_speed=[0.02, 0.1, 3.0],
+            motion=[0, 0, 0],
+            memory_length=MEMORY_LENGTH,
+            tolerance=tolerance,
+        )
+        for by in (0.0, raised)
+    )
+    assert shifted == approx(factor * balanced, rel=1e-4)
+    assert balanced[-1] == 1.0
+
+
 @settings(max_examples=60, deadline=None)
 @given(log_beta=st.floats(-7, 5), log_v=st.floats(-12, 1))
 def test_a_sine_has_the_closed_form_ratio(log_beta: float, log_v: float) -> None:

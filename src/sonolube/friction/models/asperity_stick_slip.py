@@ -124,14 +124,14 @@ class AsperityStickSlip(FrictionModel):
             steady = length / self.memory_length * v_r.ravel() / (motion.frequency * widest_first.size)
             return _sampled_ratio(widest_first / length, slides / length, steady / length, *_HEIGHTS)
 
-        mean_force_ratio = float(np.mean(motion.normal_force)) / motion.normal_load
         if motion.displacement.size <= _LONGEST_PERIOD:
             every = np.zeros(v_r.size, dtype=np.int64)
             closed = self.batched_ratio(
                 contact, gap_harmonics(motion), sliding_speed=v_r.ravel(), motion=every, friction_coefficient=np.nan
             )
             if np.isfinite(closed).all():
-                return (closed + mean_force_ratio - 1).reshape(v_r.shape)
+                return closed.reshape(v_r.shape)
+        mean_force_ratio = float(np.mean(motion.normal_force)) / motion.normal_load
         return mean_force_ratio * richardson_period_mean(mean_over_limit, motion).reshape(v_r.shape)
 
     def batched_ratio(

@@ -46,12 +46,12 @@ def batched_stick_slip_ratio(
     memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
     tolerance: float = SINE_TOLERANCE,
 ) -> Floats:
-    r"""Return friction ratios by asperity stick-slip under load-balanced motions, for very many points. []
+    r"""Return friction ratios by asperity stick-slip for very many points. []
 
     Parameters
     ----------
     motions : GapMotionBatch
-        Motions of the gap, each about its load-balanced mean.
+        Motions of the gap, with mean normal forces that belong to them.
     decay_length : float
         Length over which the normal force falls by a factor of e. [m]
     sliding_speed : array_like, shape (n,)
@@ -84,7 +84,7 @@ def batched_stick_slip_ratio(
 
     Otherwise the force is integrated exactly. With the height :math:`g = x + s \theta` of the gap above the slide,
     :math:`s = v_r/(2 \pi f D_c)` decay lengths per radian, an element that comes into contact in a valley of g sticks
-    across it, and the friction deficit is
+    across it, and friction falls short of that of the mean normal force by
 
     .. math:: \Delta = -\frac{1}{2\pi} \int e^{-x}\, w(g)\, \mathrm{d}g
 
@@ -114,7 +114,20 @@ def batched_stick_slip_ratio(
     table = _table() if tolerance >= SINE_TOLERANCE else _NO_TABLE
     write_ratios = _write_ratios.for_points(v_r.size, at_first=_FEW)
     write_ratios(
-        table, tolerance, harmonics, mean, beta, higher, closes_once, load_ratio, slide, v_r, which, *_NODES, ratio
+        table,
+        tolerance,
+        harmonics,
+        mean,
+        np.ascontiguousarray(motions.mean_force_ratio),
+        beta,
+        higher,
+        closes_once,
+        load_ratio,
+        slide,
+        v_r,
+        which,
+        *_NODES,
+        ratio,
     )
     beyond = np.flatnonzero(np.isinf(ratio))
     if beyond.size:  # sines outside the table
@@ -152,6 +165,7 @@ def _write_ratios(
     tolerance: float,
     harmonics: Complexes,
     mean: Floats,
+    mean_force_ratio: Floats,
     beta: Floats,
     higher: Floats,
     closes_once: NDArray[np.bool_],
@@ -168,13 +182,15 @@ def _write_ratios(
         j = which[i]
         s = v_r[i] * slide[j]
         sine = _interpolated(table, beta[j], s)
-        if min(sine * load_ratio[j], 1.0) * higher[j] <= tolerance:
-            outside = sine == np.inf  # no element sticks where the ratio is 1
-            ratio[i] = sine if outside or sine == 1.0 else min(sine * load_ratio[j], 1.0)
+        largest = mean_force_ratio[j]
+        if min(sine * load_ratio[j], largest) * higher[j] <= tolerance:
+            outside = sine == np.inf
+            sticks = sine < 1.0
+            ratio[i] = sine if outside else min(sine * load_ratio[j], largest) if sticks else largest
         elif not closes_once[j] or beta[j] > _MAXIMUM_BETA or s < _MINIMUM_SPEED * beta[j]:
             ratio[i] = np.nan
         else:
-            ratio[i] = 1 - _deficit(harmonics[j], mean[j], s, nodes, weights)
+            ratio[i] = largest - _deficit(harmonics[j], mean[j], s, nodes, weights)
 
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
@@ -205,7 +221,7 @@ def _cubic_weights(t: float) -> tuple[float, float, float, float]:
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights: Floats) -> float:
-    """Return the friction deficit of sticking elements over the load, for a motion that closes once in a period."""
+    """Return what friction lacks by sticking elements, over the load, for a motion that closes once in a period."""
     count = harmonics.size
     while count > 1 and abs(harmonics[count - 1]) < _NEGLIGIBLE_HARMONIC:
         count -= 1
