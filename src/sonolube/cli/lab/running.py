@@ -241,7 +241,7 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
     if devices.simulated:
         facts["seed"] = plan.seed
     if rig is not None:
-        facts |= {"normal_load": rig.normal_load, "rig_title": rig.title}
+        facts |= {"normal_load": rig.normal_load, "rig_title": rig.title, "nominal_area": rig.contact.nominal_area}
         facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
     if plan.device_file is not None:
         facts["rig"] = plan.device_file.stem  # one run at a time on the devices of a map, whatever rig file is given
