@@ -11,6 +11,7 @@ from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.lab.block import Block
 from sonolube.lab.closed_loop.record import FrictionHold, HeldFriction
 from sonolube.lab.devices import DeviceError, Devices, DriveSetting, SamplesLost, connect_devices, switch_outputs_off
+from sonolube.lab.ending import RunEnded, ending, release_devices
 from sonolube.lab.interlocks import first_trip, interlocks_for
 from sonolube.lab.runner import Advance, RunControl
 from sonolube.lab.sampling import Recorder
@@ -19,10 +20,6 @@ from sonolube.units import format_si
 
 _FRICTION: Final = "friction_force"
 _RECORDED: Final = (_FRICTION, "voltage_peak_to_peak", "voltage", "temperature", "gaussmeter")
-
-
-class _Ended(Exception):
-    """End of a loop before its time."""
 
 
 def hold_friction(
@@ -94,15 +91,10 @@ class _Loop:
             self._control_friction(self._running_in(), advance)
             self._end_recording()
             self._happens(Event.COMPLETED)
-        except _Ended as end:
-            self._happens(Event.TRIP, str(end))
-        except DeviceError as failure:
-            self._happens(Event.DEVICE_ERROR, str(failure))
-        except SonolubeError as failure:
-            self._happens(Event.CRASH, str(failure))
         except BaseException as failure:
-            self._happens(Event.CRASH, f"{type(failure).__name__}: {failure}")
-            raise
+            self._happens(*ending(failure))
+            if not isinstance(failure, SonolubeError):
+                raise
         finally:
             self._close()
         return self._result()
@@ -112,8 +104,21 @@ class _Loop:
         return switch_outputs_off(self._devices)
 
     def _happens(self, event: Event, reason: str = "") -> None:
-        """Take an event into the state of the loop."""
+        """Take an event into the state of the loop, and note it."""
         self._present, _ = after(self._present, event, reason=reason)
+        if event is not Event.START:
+            self._note(event.value, reason=reason, state=self._present.state.value)
+
+    def _note(self, kind: str, **facts: str | float) -> None:
+        """Note what happened; while the loop ends, a record that cannot be written is no hindrance."""
+        if self._recorder is None:
+            return
+        sample, time = (self._next_sample, self._next_sample / self._rate) if self._rate else (None, 0.0)
+        try:
+            self._recorder.note(kind, sample=sample, protocol_time=time, **facts)
+        except SonolubeError:
+            if self._present.state is State.RUNNING:
+                raise
 
     def _sample(self) -> None:
         """Start to sample and to record."""
@@ -161,8 +166,7 @@ class _Loop:
     def _turn(self, speed: float) -> None:
         """Set the speed of the disc for a sliding speed."""
         self._devices.motor.turn(speed / (pi * _groove_diameter(self._hold, self._devices)))
-        if self._recorder is not None:
-            self._recorder.note("motor", sample=self._next_sample, sliding_speed=speed)
+        self._note("motor", sliding_speed=speed)
 
     def _drive(self, voltage: float) -> None:
         """Set the drive to a peak-to-peak voltage."""
@@ -180,17 +184,17 @@ class _Loop:
     def _measure(self) -> tuple[float, float]:
         """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""
         if self._control.stop_reason:
-            raise _Ended(self._control.stop_reason)
+            raise RunEnded(Event.STOP, self._control.stop_reason)
         block = self._devices.acquisition.read(self._count)
         self._keep(block)
         trip = first_trip(block, self._names, self._locks)
         if trip is not None:
-            raise _Ended(trip.reason)
+            raise RunEnded(Event.TRIP, trip.reason)
         samples = block.values[:, self._names.index(_FRICTION)]
         samples = samples[-max(1, round(self._hold.averaging * samples.size)) :]
         mean = float(np.mean(samples))
         if not np.isfinite(mean):
-            raise _Ended(f"channel {_FRICTION} gives no number")
+            raise RunEnded(Event.TRIP, f"channel {_FRICTION} gives no number")
         return mean, float(np.std(samples))
 
     def _keep(self, block: Block) -> None:
@@ -212,17 +216,8 @@ class _Loop:
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
         failures, devices = self.switch_off(), self._devices
-        for close in (
-            self._end_recording,
-            devices.acquisition.stop,
-            devices.drive.close,
-            devices.motor.close,
-            devices.acquisition.close,
-        ):
-            try:
-                close()
-            except Exception as failure:  # the others must be released; the outputs are off already
-                self._happens(Event.DEVICE_ERROR, str(failure))
+        for reason in release_devices(devices, self._end_recording, devices.acquisition.stop):
+            self._happens(Event.DEVICE_ERROR, reason)
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
         if self._recorder is not None:
             self._recorder.finish(self._present.outcome, reason=self._present.reason)

@@ -179,6 +179,10 @@ class VirtualRig:
         self._turning = self._turning.towards(rotation_speed, time=self._time)
         self._settle()
 
+    def prepare(self, setting: DriveSetting | None, rotation_speed: float) -> None:
+        """Work out the friction at a setting of drive and motor, which takes seconds for some rigs."""
+        self._friction.at(setting, rotation_speed * pi * self._diameter)
+
     def drive(self, setting: DriveSetting | None) -> None:
         """Set the drive, None for off."""
         self._setting = setting
