@@ -1,5 +1,6 @@
 """Set points that take devices time are worked out before anything is connected, and change no sample."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -71,15 +72,19 @@ def test_preparation_changes_no_sample_of_the_virtual_tribometer(seed: int) -> N
 
 def test_no_model_is_computed_while_the_virtual_motor_turns(monkeypatch: MonkeyPatch) -> None:
     devices = virtual_tribometer(read_rig(RIG), seed=0).devices
-    computed, started = [], []
+    computed, started = list[bool](), list[str]()
     compute, start = FrictionDraw._computed, devices.acquisition.start
 
     def counted(draw: FrictionDraw, setting: DriveSetting, sliding_speed: float) -> object:
         computed.append(bool(started))
         return compute(draw, setting, sliding_speed)
 
+    def noted(channels: Sequence[str], *, sample_rate: float) -> float:
+        started.append("now")
+        return start(channels, sample_rate=sample_rate)
+
     monkeypatch.setattr(FrictionDraw, "_computed", counted)
-    monkeypatch.setattr(devices.acquisition, "start", lambda *a, **k: started.append(1) or start(*a, **k))
+    monkeypatch.setattr(devices.acquisition, "start", noted)
     samples_of(devices)
     assert started
     assert computed

@@ -9,6 +9,7 @@ from sonolube.design.control import initial_state, next_voltage
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.lab.block import Block
+from sonolube.lab.closed_loop.plan import recorded_channels
 from sonolube.lab.closed_loop.record import FrictionHold, HeldFriction
 from sonolube.lab.devices import DeviceError, Devices, DriveSetting, SamplesLost, connect_devices, switch_outputs_off
 from sonolube.lab.ending import RunEnded, ending, release_devices
@@ -19,7 +20,6 @@ from sonolube.lab.states import Event, RunState, State, after
 from sonolube.units import format_si
 
 _FRICTION: Final = "friction_force"
-_RECORDED: Final = (_FRICTION, "voltage_peak_to_peak", "voltage", "temperature", "gaussmeter")
 
 
 def hold_friction(
@@ -60,7 +60,7 @@ def hold_friction(
     loop is then that of `sonolube.design.control.stability_margins` where the friction at the end of an interval is
     that of its voltage; a mean over the whole interval delays the measurement by up to half of it.
     """
-    _require_possible(hold, devices)
+    require_holdable(hold, devices)
     control = control or RunControl()
     loop = _Loop(hold, devices, recorder, control)
     with undone_at_signal(loop.switch_off), asked_by_signal(control.stop):
@@ -74,8 +74,7 @@ class _Loop:
         self._hold, self._devices, self._recorder, self._control = hold, devices, recorder, control
         channels = devices.acquisition.channels
         self._locks = interlocks_for(hold.limits, channels)
-        watched = [lock.channel.name for lock in self._locks]
-        self._names = list(dict.fromkeys([*(name for name in _RECORDED if name in channels), *watched]))
+        self._names = list(recorded_channels(hold, channels))
         self._present, self._is_recording = RunState(), False
         self._next_sample, self._rate, self._count = 0, 0.0, 0
         self._rows: list[tuple[float, float, float, float]] = []
@@ -246,8 +245,19 @@ def _groove_diameter(hold: FrictionHold, devices: Devices) -> float:
     return hold.groove_diameter or devices.groove_diameter
 
 
-def _require_possible(hold: FrictionHold, devices: Devices) -> None:
-    """Raise where devices or limits do not allow what a loop may do, before anything is connected."""
+def require_holdable(hold: FrictionHold, devices: Devices) -> None:
+    """Raise where devices or limits do not allow what a loop may do, before anything is connected.
+
+    Parameters
+    ----------
+    hold : FrictionHold
+    devices : Devices
+
+    Raises
+    ------
+    InvalidInput
+        Naming what is asked for, and the device or limit that forbids it.
+    """
     interlocks_for(hold.limits, devices.acquisition.channels)
     if _FRICTION not in devices.acquisition.channels:
         raise InvalidInput(f"{devices.acquisition.name} has no channel {_FRICTION}, which the loop needs")
