@@ -280,8 +280,9 @@ class _Run:
             if sampling.is_recording and until is not None:
                 ends.append(until)
             self._end_at(sampling.read_until(min(ends)))
-            if until is not None and sampling.time >= until:
+            if sampling.is_recording and until is not None and sampling.time >= until:
                 sampling.end_recording()
+                self._note("recorded")
             if advance is not None:
                 advance(self._doing(), round(1e3 * sampling.time), round(1e3 * self._points[-1].time))
 

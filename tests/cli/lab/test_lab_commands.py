@@ -50,6 +50,12 @@ def test_recover_completes_killed_runs_and_leaves_others(tmp_path: Path, sonolub
     assert "holds no run" in sonolube("lab", "recover", whole / "raw").refusal
 
 
+def test_recover_completes_a_run_that_is_named_itself(tmp_path: Path, sonolube: Program) -> None:
+    killed = unfinished(tmp_path)
+    assert sonolube("lab", "recover", killed).out.startswith("1 of 1 runs recovered\n")
+    assert sonolube("lab", "show", killed, "--json").answer["outcome"] == "interrupted"
+
+
 def test_a_run_at_work_is_told_beside_those_recovered(tmp_path: Path, sonolube: Program) -> None:
     unfinished(tmp_path)
     recorder = begun(tmp_path)
