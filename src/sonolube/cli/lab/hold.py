@@ -101,7 +101,7 @@ def hold(
 
     Motor and drive are off at the end, whatever happens.
 
-    Example: sonolube lab hold examples/rigs/tribometer.toml --friction 0.6N --step-to 40mm/s
+    Example: sonolube lab hold examples/rigs/tribometer.toml --friction 0.7N --step-to 30mm/s
     """
     known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     if known.drive is None:
@@ -220,6 +220,7 @@ class HoldAnswer(Answer):
             "safe": held.is_safe,
             "simulated": self.simulated,
             "folder": str(self.run.folder),
+            "tags": self.run.facts.get("tags", ""),
             "recordings": [str(path) for path in self.run.recordings],
             **si({"friction_force": held.hold.friction_force, **margins, **gains}),
             **si({"intrinsic_friction_force": intrinsic if intrinsic == intrinsic else None}),

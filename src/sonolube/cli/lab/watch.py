@@ -1,6 +1,6 @@
 """Command `lab watch`: a run that is being recorded, followed from another terminal by its folder."""
 
-import shutil
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -26,6 +26,7 @@ LOOK_INTERVAL = 0.5
 LINE_INTERVAL = 5.0
 """Between two lines where standard output is no terminal, while the state stays. [s]"""
 
+_WIDTH: Final = 80  # of a terminal that does not tell its own
 _QUIET: Final = 5.0  # s without a block or event that are told
 _SHOWN: Final = ("friction_force", "normal_load", "temperature", "voltage_peak_to_peak")
 
@@ -81,7 +82,7 @@ class _Display:
             return
         line = printable(observation_line(seen))
         if self._is_terminal:
-            width = shutil.get_terminal_size().columns - 1
+            width = (os.get_terminal_size(sys.stdout.fileno()).columns or _WIDTH) - 1
             sys.stdout.write(f"\r{line[:width]}\x1b[K")
             sys.stdout.flush()
             return

@@ -76,8 +76,12 @@ class Candidates:
 
     Parameters
     ----------
-    normal_load, sliding_speed, vibration_amplitude : ndarray
-        One of the values of each factor, as in `Factors`.
+    normal_load : ndarray
+        [N]
+    sliding_speed : ndarray
+        [m/s]
+    vibration_amplitude : ndarray
+        [m]
     voltage_peak_to_peak : ndarray
         NaN where the rig states no voltage. [V]
     voltage_offset : ndarray

@@ -45,9 +45,9 @@ class Observation:
     step, step_kind : str
         Place and kind of the step of the protocol; empty while there is none.
     protocol_time : float
-        Into the protocol. [s]
+        Into the protocol, in s.
     duration : float or None
-        Of the protocol; None where its text tells none. [s]
+        Of the protocol, in s; None where its text tells none.
     set_points : mapping of str to float
         Of motor and drive while they are on, by quantity in SI.
     means : mapping of str to (float or None, str)
@@ -58,7 +58,7 @@ class Observation:
     gaps : int
         Gaps that were noted.
     silence : float
-        Since anything was written. [s]
+        Time since anything was written, in s.
     """
 
     folder: Path
