@@ -47,7 +47,7 @@ class Observation:
     protocol_time : float
         Into the protocol, in s.
     duration : float or None
-        Of the protocol, in s; None where its text tells none.
+        Of the protocol; None where its text tells none. [s]
     set_points : mapping of str to float
         Of motor and drive while they are on, by quantity in SI.
     means : mapping of str to (float or None, str)
