@@ -181,6 +181,8 @@ class VirtualRig:
 
     def prepare(self, setting: DriveSetting | None, rotation_speed: float) -> None:
         """Work out the friction at a setting of drive and motor, which takes seconds for some rigs."""
+        import scipy.signal  # noqa: F401  for which the first block would wait
+
         self._friction.at(setting, rotation_speed * pi * self._diameter)
 
     def drive(self, setting: DriveSetting | None) -> None:
