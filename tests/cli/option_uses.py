@@ -50,7 +50,7 @@ sliding_speed = "50 mm/s"
 MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage_peak_to_peak=5V,10V")
 
 # Options that say how an answer is computed or kept: the answer stays the same.
-EXECUTION = {"--force", "--real-time", "--yes", "--workers", "--scheduler", "--chunk", "--backend", "--keep"}
+EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--scheduler", "--chunk", "--backend", "--keep"}
 # Options of the place of files, which every run here gives.
 PLACES = {"--out", "--json", "--help"}
 # A run takes a minute; tests of these commands try them.
@@ -531,6 +531,32 @@ MODES = {
         (str(RIGS / "power_map.toml"), "--protocol", "FOLDER/short.toml"),
         {"--protocol": "FOLDER/shorter.toml", "--seed": "1", "--format": "csv"},
     ),
+    "lab hold": Mode(
+        "lab hold",
+        (str(RIGS / "power_map.toml"), "--duration", "1s", "--run-in", "0.1s"),
+        {
+            "--friction": "0.9N",
+            "--step-to": "40mm/s",
+            "--step-at": "0.3s",
+            "--delay": "60ms",
+            "--rate": "25Hz",
+            "--closed-loop": "0.2s",
+            "--voltage-limit": "20V",
+            "--temperature-limit": "294K",
+            "--friction-limit": "0.5N",
+            "--quality": "20",
+            "--coupling": "0.3",
+            "--run-in": "0.2s",
+            "--duration": "1.2s",
+            "--device": "FOLDER/devices.toml",
+            "--seed": "1",
+            "--tag": "mine",
+            "--set": "contact.normal_load=2.5N",
+            **AMPLITUDE,
+        },
+        ("--real-time",),
+    ),
+    "lab watch": Mode("lab watch", ("FOLDER/runs/first",), {}, ("--once",)),
     "lab runs": Mode(
         "lab runs",
         ("FOLDER/runs",),

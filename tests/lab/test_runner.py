@@ -204,7 +204,7 @@ def test_a_check_stops_notes_or_waits(otherwise: str, outcome: str) -> None:
 
 def test_what_devices_cannot_do_is_refused_before_they_are_connected() -> None:
     weak = SimulatedRig(voltage_maximum=20.0)
-    with raises(InvalidInput, match=r"step 6: the drive reaches 20.7 V; simulated rig gives at most 20 V"):
+    with raises(InvalidInput, match=r"step 6: the drive reaches 25.9 V; simulated rig gives at most 20 V"):
         run_protocol(protocol(), weak.devices(), MemoryRecord(), operator=lambda prompt: True)
     slow = SimulatedRig(rotation_speed_maximum=0.1)
     with raises(InvalidInput, match=r"step 4: needs .* simulated rig turns at most at 0.1 1/s"):

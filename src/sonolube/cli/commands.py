@@ -85,6 +85,8 @@ COMMANDS = (
     Command(_COMPARE, "reproduce", "compare.reproduce:reproduce"),
     Command(_LAB, "lab run", "lab.run:run"),
     Command(_LAB, "lab virtual", "lab.virtual:virtual"),
+    Command(_LAB, "lab hold", "lab.hold:hold"),
+    Command(_LAB, "lab watch", "lab.watch:watch"),
     Command(_LAB, "lab runs", "lab.runs:runs"),
     Command(_LAB, "lab show", "lab.show:show"),
     Command(_LAB, "lab recover", "lab.recover:recover"),

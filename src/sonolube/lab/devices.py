@@ -4,7 +4,7 @@ A device answers in SI and raises `DeviceError` alone. What it measures comes in
 the program never polls single samples.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -134,6 +134,9 @@ class Devices:
         Whether no hardware moves.
     groove_diameter : float
         Of the circle under the pin, which turns sliding speeds into those of the disc. [m]
+    prepare : callable or None
+        Works out what the devices need for a drive setting (None for off) at a speed of the disc, in 1/s. It is called
+        for every set point before anything is connected; None where no set point takes the devices time.
     """
 
     acquisition: Acquisition
@@ -142,6 +145,7 @@ class Devices:
     description: Mapping[str, str]
     groove_diameter: float
     simulated: bool = False
+    prepare: Callable[[DriveSetting | None, float], None] | None = None
 
 
 def connect_devices(devices: Devices) -> None:

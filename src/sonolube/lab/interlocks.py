@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.lab.block import Block, Channel
 from sonolube.protocol import Limits
 from sonolube.units import format_si
@@ -69,24 +69,24 @@ def interlocks_for(limits: Limits, channels: Mapping[str, Channel]) -> tuple[Int
     Raises
     ------
     InvalidInput
-        If a limit has no channel to watch it, or lies beyond the range of its channel.
+        If limits have no channel to watch them, or lie beyond the range of their channel.
     """
-    found = []
+    found, faults = [], []
     for name, watched in _WATCHED.items():
-        limit = getattr(limits, name)
-        if limit is None:
+        limit, channel = getattr(limits, name), channels.get(watched)
+        if limit is None or (channel is None and name in _SET_POINTS):
             continue
-        channel = channels.get(watched)
         if channel is None:
-            if name in _SET_POINTS:
-                continue
-            raise InvalidInput(
+            faults.append(
                 f"limits.{name} cannot be watched: no device has a channel {watched}; add one, or leave the limit out"
             )
-        if limit > max(abs(channel.lowest), abs(channel.highest)):
+        elif limit > max(abs(channel.lowest), abs(channel.highest)):
             held, reach = format_si(limit, channel.unit), format_si(channel.highest, channel.unit)
-            raise InvalidInput(f"limits.{name} of {held} lies beyond the range of channel {watched}, {reach}")
-        found.append(Interlock(channel, limit))
+            faults.append(f"limits.{name} of {held} lies beyond the range of channel {watched}, {reach}")
+        else:
+            found.append(Interlock(channel, limit))
+    if faults:
+        raise InvalidInput(faults[0]) if len(faults) == 1 else SeveralFaults(faults)
     return tuple(found)
 
 

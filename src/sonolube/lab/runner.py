@@ -10,6 +10,7 @@ from typing import Final
 from sonolube.errors import SonolubeError
 from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.lab.devices import DeviceError, Devices, DriveSetting, connect_devices, switch_outputs_off
+from sonolube.lab.ending import RunEnded, ending, release_devices
 from sonolube.lab.interlocks import Trip, interlocks_for
 from sonolube.lab.sampling import BLOCK_DURATION, Recorder, Sampling
 from sonolube.lab.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
@@ -75,14 +76,6 @@ class RunResult:
     state: State
     outcome: str
     reason: str
-
-
-class _Ended(Exception):
-    """End of a run before its protocol."""
-
-    def __init__(self, event: Event, reason: str) -> None:
-        self.event, self.reason = event, reason
-        super().__init__(reason)
 
 
 def run_protocol(
@@ -154,22 +147,18 @@ class _Run:
         """Follow the protocol to its end, whatever that is."""
         try:
             self._happens(Event.START)
+            self._prepare(advance)
             connect_devices(self._devices)
             self._happens(Event.PREPARED)
             for point, following in pairwise(self._points):
                 self._reach(point)
                 self._run_until(following.time, advance)
             self._happens(Event.COMPLETED)
-        except _Ended as end:
-            self._happens(end.event, end.reason)
-        except DeviceError as failure:
-            self._happens(Event.DEVICE_ERROR, str(failure))
-        except SonolubeError as failure:
-            self._happens(Event.CRASH, str(failure))
         except BaseException as failure:
-            self._happens(Event.CRASH, f"{type(failure).__name__}: {failure}")
-            self._close()
-            raise
+            self._happens(*ending(failure))
+            if not isinstance(failure, SonolubeError):
+                self._close()
+                raise
         return self._close()
 
     def switch_off(self) -> list[str]:
@@ -177,6 +166,18 @@ class _Run:
         failures = switch_outputs_off(self._devices)
         self._drive, self._turns = None, 0.0
         return failures
+
+    def _prepare(self, advance: Advance | None) -> None:
+        """Let the devices work out the set points that take them time, before anything is on."""
+        prepare = self._devices.prepare
+        if prepare is None:
+            return
+        wanted = dict.fromkeys((drive_setting(point), rotation_speed(point, self._diameter)) for point in self._points)
+        for number, (setting, turns) in enumerate(wanted):
+            self._end_if_asked()
+            if advance is not None:
+                advance("preparing set points", number, len(wanted))
+            prepare(setting, turns)
 
     def _happens(self, event: Event, reason: str = "") -> None:
         """Take an event into the state of the run, and note it."""
@@ -207,6 +208,7 @@ class _Run:
         if point.kind == "acquire":
             assert point.sample_rate is not None
             self._sampling.record(point.channels, sample_rate=point.sample_rate)
+            self._note("acquire", step=point.step, sample_rate=self._sampling.rate)
         self._follow()
 
     def _sample_again(self) -> None:
@@ -247,7 +249,7 @@ class _Run:
         """Ask the operator with motor and drive off, while the clock stands."""
         self._pause(f"{prompt.task}: {prompt.text}")
         if not self._operator(prompt):
-            raise _Ended(Event.STOP, f"the operator did not confirm: {prompt.text}")
+            raise RunEnded(Event.STOP, f"the operator did not confirm: {prompt.text}")
         self._happens(Event.RESUME)
 
     def _pause(self, reason: str) -> None:
@@ -264,8 +266,7 @@ class _Run:
         wait = Signal()
         while self._control.is_paused and not self._control.stop_reason:
             wait.wait(_POLL)
-        if self._control.stop_reason:
-            raise _Ended(Event.STOP, self._control.stop_reason)
+        self._end_if_asked()
         self._happens(Event.RESUME)
         self._sample_again()
         self._follow()
@@ -279,22 +280,27 @@ class _Run:
             if sampling.is_recording and until is not None:
                 ends.append(until)
             self._end_at(sampling.read_until(min(ends)))
-            if until is not None and sampling.time >= until:
+            if sampling.is_recording and until is not None and sampling.time >= until:
                 sampling.end_recording()
+                self._note("recorded")
             if advance is not None:
                 advance(self._doing(), round(1e3 * sampling.time), round(1e3 * self._points[-1].time))
 
     def _obey_requests(self) -> None:
         """Stop or pause where that is wanted."""
-        if self._control.stop_reason:
-            raise _Ended(Event.STOP, self._control.stop_reason)
+        self._end_if_asked()
         if self._control.is_paused:
             self._wait_while_paused()
+
+    def _end_if_asked(self) -> None:
+        """End the run where that is wanted."""
+        if self._control.stop_reason:
+            raise RunEnded(Event.STOP, self._control.stop_reason)
 
     def _end_at(self, trip: Trip | None) -> None:
         """End the run at a sample beyond a limit."""
         if trip is not None:
-            raise _Ended(Event.TRIP, trip.reason)
+            raise RunEnded(Event.TRIP, trip.reason)
 
     def _check(self, check: Check) -> None:
         """Look at a quantity until it lies within its bounds, or do what the step says otherwise."""
@@ -310,7 +316,7 @@ class _Run:
                 self._note("check", reason=reason)
                 return
             if check.otherwise == "stop" or value is None or waited > self._protocol.limits.duration_maximum:
-                raise _Ended(Event.STOP, reason)
+                raise RunEnded(Event.STOP, reason)
             self._obey_requests()
             waited += BLOCK_DURATION
 
@@ -336,12 +342,8 @@ class _Run:
     def _close(self) -> RunResult:
         """Switch everything off, release the devices and close the record."""
         failures = self.switch_off()
-        devices = self._devices
-        for close in (self._sampling.stop, devices.drive.close, devices.motor.close, devices.acquisition.close):
-            try:
-                close()
-            except Exception as failure:  # the others must be released; the outputs are off already
-                self._note("device error", reason=str(failure))
+        for reason in release_devices(self._devices, self._sampling.stop):
+            self._note("device error", reason=reason)
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
         present = self._present
         self._recorder.finish(present.outcome, reason=present.reason)

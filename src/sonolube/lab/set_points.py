@@ -1,12 +1,16 @@
 """Rotation speeds and drive settings of set points, held to the limits of devices."""
 
+from collections.abc import Iterator
 from math import pi
+from typing import Final
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.lab.devices import Devices, DriveSetting
 from sonolube.lab.interlocks import interlocks_for
 from sonolube.protocol import Protocol, SetPoint, flattened
 from sonolube.units import format_si
+
+_ROUNDING: Final = 1 + 1e-9
 
 
 def require_possible(protocol: Protocol, devices: Devices) -> None:
@@ -20,23 +24,42 @@ def require_possible(protocol: Protocol, devices: Devices) -> None:
     Raises
     ------
     InvalidInput
-        Naming the step and the limit of the device, or the limit of the protocol that nothing can watch.
+        With all that `impossibilities` finds.
     """
-    interlocks_for(protocol.limits, devices.acquisition.channels)
+    faults = impossibilities(protocol, devices)
+    if faults:
+        raise InvalidInput(faults[0]) if len(faults) == 1 else SeveralFaults(faults)
+
+
+def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
+    """Everything that a protocol asks for and devices cannot give.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    devices : Devices
+
+    Returns
+    -------
+    tuple of str
+        Limits that no channel can watch; then of each step the highest voltage and speed beyond the devices, and the
+        channels that are missing.
+    """
+    faults: dict[tuple[str, str], tuple[float, str]] = {}
+    try:
+        interlocks_for(protocol.limits, devices.acquisition.channels)
+    except InvalidInput as refusal:
+        unwatched = refusal.faults if isinstance(refusal, SeveralFaults) else (str(refusal),)
+        faults |= {("", text): (0.0, text) for text in unwatched}
     diameter = groove_diameter(protocol, devices)
+    before: SetPoint | None = None
     for point in flattened(protocol):
-        place = f"step {point.step}"
-        if point.voltage_maximum > devices.drive.voltage_maximum * (1 + 1e-9):
-            reached, most = (format_si(each, "V") for each in (point.voltage_maximum, devices.drive.voltage_maximum))
-            raise InvalidInput(f"{place}: the drive reaches {reached}; {devices.drive.name} gives at most {most}")
-        turns, fastest = rotation_speed(point, diameter), devices.motor.rotation_speed_maximum
-        if turns > fastest * (1 + 1e-9):
-            wanted, most = format_si(turns, "1/s"), format_si(fastest, "1/s")
-            raise InvalidInput(f"{place}: needs {wanted}; {devices.motor.name} turns at most at {most}")
-        for name in point.channels:
-            if name not in devices.acquisition.channels:
-                known = ", ".join(devices.acquisition.channels)
-                raise InvalidInput(f"{place}: {devices.acquisition.name} has no channel {name}; it has {known}")
+        for kind, value, text in _faults(point, before, devices, diameter):
+            known = faults.get((point.step, kind))
+            if known is None or value > known[0]:
+                faults[point.step, kind] = (value, text)
+        before = point
+    return tuple(text for _, text in faults.values())
 
 
 def groove_diameter(protocol: Protocol, devices: Devices) -> float:
@@ -92,3 +115,23 @@ def drive_setting(point: SetPoint) -> DriveSetting | None:
         frequency=point.frequency,
         waveform=point.waveform,
     )
+
+
+def _faults(
+    point: SetPoint, before: SetPoint | None, devices: Devices, diameter: float
+) -> Iterator[tuple[str, float, str]]:
+    """Kind, value and text of what a set point changes to and devices cannot give."""
+    place, drive, motor = f"step {point.step}", devices.drive, devices.motor
+    volts = point.voltage_maximum
+    if volts > drive.voltage_maximum * _ROUNDING and (before is None or volts != before.voltage_maximum):
+        reached, most = format_si(volts, "V"), format_si(drive.voltage_maximum, "V")
+        yield "voltage", volts, f"{place}: the drive reaches {reached}; {drive.name} gives at most {most}"
+    turns, fastest = rotation_speed(point, diameter), motor.rotation_speed_maximum
+    if turns > fastest * _ROUNDING and (before is None or turns != rotation_speed(before, diameter)):
+        wanted, most = format_si(turns, "1/s"), format_si(fastest, "1/s")
+        yield "speed", turns, f"{place}: needs {wanted}; {motor.name} turns at most at {most}"
+    channels = devices.acquisition.channels
+    missing = [name for name in point.channels if name not in channels]
+    if missing and point.kind == "acquire":
+        names = f"channel {missing[0]}" if len(missing) == 1 else f"channels {', '.join(missing)}"
+        yield "channels", 0.0, f"{place}: {devices.acquisition.name} has no {names}; it has {', '.join(channels)}"

@@ -4,7 +4,7 @@ import csv
 import io
 from math import isfinite
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from sonolube.units import convert
 from sonolube.validation.previous_study_map import DIRECTIONS, StudyPoint, speed_range
 from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
 from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Row = dict[str, str | float | None]
 _QUANTITIES: Final = (
@@ -71,16 +74,40 @@ def read_studies(path: Path) -> tuple[tuple[StudyPoint, ...], tuple[str, ...]]:
     UnknownName
         If a direction of vibration is none of those of the map.
     """
-    runs = read_runs(path)
+    return studies_of_runs(read_runs(path), title=str(path))
+
+
+def studies_of_runs(runs: "xr.Dataset", *, title: str) -> tuple[tuple[StudyPoint, ...], tuple[str, ...]]:
+    """Return the points of measured runs that are not among those of the package, and caveats.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        As `sonolube.measurement.measured_runs.read_runs` returns them, with `study`, `source` and a friction.
+    title : str
+        Of the runs, for errors.
+
+    Returns
+    -------
+    tuple of StudyPoint
+    tuple of str
+
+    Raises
+    ------
+    InvalidInput
+        If a point names no study or no source.
+    UnknownName
+        If a direction of vibration is none of those of the map.
+    """
     texts = {name: _texts(runs[name].to_numpy() if name in runs else None, runs.sizes["run"]) for name in _NAMES[:2]}
     sources = _texts(runs["source"].to_numpy() if "source" in runs else None, runs.sizes["run"])
     for name, cells in (("study", texts["study"]), ("source", sources)):
         if not all(cells):
-            raise InvalidInput(f"{path}: every point needs a {name}: run {cells.index('') + 1} names none")
+            raise InvalidInput(f"{title}: every point needs a {name}: run {cells.index('') + 1} names none")
     for direction in texts["direction"]:
         if direction not in DIRECTIONS:
             raise UnknownName.among(filter(None, DIRECTIONS), kind="direction", name=direction)
-    reduction = 1 - checked_ratios(runs, title=str(path))
+    reduction = 1 - checked_ratios(runs, title=title)
     speed = setting(runs, "sliding_speed", np.nan)
     slowest = setting(runs, "lowest_speed", speed)
     pressure = setting(

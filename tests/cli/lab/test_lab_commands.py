@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from pytest import approx
 from tests.cli.conftest import ROOT, Program
 from tests.lab.catalogue.test_catalogue import run_of
 from tests.lab.records.recorded import begun, block_of, recorded
@@ -49,6 +50,12 @@ def test_recover_completes_killed_runs_and_leaves_others(tmp_path: Path, sonolub
     assert "holds no run" in sonolube("lab", "recover", whole / "raw").refusal
 
 
+def test_recover_completes_a_run_that_is_named_itself(tmp_path: Path, sonolube: Program) -> None:
+    killed = unfinished(tmp_path)
+    assert sonolube("lab", "recover", killed).out.startswith("1 of 1 runs recovered\n")
+    assert sonolube("lab", "show", killed, "--json").answer["outcome"] == "interrupted"
+
+
 def test_a_run_at_work_is_told_beside_those_recovered(tmp_path: Path, sonolube: Program) -> None:
     unfinished(tmp_path)
     recorder = begun(tmp_path)
@@ -75,4 +82,17 @@ def test_a_query_stands_for_a_table_of_runs(tmp_path: Path, sonolube: Program) -
     answer = sonolube("compare", RIG, "--model", "kinematic", "--runs", query, "--json").answer
     assert answer["runs"]["runs"] == 2
     missing = sonolube("compare", RIG, "--model", "kinematic", "--runs", query.replace("brass", "gold")).refusal
+    assert "finds none of 1 runs" in missing
+
+
+def test_own_runs_stand_among_the_studies_of_the_literature_by_a_query(tmp_path: Path, sonolube: Program) -> None:
+    folder = run_of(tmp_path, levels={0.0: 1.0, 10.0: 0.6}, nominal_area=1e-6)
+    query = f"catalogue:in={tmp_path},material=brass"
+    answer = sonolube("literature", "--table", query, "--out", tmp_path / "out", "--json").answer
+    (point,) = answer["table"]
+    assert (point["label"], point["sliding_speed"]) == ("Voltage steps", [0.02, 0.02])
+    assert point["friction_reduction"] == approx(0.4, abs=0.02)
+    assert point["nominal_pressure"] == approx(5e6)
+    assert folder.is_dir()
+    missing = sonolube("literature", "--table", query.replace("brass", "gold"), "--out", tmp_path / "out").refusal
     assert "finds none of 1 runs" in missing

@@ -292,6 +292,22 @@ def test_every_sample_is_recorded_and_a_full_disk_ends_the_loop() -> None:
     assert (record.outcome, full.outcome, rig.is_off) == ("failed", "failed", True)
 
 
+def test_states_and_speeds_are_noted_with_their_time() -> None:
+    rig, record = LaggedRig(straight, 5e-3), MemoryRecord()
+    speeds = (SpeedStep(time=0.0, sliding_speed=SLOW), SpeedStep(time=1.0, sliding_speed=FAST))
+    hold_friction(hold(controller(), duration=2.0, speeds=speeds), rig.devices(), recorder=record)
+    told = [
+        (kind, facts["protocol_time"], facts.get("state", facts.get("sliding_speed"))) for kind, facts in record.notes
+    ]
+    assert told == [
+        ("prepared", 0.0, "running"),
+        ("motor", 0.0, SLOW),
+        ("motor", pytest.approx(1.2), FAST),
+        ("completed", pytest.approx(2.2), "stopping"),
+        ("off", pytest.approx(2.2), "safe"),
+    ]
+
+
 @pytest.mark.parametrize("broken", ["begin", "end"])
 def test_a_record_that_fails_ends_the_loop_with_everything_off(broken: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: Any, **__: Any) -> None:

@@ -15,7 +15,7 @@ from tests.protocol.schema_faults import schema_faults
 from sonolube.errors import InvalidInput, MissingPackage, SeveralFaults
 from sonolube.lab.drivers import device_map_schema, missing_parts, read_device_map, unfulfilled
 from sonolube.lab.drivers.sensor_scale import tabulated_scale
-from sonolube.protocol import protocol_by_name_or_file
+from sonolube.protocol import protocol_by_name_or_file, protocol_from
 
 TEXT = EXAMPLE.read_text(encoding="utf-8")
 LOADS = "normal_load.csv"
@@ -168,3 +168,34 @@ def test_what_a_protocol_asks_beyond_the_devices_is_told_by_its_step(tmp_path: P
     for part in ("the drive gives at most 20 kHz", "the device takes 10 Hz in all", "gives at most 5 V"):
         assert part in told
     assert unfulfilled(read_device_map(EXAMPLE), protocol) == ()
+
+
+def test_all_that_is_beyond_the_devices_is_told_at_once_each_with_its_step_and_worst_value(tmp_path: Path) -> None:
+    weak = written(
+        tmp_path,
+        ('voltage_maximum = "80 V"', 'voltage_maximum = "8 V"'),
+        ('rotation_speed_maximum = "300 rpm"', 'rotation_speed_maximum = "6 rpm"'),
+    )
+    drive = {"kind": "drive", "frequency": "22 kHz"}
+    steps = [
+        {"kind": "acquire", "channels": ["noise", "voltage", "smell"], "sample_rate": "1 kHz", "duration": "3 s"},
+        {"kind": "motor_speed", "rotation_speed": "2 Hz"},
+        {"kind": "wait", "duration": "1 s"},
+        drive | {"voltage_peak_to_peak": "20 V"},
+        {"kind": "voltage_steps", "voltages": ["18 V", "28 V", "10 V"], "step_duration": "1 s", "frequency": "22 kHz"},
+        {"kind": "motor_speed", "rotation_speed": "0.05 Hz"},
+        drive | {"voltage_peak_to_peak": "10 V"},
+        {"kind": "motor_speed", "rotation_speed": "3 Hz"},
+    ]
+    limits = {"voltage_maximum": "30 V", "duration_maximum": "10 s", "friction_force_maximum": "100 N"}
+    protocol = protocol_from({"title": "much", "source": "none", "limits": limits, "steps": steps})
+    name = "function generator TCPIP::192.168.1.21::5025::SOCKET"
+    motor = "motor ASRL/dev/ttyUSB0::INSTR"
+    assert [line.partition("; it has")[0] for line in unfulfilled(read_device_map(weak), protocol)] == [
+        "limits.friction_force_maximum of 100 N lies beyond the range of channel friction_force, 20 N",
+        "step 1: NI-DAQmx Dev1 has no channels noise, smell",
+        f"step 2: needs 2 1/s; {motor} turns at most at 0.1 1/s",
+        f"step 4: the drive reaches 10 V; {name} gives at most 8 V",
+        f"step 5: the drive reaches 14 V; {name} gives at most 8 V",
+        f"step 8: needs 3 1/s; {motor} turns at most at 0.1 1/s",
+    ]

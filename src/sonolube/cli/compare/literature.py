@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, optional_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, measured_runs, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
@@ -17,7 +17,7 @@ from sonolube.report import Drawing
 from sonolube.rig import Rig, friction_point
 from sonolube.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint, study_map
-from sonolube.validation.study_table import read_studies, study_table
+from sonolube.validation.study_table import studies_of_runs, study_table
 from sonolube.vocabulary import quantity, unit_of
 
 
@@ -31,7 +31,8 @@ def literature(
         typer.Option(
             metavar="STUDIES.csv",
             help="Further studies to draw on the map, in the columns of studies.csv, which is written; each point with"
-            " study, source and a friction, as in a table of runs.",
+            " study, source and a friction, as in a table of runs. Or own runs of the laboratory, such as"
+            " catalogue:material=brass,load=5N.",
         ),
     ] = None,
     amplitude: Amplitude = None,
@@ -58,7 +59,7 @@ def literature(
             sliding_speed=(speed, speed),
             nominal_pressure=known.normal_load / known.contact.nominal_area,
         )
-    others, caveats = ((), ()) if table is None else read_studies(table)
+    others, caveats = ((), ()) if table is None else studies_of_runs(measured_runs(table), title=str(table))
     answer = LiteratureAnswer(
         studies=previous_studies(), rig=known, point=point, outside=outside, others=others, skipped=caveats
     )

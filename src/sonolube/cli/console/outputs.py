@@ -5,10 +5,12 @@ from dataclasses import dataclass
 from functools import wraps
 from glob import escape
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any, TypeVar, get_type_hints
 
 from sonolube.files import expect_file, expect_files
 from sonolube.targets import command_files, record_input
+
+_Mark = TypeVar("_Mark")
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +40,19 @@ class OutputFolder:
         expect_files(path, tuple(name.format_map(stems) for name in self.names.split()))
 
 
+@dataclass(frozen=True, slots=True)
+class ContinuedFolder:
+    """Marks, in the annotation of an argument, a folder of records that the command completes where they are."""
+
+
 def with_checked_files(command: Callable[..., None]) -> Callable[..., None]:
     """Command that refuses outputs which cannot be written, or are its inputs, before it computes.
 
     Parameters
     ----------
     command : callable
-        Its arguments of the type Path are inputs unless they are marked as `OutputFile` or `OutputFolder`; a text that
-        names a file, such as that of a part, is an input too.
+        Its arguments of the type Path are inputs unless they are marked as `OutputFile`, `OutputFolder` or
+        `ContinuedFolder`; a text that names a file, such as that of a part, is an input too.
 
     Returns
     -------
@@ -56,9 +63,9 @@ def with_checked_files(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def run(**arguments: Any) -> None:
         with command_files():
-            marks = output_marks(command)
+            marks, continued = output_marks(command), _marked(command, ContinuedFolder)
             for name, value in arguments.items():
-                if name not in marks:
+                if name not in marks and name not in continued:
                     for path in _paths(value):
                         record_input(path)
             stems = {name: _stem(value) for name, value in arguments.items()}
@@ -72,12 +79,17 @@ def with_checked_files(command: Callable[..., None]) -> Callable[..., None]:
 
 def output_marks(command: Callable[..., None]) -> dict[str, OutputFile | OutputFolder]:
     """Marks of the arguments of a command that are outputs."""
+    return _marked(command, OutputFile) | _marked(command, OutputFolder)
+
+
+def _marked(command: Callable[..., None], kind: type[_Mark]) -> dict[str, _Mark]:
+    """Marks of a kind by the arguments of a command that have one."""
     hints = get_type_hints(command, include_extras=True)
     return {
         name: mark
         for name, hint in hints.items()
         for mark in getattr(hint, "__metadata__", ())
-        if isinstance(mark, OutputFile | OutputFolder)
+        if isinstance(mark, kind)
     }
 
 

@@ -9,13 +9,15 @@ import typer
 
 from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import Json
+from sonolube.cli.console.outputs import ContinuedFolder
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.lab.records import Recovery, recover_run, run_folders
 from sonolube.printable_text import printable
 
 
 def recover(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A run, or a folder of runs.")], json: Json = False
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A run, or a folder of runs."), ContinuedFolder()],
+    json: Json = False,
 ) -> None:
     """Complete the records of runs whose program was killed; what was damaged is kept aside.
 

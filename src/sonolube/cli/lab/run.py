@@ -9,10 +9,7 @@ import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import Json, refuse_unused
-from sonolube.cli.lab.running import RunPlan, exit_as, run_and_record, virtual_rig
-from sonolube.errors import InvalidInput
-from sonolube.lab import Devices
-from sonolube.lab.drivers import missing_parts, read_device_map
+from sonolube.cli.lab.running import RunPlan, exit_as, instruments, run_and_record, virtual_rig
 from sonolube.lab.dry_run import DryRun, dry_run, dry_run_lines
 from sonolube.protocol import Protocol, protocol_by_name_or_file
 from sonolube.rig import Rig, read_rig
@@ -61,19 +58,10 @@ def run(
         tags=tag or (),
     )
     virtual = None if on_hardware else virtual_rig(plan)
-    devices = _instruments(Path(device)) if virtual is None else virtual.devices
+    devices = instruments(Path(device)) if virtual is None else virtual.devices
     answer = run_and_record(plan, devices, out=out, virtual=virtual)
     deliver(answer, as_json=json)
     exit_as(answer)
-
-
-def _instruments(path: Path) -> Devices:
-    """Devices of a map, whose packages and drivers are installed."""
-    device_map = read_device_map(path)
-    missing = missing_parts(device_map)
-    if missing:
-        raise InvalidInput(f"{path}: {'; '.join(missing)}")
-    return device_map.devices()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,8 @@ from sonolube.cli.console.questions import is_terminal
 from sonolube.errors import InvalidInput
 from sonolube.lab import RunControl, RunResult, State, require_possible, run_protocol
 from sonolube.lab.devices import Devices
-from sonolube.lab.records import Run, new_run, read_run
+from sonolube.lab.drivers import missing_parts, read_device_map
+from sonolube.lab.records import Run, RunRecorder, new_run, read_run
 from sonolube.lab.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
 from sonolube.printable_text import printable
 from sonolube.protocol import Prompt, Protocol, flattened, protocol_text
@@ -72,6 +73,21 @@ def virtual_rig(plan: RunPlan) -> VirtualTribometer:
     return virtual_tribometer(plan.rig, seed=plan.seed, real_time=plan.real_time, groove_diameter=diameter)
 
 
+def instruments(path: Path) -> Devices:
+    """Devices of a map, whose packages and drivers are installed.
+
+    Raises
+    ------
+    InvalidInput
+        Naming what is missing.
+    """
+    device_map = read_device_map(path)
+    missing = missing_parts(device_map)
+    if missing:
+        raise InvalidInput(f"{path}: {'; '.join(missing)}")
+    return device_map.devices()
+
+
 def run_and_record(plan: RunPlan, devices: Devices, *, out: Path, virtual: VirtualTribometer | None) -> "RunAnswer":
     """Run a plan on devices with its record below a folder, and tell how it went.
 
@@ -97,13 +113,7 @@ def run_and_record(plan: RunPlan, devices: Devices, *, out: Path, virtual: Virtu
     confirmed = plan.confirmed or devices.simulated
     if not confirmed and _has_prompts(plan.protocol) and not is_terminal():
         raise InvalidInput("the protocol asks an operator; run it on a terminal, or take its prompts as done by --yes")
-    recorder = new_run(
-        out,
-        title=plan.protocol.title,
-        protocol=protocol_text(plan.protocol),
-        files=_files(plan),
-        facts=_facts(plan, devices),
-    )
+    recorder = begin_record(plan, devices, out=out)
     control = RunControl()
     with progress("running") as advance:
         result = run_protocol(
@@ -117,6 +127,38 @@ def run_and_record(plan: RunPlan, devices: Devices, *, out: Path, virtual: Virtu
     if virtual is not None:
         recorder.store_truth(virtual.truth())
     return RunAnswer(result=result, run=read_run(recorder.folder), simulated=devices.simulated, rig_=plan.rig)
+
+
+def begin_record(
+    plan: RunPlan, devices: Devices, *, out: Path, facts: Mapping[str, str | float] | None = None
+) -> RunRecorder:
+    """Begin the record of a plan below a folder, with its files and what is known of it.
+
+    Parameters
+    ----------
+    plan : RunPlan
+    devices : Devices
+    out : Path
+        Folder of all runs.
+    facts : mapping of str to str or float, optional
+        What is known besides.
+
+    Returns
+    -------
+    RunRecorder
+
+    Raises
+    ------
+    InvalidInput
+        If another run is at work at the rig.
+    """
+    return new_run(
+        out,
+        title=plan.protocol.title,
+        protocol=protocol_text(plan.protocol),
+        files=_files(plan),
+        facts=_facts(plan, devices) | dict(facts or {}),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,7 +283,7 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
     if devices.simulated:
         facts["seed"] = plan.seed
     if rig is not None:
-        facts |= {"normal_load": rig.normal_load, "rig_title": rig.title}
+        facts |= {"normal_load": rig.normal_load, "rig_title": rig.title, "nominal_area": rig.contact.nominal_area}
         facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
     if plan.device_file is not None:
         facts["rig"] = plan.device_file.stem  # one run at a time on the devices of a map, whatever rig file is given

@@ -36,7 +36,7 @@ BLOCKINGS: Final[Mapping[str, Blocking]] = MappingProxyType(
         )
     }
 )
-"""What a block may be, by name."""
+"""Kinds of blocks, by name."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

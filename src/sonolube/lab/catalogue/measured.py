@@ -28,7 +28,7 @@ _SETTLING: Final = 0.5  # s, left out at the begin of each level, as `analyse_vo
 _HEADER: Final = (
     *("run", "block", "normal_load [N]", "sliding_speed [m/s]", "voltage_peak_to_peak [V]", "frequency [Hz]"),
     *("friction_force [N]", "friction_force_uncertainty [N]", "friction_reduction", "friction_reduction_uncertainty"),
-    "note",
+    *("nominal_area [m2]", "study", "source", "note"),
 )
 
 
@@ -92,11 +92,12 @@ def _rows(entry: CatalogueEntry) -> list[list[str]]:
     run.dataset(1)  # refuses runs without a recording
     drives = [note.facts for note in run.notes if note.kind == "drive" and note.facts.get("voltage_peak_to_peak")]
     frequency = drives[-1].get("frequency", "") if drives else run.facts.get("frequency", "")
-    block = run.facts.get("block", "")
+    block, area = run.facts.get("block", ""), run.facts.get("nominal_area", "")
+    told = (str(area), entry.summary.title, str(entry.summary.folder), "")
     return [
         [
             *(entry.summary.folder.name, str(block), _cell(entry.normal_load), _cell(entry.sliding_speed)),
-            *(_cell(voltage), str(frequency if voltage else ""), *map(_cell, numbers), ""),
+            *(_cell(voltage), str(frequency if voltage else ""), *map(_cell, numbers), *told),
         ]
         for part in range(1, len(run.recordings) + 1)
         for voltage, *numbers in _levels(run, part)

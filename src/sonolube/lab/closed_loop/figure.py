@@ -40,7 +40,7 @@ def held_friction_figure(record: HeldFriction, *, simulated: bool) -> "Figure":
     friction.axhline(
         record.intrinsic_friction_force, color=COLOURS[1], linestyle=":", label="without vibration, before"
     )
-    friction.set(ylabel="Friction force [N]", ylim=(0, None))
+    friction.set(ylabel="Friction force [N]", ylim=(0, 1.05 * friction.get_ylim()[1]))
     friction.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, borderaxespad=0.2)
     drive.step(time, record.voltage_peak_to_peak, where="post", color=COLOURS[1])
     highest = hold.controller.voltage_maximum

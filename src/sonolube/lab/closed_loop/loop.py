@@ -9,8 +9,10 @@ from sonolube.design.control import initial_state, next_voltage
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.lab.block import Block
+from sonolube.lab.closed_loop.plan import recorded_channels
 from sonolube.lab.closed_loop.record import FrictionHold, HeldFriction
 from sonolube.lab.devices import DeviceError, Devices, DriveSetting, SamplesLost, connect_devices, switch_outputs_off
+from sonolube.lab.ending import RunEnded, ending, release_devices
 from sonolube.lab.interlocks import first_trip, interlocks_for
 from sonolube.lab.runner import Advance, RunControl
 from sonolube.lab.sampling import Recorder
@@ -18,11 +20,6 @@ from sonolube.lab.states import Event, RunState, State, after
 from sonolube.units import format_si
 
 _FRICTION: Final = "friction_force"
-_RECORDED: Final = (_FRICTION, "voltage_peak_to_peak", "voltage", "temperature", "gaussmeter")
-
-
-class _Ended(Exception):
-    """End of a loop before its time."""
 
 
 def hold_friction(
@@ -63,7 +60,7 @@ def hold_friction(
     loop is then that of `sonolube.design.control.stability_margins` where the friction at the end of an interval is
     that of its voltage; a mean over the whole interval delays the measurement by up to half of it.
     """
-    _require_possible(hold, devices)
+    require_holdable(hold, devices)
     control = control or RunControl()
     loop = _Loop(hold, devices, recorder, control)
     with undone_at_signal(loop.switch_off), asked_by_signal(control.stop):
@@ -77,8 +74,7 @@ class _Loop:
         self._hold, self._devices, self._recorder, self._control = hold, devices, recorder, control
         channels = devices.acquisition.channels
         self._locks = interlocks_for(hold.limits, channels)
-        watched = [lock.channel.name for lock in self._locks]
-        self._names = list(dict.fromkeys([*(name for name in _RECORDED if name in channels), *watched]))
+        self._names = list(recorded_channels(hold, channels))
         self._present, self._is_recording = RunState(), False
         self._next_sample, self._rate, self._count = 0, 0.0, 0
         self._rows: list[tuple[float, float, float, float]] = []
@@ -94,15 +90,10 @@ class _Loop:
             self._control_friction(self._running_in(), advance)
             self._end_recording()
             self._happens(Event.COMPLETED)
-        except _Ended as end:
-            self._happens(Event.TRIP, str(end))
-        except DeviceError as failure:
-            self._happens(Event.DEVICE_ERROR, str(failure))
-        except SonolubeError as failure:
-            self._happens(Event.CRASH, str(failure))
         except BaseException as failure:
-            self._happens(Event.CRASH, f"{type(failure).__name__}: {failure}")
-            raise
+            self._happens(*ending(failure))
+            if not isinstance(failure, SonolubeError):
+                raise
         finally:
             self._close()
         return self._result()
@@ -112,8 +103,21 @@ class _Loop:
         return switch_outputs_off(self._devices)
 
     def _happens(self, event: Event, reason: str = "") -> None:
-        """Take an event into the state of the loop."""
+        """Take an event into the state of the loop, and note it."""
         self._present, _ = after(self._present, event, reason=reason)
+        if event is not Event.START:
+            self._note(event.value, reason=reason, state=self._present.state.value)
+
+    def _note(self, kind: str, **facts: str | float) -> None:
+        """Note what happened; while the loop ends, a record that cannot be written is no hindrance."""
+        if self._recorder is None:
+            return
+        sample, time = (self._next_sample, self._next_sample / self._rate) if self._rate else (None, 0.0)
+        try:
+            self._recorder.note(kind, sample=sample, protocol_time=time, **facts)
+        except SonolubeError:
+            if self._present.state is State.RUNNING:
+                raise
 
     def _sample(self) -> None:
         """Start to sample and to record."""
@@ -161,8 +165,7 @@ class _Loop:
     def _turn(self, speed: float) -> None:
         """Set the speed of the disc for a sliding speed."""
         self._devices.motor.turn(speed / (pi * _groove_diameter(self._hold, self._devices)))
-        if self._recorder is not None:
-            self._recorder.note("motor", sample=self._next_sample, sliding_speed=speed)
+        self._note("motor", sliding_speed=speed)
 
     def _drive(self, voltage: float) -> None:
         """Set the drive to a peak-to-peak voltage."""
@@ -180,17 +183,17 @@ class _Loop:
     def _measure(self) -> tuple[float, float]:
         """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""
         if self._control.stop_reason:
-            raise _Ended(self._control.stop_reason)
+            raise RunEnded(Event.STOP, self._control.stop_reason)
         block = self._devices.acquisition.read(self._count)
         self._keep(block)
         trip = first_trip(block, self._names, self._locks)
         if trip is not None:
-            raise _Ended(trip.reason)
+            raise RunEnded(Event.TRIP, trip.reason)
         samples = block.values[:, self._names.index(_FRICTION)]
         samples = samples[-max(1, round(self._hold.averaging * samples.size)) :]
         mean = float(np.mean(samples))
         if not np.isfinite(mean):
-            raise _Ended(f"channel {_FRICTION} gives no number")
+            raise RunEnded(Event.TRIP, f"channel {_FRICTION} gives no number")
         return mean, float(np.std(samples))
 
     def _keep(self, block: Block) -> None:
@@ -212,17 +215,8 @@ class _Loop:
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
         failures, devices = self.switch_off(), self._devices
-        for close in (
-            self._end_recording,
-            devices.acquisition.stop,
-            devices.drive.close,
-            devices.motor.close,
-            devices.acquisition.close,
-        ):
-            try:
-                close()
-            except Exception as failure:  # the others must be released; the outputs are off already
-                self._happens(Event.DEVICE_ERROR, str(failure))
+        for reason in release_devices(devices, self._end_recording, devices.acquisition.stop):
+            self._happens(Event.DEVICE_ERROR, reason)
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
         if self._recorder is not None:
             self._recorder.finish(self._present.outcome, reason=self._present.reason)
@@ -251,8 +245,19 @@ def _groove_diameter(hold: FrictionHold, devices: Devices) -> float:
     return hold.groove_diameter or devices.groove_diameter
 
 
-def _require_possible(hold: FrictionHold, devices: Devices) -> None:
-    """Raise where devices or limits do not allow what a loop may do, before anything is connected."""
+def require_holdable(hold: FrictionHold, devices: Devices) -> None:
+    """Raise where devices or limits do not allow what a loop may do, before anything is connected.
+
+    Parameters
+    ----------
+    hold : FrictionHold
+    devices : Devices
+
+    Raises
+    ------
+    InvalidInput
+        Naming what is asked for, and the device or limit that forbids it.
+    """
     interlocks_for(hold.limits, devices.acquisition.channels)
     if _FRICTION not in devices.acquisition.channels:
         raise InvalidInput(f"{devices.acquisition.name} has no channel {_FRICTION}, which the loop needs")

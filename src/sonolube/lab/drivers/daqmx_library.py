@@ -10,7 +10,7 @@ from sonolube.lab.devices import DeviceError, DeviceLost, SamplesLost
 DRIVER_REMEDY: Final = (
     "run `nidaqmx installdriver` as administrator (Windows, some Linux), or take it from ni.com/downloads; then restart"
 )
-"""How the driver that the Python package calls is installed."""
+"""Installation of the driver that the Python package calls."""
 
 _DROPPED: Final = frozenset(  # the acquisition has stopped since nobody has read in time; as in nidaqmx.error_codes
     {-200279, -200222, -200283, -200361, -200010, -209829, -200613, -200714, -50410}

@@ -1,12 +1,12 @@
 """Function generators of the Agilent and Keysight 33500 family by SCPI, with an amplifier behind their output."""
 
 from collections.abc import Mapping
-from contextlib import suppress
 from types import MappingProxyType
 from typing import Final
 
-from sonolube.lab.devices import DeviceError, DeviceLost, DriveSetting
+from sonolube.lab.devices import DeviceError, DriveSetting
 from sonolube.lab.drivers.output_limits import DriveLimits
+from sonolube.lab.drivers.switched_line import SwitchedLine
 from sonolube.lab.drivers.visa_connection import VisaConnection
 from sonolube.units import format_si
 
@@ -45,20 +45,12 @@ class FunctionGenerator:
         self.voltage_maximum = limits.voltage_maximum
         self._line, self._limits = connection, limits
         self._output, self._source = f"OUTP{output}", f"SOUR{output}"
-        self._is_connected = False
-        self._set: dict[str, float | str] = {}  # empty where the generator may have lost its settings
+        self._switch = SwitchedLine(connection, set_up=self._set_up, switch_off=self._switch_off)
+        self._set: dict[str, float | str] = {}  # as the generator has it since it was set up
 
     def connect(self) -> None:
         """Open the connection, and set the generator up with its output off."""
-        if self._is_connected:
-            return
-        self._line.open()
-        try:
-            self._set_up()
-        except BaseException:
-            self._line.close()
-            raise
-        self._is_connected = True
+        self._switch.connect()
 
     def drive(self, setting: DriveSetting) -> None:
         """Set the output; where the generator refuses, it ends off."""
@@ -69,48 +61,24 @@ class FunctionGenerator:
         if 0 < amplitude < LEAST_AMPLITUDE:
             least = format_si(LEAST_AMPLITUDE * self._limits.amplifier_gain, "V")
             raise DeviceError(f"{self.name}: less than {least} peak to peak at the actuator refused; it gives no less")
-        if not self._is_connected:
-            raise DeviceError(f"{self.name}: connect it before driving")
+        self._switch.require_connected(before="driving")
         if amplitude == 0:
             self.off()
             return
-        try:
-            if not self._set:
-                self._line.open()
-                self._set_up()
+        with self._switch.setting():
             self._send_setting(setting, amplitude=amplitude, offset=offset)
-        except DeviceLost:
-            self._set = {}
-            raise
-        except DeviceError:
-            self._set = {}
-            with suppress(DeviceError):  # who drives it switches it off again, and hears of that
-                self.off()
-            raise
 
     def off(self) -> None:
         """Switch the output off, over a new connection where the present one is lost, and wait for the confirmation."""
-        if not self._is_connected:
-            return
-        self._set.pop("output", None)
-        if self._set:
-            try:
-                self._switch_off()
-                return
-            except DeviceError:
-                self._set = {}
-        self._line.open()
-        self._switch_off()
+        self._switch.off()
 
     def close(self) -> None:
         """Switch the output off and close the connection."""
-        with suppress(DeviceError):
-            self.off()
-        self._is_connected = False
-        self._line.close()
+        self._switch.close()
 
     def _switch_off(self) -> None:
         """Switch the output off and have that confirmed."""
+        self._set.pop("output", None)
         self._line.ask_for(f"{self._output} OFF;:{self._output}?", "0", "OFF")
 
     def _set_up(self) -> None:

@@ -1,11 +1,11 @@
 """Motor controllers that take lines of text, each with an answer; commands and answers stand in the device map."""
 
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
-from sonolube.lab.devices import DeviceError, DeviceLost
+from sonolube.lab.devices import DeviceError
 from sonolube.lab.drivers.output_limits import require_speed
+from sonolube.lab.drivers.switched_line import SwitchedLine
 from sonolube.lab.drivers.visa_connection import VisaConnection
 from sonolube.units import format_si
 
@@ -73,20 +73,11 @@ class LineMotor:
         self.name = connection.name
         self.rotation_speed_maximum = rotation_speed_maximum
         self._line, self._protocol = connection, protocol
-        self._is_connected = False
-        self._is_set_up = False  # also where the controller may have lost what it was told
+        self._switch = SwitchedLine(connection, set_up=self._set_up, switch_off=self._stop)
 
     def connect(self) -> None:
         """Open the connection, stop the motor, and send what the controller needs first."""
-        if self._is_connected:
-            return
-        self._line.open()
-        try:
-            self._set_up()
-        except BaseException:
-            self._line.close()
-            raise
-        self._is_connected = True
+        self._switch.connect()
 
     def turn(self, rotation_speed: float) -> None:
         """Set the speed of the disc, 0 to stop; where the controller refuses, it is told to stop. [1/s]"""
@@ -95,44 +86,21 @@ class LineMotor:
         if rotation_speed > 0 and float(number) == 0:
             least = format_si(self._protocol.speed_unit * 10.0**-self._protocol.decimals, "1/s")
             raise DeviceError(f"{self.name}: {format_si(rotation_speed, '1/s')} refused; its smallest step is {least}")
-        if not self._is_connected:
-            raise DeviceError(f"{self.name}: connect it before turning")
+        self._switch.require_connected(before="turning")
         if rotation_speed == 0:
             self.off()
             return
-        try:
-            if not self._is_set_up:
-                self._line.open()
-                self._set_up()
+        with self._switch.setting():
             self._exchange(_filled(self._protocol.speed.command, number), _filled(self._protocol.speed.answer, number))
             self._require_set(number)
-        except DeviceLost:
-            self._is_set_up = False
-            raise
-        except DeviceError:
-            with suppress(DeviceError):  # who drives it switches it off again, and hears of that
-                self.off()
-            raise
 
     def off(self) -> None:
         """Stop, over a new connection where the present one is lost, and wait for the answer."""
-        if not self._is_connected:
-            return
-        if self._is_set_up:
-            try:
-                self._stop()
-                return
-            except DeviceError:
-                self._is_set_up = False
-        self._line.open()
-        self._stop()
+        self._switch.off()
 
     def close(self) -> None:
         """Stop and close the connection."""
-        with suppress(DeviceError):
-            self.off()
-        self._is_connected = False
-        self._line.close()
+        self._switch.close()
 
     def _set_up(self) -> None:
         """Stop the motor, and send what the controller needs first."""
@@ -140,7 +108,6 @@ class LineMotor:
         for exchange in self._protocol.at_connect:
             self._exchange(exchange.command, exchange.answer)
         self._stop()
-        self._is_set_up = True
 
     def _stop(self) -> None:
         """Stop and have that confirmed."""

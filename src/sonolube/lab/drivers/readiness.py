@@ -1,20 +1,22 @@
 """Readiness of a device map: packages and drivers missing, demands of a protocol beyond it, a first block read."""
 
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from math import ceil
 
-from sonolube.errors import SonolubeError
 from sonolube.extras import EXTRAS
 from sonolube.lab.block import Block
 from sonolube.lab.devices import DeviceError, Devices
 from sonolube.lab.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
 from sonolube.lab.drivers.device_map import DeviceMap
-from sonolube.lab.set_points import require_possible
-from sonolube.protocol import Protocol, flattened
+from sonolube.lab.set_points import impossibilities
+from sonolube.protocol import Protocol, SetPoint, flattened
 from sonolube.units import format_si
 
 BLOCK_DURATION = 0.1
 """Of the first look. [s]"""
+
+_DRIVING = ("drive", "voltage_steps", "sweep")
 
 
 def missing_parts(device_map: DeviceMap) -> tuple[str, ...]:
@@ -49,23 +51,29 @@ def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        Each with its step; of voltages, speeds and channels the first.
+        All of them, each with its step.
     """
-    faults: dict[str, None] = {}
-    try:
-        require_possible(protocol, device_map.devices())
-    except SonolubeError as refusal:
-        faults[str(refusal)] = None
+    faults: dict[tuple[str, str], tuple[float, str]] = {}
+    for place, kind, value, text in _beyond(device_map, flattened(protocol)):
+        known = faults.get((place, kind))
+        if known is None or value > known[0]:
+            faults[place, kind] = (value, text)
+    return (*impossibilities(protocol, device_map.devices()), *(text for _, text in faults.values()))
+
+
+def _beyond(device_map: DeviceMap, points: Sequence[SetPoint]) -> Iterator[tuple[str, str, float, str]]:
+    """Step, kind, value and text of frequencies and sample rates beyond the devices of a map."""
     highest = device_map.frequency_maximum
     total = device_map.entries.acquisition.sample_rate_maximum
-    for point in flattened(protocol):
-        if point.frequency is not None and point.frequency > highest * (1 + 1e-9):
-            wanted, most = format_si(point.frequency, "Hz"), format_si(highest, "Hz")
-            faults[f"step {point.step}: drives at {wanted}; the drive gives at most {most}"] = None
-        if point.sample_rate is not None and point.sample_rate * len(point.channels) > total * (1 + 1e-9):
-            wanted = f"{len(point.channels)} channels at {format_si(point.sample_rate, 'Hz')}"
-            faults[f"step {point.step}: records {wanted}; the device takes {format_si(total, 'Hz')} in all"] = None
-    return tuple(faults)
+    for point in points:
+        place, frequency, rate = f"step {point.step}", point.frequency, point.sample_rate
+        if frequency is not None and frequency > highest * (1 + 1e-9) and point.kind in _DRIVING:
+            wanted, most = format_si(frequency, "Hz"), format_si(highest, "Hz")
+            yield point.step, "frequency", frequency, f"{place}: drives at {wanted}; the drive gives at most {most}"
+        if rate is not None and rate * len(point.channels) > total * (1 + 1e-9) and point.kind == "acquire":
+            wanted = f"{len(point.channels)} channels at {format_si(rate, 'Hz')}"
+            text = f"{place}: records {wanted}; the device takes {format_si(total, 'Hz')} in all"
+            yield point.step, "rate", rate, text
 
 
 def first_block(devices: Devices, *, sample_rate: float) -> Block:

@@ -1,5 +1,11 @@
 from .exports import EXPORT_FORMATS as EXPORT_FORMATS, export_run as export_run
-from .raw_blocks import RawPart as RawPart, read_raw_blocks as read_raw_blocks, scan_raw as scan_raw
+from .observation import Observation as Observation, RunObserver as RunObserver, run_to_watch as run_to_watch
+from .raw_blocks import (
+    RawPart as RawPart,
+    latest_samples as latest_samples,
+    read_raw_blocks as read_raw_blocks,
+    scan_raw as scan_raw,
+)
 from .recorder import RunRecorder as RunRecorder, new_run as new_run
 from .recovery import Recovery as Recovery, recover_run as recover_run
 from .run import (

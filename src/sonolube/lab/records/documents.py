@@ -46,21 +46,24 @@ class ReadDocuments:
         return [document for kind, document in self.documents if kind == name]
 
 
-def read_documents(folder: Path) -> ReadDocuments:
+def read_documents(folder: Path, *, earlier: ReadDocuments | None = None) -> ReadDocuments:
     """Read the documents of a run up to the first damaged line; none where there is no file.
 
     Parameters
     ----------
     folder : Path
+    earlier : ReadDocuments, optional
+        Of the same file, which has grown since; only what follows is read.
 
     Returns
     -------
     ReadDocuments
     """
-    found: list[tuple[str, Document]] = []
-    place = 0
+    found = [] if earlier is None else list(earlier.documents)
+    place = 0 if earlier is None else earlier.whole_bytes
     try:
         with (folder / DOCUMENTS).open("rb") as stream:
+            stream.seek(place)
             while line := stream.readline(_LARGEST_LINE):
                 document = _document(line)
                 if document is None:

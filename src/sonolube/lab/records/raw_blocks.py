@@ -12,6 +12,8 @@ import zlib
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import ceil
+from os import SEEK_END
 from pathlib import Path
 from typing import BinaryIO, Final
 
@@ -30,6 +32,7 @@ _LARGEST_HEADER: Final = 1 << 20
 _SEARCHED: Final = 1 << 20  # bytes at a time, for the next record after a damaged one
 _LARGEST_SAMPLE: Final = 1 << 53  # beyond it times in float64 repeat
 _MOST_GAPS: Final = 1000
+_MOST_READ: Final = 1 << 26  # bytes at the end of a file that grows
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -192,6 +195,48 @@ def read_raw_blocks(path: Path) -> Iterator[Block]:
     for part, block in _walk(path):
         if block is not None:
             yield replace(block, sample_rate=part.sample_rate)
+
+
+def latest_samples(path: Path, *, duration: float) -> tuple[RawPart, Block | None]:
+    """Read the last samples of a file that may still grow; a block that is being written is left out.
+
+    Parameters
+    ----------
+    path : Path
+    duration : float
+        Of the samples, where there are that many without a gap. [s]
+
+    Returns
+    -------
+    RawPart
+        Channels and rate of the file; nothing is counted.
+    Block or None
+        None where there is no whole record.
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be read, or its header is damaged or not written yet.
+    """
+    try:
+        with path.open("rb") as stream:
+            part = _header(stream, path)
+            size = stream.seek(0, SEEK_END)
+            wanted = max(ceil(duration * part.sample_rate), 1)
+            reach = min(2 * wanted * (8 * len(part.channels) + _RECORD_BYTES) + _SEARCHED, _MOST_READ)
+            start = replace(part, whole_bytes=max(part.header_bytes, size - reach))
+            blocks: list[Block] = []
+            for _, block in _records(stream, size, start):
+                if blocks and block.first_sample != blocks[-1].next_sample:
+                    blocks.clear()
+                blocks.append(block)
+    except OSError as failure:
+        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+    if not blocks:
+        return part, None
+    values = np.concatenate([block.values for block in blocks])[-wanted:]
+    first = blocks[-1].next_sample - values.shape[0]
+    return part, Block(first_sample=first, sample_rate=part.sample_rate, values=values)
 
 
 def _walk(path: Path) -> Iterator[tuple[RawPart, Block | None]]:

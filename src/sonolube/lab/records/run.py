@@ -188,7 +188,7 @@ def read_run(folder: Path) -> Run:
         summary=summary,
         known=known,
         protocol=text,
-        notes=tuple(_note(event) for event in documents.of("event")),
+        notes=tuple(note_of(event) for event in documents.of("event")),
         caveats=tuple(_caveats(folder, known, documents, summary)),
         _documents=documents,
     )
@@ -289,8 +289,17 @@ def _parts(documents: ReadDocuments) -> tuple[dict[str, int], dict[str, float]]:
     return counts, rates
 
 
-def _note(event: Mapping[str, Any]) -> Note:
-    """Event as a note."""
+def note_of(event: Mapping[str, Any]) -> Note:
+    """Note that an event document holds.
+
+    Parameters
+    ----------
+    event : mapping
+
+    Returns
+    -------
+    Note
+    """
     data, time = event["data"], event.get("time")
     try:
         facts = json.loads(data["facts"])

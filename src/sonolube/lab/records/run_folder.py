@@ -19,7 +19,7 @@ RUN: Final = "run.json"
 DOCUMENTS: Final = "documents.jsonl"
 TRUTH: Final = "truth/truth.nc"
 PURPOSE: Final = "run"
-"""What the lock of the folder is for."""
+"""Purpose of the lock of the folder."""
 RESERVE: Final = ".reserve"
 """File that is removed when a run ends, so that its last documents fit on a full disk."""
 

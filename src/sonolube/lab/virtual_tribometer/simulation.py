@@ -180,6 +180,12 @@ class VirtualRig:
         self._turning = self._turning.towards(rotation_speed, time=self._time)
         self._settle()
 
+    def prepare(self, setting: DriveSetting | None, rotation_speed: float) -> None:
+        """Work out the friction at a setting of drive and motor, which takes seconds for some rigs."""
+        import scipy.signal  # noqa: F401  for which the first block would wait
+
+        self._friction.at(setting, rotation_speed * pi * self._diameter)
+
     def drive(self, setting: DriveSetting | None) -> None:
         """Set the drive, None for off."""
         self._setting = setting

@@ -90,6 +90,7 @@ class VirtualTribometer:
             description=description,
             groove_diameter=groove_diameter,
             simulated=True,
+            prepare=virtual.prepare,
         )
 
     def truth(self) -> "xr.Dataset":
