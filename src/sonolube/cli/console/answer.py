@@ -136,11 +136,11 @@ def _write(answer: Answer, folder: Path, context: typer.Context | None) -> list[
     page, drawings = answer.page(), answer.figures()
     contents: dict[str, Any] = {}
     if page is not None or drawings:
-        from sonolube.cli.console.figure_style import without_artist_docstrings
+        from sonolube.cli.console.figure_style import prepare_matplotlib
         from sonolube.cli.console.progress import progress
         from sonolube.report import rendered_files
 
-        without_artist_docstrings()
+        prepare_matplotlib()
 
         if page is not None and context is not None:
             page = replace(page, settings=(*page.settings, *_options(context)))
