@@ -56,7 +56,7 @@ class Kernel(Generic[P, R]):
                 return cast("Callable[P, R]", numba.njit(**self._options)(function))
             except RuntimeError:  # neither the package's folder nor the user's cache can be written
                 config: Any = numba.config
-                config.CACHE_DIR = _private_folder()
+                config.CACHE_DIR = private_folder()
                 caching = {"cache": bool(config.CACHE_DIR)}
                 return cast("Callable[P, R]", numba.njit(**self._options | caching)(function))
 
@@ -128,8 +128,14 @@ class Kernel(Generic[P, R]):
         return copy
 
 
-def _private_folder() -> str:
-    """Return a folder for compiled kernels among temporary files that nobody else can write; empty without one."""
+def private_folder() -> str:
+    """Return a folder among temporary files that nobody else can write, for compiled kernels and the like.
+
+    Returns
+    -------
+    str
+        Its path; empty without one.
+    """
     import stat
     import tempfile
     from pathlib import Path

@@ -26,6 +26,7 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)))
 _AXES = ("xaxis", "yaxis", "zaxis")
 _INCH = 25.4  # mm
 _NARROW = 4.7  # inches: a figure drawn no wider fits one column
+_TEXT_LAYOUT = ("GDEF", "GPOS", "GSUB", "kern")  # tables of a font
 _COMMON = {
     "axes.formatter.min_exponent": 4,
     "axes.axisbelow": True,
@@ -220,11 +221,55 @@ def render_figure(figure: "Figure", file_format: str, *, resolution: float | Non
     buffer = io.BytesIO()
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(file_format)
     _take_as_text(figure)
-    with publication_style(), warnings.catch_warnings():
+    with publication_style(), _embedded_outlines(file_format), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from font")  # a title may be in any script
+        if file_format == "png":
+            _lay_out(figure, resolution)
         figure.savefig(buffer, format=file_format, metadata=metadata, dpi=resolution)
-        figure.set_layout_engine("none")
+        _keep_layout(figure)
     return buffer.getvalue()
+
+
+def _lay_out(figure: "Figure", resolution: float | None) -> None:
+    """Compute the layout of a figure that has none yet; `savefig` would draw the whole figure for it once more."""
+    import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    engine, own = figure.get_layout_engine(), figure.dpi
+    if engine is None or not figure.axes:
+        return
+    FigureCanvasAgg(figure)
+    figure.dpi = mpl.rcParams["savefig.dpi"] if resolution is None else resolution
+    engine.execute(figure)
+    _keep_layout(figure)
+    figure.dpi = own
+
+
+def _keep_layout(figure: "Figure") -> None:
+    """Have a figure drawn as it is laid out: under any engine, also that named "none", `savefig` draws it twice."""
+    import matplotlib as mpl
+
+    with mpl.rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
+        figure.set_layout_engine(None)
+
+
+@contextmanager
+def _embedded_outlines(file_format: str) -> Iterator[None]:
+    """Leave tables by which programs lay out text out of the fonts that a PDF embeds: it holds placed outlines.
+
+    They take most of the time in which a font is reduced to the characters of a figure.
+    """
+    if file_format != "pdf":
+        yield
+        return
+    from fontTools.subset import Options  # type: ignore[import-untyped]
+
+    kept: list[str] = Options._drop_tables_default
+    Options._drop_tables_default = [*kept, *_TEXT_LAYOUT]
+    try:
+        yield
+    finally:
+        Options._drop_tables_default = kept
 
 
 def _take_as_text(figure: "Figure") -> None:

@@ -1,10 +1,18 @@
 """Figures of commands at their final size: of a column or a page, legible, nothing cut off or overlapping."""
 
 import itertools
+import os
+import re
+import subprocess
+import sys
+import zlib
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 
 import pytest
+from fontTools.ttLib import TTFont  # type: ignore[import-untyped]
+from matplotlib.backend_bases import RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -115,3 +123,55 @@ def test_a_narrow_figure_takes_a_column_and_any_other_the_page(drawn: float) -> 
     assert width == approx(85.0 if drawn < 4.7 else 174.0)
     assert height <= 3.0 * 25.4 + 1e-9
     assert next(shown(figure)).get_fontsize() == 7.0
+
+
+def test_a_command_draws_in_a_home_that_cannot_be_written_and_keeps_the_list_of_fonts(tmp_path: Path) -> None:
+    named = ("HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "MPLCONFIGDIR")
+    environment = {name: value for name, value in os.environ.items() if name not in named}
+    program = Path(sys.executable).with_name("sonolube")
+    (tmp_path / "temporary").mkdir()
+    run = subprocess.run(
+        [program, "simulate", TRIBOMETER],
+        cwd=tmp_path,
+        env=environment | {"HOME": os.devnull, "TMPDIR": str(tmp_path / "temporary")},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "atplotlib" not in run.stderr
+    assert len(list((tmp_path / "out").glob("tribometer-simulation.*"))) == 4
+    assert list((tmp_path / "temporary").rglob("fontlist-*.json"))
+
+
+def test_fonts_in_a_pdf_hold_outlines_alone_and_what_they_show_can_be_copied() -> None:
+    figure = Figure(figsize=(3, 2))
+    figure.text(0.5, 0.5, "Gap at rest, 2.31 µm: fi ffl")
+    content = render_figure(figure, "pdf")
+    streams = [zlib.decompress(each) for each in re.findall(rb"stream\r?\n(.*?)\r?\nendstream", content, re.DOTALL)]
+    fonts = [TTFont(BytesIO(each)) for each in streams if each.startswith(b"\x00\x01\x00\x00")]
+    assert fonts
+    for font in fonts:
+        assert {"glyf", "loca", "hmtx", "head", "maxp"} <= set(font.keys())
+        assert not {"GSUB", "GPOS", "GDEF", "kern"} & set(font.keys())
+    assert any(b"beginbfrange" in each or b"beginbfchar" in each for each in streams)
+
+
+def test_a_figure_is_drawn_once_in_each_format(monkeypatch: MonkeyPatch) -> None:
+    figure = Figure(figsize=(4.0, 3.0), layout="constrained")
+    figure.subplots().plot([1, 2, 3], label="a")
+    figure.legend(loc="outside upper center")
+    drawn: list[object] = []
+    draw = Figure.draw
+
+    def counted(self: Figure, renderer: RendererBase) -> None:
+        drawn.append(renderer)
+        draw(self, renderer)
+
+    monkeypatch.setattr(Figure, "draw", counted)
+    for form in ("png", "svg", "pdf"):
+        render_figure(figure, form)
+    assert len(drawn) == 3
+    left, bottom = figure.axes[0].get_position().min
+    assert left > 0.05
+    assert bottom > 0.05
+    assert left != approx(0.125)  # where axes are without a layout

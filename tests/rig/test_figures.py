@@ -26,7 +26,7 @@ from sonolube.rig.figures import (
     start_up_figure,
     temperature_figure,
 )
-from sonolube.rig.result_datasets import response_dataset, simulation_dataset, start_up_dataset
+from sonolube.rig.result_datasets import response_arrays, simulation_arrays, start_up_arrays
 
 
 @pytest.fixture(scope="module")
@@ -36,13 +36,13 @@ def tribometer() -> Rig:
 
 def test_the_steady_vibration_is_drawn_and_stored_over_one_period(tribometer: Rig) -> None:
     result = simulate(tribometer)
-    gap, force = simulation_figure(simulation_dataset(tribometer, result)).axes
+    gap, force = simulation_figure(simulation_arrays(tribometer, result)).axes
     assert gap.lines[0].get_ydata() == approx(1e6 * result.vibration.motions[0].displacement)
     assert force.lines[0].get_ydata() == approx(result.vibration.motions[0].normal_force)
     assert (force.get_xlabel(), force.get_ylabel()) == ("Time [µs]", "Contact force [N]")
-    stored = simulation_dataset(tribometer, result)
+    stored = simulation_arrays(tribometer, result)
     step = 1 / (result.vibration.motions[0].frequency * result.vibration.motions[0].displacement.size)
-    assert np.diff(stored["time"]) == approx(step)
+    assert np.diff(stored["time"].to_numpy()) == approx(step)
     assert stored["normal_force"].attrs["units"] == "N"
 
 
@@ -52,7 +52,7 @@ def test_the_linear_response_is_drawn_and_stored_over_frequency(tribometer: Rig)
     assert amplitude.lines[0].get_ydata() == approx(1e6 * result.amplitude_per_volt)
     assert impedance.lines[0].get_ydata() == approx(result.impedance)
     assert phase.get_xlabel() == "Frequency [kHz]"
-    assert response_dataset(tribometer, result)["impedance"].attrs["units"] == "ohm"
+    assert response_arrays(tribometer, result)["impedance"].attrs["units"] == "ohm"
 
 
 def test_the_last_periods_of_a_start_up_pass_through_the_computed_steps(tribometer: Rig) -> None:
@@ -63,7 +63,7 @@ def test_the_last_periods_of_a_start_up_pass_through_the_computed_steps(tribomet
     shown = (steps >= time[0]) & (steps <= time[-1])
     between = np.interp(steps[shown], time, displacement)
     assert between == approx(1e6 * result.trajectory.contact.displacement[shown], abs=0.02 * np.ptp(displacement))
-    assert start_up_dataset(tribometer, result).sizes["time"] == result.trajectory.time.size
+    assert start_up_arrays(tribometer, result).sizes["time"] == result.trajectory.time.size
 
 
 def test_vibration_lowers_the_drawn_temperature_in_proportion_to_friction(tribometer: Rig) -> None:

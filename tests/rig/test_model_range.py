@@ -27,7 +27,7 @@ from sonolube.rig import (
     thermal_solid,
     voltage_study,
 )
-from sonolube.rig.result_datasets import simulation_dataset
+from sonolube.rig.result_datasets import simulation_arrays
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = read_rig(RIGS / "tribometer.toml")
@@ -66,7 +66,7 @@ def test_a_simulation_keeps_the_vibration_and_withholds_friction_and_wear_of_the
     assert all(np.isnan(getattr(result.friction, name)) for name in FRICTION)
     assert np.isnan(result.wear.wear_rate)
     assert result.friction.raw_friction_ratio > 1
-    assert simulation_dataset(printed(*STRONG_CHANGES), result).attrs["status"] == OUTSIDE
+    assert simulation_arrays(printed(*STRONG_CHANGES), result).attrs["status"] == OUTSIDE
 
 
 @pytest.mark.parametrize("model", FRICTION_MODELS)

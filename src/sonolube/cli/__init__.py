@@ -1,5 +1,6 @@
 """The command `sonolube`: its entry, which imports nothing heavy before it can be interrupted."""
 
+import atexit
 import gc
 import os
 import sys
@@ -37,6 +38,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if arguments is None:
         end_program_at_signals()
         gc.set_threshold(*_COLLECTIONS)
+        atexit.register(gc.freeze)  # no search for garbage in all modules at the end, which takes a tenth of a second
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # for which it reads the metadata of all packages
         if not _THREADS & os.environ.keys():
             os.environ["OPENBLAS_NUM_THREADS"] = "1"  # read when numpy is imported
     from sonolube.cli.app import run

@@ -19,7 +19,7 @@ References
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -152,16 +152,10 @@ def greenwood_williamson_integrals(
     return GreenwoodWilliamsonIntegrals(lowest=lowest, highest=highest, **dict(zip(names, functions, strict=True)))
 
 
-def log_normal_force(
-    *,
-    roughness: Roughness,
-    pair: ContactPair,
-    nominal_area: float,
-    heights: HeightDistribution,
-    asperity: AsperityLaw,
-    h: Floats,
-) -> Floats:
-    """Return the logarithm of the force of all asperities at a few separations, integrated without a table.
+def log_normal_force_function(
+    *, roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
+) -> Callable[[Floats], Floats]:
+    """Return a function for the logarithm of the force of all asperities at a few separations, without a table.
 
     Parameters
     ----------
@@ -171,16 +165,14 @@ def log_normal_force(
         Area over which the summits are distributed. [m2]
     heights : HeightDistribution
     asperity : AsperityLaw
-    h : ndarray, shape (n,)
-        Separation over R_q.
 
     Returns
     -------
-    ndarray, shape (n,)
-        That of the table to 1e-10, for forces in N.
+    callable
+        Of separations over R_q, shape (n,): that of the table to 1e-10, for forces in N.
     """
     w, per_height = _per_height(roughness, pair, nominal_area, heights, asperity)
-    return _log_integrals(heights, h, w, per_height)[:, 0]
+    return lambda h: _log_integrals(heights, h, w, per_height)[:, 0]
 
 
 def _per_height(

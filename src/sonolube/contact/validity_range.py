@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite
-from sonolube.contact.greenwood_williamson import TABLE_RANGE, log_normal_force
+from sonolube.contact.greenwood_williamson import TABLE_RANGE, log_normal_force_function
 from sonolube.contact.height_distribution import MINIMUM_ROUGHNESS_PARAMETER, ExponentialHeights, GaussianHeights
 from sonolube.contact.rough import RoughContact, contact_count, normal_force, real_contact_area
 from sonolube.errors import InvalidInput
@@ -60,11 +60,11 @@ def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) ->
     gaussian = replace(contact, heights=heights)
     is_exponential = isinstance(contact.heights, ExponentialHeights)
     exponential = contact if is_exponential else replace(contact, heights=ExponentialHeights())
-    parts = {part.name: getattr(gaussian, part.name) for part in fields(gaussian)}
+    log_force = log_normal_force_function(**{part.name: getattr(gaussian, part.name) for part in fields(gaussian)})
 
     def log_ratio(h: Floats) -> Floats:
         load = normal_force(exponential, separation=h * roughness.rms_height)
-        return log_normal_force(**parts, h=h) - np.log(load)
+        return log_force(h) - np.log(load)
 
     # within the table, and short of where the loads underflow
     h = heights.standard_deviation * np.linspace(TABLE_RANGE[0] + 0.01, 20, 1000)

@@ -99,15 +99,29 @@ class SmallVibration:
         self.conditions = conditions
 
     @cached_property
+    def _mass_roots(self) -> Floats:
+        """Inverse L^-1 of the Cholesky factor of the mass matrices, shape (n, k, k)."""
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(self.matrices.mass_matrix)), dtype=np.float64)
+
+    @cached_property
+    def _inverse_mass(self) -> Floats:
+        """Inverse of the mass matrices, shape (n, k, k)."""
+        return np.asarray(np.linalg.inv(self.matrices.mass_matrix), dtype=np.float64)
+
+    @cached_property
+    def _standard_stiffness(self) -> Floats:
+        """Symmetric matrices of the standard eigenvalue problem, contact free, drive short-circuited."""
+        return _standard_form(self._mass_roots, self.matrices.stiffness_matrix)
+
+    @cached_property
     def natural_frequencies(self) -> Floats:
         """Undamped natural frequencies, contact free, drive short-circuited, ascending, shape (n, k). [Hz]"""
-        return _natural_frequencies(self.matrices.mass_matrix, self.matrices.stiffness_matrix)
+        return _natural_frequencies(self._standard_stiffness)
 
     @cached_property
     def mode_shapes(self) -> Floats:
         """Mass-normalised shapes of the same modes in columns, shape (n, k, k)."""
-        inverse, symmetric = _standard_form(self.matrices.mass_matrix, self.matrices.stiffness_matrix)
-        return np.asarray(inverse.transpose(0, 2, 1) @ np.linalg.eigh(symmetric)[1])
+        return np.asarray(self._mass_roots.transpose(0, 2, 1) @ np.linalg.eigh(self._standard_stiffness)[1])
 
     @cached_property
     def driven_mode(self) -> NDArray[np.intp]:
@@ -128,12 +142,12 @@ class SmallVibration:
         drive, capacitance = self.matrices.drive_vector, self.matrices.clamped_capacitance
         added = drive[:, :, np.newaxis] * drive[:, np.newaxis, :] / capacitance[:, np.newaxis, np.newaxis]
         stiffness = self.matrices.stiffness_matrix + added
-        return _at(_natural_frequencies(self.matrices.mass_matrix, stiffness), self.driven_mode)
+        return _at(_natural_frequencies(_standard_form(self._mass_roots, stiffness)), self.driven_mode)
 
     @cached_property
     def free_poles(self) -> Complexes:
         """Poles with the contact free, in 1/s, ascending in modulus, shape (n, 2k)."""
-        return _poles(self.matrices.mass_matrix, self.matrices.damping_matrix, self.matrices.stiffness_matrix)
+        return _poles(self._inverse_mass, self.matrices.damping_matrix, self.matrices.stiffness_matrix)
 
     @cached_property
     def resonance_pole(self) -> Complexes:
@@ -150,7 +164,7 @@ class SmallVibration:
     @cached_property
     def loaded_poles(self) -> Complexes:
         """Poles on the loaded contact, in 1/s, ascending in modulus, shape (n, 2k)."""
-        return _poles(self.matrices.mass_matrix, self.matrices.damping_matrix, self.loaded_stiffness)
+        return _poles(self._inverse_mass, self.matrices.damping_matrix, self.loaded_stiffness)
 
     @cached_property
     def residual_pole(self) -> Complexes:
@@ -186,7 +200,7 @@ class SmallVibration:
         """Natural frequency of a mode counted from 1, rigid ones left out, shape (n,). [Hz]"""
         frequency = self.natural_frequencies
         if loaded:
-            frequency = _natural_frequencies(self.matrices.mass_matrix, self.loaded_stiffness)
+            frequency = _natural_frequencies(_standard_form(self._mass_roots, self.loaded_stiffness))
         index = np.count_nonzero(frequency == 0, axis=1) + number - 1
         if index.max() >= frequency.shape[1]:
             raise InvalidInput(f"the structure has fewer than {number} vibration modes")
@@ -238,27 +252,25 @@ def settling_time_of(pole: Complexes) -> Floats:
     return np.asarray(math.log(1 / _SETTLED) / np.maximum(-pole.real, _TINY))
 
 
-def _natural_frequencies(mass: Floats, stiffness: Floats) -> Floats:
-    """Undamped natural frequencies in Hz, ascending, zero for rigid modes, shape (n, k)."""
-    squares = np.linalg.eigvalsh(_standard_form(mass, stiffness)[1])
+def _natural_frequencies(standard: Floats) -> Floats:
+    """Undamped natural frequencies in Hz, ascending, zero for rigid modes, shape (n, k), by the standard form."""
+    squares = np.linalg.eigvalsh(standard)
     rigid = squares <= _RIGID * squares[:, -1:]
     return np.asarray(np.sqrt(np.where(rigid, 0.0, squares)) / (2 * np.pi))
 
 
-def _standard_form(mass: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
-    """Inverse L^-1 of the Cholesky factor of the mass matrix, and the symmetric matrix L^-1 K L^-T."""
-    inverse = np.linalg.inv(np.linalg.cholesky(mass))
-    return inverse, inverse @ stiffness @ inverse.transpose(0, 2, 1)
+def _standard_form(mass_roots: Floats, stiffness: Floats) -> Floats:
+    """Symmetric matrices L^-1 K L^-T, with the inverse of the Cholesky factors L of the mass."""
+    return np.asarray(mass_roots @ stiffness @ mass_roots.transpose(0, 2, 1))
 
 
-def _poles(mass: Floats, damping: Floats, stiffness: Floats) -> Complexes:
+def _poles(inverse_mass: Floats, damping: Floats, stiffness: Floats) -> Complexes:
     """Poles of the free motion in 1/s, ascending in modulus, shape (n, 2k)."""
-    k = mass.shape[-1]
-    inverse = np.linalg.inv(mass)
-    state = np.zeros((*mass.shape[:-2], 2 * k, 2 * k))
+    k = inverse_mass.shape[-1]
+    state = np.zeros((*inverse_mass.shape[:-2], 2 * k, 2 * k))
     state[..., :k, k:] = np.eye(k)
-    state[..., k:, :k] = -inverse @ stiffness
-    state[..., k:, k:] = -inverse @ damping
+    state[..., k:, :k] = -inverse_mass @ stiffness
+    state[..., k:, k:] = -inverse_mass @ damping
     poles = np.linalg.eigvals(state).astype(np.complex128)
     return np.asarray(np.take_along_axis(poles, np.argsort(np.abs(poles), axis=-1), axis=-1))
 

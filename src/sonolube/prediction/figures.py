@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from sonolube.prediction.calibration import Calibration
+    from sonolube.rig.labelled_arrays import LabelledArrays
 
 _OPACITIES: Final = (0.15, 0.25, 0.4)  # of the bands, the widest first
 _AXES: Final = (
@@ -23,22 +24,23 @@ _AXES: Final = (
 )
 
 
-def prediction_figure(prediction: "xr.Dataset") -> "Figure":
+def prediction_figure(prediction: "xr.Dataset | LabelledArrays") -> "Figure":
     """Draw the friction ratio of a rig over amplitude and over speed with its intervals, and measured ratios.
 
     Parameters
     ----------
-    prediction : xarray.Dataset
+    prediction : xarray.Dataset or LabelledArrays
         By `predict`.
 
     Returns
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
+    from matplotlib.figure import Figure
     from matplotlib.ticker import LogLocator
 
-    figure, panels = plt.subplots(1, 2, figsize=(6.85, 3.3), sharey=True)
+    figure = Figure(figsize=(6.85, 3.3))
+    panels = figure.subplots(1, 2, sharey=True)
     for axes, (name, condition, scale, label) in zip(panels, _AXES, strict=True):
         places = scale * prediction[f"curve_{name}"].to_numpy()
         curves = prediction[f"friction_ratio_over_{name}"]
@@ -74,14 +76,14 @@ def draw_bands(axes: "Axes", places: Floats, quantiles: Floats) -> None:
     axes.plot(places, quantiles[len(PROBABILITIES)], color=COLOURS[0], label="median")
 
 
-def _points(axes: "Axes", condition: str, scale: float, prediction: "xr.Dataset") -> None:
+def _points(axes: "Axes", condition: str, scale: float, prediction: "xr.Dataset | LabelledArrays") -> None:
     """Draw the published tests, each at conditions of its own, and the rig's runs."""
     for index, rig in enumerate(published_rigs()):
         places = scale * getattr(rig.at.conditions, condition)
         label = "published tests, each on its own rig" if index == 0 else None
         axes.plot(places, rig.friction_ratio, "o", mfc="none", color="0.45", ms=4, label=label)
     if "run" in prediction.sizes:
-        ratio, uncertainty = prediction["measured_friction_ratio"], prediction["measured_uncertainty"]
+        ratio, uncertainty = (prediction[f"measured_{name}"].to_numpy() for name in ("friction_ratio", "uncertainty"))
         places = scale * prediction[f"measured_{condition}"].to_numpy()
         axes.errorbar(places, ratio, uncertainty, fmt="s", color=COLOURS[1], ms=5, label="own runs")
 

@@ -1,10 +1,11 @@
 """Prediction of a rig: friction, wear, heat and power under vibration, with predictive intervals."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, MissingProperty
@@ -15,8 +16,9 @@ from sonolube.prediction.predictive import RatioDraws, ratio_draws
 from sonolube.prediction.scores import LEVELS, central_interval
 from sonolube.prediction.tested_range import extrapolation_caveats
 from sonolube.rig import Rig, thermal_solid
+from sonolube.rig.datasets import labels
+from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
 from sonolube.thermal import EllipticSource, contact_rise
-from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,8 +69,19 @@ def predict(
     MissingProperty, UnknownName
         For a material without thermal properties.
     """
-    import xarray as xr
+    return prediction_arrays(rig, runs=runs, pin=pin, disc=disc, draws=draws, seed=seed).dataset()
 
+
+def prediction_arrays(
+    rig: Rig,
+    *,
+    runs: "xr.Dataset | None" = None,
+    pin: str | None = None,
+    disc: str | None = None,
+    draws: int = 4000,
+    seed: int = 0,
+) -> LabelledArrays:
+    """Return what `predict` does, without xarray."""
     inputs = rig_inputs(rig)
     own = None if runs is None else own_runs(runs, inputs, title=rig.title)
     if own is not None and own.friction is not None:
@@ -83,41 +96,38 @@ def predict(
     }
     uncertain = sorted(inputs.uncertain, key=lambda each: -each.spread)
     shares = np.array([_shares_left(each, inputs, own, drawn, seed=seed) for each in uncertain])
-    result = xr.Dataset(
-        {
-            **{name: ("draw", values) for name, values in drawn.items()},
-            **{f"friction_ratio_over_{name}": (("level", f"curve_{name}"), each) for name, each in curves.items()},
-            **({} if own is None else {name: ("run", values) for name, values in _measured(own).items()}),
-            "input_value": ("input", [each.value for each in uncertain]),
-            "input_spread": ("input", [each.spread for each in uncertain]),
-            "input_label": ("input", [each.label for each in uncertain]),
-            "input_text": ("input", [each.text for each in uncertain]),
-            "reason": ("input", [each.reason for each in uncertain]),
-            "remedy": ("input", [each.remedy for each in uncertain]),
-            "interval_share_left": ("input", shares[:, 0]),
-            "force_interval_share_left": ("input", shares[:, 1]),
+    variables = {
+        **{name: LabelledArray(dims=("draw",), values=values, attrs=labels(name)) for name, values in drawn.items()},
+        **{
+            f"friction_ratio_over_{name}": LabelledArray(dims=("level", f"curve_{name}"), values=each)
+            for name, each in curves.items()
         },
-        coords={
-            "level": list(LEVELS),
-            "curve_amplitude": amplitudes,
-            "curve_speed": speeds,
-            "input": [each.name for each in uncertain],
+        **({} if own is None else _along("run", _measured(own))),
+        **_along("input", _described(uncertain)),
+        **_along("input", {"interval_share_left": shares[:, 0], "force_interval_share_left": shares[:, 1]}),
+    }
+    coordinates = {
+        "level": np.array(LEVELS),
+        "curve_amplitude": amplitudes,
+        "curve_speed": speeds,
+        "input": np.array([each.name for each in uncertain]),
+    }
+    result = LabelledArrays(
+        variables=variables,
+        coordinates={
+            name: LabelledArray(dims=(name,), values=np.asarray(values)) for name, values in coordinates.items()
         },
         attrs=_attributes(rig, inputs, own, found) | {"heat": heating if isinstance(heating, str) else ""},
     )
-    for name in drawn:
-        entry = quantity(name)
-        result[name].attrs |= {"units": entry.unit or "1", "long_name": entry.meaning}
-    result.attrs["statement"] = "\n".join(statement(result))
-    return result
+    return result.assign_attrs(statement="\n".join(statement(result)))
 
 
-def interval(prediction: "xr.Dataset", name: str, probability: float = 0.8) -> tuple[float, float]:
+def interval(prediction: "xr.Dataset | LabelledArrays", name: str, probability: float = 0.8) -> tuple[float, float]:
     """Return the central predictive interval of a quantity.
 
     Parameters
     ----------
-    prediction : xarray.Dataset
+    prediction : xarray.Dataset or LabelledArrays
         By `predict`.
     name : str
         A variable over `draw`.
@@ -133,21 +143,21 @@ def interval(prediction: "xr.Dataset", name: str, probability: float = 0.8) -> t
     return float(low), float(high)
 
 
-def statement(prediction: "xr.Dataset") -> tuple[str, str, str]:
+def statement(prediction: "xr.Dataset | LabelledArrays") -> tuple[str, str, str]:
     """Return the prediction in three sentences: the outcome, what to measure, and what limits it.
 
     Parameters
     ----------
-    prediction : xarray.Dataset
+    prediction : xarray.Dataset or LabelledArrays
 
     Returns
     -------
     tuple of str
     """
     low, high = (100 * each for each in interval(prediction, "friction_reduction"))
-    shares = prediction["interval_share_left"].to_series()
-    least = str(shares.idxmin())
-    what, remedy = (prediction[name].sel(input=least).item() for name in ("input_label", "remedy"))
+    shares = prediction["interval_share_left"].to_numpy()
+    least = int(np.nanargmin(shares))
+    what, remedy = (prediction[name].to_numpy()[least] for name in ("input_label", "remedy"))
     left = f"{100 * shares[least]:.0f} % of its width"
     advice = f"The least known input is the {what}; {remedy} would narrow the interval to {left}."
     if shares[least] > _NO_GAIN:
@@ -155,7 +165,7 @@ def statement(prediction: "xr.Dataset") -> tuple[str, str, str]:
     return (f"Friction falls by {max(low, 0):.0f} to {high:.0f} % (80 %).", advice, _limits(prediction))
 
 
-def _limits(prediction: "xr.Dataset") -> str:
+def _limits(prediction: "xr.Dataset | LabelledArrays") -> str:
     """Sentence on heat and power."""
     parts = []
     if "mean_temperature_rise" in prediction:
@@ -204,6 +214,23 @@ def _measured(own: OwnRuns) -> dict[str, Floats]:
         "measured_vibration_amplitude": tested.at.conditions.vibration_amplitude,
         "measured_sliding_speed": tested.at.conditions.sliding_speed,
     }
+
+
+def _described(uncertain: Sequence[Input]) -> dict[str, NDArray[Any]]:
+    """Values and texts of uncertain inputs, by the names that they have in a prediction."""
+    return {
+        "input_value": np.array([each.value for each in uncertain]),
+        "input_spread": np.array([each.spread for each in uncertain]),
+        "input_label": np.array([each.label for each in uncertain]),
+        "input_text": np.array([each.text for each in uncertain]),
+        "reason": np.array([each.reason for each in uncertain]),
+        "remedy": np.array([each.remedy for each in uncertain]),
+    }
+
+
+def _along(name: str, values: Mapping[str, NDArray[Any]]) -> dict[str, LabelledArray]:
+    """Arrays over one axis."""
+    return {each: LabelledArray(dims=(name,), values=array) for each, array in values.items()}
 
 
 def _contact_heating(rig: Rig, pin: str | None, disc: str | None) -> float | str:

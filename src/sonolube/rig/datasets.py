@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.files import write_atomically
+from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -44,8 +45,13 @@ def dataset(values: Mapping[str, Floats], *, along: str, title: str) -> "xr.Data
     UnknownName
         If a name is not in the vocabulary.
     """
+    return labelled(values, along=along, title=title).dataset()
+
+
+def labelled(values: Mapping[str, Floats], *, along: str, title: str) -> LabelledArrays:
+    """Return what `dataset` does, without xarray."""
     others = {name: array for name, array in values.items() if name != along}
-    return gridded(others, axes={along: values[along]}, title=title)
+    return _labelled_grid(others, axes={along: values[along]}, title=title, about=_NOTHING)
 
 
 def gridded(
@@ -78,14 +84,7 @@ def gridded(
     UnknownName
         If a name is not in the vocabulary.
     """
-    import xarray as xr
-
-    names = tuple(axes)
-    return xr.Dataset(
-        {name: (names[: array.ndim], array, labels(name)) for name, array in values.items()},
-        coords={name: (name, array, labels(name)) for name, array in axes.items()},
-        attrs={"title": title, "source": f"sonolube {__version__}", **about},
-    )
+    return _labelled_grid(values, axes=axes, title=title, about=about).dataset()
 
 
 def labels(name: str) -> dict[str, str]:
@@ -102,7 +101,7 @@ def labels(name: str) -> dict[str, str]:
     return {"units": known.unit or "1", "long_name": known.meaning}
 
 
-def write_netcdf(results: "xr.Dataset", *, path: Path) -> Path:
+def write_netcdf(results: "xr.Dataset | LabelledArrays", *, path: Path) -> Path:
     """Write a dataset as netCDF, whole or not at all.
 
     Raises
@@ -110,4 +109,23 @@ def write_netcdf(results: "xr.Dataset", *, path: Path) -> Path:
     InvalidInput
         If the place cannot be written to.
     """
+    if isinstance(results, LabelledArrays):
+        return write_atomically(path, results.netcdf())
     return write_atomically(path, bytes(results.to_netcdf(engine="h5netcdf")))
+
+
+def _labelled_grid(
+    values: Mapping[str, NDArray[Any]], *, axes: Mapping[str, NDArray[Any]], title: str, about: Mapping[str, str]
+) -> LabelledArrays:
+    """Arrays over a grid with units and long names."""
+    names = tuple(axes)
+    return LabelledArrays(
+        variables={
+            name: LabelledArray(dims=names[: array.ndim], values=array, attrs=labels(name))
+            for name, array in values.items()
+        },
+        coordinates={
+            name: LabelledArray(dims=(name,), values=array, attrs=labels(name)) for name, array in axes.items()
+        },
+        attrs={"title": title, "source": f"sonolube {__version__}", **about},
+    )

@@ -6,15 +6,17 @@ import numpy as np
 
 from sonolube.figure import COLOURS, LINES
 from sonolube.friction import LubricationMethod
-from sonolube.rig.contact_temperature import TemperaturePoint
-from sonolube.rig.linear_response import FrequencyResponse
-from sonolube.rig.lubrication import LubricationMap, LubricationPoint
-from sonolube.rig.record import Rig
-from sonolube.rig.start_up_transient import StartUp
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
+
+    from sonolube.rig.contact_temperature import TemperaturePoint
+    from sonolube.rig.labelled_arrays import LabelledArrays
+    from sonolube.rig.linear_response import FrequencyResponse
+    from sonolube.rig.lubrication import LubricationMap, LubricationPoint
+    from sonolube.rig.record import Rig
+    from sonolube.rig.start_up_transient import StartUp
 
 _CONTACT_LOSS_FORCE = 0.01  # force over load below which contact counts as lost
 _LAST_PERIODS = 4  # periods of the drive shown enlarged at the end of a start-up
@@ -22,13 +24,13 @@ _LAST_POINTS = 801  # points drawn of those periods
 _METHOD_COLOURS = {"dry": "0.75", "ultrasonic": "#9ecae1", "lubricant": "#fdd0a2", "combined": "#c7e9c0"}
 
 
-def simulation_figure(result: "xr.Dataset") -> "Figure":
+def simulation_figure(result: "xr.Dataset | LabelledArrays") -> "Figure":
     """Displacement of the tip and contact force over one repetition of the steady vibration.
 
     Parameters
     ----------
-    result : xarray.Dataset
-        As `simulation_dataset` returns it.
+    result : xarray.Dataset or LabelledArrays
+        As `simulation_arrays` returns it.
 
     Returns
     -------
@@ -68,7 +70,7 @@ def simulation_figure(result: "xr.Dataset") -> "Figure":
     return figure
 
 
-def response_figure(rig: Rig, result: FrequencyResponse) -> "Figure":
+def response_figure(rig: "Rig", result: "FrequencyResponse") -> "Figure":
     """Amplitude per volt, electrical impedance and phase of the linear response over frequency.
 
     Parameters
@@ -103,7 +105,7 @@ def response_figure(rig: Rig, result: FrequencyResponse) -> "Figure":
     return figure
 
 
-def start_up_figure(rig: Rig, result: StartUp) -> "Figure":
+def start_up_figure(rig: "Rig", result: "StartUp") -> "Figure":
     """Displacement of the tip from rest over the whole start-up and over its last four periods.
 
     Parameters
@@ -142,7 +144,7 @@ def start_up_figure(rig: Rig, result: StartUp) -> "Figure":
     return figure
 
 
-def temperature_figure(rig: Rig, result: TemperaturePoint) -> "Figure":
+def temperature_figure(rig: "Rig", result: "TemperaturePoint") -> "Figure":
     """Temperature rise of the contact and of the bulk of the pin over a test, with and without vibration.
 
     Parameters
@@ -174,7 +176,7 @@ def temperature_figure(rig: Rig, result: TemperaturePoint) -> "Figure":
     return figure
 
 
-def lubrication_figure(rig: Rig, result: LubricationPoint, surroundings: LubricationMap) -> "Figure":
+def lubrication_figure(rig: "Rig", result: "LubricationPoint", surroundings: "LubricationMap") -> "Figure":
     """Map of the method of least friction over sliding speed and nominal pressure, with the rig on it.
 
     Parameters

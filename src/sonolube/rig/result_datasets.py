@@ -1,24 +1,21 @@
 """Labelled datasets of results of a rig over time or frequency: steady vibration, linear response and start-up."""
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
 from sonolube.contact import separation
-from sonolube.rig.datasets import dataset
+from sonolube.rig.datasets import labelled, labels
+from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
 from sonolube.rig.linear_response import FrequencyResponse
 from sonolube.rig.record import Rig
 from sonolube.rig.result_quantities import result_quantities, result_texts
 from sonolube.rig.simulation import Simulation
 from sonolube.rig.start_up_transient import StartUp
 from sonolube.rig.vibration import SteadyVibration
-from sonolube.vocabulary import quantity
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
-def simulation_dataset(rig: Rig, result: Simulation) -> "xr.Dataset":
+def simulation_arrays(rig: Rig, result: Simulation) -> LabelledArrays:
     """One repetition of the steady vibration, and the friction and wear under it.
 
     Parameters
@@ -29,7 +26,7 @@ def simulation_dataset(rig: Rig, result: Simulation) -> "xr.Dataset":
 
     Returns
     -------
-    xarray.Dataset
+    LabelledArrays
         Displacement and contact force over `time`; every quantity of the result as a scalar, NaN outside the range of a
         model. Attributes hold the texts of the result, its caveats and the assumptions of the rig.
     """
@@ -37,13 +34,13 @@ def simulation_dataset(rig: Rig, result: Simulation) -> "xr.Dataset":
     motion = vibration.motions[0]
     time = np.arange(motion.displacement.size) / (motion.displacement.size * motion.frequency)
     values = {"time": time, "displacement": motion.displacement, "normal_force": motion.normal_force}
-    labelled = dataset(values, along="time", title=f"Steady motion of {rig.title}")
-    for name, value in result_quantities(result).items():
-        if name not in labelled:
-            entry = quantity(name)
-            about = {"units": entry.unit or "1", "long_name": entry.meaning}
-            labelled[name] = ((), np.nan if value is None else value, about)
-    labelled.attrs |= result_texts(result) | {
+    moving = labelled(values, along="time", title=f"Steady motion of {rig.title}")
+    scalars = {
+        name: LabelledArray(dims=(), values=np.asarray(np.nan if value is None else value), attrs=labels(name))
+        for name, value in result_quantities(result).items()
+        if name not in moving
+    }
+    about = result_texts(result) | {
         "result": "simulation",
         "rig": rig.title,
         "caveats": "\n".join(result.caveats),
@@ -56,10 +53,10 @@ def simulation_dataset(rig: Rig, result: Simulation) -> "xr.Dataset":
         "mean_displacement_m": vibration.mean_displacement,
         "contact_loss_fraction": vibration.contact_loss_fraction,
     }
-    return labelled
+    return replace(moving, variables={**moving.variables, **scalars}).assign_attrs(**about)
 
 
-def response_dataset(rig: Rig, result: FrequencyResponse) -> "xr.Dataset":
+def response_arrays(rig: Rig, result: FrequencyResponse) -> LabelledArrays:
     """Linear response over frequency: amplitude per volt, magnitude and phase of the impedance.
 
     Parameters
@@ -70,7 +67,7 @@ def response_dataset(rig: Rig, result: FrequencyResponse) -> "xr.Dataset":
 
     Returns
     -------
-    xarray.Dataset
+    LabelledArrays
         Over `frequency`.
     """
     values = {
@@ -79,10 +76,10 @@ def response_dataset(rig: Rig, result: FrequencyResponse) -> "xr.Dataset":
         "impedance": result.impedance,
         "phase": result.phase,
     }
-    return dataset(values, along="frequency", title=f"Linear response of {rig.title}")
+    return labelled(values, along="frequency", title=f"Linear response of {rig.title}")
 
 
-def start_up_dataset(rig: Rig, result: StartUp) -> "xr.Dataset":
+def start_up_arrays(rig: Rig, result: StartUp) -> LabelledArrays:
     """Start-up from rest: displacement and contact force at every step of the time integration.
 
     Parameters
@@ -93,7 +90,7 @@ def start_up_dataset(rig: Rig, result: StartUp) -> "xr.Dataset":
 
     Returns
     -------
-    xarray.Dataset
+    LabelledArrays
         Over `time`.
     """
     values = {
@@ -101,7 +98,7 @@ def start_up_dataset(rig: Rig, result: StartUp) -> "xr.Dataset":
         "displacement": result.trajectory.contact.displacement,
         "normal_force": result.trajectory.contact.normal_force,
     }
-    return dataset(values, along="time", title=f"Start-up of {rig.title}")
+    return labelled(values, along="time", title=f"Start-up of {rig.title}")
 
 
 def _interval_of(result: SteadyVibration) -> str:

@@ -12,7 +12,7 @@ from sonolube.design.maps import default_axes
 from sonolube.design.ranges import ends_of, values_of
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.rig import Rig, operating_caveats, simulate as simulated
-from sonolube.rig.result_datasets import simulation_dataset
+from sonolube.rig.result_datasets import simulation_arrays
 from sonolube.validation.comparison import compare_models, compared_models, predict_rig
 from sonolube.validation.rig_conditions import vibrated_rig
 from sonolube.validation.tables import comparison_dataset
@@ -41,7 +41,7 @@ def simulate(rig: Rig) -> "xr.Dataset":
     InvalidInput
         If the rig does not vibrate.
     """
-    return simulation_dataset(rig, simulated(rig))
+    return simulation_arrays(rig, simulated(rig)).dataset()
 
 
 def sweep(

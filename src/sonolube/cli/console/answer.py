@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
     from sonolube.report import Drawing, Page
     from sonolube.rig import Rig
+    from sonolube.rig.labelled_arrays import LabelledArrays
 
-    Content = str | bytes | xr.Dataset | Path
+    Content = str | bytes | xr.Dataset | LabelledArrays | Path
 
 _UNLISTED = ("rig", "out", "json", "keep", "style")  # arguments that a page lists otherwise, or that change no number
 
@@ -135,8 +136,11 @@ def _write(answer: Answer, folder: Path, context: typer.Context | None) -> list[
     page, drawings = answer.page(), answer.figures()
     contents: dict[str, Any] = {}
     if page is not None or drawings:
+        from sonolube.cli.console.figure_style import prepare_matplotlib
         from sonolube.cli.console.progress import progress
         from sonolube.report import rendered_files
+
+        prepare_matplotlib()
 
         if page is not None and context is not None:
             page = replace(page, settings=(*page.settings, *_options(context)))

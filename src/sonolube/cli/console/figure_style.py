@@ -1,8 +1,10 @@
 """Option `--style` of all commands that draw figures."""
 
+import os
 from collections.abc import Callable
 from functools import wraps
 from inspect import Parameter, signature
+from pathlib import Path
 from typing import Any, get_type_hints
 
 from sonolube.cli.console.options import FigureStyleName, Style
@@ -40,3 +42,32 @@ def with_figure_style(command: Callable[..., None]) -> Callable[..., None]:
     run.__signature__ = signature(command).replace(parameters=[*given, option])  # type: ignore[attr-defined]
     run.__annotations__ = {**hints, "style": Style}
     return run
+
+
+def prepare_matplotlib() -> None:
+    """Spare the first figure of a command what matplotlib does at its import and no command needs.
+
+    Where the user's folders cannot be written, matplotlib would search for all fonts in each run, and say so; it keeps
+    their list among temporary files instead. It leaves out of docstrings the lists of properties, whose collection is a
+    fifth of its import.
+    """
+    if "MPLCONFIGDIR" not in os.environ and not all(map(_is_writable, _matplotlib_folders())):
+        from sonolube.compilation import private_folder
+
+        if folder := private_folder():
+            os.environ["MPLCONFIGDIR"] = folder
+    import matplotlib.artist
+
+    matplotlib.artist.kwdoc = lambda artist: ""
+
+
+def _matplotlib_folders() -> list[Path]:
+    """Folders in which matplotlib keeps settings and its list of fonts."""
+    named = (os.environ.get("XDG_CONFIG_HOME") or "~/.config", os.environ.get("XDG_CACHE_HOME") or "~/.cache")
+    return [Path(name).expanduser() / "matplotlib" for name in named]
+
+
+def _is_writable(folder: Path) -> bool:
+    """Whether a folder, or the parent in which it would be made, can be written to."""
+    present = next((each for each in (folder, *folder.parents) if each.exists()), Path())
+    return present.is_dir() and os.access(present, os.W_OK)

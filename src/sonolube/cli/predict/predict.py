@@ -3,8 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import numpy as np
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver, grid
@@ -14,16 +15,13 @@ from sonolube.cli.predict.measured import Measurement, measured_on
 from sonolube.compilation import few_points
 from sonolube.measurement.measured_runs import runs_help
 from sonolube.prediction.figures import prediction_figure
-from sonolube.prediction.rig_prediction import interval, predict as predicted
+from sonolube.prediction.rig_prediction import interval, prediction_arrays
 from sonolube.prediction.scores import PROBABILITIES
 from sonolube.report import Drawing
 from sonolube.rig import Rig
+from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _INPUT_HEADS = [
     "  least known inputs",
@@ -32,6 +30,10 @@ _INPUT_HEADS = [
     "left of the intervals of ratio and force",
     "known from",
 ]
+_INPUT_COLUMNS = (
+    *("input", "input_label", "input_value", "input_spread", "remedy", "reason"),
+    *("interval_share_left", "force_interval_share_left"),
+)
 _PERCENT = ("friction_reduction", "wear_reduction")
 
 
@@ -58,7 +60,7 @@ def predict(
     """
     known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     own = None if runs is None else measured_runs(runs)
-    result = predicted(known, runs=own, pin=pin, disc=disc, seed=seed)
+    result = prediction_arrays(known, runs=own, pin=pin, disc=disc, seed=seed)
     measured = measured_on(known, vibration_amplitude=result.attrs["vibration_amplitude"])
     answer = PredictionAnswer(rig=known, prediction=result, measured=measured, name=f"{rig.stem}-prediction")
     deliver(answer, folder=out, as_json=json)
@@ -69,7 +71,7 @@ class PredictionAnswer(Answer):
     """Prediction of a rig with its intervals, in words, numbers, a figure and a dataset of draws."""
 
     rig: Rig
-    prediction: "xr.Dataset"
+    prediction: LabelledArrays
     measured: Sequence[Measurement]
     name: str
 
@@ -85,7 +87,7 @@ class PredictionAnswer(Answer):
             f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}",
             *attributes["statement"].split("\n"),
             *grid([heads, *map(self._row, self._names())]),
-            *grid([_INPUT_HEADS, *map(self._input_row, self._inputs())]),
+            *grid([_INPUT_HEADS, *map(self._input_row, range(self.prediction.sizes["input"]))]),
             *about,
             *(f"  measured {one.label}: {one.text}" for one in self.measured),
         ]
@@ -96,11 +98,9 @@ class PredictionAnswer(Answer):
             "rig": self.rig.title,
             "statement": self.prediction.attrs["statement"].split("\n"),
             **{name: self._object(name) for name in self._names()},
-            "inputs": [one.input_text.item() for one in self._inputs()],
+            "inputs": self.prediction["input_text"].to_numpy().tolist(),
             "measured": [one.object() for one in self.measured],
-            "interval_share_left": {
-                str(name): float(share) for name, share in self.prediction["interval_share_left"].to_series().items()
-            },
+            "interval_share_left": dict(zip(self._column("input"), self._column("interval_share_left"), strict=True)),
             **{name: self.prediction.attrs.get(name) for name in ("closures", "runs", "actuator_power")},
         }
 
@@ -112,28 +112,30 @@ class PredictionAnswer(Answer):
         """Friction ratio over amplitude and speed with its intervals."""
         return {self.name: Drawing(draw=lambda: prediction_figure(self.prediction))}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, LabelledArrays]:
         """Draws and curves."""
         return {f"{self.name}.nc": self.prediction}
 
-    def _inputs(self) -> "list[xr.Dataset]":
-        """Uncertain inputs, the least known first."""
-        return [self.prediction.sel(input=name) for name in self.prediction["input"].to_numpy()]
+    def _column(self, name: str) -> list[Any]:
+        """Values of a variable over the uncertain inputs."""
+        values: list[Any] = self.prediction[name].to_numpy().tolist()
+        return values
 
-    def _input_row(self, one: "xr.Dataset") -> list[str]:
+    def _input_row(self, place: int) -> list[str]:
         """Uncertain input with its spread, how to know it better, and what of the intervals would be left."""
-        left = [f"{100 * one[name].item():.0f} %" for name in ("interval_share_left", "force_interval_share_left")]
-        value = format_si(one.input_value.item(), quantity(one.input.item()).unit)
-        known = f"{value} within {100 * one.input_spread.item():.0f} %"
-        return [f"  {one.input_label.item()}", known, one.remedy.item(), " and ".join(left), one.reason.item()]
+        one = {name: self._column(name)[place] for name in _INPUT_COLUMNS}
+        left = [f"{100 * one[name]:.0f} %" for name in ("interval_share_left", "force_interval_share_left")]
+        value = format_si(one["input_value"], quantity(one["input"]).unit)
+        known = f"{value} within {100 * one['input_spread']:.0f} %"
+        return [f"  {one['input_label']}", known, one["remedy"], " and ".join(left), one["reason"]]
 
     def _names(self) -> list[str]:
         """Predicted quantities in their order."""
-        return [str(name) for name, values in self.prediction.data_vars.items() if values.dims == ("draw",)]
+        return [name for name, values in self.prediction.variables.items() if values.dims == ("draw",)]
 
     def _row(self, name: str) -> list[str]:
         """Median and intervals of a quantity as text."""
-        median = float(self.prediction[name].median())
+        median = float(np.median(self.prediction[name].to_numpy()))
         ends = [interval(self.prediction, name, probability) for probability in PROBABILITIES]
         text = [f"{_text(name, low)} to {_text(name, high)}" for low, high in ends]
         return [f"  {quantity(name).meaning}", _text(name, median), *text]
@@ -141,7 +143,7 @@ class PredictionAnswer(Answer):
     def _object(self, name: str) -> dict[str, Any]:
         """Median and intervals of a quantity in SI."""
         return {
-            "median": float(self.prediction[name].median()),
+            "median": float(np.median(self.prediction[name].to_numpy())),
             **{
                 f"interval_{100 * probability:.0f}": list(interval(self.prediction, name, probability))
                 for probability in PROBABILITIES

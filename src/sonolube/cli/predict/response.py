@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
@@ -13,11 +13,9 @@ from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
 from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, read_rig, structure_in_contact
 from sonolube.rig.figures import response_figure
-from sonolube.rig.result_datasets import response_dataset
+from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.result_datasets import response_arrays
 from sonolube.units import format_si
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def response(
@@ -79,9 +77,9 @@ class ResponseAnswer(Answer):
         """FrequencyResponse over frequency."""
         return {self.name: Drawing(draw=lambda: response_figure(self.rig, self.result))}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, LabelledArrays]:
         """FrequencyResponse over frequency as netCDF."""
-        return {f"{self.name}.nc": response_dataset(self.rig, self.result)}
+        return {f"{self.name}.nc": response_arrays(self.rig, self.result)}
 
     def _largest(self) -> tuple[float, float]:
         """Frequency and value of the largest amplitude per volt."""

@@ -15,6 +15,7 @@ from sonolube.vocabulary import quantities
 if TYPE_CHECKING:
     import xarray as xr
 
+    from sonolube.rig.labelled_arrays import LabelledArrays
 
 _UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
 _LEAST_FORCE = 1e-6  # of the load, below which a friction force means nothing
@@ -34,14 +35,14 @@ class RigRecord(Answer):
     measured : sequence of Measurement
         What was measured on the rig under the same conditions.
     drawings : mapping of str to Drawing
-    datasets : mapping of str to xarray.Dataset
+    datasets : mapping of str to xarray.Dataset or LabelledArrays
     """
 
     rig: Rig
     result: Any
     measured: Sequence[Measurement] = ()
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
-    datasets: "Mapping[str, xr.Dataset]" = field(default_factory=dict)
+    datasets: "Mapping[str, xr.Dataset | LabelledArrays]" = field(default_factory=dict)
 
     def lines(self) -> list[str]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
@@ -73,7 +74,7 @@ class RigRecord(Answer):
         """Figures of the record."""
         return self.drawings
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> "Mapping[str, xr.Dataset | LabelledArrays]":
         """Datasets of the record."""
         return self.datasets
 

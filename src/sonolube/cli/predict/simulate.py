@@ -12,7 +12,7 @@ from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.compilation import few_points
 from sonolube.report import Drawing
 from sonolube.rig.figures import simulation_figure
-from sonolube.rig.result_datasets import simulation_dataset
+from sonolube.rig.result_datasets import simulation_arrays
 
 
 @few_points()
@@ -31,7 +31,7 @@ def simulate(
     known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     with progress("simulating"):
         result = rigs.simulate(known)
-    name, labelled = f"{rig.stem}-simulation", simulation_dataset(known, result)
+    name, labelled = f"{rig.stem}-simulation", simulation_arrays(known, result)
     answer = RigRecord(
         rig=known,
         result=result,

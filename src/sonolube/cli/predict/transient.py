@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, TypedNumber, loaded_rig, si_option
@@ -12,12 +12,9 @@ from sonolube.compilation import few_points
 from sonolube.report import Drawing
 from sonolube.rig import Rig, StartUp, resolved_vibration, start_up
 from sonolube.rig.figures import start_up_figure
-from sonolube.rig.result_datasets import start_up_dataset
+from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.result_datasets import start_up_arrays
 from sonolube.units import format_si
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "beat_frequency")
 
@@ -75,6 +72,6 @@ class StartUpAnswer(Answer):
         """Displacement of the tip over time."""
         return {self.name: Drawing(draw=lambda: start_up_figure(self.rig, self.result))}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, LabelledArrays]:
         """Trajectory as netCDF."""
-        return {f"{self.name}.nc": start_up_dataset(self.rig, self.result)}
+        return {f"{self.name}.nc": start_up_arrays(self.rig, self.result)}

@@ -42,7 +42,7 @@ class NameIn:
 class Section(BaseModel):
     """A table of a rig file; unknown keys are refused, text with a unit becomes SI."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True, defer_build=True)
 
     @field_validator("*", mode="before")
     @classmethod
