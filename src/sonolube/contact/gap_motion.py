@@ -101,7 +101,7 @@ class GapMotionBatch:
     frequency : ndarray, shape (m,)
         Fundamental frequency. [Hz]
     mean_force_ratio : ndarray, shape (m,), optional
-        Mean normal force over the load; 1 by default, as under a dead load. Springs to the ground carry a part. []
+        Mean normal force over the load; 1 by default, as under a dead load. Springs to the ground carry a part.
 
     Raises
     ------
