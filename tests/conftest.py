@@ -25,7 +25,7 @@ _PACKAGE = Path(__file__).parents[1] / "src" / "sonolube"
 @pytest.fixture
 def copied_package(tmp_path: Path) -> Path:
     """Copy of the package, with its compiled kernels, to extend and run in a subprocess with PYTHONPATH=tmp_path."""
-    return Path(shutil.copytree(_PACKAGE, tmp_path / "sonolube", ignore=shutil.ignore_patterns("*.pyc")))
+    return Path(shutil.copytree(_PACKAGE, tmp_path / "sonolube"))
 
 
 @contextmanager

@@ -7,13 +7,12 @@ import pkgutil
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 import sonolube
+from sonolube.cli import main
 from sonolube.cli.commands import COMMANDS as TABLE
 from sonolube.rig import rig_schema
 
@@ -77,12 +76,15 @@ def test_no_section_describes_a_command_that_is_gone() -> None:
 
 
 @pytest.mark.parametrize(("call", "refused"), calls())
-def test_a_command_of_the_pages_runs_as_it_stands(call: str, refused: bool, tmp_path: Path) -> None:
+def test_a_command_of_the_pages_runs_as_it_stands(
+    call: str, refused: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     shutil.copy(DOCS / "my-rig.toml", tmp_path)
-    program = Path(sys.executable).parent / "sonolube"
-    run = subprocess.run([program, *shlex.split(call)[1:]], capture_output=True, text=True, check=False, cwd=tmp_path)
-    assert run.returncode == (2 if refused else 0), run.stderr
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        main(shlex.split(call)[1:])
+    assert (ended.value.code or 0) == (2 if refused else 0), capfd.readouterr().err
 
 
 def test_every_room_and_module_at_the_top_has_its_reference() -> None:

@@ -28,44 +28,60 @@ def public_things() -> Iterator[tuple[str, Any]]:
                 yield f"{found.name}.{name}", thing
 
 
-PUBLIC = dict(public_things())
+@pytest.fixture(scope="module")
+def public() -> dict[str, Any]:
+    """Every public class and function by its full name."""
+    found = dict(public_things())
+    assert len(found) > 2000
+    return found
 
 
-@pytest.mark.parametrize("name", PUBLIC)
-def test_everything_public_is_documented(name: str) -> None:
-    assert (PUBLIC[name].__doc__ or "").strip()
+def documented_entries(thing: Any) -> Iterator[tuple[str, str]]:
+    """Names and descriptions of the parameters and attributes in a docstring."""
+    for names, description in ENTRY.findall(inspect.cleandoc(thing.__doc__ or "")):
+        yield from ((name, description) for name in names.split(", "))
 
 
-@pytest.mark.parametrize("name", PUBLIC)
-def test_documented_units_are_those_of_the_vocabulary(name: str) -> None:
-    text = inspect.cleandoc(PUBLIC[name].__doc__ or "")
-    for names, description in ENTRY.findall(text):
+def unit_faults(name: str, thing: Any) -> Iterator[str]:
+    """Entries of a docstring whose unit is not that of the vocabulary."""
+    for parameter, description in documented_entries(thing):
         unit = UNIT.search(description.strip())
-        for parameter in names.split(", "):
-            if parameter in quantities():
-                assert unit is not None, f"{name}: {parameter} is documented without its unit"
-                assert unit[1] == quantity(parameter).unit, f"{name}: {parameter}"
-            else:
-                assert unit is None, f"{name}: {parameter} has a unit but is not in the vocabulary"
+        if parameter not in quantities():
+            if unit is not None:
+                yield f"{name}: {parameter} has a unit but is not in the vocabulary"
+        elif unit is None:
+            yield f"{name}: {parameter} is documented without its unit"
+        elif unit[1] != quantity(parameter).unit:
+            yield f"{name}: {parameter} is documented in {unit[1]}"
 
 
-@pytest.mark.parametrize("name", PUBLIC)
-def test_physical_arguments_are_documented_and_cannot_be_swapped(name: str) -> None:
-    thing = PUBLIC[name]
-    if inspect.isclass(thing):
-        return
-    entries = ENTRY.findall(inspect.cleandoc(thing.__doc__ or ""))
-    documented = {part for names, _ in entries for part in names.split(", ")}
-    for parameter in inspect.signature(thing).parameters.values():
+def argument_faults(name: str, function: Any) -> Iterator[str]:
+    """Physical arguments of a function that can be swapped, or that its docstring lacks."""
+    documented = {parameter for parameter, _ in documented_entries(function)}
+    for parameter in inspect.signature(function).parameters.values():
         if parameter.name in quantities():
-            assert parameter.kind is inspect.Parameter.KEYWORD_ONLY, f"{name}: {parameter.name} can be swapped"
-            assert parameter.name in documented, f"{name}: {parameter.name} is not documented"
+            if parameter.kind is not inspect.Parameter.KEYWORD_ONLY:
+                yield f"{name}: {parameter.name} can be swapped"
+            if parameter.name not in documented:
+                yield f"{name}: {parameter.name} is not documented"
 
 
-@pytest.mark.parametrize("name", quantities())
-def test_every_unit_is_one_the_house_can_read(name: str) -> None:
-    unit = quantity(name).unit
-    assert to_si(f"1 {unit}", unit=unit, name=name) == 1.0
+def test_everything_public_is_documented(public: dict[str, Any]) -> None:
+    assert [name for name, thing in public.items() if not (thing.__doc__ or "").strip()] == []
+
+
+def test_documented_units_are_those_of_the_vocabulary(public: dict[str, Any]) -> None:
+    assert [fault for name, thing in public.items() for fault in unit_faults(name, thing)] == []
+
+
+def test_physical_arguments_are_documented_and_cannot_be_swapped(public: dict[str, Any]) -> None:
+    functions = {name: thing for name, thing in public.items() if not inspect.isclass(thing)}
+    assert [fault for name, function in functions.items() for fault in argument_faults(name, function)] == []
+
+
+def test_every_unit_is_one_the_house_can_read() -> None:
+    units = {name: quantity(name).unit for name in quantities()}
+    assert {name: unit for name, unit in units.items() if to_si(f"1 {unit}", unit=unit, name=name) != 1.0} == {}
 
 
 def test_an_unknown_quantity_is_answered_with_the_closest() -> None:

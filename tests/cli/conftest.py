@@ -1,8 +1,11 @@
 """Run of the program in this process, for the tests of commands."""
 
 import json
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+import pickle
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import wraps
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +15,9 @@ from pytest import CaptureFixture, MonkeyPatch, raises
 from sonolube.cli import main
 from sonolube.cli.console import answer, progress
 from sonolube.cli.console.outputs import OutputFolder
+from sonolube.fem import electromechanical_model, mode_files, tuning
+from sonolube.fem.solver import convergence
+from sonolube.fem.solver.model import Model
 from sonolube.targets import expect_target
 
 ROOT = Path(__file__).parents[2]
@@ -54,6 +60,36 @@ def sonolube(capfd: CaptureFixture[str]) -> Program:
         return Run(code=int(end.value.code or 0), out=out, err=err)
 
     return run
+
+
+def _solved_once(solve: Callable[..., Any]) -> Callable[..., Any]:
+    """Solver of finite-element models that solves equal ones, of equal options, once."""
+    known: dict[bytes, Any] = {}
+
+    @wraps(solve)
+    def solution(model: Model, **options: Any) -> Any:
+        as_meshed = replace(model, mesh=replace(model.mesh, curved_nodes=None))
+        key = sha256(pickle.dumps((as_meshed, options))).digest()
+        if key not in known:
+            known[key] = solve(model, **options)
+        return known[key]
+
+    return solution
+
+
+@pytest.fixture(autouse=True, scope="session")
+def equal_models_are_solved_once() -> Iterator[None]:
+    """Solve equal finite-element models once for all commands: many differ only in what is made of the modes."""
+    solvers = (
+        (convergence, "natural_modes"),
+        (tuning, "natural_modes"),
+        (electromechanical_model, "krylov_reduction"),
+        (mode_files, "reduce_model"),
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        for module, name in solvers:
+            patch.setattr(module, name, _solved_once(getattr(module, name)))
+        yield
 
 
 @pytest.fixture(autouse=True)

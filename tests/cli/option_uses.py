@@ -403,7 +403,7 @@ MODES = {
     ),
     "horn": Mode(
         "horn design",
-        ("stepped_horn", "--frequency", "20kHz", "--material", "titanium_6al4v", "--tolerance", "0.3"),
+        ("conical_horn", "--frequency", "20kHz", "--material", "titanium_6al4v", "--tolerance", "0.3"),
         {
             "--frequency": "30kHz",
             "--material": "aluminium_2024",

@@ -5,10 +5,12 @@ import hashlib
 import io
 import json
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 import typer
@@ -17,10 +19,13 @@ from tests.cli.option_uses import EXECUTION, MODES, PLACES, TESTED_ELSEWHERE, wr
 
 from sonolube.cli import main
 from sonolube.cli.commands import COMMANDS
+from sonolube.figure import fit_to_style, publication_style, render_figure
+from sonolube.report import Drawing
 
 pytestmark = pytest.mark.slow
 
 _TIME_OF_RUN = re.compile(r"\d{8}T\d{6}Z")  # in the name of its folder
+_DOTS_PER_INCH = 40.0
 CASES = [
     pytest.param(name, option, id=f"{name}{option}")
     for name, mode in MODES.items()
@@ -79,6 +84,14 @@ def _numbers(path: Path) -> str:
         return hashlib.sha256(b"".join(data[name].values.tobytes() for name in sorted(map(str, data)))).hexdigest()
 
 
+def drawn_once(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
+    """Figure drawn as a small PNG alone; in all its formats it is drawn without the option."""
+    with publication_style():
+        figure = drawing.draw()
+        fit_to_style(figure)
+    return dict.fromkeys(forms, render_figure(figure, "png", resolution=_DOTS_PER_INCH))
+
+
 @cache
 def options_of(name: str) -> frozenset[str]:
     """Options of a command as typed; of a pair such as --track/--no-track the one that is not the default."""
@@ -107,7 +120,8 @@ def test_an_option_changes_the_answer_or_is_refused_by_name(name: str, given: st
         changed = tuple(value[1] if word == value[0] else word for word in base)
     else:
         changed = (*base, given) if value is None else (*base, given, value)
-    after = outcome(mode.command, changed, folder, f"{name}{given}".replace(" ", ""))
+    with patch("sonolube.report.page.drawn", drawn_once):
+        after = outcome(mode.command, changed, folder, f"{name}{given}".replace(" ", ""))
     if after.code:
         assert after.code == 2, after.line
         assert given.removeprefix("--").replace("-", "_") in after.line.replace("-", "_"), after.line

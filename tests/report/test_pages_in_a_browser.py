@@ -10,9 +10,8 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from sonolube.cli import main
-from sonolube.report import MeasurementReport, PinOnDiscSheet, write_measurement_report, write_report
+from sonolube.report import MeasurementReport, PinOnDiscSheet, write_measurement_report
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
-from sonolube.reproduce import reproduction
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = [
@@ -75,7 +74,9 @@ def addresses() -> dict[str, str]:
 
 
 @pytest.fixture(scope="module")
-def pages(browser: Browser, addresses: dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Page]:
+def pages(
+    browser: Browser, addresses: dict[str, str], tmp_path_factory: pytest.TempPathFactory, chapter_3_report: Path
+) -> dict[str, Page]:
     """Open pages by name, each written when it is first needed."""
 
     class Pages(dict[str, Page]):
@@ -86,7 +87,7 @@ def pages(browser: Browser, addresses: dict[str, str], tmp_path_factory: pytest.
             elif name == "measurement":
                 path = write_measurement_page(folder)
             else:
-                path = write_report(reproduction(chapter=3), folder=folder)[0]
+                path = chapter_3_report / "reproduction.html"
             addresses[name] = path.as_uri()
             self[name] = browser.new_page(viewport={"width": 1280, "height": 900})
             self[name].goto(addresses[name])

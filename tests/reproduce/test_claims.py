@@ -4,9 +4,10 @@ import re
 from dataclasses import replace
 
 import pytest
+from tests.reproduced import reproduced
 
 from sonolube.published import statement
-from sonolube.reproduce import CLAIMS, Claim, ClaimVerdict, Reproduction, Row, RowKind, Verdict, reproduction
+from sonolube.reproduce import CLAIMS, Claim, ClaimVerdict, Reproduction, Row, RowKind, Verdict
 from sonolube.reproduce.claim import finding, verdict_of
 from sonolube.reproduce.claims import findings
 from sonolube.reproduce.row import comparison_row
@@ -14,7 +15,7 @@ from sonolube.reproduce.row import comparison_row
 
 @pytest.fixture(scope="module")
 def whole() -> Reproduction:
-    return reproduction()
+    return reproduced()
 
 
 def row(verdict: Verdict) -> Row:

@@ -5,11 +5,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx
 from tests.identified import identified_tribometer
 
-from sonolube.identification import Identification
+from sonolube.identification import Identification, pin_on_disc_model
+from sonolube.identification.fact import ForwardModel
+from sonolube.rig import facts_file
+from sonolube.validation.tribometer import tribometer_problem, tribometer_test
 
 Program = Callable[..., Any]
 
@@ -58,8 +62,19 @@ def test_json_holds_parameters_with_their_ranges_and_facts_with_their_fate(
 
 @pytest.mark.slow
 def test_facts_of_a_file_identify_the_same_structure(
-    tmp_path: Path, sonolube: Program, rigs: Path, identification: Identification
+    tmp_path: Path, sonolube: Program, rigs: Path, identification: Identification, monkeypatch: MonkeyPatch
 ) -> None:
+    def identify(model: ForwardModel, **problem: object) -> Identification:
+        """Identification of the published facts, which tests/rig/test_facts_file.py finds bit for bit from the file."""
+        expected = tribometer_problem()
+        assert problem == {"facts": expected.facts, "bounds": expected.bounds, "seed": 0}
+        point = {name: np.array([lower, upper]) for name, (lower, upper) in expected.bounds.items()}
+        known = pin_on_disc_model(tribometer_test())(point)
+        for name, values in model(point).items():
+            assert np.array_equal(values, known[name]), name
+        return identification
+
+    monkeypatch.setattr(facts_file, "identify", identify)
     facts, path = rigs.parent / "facts" / "tribometer.toml", tmp_path / "identified.toml"
     answer = sonolube("identify", "rig", rigs / "tribometer.toml", "--facts", facts, "--out", path, "--json").answer
     assert {fact["name"] for fact in answer["facts"] if fact["satisfied"]} == identification.satisfied

@@ -4,7 +4,9 @@ import csv
 import io
 import tomllib
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,13 +22,36 @@ FEW = ("--speed", "20:200:4mm/s", "--vibration", "0.5,1.4,2.3um", "--points", "2
 MATERIALS = ("--pin", "stainless_steel_304", "--disc", "stainless_steel_304")
 
 
+@dataclass(frozen=True)
+class Planned:
+    """Plan of few points: the answer of the command and the folder of its files."""
+
+    answer: dict[str, Any]
+    folder: Path
+
+
+@pytest.fixture(scope="module")
+def plans() -> list[Planned]:
+    """Plans made for the tests of this file."""
+    return []
+
+
+@pytest.fixture
+def planned(plans: list[Planned], sonolube: Program, tmp_path_factory: pytest.TempPathFactory) -> Planned:
+    """Plan that several tests read, made by the first; none changes its files."""
+    if not plans:
+        folder: Path = tmp_path_factory.mktemp("planned")
+        answer = sonolube("plan", POWER_MAP, *FEW, "--out", folder, "--json").answer
+        plans.append(Planned(answer=answer, folder=folder))
+    return plans[0]
+
+
 def rows_of(path: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
 
 
-def test_the_table_has_every_point_once_in_every_block_and_no_results(sonolube: Program, tmp_path: Path) -> None:
-    answer = sonolube("plan", POWER_MAP, *FEW, "--out", tmp_path, "--json").answer
-    rows = rows_of(tmp_path / "power_map-plan-runs.csv")
+def test_the_table_has_every_point_once_in_every_block_and_no_results(planned: Planned) -> None:
+    answer, rows = planned.answer, rows_of(planned.folder / "power_map-plan-runs.csv")
     assert len(rows) == len(answer["runs"]) == 2 * answer["replicates"]
     assert [row["run"] for row in rows] == [str(number) for number in range(1, len(rows) + 1)]
     points = Counter((row["block"], row["sliding_speed [mm/s]"], row["vibration_amplitude [um]"]) for row in rows)
@@ -34,10 +59,11 @@ def test_the_table_has_every_point_once_in_every_block_and_no_results(sonolube: 
     assert all(row["friction_force [N]"] == row["intrinsic_friction_force [N]"] == "" for row in rows)
 
 
-def test_a_filled_table_updates_the_prediction_and_the_next_plan(sonolube: Program, tmp_path: Path) -> None:
-    first = sonolube("plan", POWER_MAP, *FEW, "--out", tmp_path, "--json").answer
-    table = tmp_path / "power_map-plan-runs.csv"
-    head, *lines = table.read_text(encoding="utf-8").splitlines()
+def test_a_filled_table_updates_the_prediction_and_the_next_plan(
+    sonolube: Program, planned: Planned, tmp_path: Path
+) -> None:
+    first, table = planned.answer, tmp_path / "power_map-plan-runs.csv"
+    head, *lines = (planned.folder / table.name).read_text(encoding="utf-8").splitlines()
     rng = np.random.default_rng(1)
     filled = [f"{line[:-1]}{0.4 + 0.02 * rng.standard_normal():.3f},0.89" for line in lines]
     table.write_text("\n".join([head, *filled]), encoding="utf-8")
@@ -52,10 +78,11 @@ def test_a_filled_table_updates_the_prediction_and_the_next_plan(sonolube: Progr
     assert second["closures"] != first["closures"]
 
 
-def test_a_table_with_results_is_not_replaced_by_an_empty_one(sonolube: Program, tmp_path: Path) -> None:
-    sonolube("plan", POWER_MAP, *FEW, "--out", tmp_path)
+def test_a_table_with_results_is_not_replaced_by_an_empty_one(
+    sonolube: Program, planned: Planned, tmp_path: Path
+) -> None:
     table = tmp_path / "power_map-plan-runs.csv"
-    filled = table.read_text(encoding="utf-8").replace(",,\n", ",0.4,\n", 1)
+    filled = (planned.folder / table.name).read_text(encoding="utf-8").replace(",,\n", ",0.4,\n", 1)
     table.write_text(filled, encoding="utf-8")
     refusal = sonolube("plan", POWER_MAP, *FEW, "--seed", "1", "--out", tmp_path)
     assert "holds results, which would be lost" in refusal.err
@@ -75,10 +102,10 @@ def test_every_run_has_a_protocol_that_reads_back_and_lasts_as_planned(sonolube:
         assert max(point.sliding_speed or 0.0 for point in flattened(protocol)) == pytest.approx(speed, rel=1e-5)
 
 
-def test_the_protocols_drive_the_voltage_of_the_table(sonolube: Program, tmp_path: Path) -> None:
-    sonolube("plan", POWER_MAP, *FEW, "--out", tmp_path)
-    paths = sorted((tmp_path / "power_map-plan").glob("*.toml"))
-    rows = rows_of(tmp_path / "power_map-plan-runs.csv")
+def test_the_protocols_drive_the_voltage_of_the_table(planned: Planned) -> None:
+    paths = sorted((planned.folder / "power_map-plan").glob("*.toml"))
+    rows = rows_of(planned.folder / "power_map-plan-runs.csv")
+    assert paths
     for path, row in zip(paths, rows, strict=True):
         highest = max(flattened(read_protocol(path)), key=lambda point: point.voltage_peak_to_peak)
         assert highest.voltage_peak_to_peak == pytest.approx(float(row["voltage_peak_to_peak [V]"]), rel=1e-5)
@@ -94,12 +121,13 @@ def test_separate_runs_have_a_protocol_without_and_one_with_vibration(sonolube: 
     assert all(any(point.voltage_peak_to_peak for point in flattened(read_protocol(path))) for path in vibrated)
 
 
-def test_the_same_seed_gives_the_same_order_and_another_seed_another(sonolube: Program, tmp_path: Path) -> None:
-    orders = [
-        sonolube("plan", POWER_MAP, *FEW, "--seed", seed, "--out", tmp_path, "--json").answer["runs"]
-        for seed in (3, 3, 4)
-    ]
-    assert orders[0] == orders[1] != orders[2]
+def test_the_same_seed_gives_the_same_order_and_another_seed_another(
+    sonolube: Program, planned: Planned, tmp_path: Path
+) -> None:
+    again, other = (
+        sonolube("plan", POWER_MAP, *FEW, "--seed", seed, "--out", tmp_path, "--json").answer["runs"] for seed in (0, 4)
+    )
+    assert planned.answer["runs"] == again != other
 
 
 def test_points_beyond_the_amplifier_are_left_out_and_said(sonolube: Program, tmp_path: Path) -> None:

@@ -3,37 +3,39 @@
 import numpy as np
 import pytest
 from pytest import approx
+from tests.reproduced import reproduced, reproduced_rows
 
 from sonolube.figure import publication_style
 from sonolube.published import statement, table
 from sonolube.reproduce import SECTIONS, Row, Verdict
 from sonolube.reproduce.chapter4.maps import extended_power_map, power_maps
 
-CHAPTER = [section for section in SECTIONS if section.chapter == 4]
-ALL_ROWS = [row for section in CHAPTER for row in section.rows()]
-ROWS = {row.id: row for row in ALL_ROWS}
-FIGURES = [figure for section in CHAPTER for figure in section.figures()]
+FIGURES = [figure for section in SECTIONS if section.chapter == 4 for figure in section.figures()]
+
+
+def rows() -> dict[str, Row]:
+    return reproduced_rows(4)
 
 
 def verdicts(beginning: str) -> set[Verdict]:
-    return {row.verdict for row in ROWS.values() if row.id.startswith(beginning)}
+    return {row.verdict for row in rows().values() if row.id.startswith(beginning)}
 
 
 def computed(row_id: str) -> float:
-    value = ROWS[row_id].computed
+    value = rows()[row_id].computed
     assert value is not None
     return value
 
 
 def test_every_row_has_a_name_of_its_own() -> None:
-    assert len(ROWS) == len(ALL_ROWS)
+    assert len(rows()) == len(reproduced(4).rows)
 
 
 def test_every_power_of_table_4_1_is_reproduced() -> None:
     # 360 nF, 22 kHz and the square of the voltage, by hand
     for row, power in enumerate((0, 0.20600, 0.84023, 1.90278, 3.39364, 5.31282), start=10):
         assert computed(f"table-4.1-actuator-power-{row}") == approx(power, abs=1e-5)
-        assert ROWS[f"table-4.1-actuator-power-{row}"].verdict is Verdict.REPRODUCED
+        assert rows()[f"table-4.1-actuator-power-{row}"].verdict is Verdict.REPRODUCED
 
 
 @pytest.mark.parametrize(
@@ -66,7 +68,7 @@ def test_a_row_holds_the_hand_computed_number(row_id: str, by_hand: float) -> No
 
 
 def test_the_derived_columns_are_reproduced_but_for_the_recorded_misprints() -> None:
-    misprints = {row.id for row in ROWS.values() if row.verdict is Verdict.MISPRINT}
+    misprints = {row.id for row in rows().values() if row.verdict is Verdict.MISPRINT}
     assert misprints == {
         *(f"table-{name}-nominal-pressure-{row}" for name, row in (("4.1", 1), ("4.1", 7), ("4.3", 1), ("4.3", 3))),
         *(f"table-4.2-friction-reduction-{row}" for row in (2, 4, 5, 6)),
@@ -79,13 +81,13 @@ def test_the_derived_columns_are_reproduced_but_for_the_recorded_misprints() -> 
 
 
 def test_every_superimposed_speed_lies_within_two_percent() -> None:
-    cells = [row for row in ROWS.values() if row.id.startswith("table-4.5-superimposed-speed")]
+    cells = [row for row in rows().values() if row.id.startswith("table-4.5-superimposed-speed")]
     assert len(cells) == 30
     assert all(abs(row.relative_error or 0) < 0.02 for row in cells)
 
 
 def test_a_misprinted_number_computes_to_its_correction() -> None:
-    for row in ROWS.values():
+    for row in rows().values():
         if row.verdict is Verdict.MISPRINT and (corrected := recorded_correction(row)) is not None:
             assert computed(row.id) == approx(corrected, rel=5e-3)
 
@@ -106,7 +108,7 @@ def recorded_correction(row: Row) -> float | None:
 
 
 def test_the_cube_meets_table_4_2_at_one_voltage_only() -> None:
-    cube = [ROWS[f"table-4.2-friction-force-{row}-by-the-cube"] for row in range(2, 7)]
+    cube = [rows()[f"table-4.2-friction-force-{row}-by-the-cube"] for row in range(2, 7)]
     assert [row.verdict is Verdict.REPRODUCED for row in cube] == [False, False, False, False, True]
     # falling, and more slowly the higher the voltage
     falls = -np.diff([computed(row.id) for row in cube])
@@ -116,20 +118,20 @@ def test_the_cube_meets_table_4_2_at_one_voltage_only() -> None:
 
 def test_the_efficiency_line_holds_up_to_the_power_that_takes_all_friction_away() -> None:
     for beginning, first in (("4.1.2-efficiency-intercept", "at"), ("table-4.1-actuator-power", "by-the-line")):
-        found = [row.verdict for row in ROWS.values() if row.id.startswith(beginning) and first in row.id]
+        found = [row.verdict for row in rows().values() if row.id.startswith(beginning) and first in row.id]
         assert found == [*[Verdict.REPRODUCED] * 3, *[Verdict.NOT_REPRODUCED] * 2]
-    assert "as printed it would rise to 1.13 N" in ROWS["table-4.2-friction-force-3-by-the-line"].note
+    assert "as printed it would rise to 1.13 N" in rows()["table-4.2-friction-force-3-by-the-line"].note
     assert computed("table-4.2-friction-force-5-by-the-line") == 0
 
 
 def test_the_intrinsic_friction_of_the_text_is_a_coefficient() -> None:
-    row = ROWS["4.1.3-friction-uncoated"]
+    row = rows()["4.1.3-friction-uncoated"]
     assert row.verdict is Verdict.MISPRINT
     assert row.published_low < computed(row.id) / 5 < row.published_high
 
 
 def test_every_row_has_a_note_and_a_missing_number_names_its_inputs() -> None:
-    for row in ROWS.values():
+    for row in rows().values():
         assert row.chapter == 4
         assert row.note
         assert (row.computed is None) == (row.verdict is Verdict.UNDETERMINED)
@@ -152,7 +154,9 @@ def test_a_figure_draws_with_units_on_every_axis(figure) -> None:  # type: ignor
 
 
 def test_the_multi_scale_model_has_the_trends_of_the_text_and_too_shallow_a_slope() -> None:
-    lowest, highest = (ROWS[f"4.1.2-reduction-{end}-voltage-by-the-multi-scale-model"] for end in ("lowest", "highest"))
+    lowest, highest = (
+        rows()[f"4.1.2-reduction-{end}-voltage-by-the-multi-scale-model"] for end in ("lowest", "highest")
+    )
     # below 10 % and about 100 % are printed
     assert lowest.verdict is highest.verdict is Verdict.NOT_REPRODUCED
     assert 15 < computed(lowest.id) < 20
@@ -185,4 +189,4 @@ def test_seven_stresses_make_seven_maps_and_the_hardness_is_of_another_steel() -
     assert computed("4.1.1-plate-count") == 7
     # 2.8 x 250 MPa over 9.80665 MPa a unit of hardness
     assert computed("4.1.3-hardness-uncoated") == approx(71.38, abs=0.01)
-    assert ROWS["4.1.3-hardness-uncoated"].verdict is Verdict.NOT_REPRODUCED
+    assert rows()["4.1.3-hardness-uncoated"].verdict is Verdict.NOT_REPRODUCED
