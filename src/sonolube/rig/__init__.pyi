@@ -67,6 +67,7 @@ from .record import (
 )
 from .simulation import (
     Simulation as Simulation,
+    energy_balance as energy_balance,
     friction_point as friction_point,
     operating_caveats as operating_caveats,
     simulate as simulate,

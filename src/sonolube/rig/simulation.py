@@ -105,7 +105,9 @@ def simulate(rig: Rig) -> Simulation:
         vibration=vibration,
         friction=friction,
         wear=_wear_point(rig, vibration, wear_model_of(rig), caveats, friction),
-        energy_balance=_energy_balance(friction.actuator_power, vibration.dissipated_power),
+        energy_balance=energy_balance(
+            actuator_power=friction.actuator_power, dissipated_power=vibration.dissipated_power
+        ),
         caveats=caveats,
     )
 
@@ -359,10 +361,25 @@ def _amplifier_power(rig: Rig) -> float | None:
     return float(amplifier_power(rig.drive, capacitance=capacitance))
 
 
-def _energy_balance(supplied: float | None, dissipated: float | None) -> str | None:
-    """Return how the power of the amplifier and that of the motion compare, and why."""
-    if supplied is None or dissipated is None:
+def energy_balance(*, actuator_power: float | None, dissipated_power: float | None) -> str | None:
+    """Return how the power of the amplifier and the dissipated power compare, and why, in one line.
+
+    Parameters
+    ----------
+    actuator_power : float or None
+        That a linear amplifier supplies, D 1.9; None or NaN where it is not known. [W]
+    dissipated_power : float or None
+        That the computed motion turns into heat; None or NaN where no structure gives it. [W]
+
+    Returns
+    -------
+    str or None
+        None where one of them is not known.
+    """
+    known = [power for power in (actuator_power, dissipated_power) if power is not None and np.isfinite(power)]
+    if len(known) < 2:
         return None
+    supplied, dissipated = known
     capacitive, motional = format_si(supplied, "W"), format_si(dissipated, "W")
     which = (
         f"{capacitive} charges the actuator's capacitance alone, from the supply of a linear amplifier (D 1.9);"
