@@ -2,6 +2,7 @@
 
 import colorsys
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -99,11 +100,11 @@ def _recolour(artist: Artist) -> None:
         artist.set_edgecolor(_dark_colours(artist.get_edgecolor()))
 
 
-def _known(colour: object) -> object:
+def _known(colour: Any) -> Any:
     """Colour of a marker, or that it has none."""
     return colour if isinstance(colour, str) and colour == "none" else dark_colour(colour)
 
 
-def _dark_colours(colours: object) -> np.ndarray:
+def _dark_colours(colours: Any) -> Any:
     """Colours of a dark page, one a row."""
-    return np.array([dark_colour(colour) for colour in to_rgba_array(colours)]).reshape(-1, 4)  # type: ignore[arg-type]
+    return np.array([dark_colour(colour) for colour in to_rgba_array(colours)]).reshape(-1, 4)

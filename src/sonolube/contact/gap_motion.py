@@ -88,7 +88,7 @@ class GapMotion:
         -------
         GapMotion
         """
-        return (_kept_resampled if samples <= _MOST_KEPT else _resampled_motion)(self, samples)
+        return (_resampled_motion if samples <= _MOST_KEPT else _resampled_motion.__wrapped__)(self, samples)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -328,12 +328,11 @@ def richardson_period_means(
         Returns the averages of some motions from their indices, and their displacement and normal force, a row each.
     motions : sequence of GapMotion
     tolerance : float
-        As for `richardson_period_mean`.
 
     Returns
     -------
     ndarray, shape (m,)
-        Equal to those of `richardson_period_mean`, motion by motion.
+        As `richardson_period_mean` of each.
 
     Raises
     ------
@@ -344,15 +343,15 @@ def richardson_period_means(
     sizes = np.maximum([motion.displacement.size for motion in motions], _MINIMUM_SAMPLES)
     for size in np.unique(sizes).tolist():
         rows, samples = np.flatnonzero(sizes == size), size
-        coarse = mean(rows, *_stacked(motions, rows, samples))
+        coarse = mean(rows, *_stacked(motions, rows, size))
         while rows.size:
             if samples >= _MAXIMUM_SAMPLES:
                 raise OutsideRange(_UNCONVERGED.format(samples=samples))
             samples *= 2
             fine = mean(rows, *_stacked(motions, rows, samples))
-            change = fine - coarse
-            done = np.abs(change) / 3 < tolerance * np.maximum(np.abs(fine), 1.0)
-            means[rows[done]] = (fine + change / 3)[done]
+            error = (fine - coarse) / 3
+            done = np.abs(error) < tolerance * np.maximum(np.abs(fine), 1.0)
+            means[rows[done]] = (fine + error)[done]
             rows, coarse = rows[~done], fine[~done]
     return means
 
@@ -360,7 +359,7 @@ def richardson_period_means(
 def _stacked(motions: Sequence[GapMotion], rows: Integers, samples: int) -> tuple[Floats, Floats]:
     """Return displacement and normal force of some motions at a number of phases, a row each."""
     sampled = [motions[row].resampled(samples) for row in rows]
-    return np.stack([one.displacement for one in sampled]), np.stack([one.normal_force for one in sampled])
+    return np.stack([each.displacement for each in sampled]), np.stack([each.normal_force for each in sampled])
 
 
 def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
@@ -383,16 +382,11 @@ def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
     return np.fft.irfft(harmonics, samples)
 
 
+@lru_cache(maxsize=256)
 def _resampled_motion(motion: GapMotion, samples: int) -> GapMotion:
-    """Return a motion at another number of uniform phases."""
+    """Return a motion at another number of uniform phases; kept for models that are fitted to it."""
     force = np.maximum(_resampled(motion.normal_force, samples), 0.0)
     return replace(motion, displacement=_resampled(motion.displacement, samples), normal_force=force)
-
-
-@lru_cache(maxsize=256)
-def _kept_resampled(motion: GapMotion, samples: int) -> GapMotion:
-    """Return the same, kept for models that are fitted to the motion."""
-    return _resampled_motion(motion, samples)
 
 
 def _resampled(values: Floats, samples: int) -> Floats:

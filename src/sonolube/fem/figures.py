@@ -38,7 +38,7 @@ class ShapedSurface:
     triangles : ndarray of int, shape (t, 3)
         Points of each triangle.
     displacement : ndarray, shape (..., n, 3)
-        Displacements of the points, of any scale; one field, or one a mode.
+        Displacements of the points, of any scale; one field, or one a mode. [m]
     """
 
     points: Floats

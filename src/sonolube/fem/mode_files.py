@@ -32,11 +32,24 @@ def elastic_rows(found: ConvergedModes) -> range:
 
 def mode_title(found: ConvergedModes, names: Sequence[str], row: int) -> str:
     """Name and natural frequency of a mode with its error, such as "axial 1, 20.01 kHz ± 6 Hz"."""
-    return f"{names[row]}, {frequency_text(float(found.natural_frequency[row]), float(found.frequency_error[row]))}"
+    error = float(found.frequency_error[row])
+    return f"{names[row]}, {frequency_text(frequency=float(found.natural_frequency[row]), relative_error=error)}"
 
 
-def frequency_text(frequency: float, relative_error: float) -> str:
-    """Natural frequency in Hz with its error and the digits that this leaves a meaning, such as "20.01 kHz ± 6 Hz"."""
+def frequency_text(*, frequency: float, relative_error: float) -> str:
+    """Natural frequency with its error and the digits that this leaves a meaning, such as "20.01 kHz ± 6 Hz".
+
+    Parameters
+    ----------
+    frequency : float
+        Natural frequency. [Hz]
+    relative_error : float
+        Its estimated relative error. []
+
+    Returns
+    -------
+    str
+    """
     error = frequency * relative_error
     place = math.floor(math.log10(max(2 * error, 1e-9 * frequency, 1e-3)))  # power of ten of the last digit
     unit, power = ("kHz", 3) if frequency >= 1e3 else ("Hz", 0)

@@ -59,6 +59,7 @@ from .parametric_study import (
     voltage_study as voltage_study,
     waveform_study as waveform_study,
 )
+from .power_comparison import energy_balance as energy_balance
 from .record import (
     AMPLITUDE_SOURCES as AMPLITUDE_SOURCES,
     AmplitudeSource as AmplitudeSource,
@@ -67,7 +68,6 @@ from .record import (
 )
 from .simulation import (
     Simulation as Simulation,
-    energy_balance as energy_balance,
     friction_point as friction_point,
     operating_caveats as operating_caveats,
     simulate as simulate,

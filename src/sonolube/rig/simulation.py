@@ -16,6 +16,7 @@ from sonolube.rig.excitation import actuator_capacitance, amplifier_power, volta
 from sonolube.rig.friction_and_wear import mean_friction, mean_over_time, wear_model_of
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
+from sonolube.rig.power_comparison import energy_balance
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
 from sonolube.units import format_si
@@ -359,35 +360,6 @@ def _amplifier_power(rig: Rig) -> float | None:
     if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
         return None
     return float(amplifier_power(rig.drive, capacitance=capacitance))
-
-
-def energy_balance(*, actuator_power: float | None, dissipated_power: float | None) -> str | None:
-    """Return how the power of the amplifier and the dissipated power compare, and why, in one line.
-
-    Parameters
-    ----------
-    actuator_power : float or None
-        That a linear amplifier supplies, D 1.9; None or NaN where it is not known. [W]
-    dissipated_power : float or None
-        That the computed motion turns into heat; None or NaN where no structure gives it. [W]
-
-    Returns
-    -------
-    str or None
-        None where one of them is not known.
-    """
-    known = [power for power in (actuator_power, dissipated_power) if power is not None and np.isfinite(power)]
-    if len(known) < 2:
-        return None
-    supplied, dissipated = known
-    capacitive, motional = format_si(supplied, "W"), format_si(dissipated, "W")
-    which = (
-        f"{capacitive} charges the actuator's capacitance alone, from the supply of a linear amplifier (D 1.9);"
-        f" {motional} is what the computed motion turns into heat in stack, dampers and contact"
-    )
-    if dissipated <= supplied:
-        return which
-    return f"{which}: D 1.9 leaves the current of the motion out, so that the amplifier must supply the larger"
 
 
 def _caveats(rig: Rig, used: ResolvedVibration, vibration: SteadyVibration) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,8 @@ class ConditionColumns:
 
     Parameters
     ----------
-    contact : RoughContact or None
+    contact : RoughContact
+        That of all; without one, only models without contact can be computed.
     normal_load : ndarray, shape (n,)
         Force pressing the bodies together. [N]
     friction_coefficient : ndarray, shape (n,)
@@ -51,7 +53,7 @@ def condition_columns(conditions: Sequence[object]) -> ConditionColumns | None:
     ConditionColumns or None
         None where the conditions are on different contacts.
     """
-    contact = getattr(conditions[0], "contact", None)
+    contact: Any = getattr(conditions[0], "contact", None)
     if any(getattr(one, "contact", None) is not contact for one in conditions):
         return None
     columns = {name: np.array([getattr(one, name, None) for one in conditions], dtype=np.float64) for name in _COLUMNS}

@@ -9,7 +9,6 @@ import numpy as np
 from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import RoughContact, separation
-from sonolube.friction.laws.lugre_under_vibration import lugre_ratios
 from sonolube.validation.condition_columns import ConditionColumns
 from sonolube.validation.coulomb_and_spring_variants import (
     LONGITUDINAL_VIBRATION,
@@ -72,7 +71,7 @@ def _lugre(
         for force, bristle in zip(np.atleast_1d(sliding).tolist(), np.atleast_1d(stiffness).tolist(), strict=True)
     ]
     motions = [balanced_motion(test.contact, *row) for row in _motion_rows(test)]
-    ratios = lugre_ratios(
+    ratios = friction.lugre_ratios(
         laws,
         motions,
         sliding_speed=np.atleast_1d(test.sliding_speed),

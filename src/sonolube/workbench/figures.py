@@ -40,7 +40,8 @@ def modes_figure(result: xr.Dataset) -> "Figure":
         triangles=one["surface_triangle"].to_numpy(),
         displacement=one["mode_shape"].to_numpy(),
     )
-    text = frequency_text(float(one["natural_frequency"]), float(one["frequency_error"]))
+    frequency, error = (float(one[name]) for name in ("natural_frequency", "frequency_error"))
+    text = frequency_text(frequency=frequency, relative_error=error)
     return mode_figure(surface, title=f"{one['mode'].item()}, {text}")
 
 

@@ -51,7 +51,7 @@ def surface(path: str | Path, *, spacing: str | None = None, length_unit: str | 
     path : str or Path
         In any format of `sonolube.measurement.read_surface_file`.
     spacing : str, optional
-        Distance of pixels, for files that lack it: one such as "0.5 um", or of columns and rows as "0.5 um, 0.6 um".
+        Distance of pixels as text, for files that lack it: "0.5 um", or of columns and rows "0.5 um, 0.6 um". [m]
     length_unit : str, optional
         Unit of the lengths, for files that lack it, such as "um".
 
@@ -80,7 +80,7 @@ def groove(
     track : int, optional
         Which of several tracks, from 1.
     spacing : str, optional
-        Distance of pixels, as for `surface`.
+        Distance of pixels, as for `surface`. [m]
     length_unit : str, optional
         Unit of the lengths, as for `surface`.
 

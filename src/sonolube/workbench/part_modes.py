@@ -174,7 +174,7 @@ def part_modes(
     axis : str, optional
         About which they are named; the longest where absent.
     tolerance : float
-        Largest relative error of a frequency. []
+        Largest relative error of a frequency.
     advance : callable, optional
         As of `sonolube.fem.converged_modes`.
 
@@ -238,7 +238,7 @@ def modes(
     axis : str, optional
         Axis of the part, "x", "y" or "z"; its longest where absent.
     tolerance : float
-        Largest relative error of a frequency. []
+        Largest relative error of a frequency.
 
     Returns
     -------

@@ -57,7 +57,7 @@ def test_free_elastic_constants_replace_those_of_the_material(tmp_path: Path, so
     ],
 )
 def test_a_frequency_has_the_digits_that_its_error_leaves(frequency: float, relative: float, text: str) -> None:
-    assert frequency_text(frequency, relative) == text
+    assert frequency_text(frequency=frequency, relative_error=relative) == text
 
 
 BLOCK = ("block", "--set", "length=60mm", "--set", "width=20mm", "--set", "thickness=10mm")

@@ -273,7 +273,10 @@ class ModesAnswer(Answer):
 
     def _frequency(self, row: int) -> str:
         """Natural frequency of a mode with its error."""
-        return frequency_text(float(self.found.natural_frequency[row]), float(self.found.frequency_error[row]))
+        found = self.found
+        return frequency_text(
+            frequency=float(found.natural_frequency[row]), relative_error=float(found.frequency_error[row])
+        )
 
     def _file_name(self, row: int) -> str:
         """Name of the picture of a mode: part, number among the elastic modes, and name of the mode."""

@@ -130,7 +130,8 @@ def lugre_ratios(
         speeds, load = v_r[rows, np.newaxis], _mid_load(normal_force, loads[rows])
         own = law.rows(rows)
         bristle_force = _mean_force(own, load, oscillation, speeds, frequencies[rows])
-        return (bristle_force + (own.viscous_coefficient * speeds)[:, 0]) / steady[rows, 0]
+        force: Floats = bristle_force + (own.viscous_coefficient * speeds)[:, 0]
+        return np.asarray(force / steady[rows, 0])
 
     return richardson_period_means(mean_ratio, motions, tolerance=_TOLERANCE)
 
