@@ -20,6 +20,7 @@ from mpl_toolkits.mplot3d import Axes3D
 _LIGHTEST, _DARKEST = 0.92, 0.09  # greys that black and white become
 _GREY = 0.12  # spread of the channels up to which a colour counts as grey
 _INK = 0.62  # least lightness of a coloured line
+_VISIBLE = 0.25  # least luminance of it, five times the contrast of its page
 _TINT = 0.8  # lightness from which a colour is a ground for others
 _SATURATION = 0.8  # most of a colour, above which it glares
 _GROUND = 0.22  # lightness that such a ground gets
@@ -54,8 +55,19 @@ def dark_colour(colour: object) -> tuple[float, float, float, float]:
         grey = _LIGHTEST + (_DARKEST - _LIGHTEST) * (red + green + blue) / 3
         return grey, grey, grey, alpha
     hue, lightness, saturation = colorsys.rgb_to_hls(red, green, blue)
-    lightness = _GROUND if lightness > _TINT else max(lightness, _INK)
-    return *colorsys.hls_to_rgb(hue, lightness, min(saturation, _SATURATION)), alpha
+    saturation = min(saturation, _SATURATION)
+    if lightness > _TINT:
+        return *colorsys.hls_to_rgb(hue, _GROUND, saturation), alpha
+    lightness = max(lightness, _INK)
+    while _luminance(colorsys.hls_to_rgb(hue, lightness, saturation)) < _VISIBLE:  # as blues are
+        lightness += 0.02
+    return *colorsys.hls_to_rgb(hue, lightness, saturation), alpha
+
+
+def _luminance(colour: tuple[float, float, float]) -> float:
+    """Relative luminance of a colour, near enough."""
+    red, green, blue = (channel**2.2 for channel in colour)
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 
 def _furniture(figure: Figure) -> Iterator[Artist]:
