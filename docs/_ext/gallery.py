@@ -11,7 +11,7 @@ import struct
 from pathlib import Path
 
 from notebooks import markdown_of
-from pictures import ROOT, picture_of
+from pictures import ROOT, image, picture_of
 from sphinx.application import Sphinx
 
 EXAMPLES = ROOT / "examples"
@@ -69,7 +69,7 @@ def _item(script: Path, page: Path) -> str:
 
 
 def _image(title: str, shown: Path, page: Path) -> str:
-    return f"![{title}]({os.path.relpath(shown, page.parent)})"
+    return image(title, os.path.relpath(shown, page.parent))
 
 
 MADE = {"gallery": gallery, "picture": picture, "notebook": notebook}

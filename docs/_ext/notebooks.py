@@ -12,7 +12,7 @@ from typing import Any
 
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
-from pictures import kept, write
+from pictures import image, kept, write
 
 _CELL = re.compile(r"^# %%(.*)$", re.MULTILINE)
 
@@ -79,7 +79,7 @@ def _written(script: Path, folder: Path) -> str:
             pictures += 1
             name = f"{script.stem}-{pictures}.png"
             write(figure, folder / name)
-            blocks.append(f"![Figure of the cell above]({{folder}}/{name})")
+            blocks.append(image("Figure of the cell above", f"{{folder}}/{name}"))
     (folder / f"{script.stem}.ipynb").write_text(jupyter(cells_of(script)), encoding="utf-8")
     return "\n\n".join(blocks)
 

@@ -1,4 +1,4 @@
-"""Figures of scripts as PNG, drawn when the pages are built, and again only where script or package have changed."""
+"""Figures of scripts as PNG for light and dark pages, drawn at a build where script or package have changed."""
 
 import hashlib
 import json
@@ -11,6 +11,7 @@ from pathlib import Path
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 
+import dark_figures
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
@@ -35,7 +36,8 @@ def _package() -> bytes:
 
 def kept(script: Path, make: Callable[[Path], object]) -> tuple[Path, object]:
     """Return the folder of a script's pictures, and the record of what `make` drew there, now or before."""
-    digest = hashlib.sha256(script.read_bytes() + Path(__file__).read_bytes() + _package()).hexdigest()[:16]
+    own = b"".join(Path(name).read_bytes() for name in (__file__, dark_figures.__file__))
+    digest = hashlib.sha256(script.read_bytes() + own + _package()).hexdigest()[:16]
     folder = STORE / f"{script.stem}-{digest}"
     record = folder / "record.json"
     if not record.is_file():
@@ -56,8 +58,24 @@ def figure_of(script: Path) -> Figure:
 
 
 def write(figure: Figure, path: Path) -> None:
-    """Write a figure as PNG."""
+    """Write a figure as PNG, and beside it the same for dark pages."""
     path.write_bytes(render_figure(figure, "png", resolution=_RESOLUTION))
+    dark_figures.darken(figure)
+    dark_of(path).write_bytes(render_figure(figure, "png", resolution=_RESOLUTION))
+
+
+def dark_of(path: Path) -> Path:
+    """Return where the picture for dark pages lies."""
+    return path.with_name(f"{path.stem}-dark{path.suffix}")
+
+
+def image(title: str, shown: str) -> str:
+    """Return the pictures of a figure as Markdown, of which the theme shows one, by the path of the light one."""
+    place, _, name = shown.rpartition("/")
+    return "\n\n".join(
+        f"```{{image}} {path}\n:alt: {title}\n:class: {kind}\n:loading: lazy\n```"
+        for path, kind in ((shown, "only-light"), (f"{place}/{dark_of(Path(name))}", "only-dark"))
+    )
 
 
 def picture_of(script: Path) -> Path:

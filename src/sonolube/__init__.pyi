@@ -7,6 +7,7 @@ from .validation.runs_fit import fit_runs as fit_runs
 from .workbench import measure as measure
 from .workbench.figures import plot as plot
 from .workbench.first_rig import new_rig as new_rig
+from .workbench.part_modes import modes as modes
 from .workbench.results import compare as compare, map as map, simulate as simulate, sweep as sweep
 
 __version__: str

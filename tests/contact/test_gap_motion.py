@@ -16,7 +16,7 @@ from sonolube.contact import (
     separation,
     sinusoidal_motion,
 )
-from sonolube.contact.gap_motion import delayed_oscillation, richardson_period_mean
+from sonolube.contact.gap_motion import delayed_oscillation, richardson_period_mean, richardson_period_means
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.surfaces import Roughness
 
@@ -94,3 +94,24 @@ def test_a_delayed_oscillation_lags_by_the_phase_of_its_fundamental_and_has_no_m
     theta = 2 * np.pi * np.arange(32) / 32
     delayed = delayed_oscillation(4 + np.cos(theta) + 0.3 * np.sin(3 * theta), phase=0.7)
     assert delayed == approx(np.cos(theta - 0.7) + 0.3 * np.sin(3 * (theta - 0.7)), abs=1e-12)
+
+
+def test_averages_of_many_motions_are_those_of_each_alone() -> None:
+    motions = [sine(amplitude) for amplitude in (1e-8, 3e-7, 1e-6)]
+
+    def sharp(displacement: np.ndarray) -> np.ndarray:
+        return np.asarray(np.mean(np.abs(displacement - 1e-7), axis=-1) / 1e-7)
+
+    seen: list[int] = []
+
+    def every(rows: np.ndarray, displacement: np.ndarray, force: np.ndarray) -> np.ndarray:
+        seen.append(rows.size)
+        return sharp(displacement)
+
+    together = richardson_period_means(every, motions, tolerance=1e-9)
+    alone = [
+        float(richardson_period_mean(lambda one: sharp(one.displacement), motion, tolerance=1e-9)) for motion in motions
+    ]
+    assert together == approx(np.array(alone), rel=1e-12)
+    assert seen[0] == 3
+    assert seen[-1] < 3  # motions that are done take no further samples

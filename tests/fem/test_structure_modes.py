@@ -11,13 +11,13 @@ from pytest import approx
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
-from sonolube.cli.console.parts import ALL_TRANSDUCERS, starting_size
 from sonolube.dong2015 import FINAL_COLLAR, POISSON_HORN_SOLIDS, main_resonance, reduced_collar_model
 from sonolube.dynamics import drive_receptance
 from sonolube.fem import change_order, generate_mesh, harmonic_response, reduce_model
 from sonolube.reproduce.chapter2.poisson_horn import ASSUMED_SOLIDS
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig
+from sonolube.workbench.named_parts import ALL_TRANSDUCERS, starting_size
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 FILES = sorted((RIGS / "modes").glob("*.toml"))

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from pytest import CaptureFixture, approx, mark, raises
+from pytest import CaptureFixture, MonkeyPatch, approx, importorskip, mark, raises
 
 import sonolube as sl
 from sonolube.cli import main
-from sonolube.errors import InvalidInput, UnknownName
-from sonolube.figure import publication_style
+from sonolube.errors import InvalidInput, MissingPackage, UnknownName
+from sonolube.figure import publication_style, render_figure
 from sonolube.rig.figures import simulation_figure
 
 ROOT = Path(__file__).parents[2]
@@ -161,6 +161,85 @@ def test_a_measured_surface_has_the_values_of_the_command(capfd: CaptureFixture[
     assert sheet._repr_html_().count("<tr>") == len(command["values"])
     with raises(UnknownName):
         sl.plot(sheet, title="no such figure")
+
+
+BAR: dict[str, Any] = {"sizes": {"length": "60mm", "radius": 6e-3}, "count": 2, "tolerance": 0.05}
+BAR_OPTIONS = ("--set", "length=60mm", "--set", "radius=6mm", "--count", "2", "--tolerance", "0.05")
+
+
+def test_modes_in_python_have_the_numbers_and_the_very_pictures_of_the_command(
+    capfd: CaptureFixture[str], tmp_path: Path
+) -> None:
+    importorskip("netgen.occ", reason="netgen-mesher is not installed")
+    command = answer(capfd, "modes", "cylinder", *BAR_OPTIONS, "--density", "2000kg/m3", "--out", tmp_path)
+    result = sl.modes("cylinder", density=2000.0, **BAR)
+    assert [str(name) for name in result["mode"].to_numpy()] == [mode["name"] for mode in command["modes"]]
+    for quantity in ("natural_frequency", "frequency_error"):
+        assert list(result[quantity].to_numpy()) == [mode[quantity]["value"] for mode in command["modes"]]
+        assert result[quantity].attrs["units"] == (command["modes"][0][quantity]["unit"] or "1")
+    assert result.attrs["material"] == command["material"]
+    assert (list(result.attrs["nodes"]), result.attrs["rigid_motions"]) == (command["nodes"], 6)
+    result.to_netcdf(tmp_path / "kept.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "kept.nc", engine="h5netcdf") as kept:
+        pictures = [sl.plot(result), sl.plot(kept, title="bending 2")]
+    written = sorted(tmp_path.glob("*.png"))
+    assert [render_figure(picture, "png") for picture in pictures] == [path.read_bytes() for path in written]
+    with raises(UnknownName, match="unknown figure of modes 'bendin 1'; did you mean bending 1"):
+        sl.plot(result, title="bendin 1")
+
+
+def test_modes_carry_what_is_assumed_of_a_transducer(capfd: CaptureFixture[str], tmp_path: Path) -> None:
+    importorskip("netgen.occ", reason="netgen-mesher is not installed")
+    options = ("--count", "1", "--tolerance", "0.5", "--out", tmp_path)
+    command = answer(capfd, "modes", "tribometer_actuator", *options)
+    result = sl.modes("tribometer_actuator", count=1, tolerance=0.5)
+    assert command["assumptions"]
+    assert result.attrs["assumptions"].split("\n") == [f"{key}: {text}" for key, text in command["assumptions"].items()]
+
+
+def test_a_part_that_cannot_be_made_is_refused_in_the_words_of_python(monkeypatch: MonkeyPatch) -> None:
+    with raises(InvalidInput, match="a cylinder needs radius; give each in sizes, such as radius=20mm"):
+        sl.modes("cylinder", sizes={"length": "60mm"})
+    with raises(InvalidInput, match=r"^material pzt_4: a piezoelectric ceramic needs its poling"):
+        sl.modes("cylinder", material="pzt_4", **BAR)
+    with raises(InvalidInput, match="stack has its own materials; leave material='brass' out"):
+        sl.modes("stack", material="brass")
+    for module in ("netgen", "netgen.occ", "netgen.meshing"):
+        monkeypatch.setitem(sys.modules, module, None)
+    with raises(MissingPackage, match=r"^bodies and their meshes, .* not installed: pip install 'sonolube\[fem\]'$"):
+        sl.modes("cylinder", **BAR)
+
+
+def test_files_without_spacing_or_unit_take_them_as_the_command_does(
+    capfd: CaptureFixture[str], tmp_path: Path
+) -> None:
+    heights = 1e-6 * np.random.default_rng(2).standard_normal((64, 80))
+    np.save(tmp_path / "grid.npy", heights)
+    y, x = np.mgrid[:40, :50]
+    columns = np.stack([2.0 * x.ravel(), 3.0 * y.ravel(), 1e6 * heights[:40, :50].ravel()], axis=1)
+    np.savetxt(tmp_path / "points.xyz", columns)
+    for name, options, given in (
+        ("grid.npy", ("--spacing", "0.5um,0.6um"), {"spacing": "0.5um,0.6um"}),
+        ("points.xyz", ("--length-unit", "um"), {"length_unit": "um"}),
+    ):
+        (command,) = answer(capfd, "measure", "surface", tmp_path / name, *options)["results"]
+        values = sl.measure.surface(tmp_path / name, **given).dataset()
+        assert {key: float(values[key]) for key in command["values"]} == {
+            key: value["value"] for key, value in command["values"].items()
+        }
+    with raises(InvalidInput, match="give spacing_x and spacing_y"):
+        sl.measure.surface(tmp_path / "grid.npy")
+    with raises(InvalidInput, match="spacing 1N is a force; expected a length"):
+        sl.measure.groove(tmp_path / "grid.npy", spacing="1N")
+
+
+def test_a_groove_in_a_bare_grid_is_measured_with_its_spacing(capfd: CaptureFixture[str], tmp_path: Path) -> None:
+    x = 8e-6 * np.arange(160)
+    section = -3e-6 * np.exp(-(((x - x.mean()) / 120e-6) ** 2))
+    np.save(tmp_path / "groove.npy", section + 5e-8 * np.random.default_rng(3).standard_normal((120, 160)))
+    (command,) = answer(capfd, "measure", "groove", tmp_path / "groove.npy", "--spacing", "8um")["results"]
+    values = sl.measure.groove(tmp_path / "groove.npy", spacing="8um").dataset()
+    assert float(values["groove_width"]) == command["values"]["groove_width"]["value"]
 
 
 def test_importing_the_package_is_fast_to_complete_and_loads_nothing() -> None:

@@ -5,7 +5,7 @@ lies near the step.
 """
 
 from sonolube import fem
-from sonolube.fem.figures import mode_figure
+from sonolube.fem.figures import mode_figure, shaped_surface
 from sonolube.figure import publication_style
 from sonolube.materials import material
 
@@ -18,8 +18,8 @@ modes = fem.natural_modes(model, count=12)
 names = fem.mode_names(model, modes, axis="z")
 row = names.index("axial 1")
 with publication_style():
-    figure = mode_figure(mesh, modes.shapes[row], title=f"axial 1, {1e-3 * modes.natural_frequency[row]:.1f} kHz")
-    figure.axes[0].zaxis.labelpad = 14
+    title = f"axial 1, {1e-3 * modes.natural_frequency[row]:.1f} kHz"
+    figure = mode_figure(shaped_surface(mesh, modes.shapes[row]), title=title)
 
 if __name__ == "__main__":
     figure.savefig("mode-of-a-horn.png", dpi=150)

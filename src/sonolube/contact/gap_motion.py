@@ -3,8 +3,9 @@
 The record in which `sonolube.dynamics` hands over a vibration and which the models of friction and wear take.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import (
     Complexes,
     Floats,
+    Integers,
     require_finite,
     require_finite_complex,
     require_non_negative,
@@ -20,6 +22,8 @@ from sonolube.checks import (
 from sonolube.contact.rough import RoughContact, normal_force, normal_stiffness, separation
 from sonolube.errors import InvalidInput, OutsideRange
 
+_UNCONVERGED = "the average over a period does not converge with {samples} samples of this motion"
+_MOST_KEPT = 1024  # samples of motions that are kept at another number of phases
 _MINIMUM_SAMPLES, _MAXIMUM_SAMPLES = 256, 65536  # per period, between which a period average is refined
 
 
@@ -84,8 +88,7 @@ class GapMotion:
         -------
         GapMotion
         """
-        force = np.maximum(_resampled(self.normal_force, samples), 0.0)
-        return replace(self, displacement=_resampled(self.displacement, samples), normal_force=force)
+        return (_resampled_motion if samples <= _MOST_KEPT else _resampled_motion.__wrapped__)(self, samples)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -320,7 +323,52 @@ def richardson_period_mean(
         if np.all(np.abs(change) / 3 < tolerance * np.maximum(np.abs(fine), 1.0)):
             return fine + change / 3
         coarse = fine
-    raise OutsideRange(f"the average over a period does not converge with {samples} samples of this motion")
+    raise OutsideRange(_UNCONVERGED.format(samples=samples))
+
+
+def richardson_period_means(
+    mean: Callable[[Integers, Floats, Floats], Floats], motions: Sequence[GapMotion], *, tolerance: float = 1e-5
+) -> Floats:
+    """Return an average over the period of each of many motions, each with the samples that it needs alone.
+
+    Parameters
+    ----------
+    mean : callable
+        Returns the averages of some motions from their indices, and their displacement and normal force, a row each.
+    motions : sequence of GapMotion
+    tolerance : float
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        As `richardson_period_mean` of each.
+
+    Raises
+    ------
+    OutsideRange
+        If an average does not converge with 65536 phases.
+    """
+    means = np.empty(len(motions))
+    sizes = np.maximum([motion.displacement.size for motion in motions], _MINIMUM_SAMPLES)
+    for size in np.unique(sizes).tolist():
+        rows, samples = np.flatnonzero(sizes == size), size
+        coarse = mean(rows, *_stacked(motions, rows, size))
+        while rows.size:
+            if samples >= _MAXIMUM_SAMPLES:
+                raise OutsideRange(_UNCONVERGED.format(samples=samples))
+            samples *= 2
+            fine = mean(rows, *_stacked(motions, rows, samples))
+            error = (fine - coarse) / 3
+            done = np.abs(error) < tolerance * np.maximum(np.abs(fine), 1.0)
+            means[rows[done]] = (fine + error)[done]
+            rows, coarse = rows[~done], fine[~done]
+    return means
+
+
+def _stacked(motions: Sequence[GapMotion], rows: Integers, samples: int) -> tuple[Floats, Floats]:
+    """Return displacement and normal force of some motions at a number of phases, a row each."""
+    sampled = [motions[row].resampled(samples) for row in rows]
+    return np.stack([each.displacement for each in sampled]), np.stack([each.normal_force for each in sampled])
 
 
 def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
@@ -328,18 +376,26 @@ def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
 
     Parameters
     ----------
-    values : ndarray, shape (n,)
+    values : ndarray, shape (..., n)
         Samples at uniform phases.
     phase : float
         Phase lag of the fundamental. [rad]
 
     Returns
     -------
-    ndarray, shape (n,)
+    ndarray, shape (..., n)
     """
-    harmonics = np.fft.rfft(values) * np.exp(-1j * phase * np.arange(values.size // 2 + 1))
-    harmonics[0] = 0.0
-    return np.fft.irfft(harmonics, values.size)
+    samples = values.shape[-1]
+    harmonics = np.fft.rfft(values) * np.exp(-1j * phase * np.arange(samples // 2 + 1))
+    harmonics[..., 0] = 0.0
+    return np.fft.irfft(harmonics, samples)
+
+
+@lru_cache(maxsize=256)
+def _resampled_motion(motion: GapMotion, samples: int) -> GapMotion:
+    """Return a motion at another number of uniform phases; kept for models that are fitted to it."""
+    force = np.maximum(_resampled(motion.normal_force, samples), 0.0)
+    return replace(motion, displacement=_resampled(motion.displacement, samples), normal_force=force)
 
 
 def _resampled(values: Floats, samples: int) -> Floats:

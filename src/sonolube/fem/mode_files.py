@@ -10,7 +10,7 @@ import numpy as np
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem.figures import MODE_COLOURS, mode_figure
+from sonolube.fem.figures import MODE_COLOURS, ShapedSurface, mode_figure
 from sonolube.fem.parts.transducers import Transducer
 from sonolube.fem.solver.convergence import ConvergedModes
 from sonolube.fem.solver.model import DIRECTIONS
@@ -32,13 +32,25 @@ def elastic_rows(found: ConvergedModes) -> range:
 
 def mode_title(found: ConvergedModes, names: Sequence[str], row: int) -> str:
     """Name and natural frequency of a mode with its error, such as "axial 1, 20.01 kHz ± 6 Hz"."""
-    return f"{names[row]}, {frequency_text(found, row)}"
+    error = float(found.frequency_error[row])
+    return f"{names[row]}, {frequency_text(frequency=float(found.natural_frequency[row]), relative_error=error)}"
 
 
-def frequency_text(found: ConvergedModes, row: int) -> str:
-    """Natural frequency of a mode with its error and the digits that this leaves a meaning: "20.01 kHz ± 6 Hz"."""
-    frequency = float(found.natural_frequency[row])
-    error = frequency * float(found.frequency_error[row])
+def frequency_text(*, frequency: float, relative_error: float) -> str:
+    """Natural frequency with its error and the digits that this leaves a meaning, such as "20.01 kHz ± 6 Hz".
+
+    Parameters
+    ----------
+    frequency : float
+        Natural frequency. [Hz]
+    relative_error : float
+        Its estimated relative error. []
+
+    Returns
+    -------
+    str
+    """
+    error = frequency * relative_error
     place = math.floor(math.log10(max(2 * error, 1e-9 * frequency, 1e-3)))  # power of ten of the last digit
     unit, power = ("kHz", 3) if frequency >= 1e3 else ("Hz", 0)
     number = f"{round(frequency, -place) / 10**power:.{max(0, power - place)}f} {unit}"
@@ -206,14 +218,13 @@ def structure_modes(
     )
 
 
-def mode_animation(found: ConvergedModes, shape: Floats, *, title: str) -> bytes:
+def mode_animation(surface: ShapedSurface, *, title: str) -> bytes:
     """One period of a mode as an animated GIF.
 
     Parameters
     ----------
-    found : ConvergedModes
-    shape : ndarray, shape (nodes, 3)
-        Displacements of the nodes.
+    surface : ShapedSurface
+        With one field of displacement.
     title : str
 
     Returns
@@ -226,7 +237,7 @@ def mode_animation(found: ConvergedModes, shape: Floats, *, title: str) -> bytes
     palette.putpalette(_palette())
     frames = []
     for phase in 2 * np.pi * np.arange(_FRAMES) / _FRAMES:
-        figure = mode_figure(found.model.mesh, shape, title=title, amplitude=float(np.cos(phase)))
+        figure = mode_figure(surface, title=title, amplitude=float(np.cos(phase)))
         picture = io.BytesIO(render_figure(figure, "png", resolution=_RESOLUTION))
         frames.append(Image.open(picture).convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE))
     content = io.BytesIO()

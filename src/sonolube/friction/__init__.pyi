@@ -30,7 +30,7 @@ from .laws.lugre_stick_slip import (
     StickSlipHistory as StickSlipHistory,
     lugre_stick_slip as lugre_stick_slip,
 )
-from .laws.lugre_under_vibration import lugre_under_vibration as lugre_under_vibration
+from .laws.lugre_under_vibration import lugre_ratios as lugre_ratios, lugre_under_vibration as lugre_under_vibration
 from .laws.spring_driven_slider import (
     DriveForce as DriveForce,
     spring_driven_slider_force as spring_driven_slider_force,

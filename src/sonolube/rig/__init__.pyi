@@ -59,6 +59,7 @@ from .parametric_study import (
     voltage_study as voltage_study,
     waveform_study as waveform_study,
 )
+from .power_comparison import energy_balance as energy_balance
 from .record import (
     AMPLITUDE_SOURCES as AMPLITUDE_SOURCES,
     AmplitudeSource as AmplitudeSource,

@@ -16,6 +16,7 @@ from sonolube.rig.excitation import actuator_capacitance, amplifier_power, volta
 from sonolube.rig.friction_and_wear import mean_friction, mean_over_time, wear_model_of
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
+from sonolube.rig.power_comparison import energy_balance
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
 from sonolube.units import format_si
@@ -105,7 +106,9 @@ def simulate(rig: Rig) -> Simulation:
         vibration=vibration,
         friction=friction,
         wear=_wear_point(rig, vibration, wear_model_of(rig), caveats, friction),
-        energy_balance=_energy_balance(friction.actuator_power, vibration.dissipated_power),
+        energy_balance=energy_balance(
+            actuator_power=friction.actuator_power, dissipated_power=vibration.dissipated_power
+        ),
         caveats=caveats,
     )
 
@@ -357,20 +360,6 @@ def _amplifier_power(rig: Rig) -> float | None:
     if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
         return None
     return float(amplifier_power(rig.drive, capacitance=capacitance))
-
-
-def _energy_balance(supplied: float | None, dissipated: float | None) -> str | None:
-    """Return how the power of the amplifier and that of the motion compare, and why."""
-    if supplied is None or dissipated is None:
-        return None
-    capacitive, motional = format_si(supplied, "W"), format_si(dissipated, "W")
-    which = (
-        f"{capacitive} charges the actuator's capacitance alone, from the supply of a linear amplifier (D 1.9);"
-        f" {motional} is what the computed motion turns into heat in stack, dampers and contact"
-    )
-    if dissipated <= supplied:
-        return which
-    return f"{which}: D 1.9 leaves the current of the motion out, so that the amplifier must supply the larger"
 
 
 def _caveats(rig: Rig, used: ResolvedVibration, vibration: SteadyVibration) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import RoughContact, normal_stiffness, separation
 from sonolube.errors import ModelRangeWarning, OutsideRange
+from sonolube.validation.condition_columns import ConditionColumns
 from sonolube.validation.free_parameters import (
     APPROACH,
     APPROACH_RATIO,
@@ -29,12 +30,26 @@ from sonolube.validation.model_variant import NORMAL_VIBRATION, SINUSOIDAL_VIBRA
 from sonolube.validation.published_tests import FrictionTest, InPlaneTest
 from sonolube.validation.rig_conditions import VibratedRig
 
+_Vibrated = FrictionTest | ConditionColumns
+_PER_SLIP_LENGTH: Final = friction.SpringContact(friction_coefficient=1.0, mindlin_ratio=1.0)
+
 
 @cache
 def load_over_stiffness(contact: RoughContact, load: float) -> float:
     """Return load over normal stiffness of a rough contact at rest: the approach of linear springs. [m]"""
-    at_rest = separation(contact, normal_load=load)
-    return load / float(normal_stiffness(contact, separation=at_rest))
+    return float(_load_over_stiffness(contact, load))
+
+
+def _load_over_stiffness(contact: RoughContact, load: float | Floats) -> Floats:
+    """Return load over normal stiffness of a rough contact at rest, for each load. [m]"""
+    return load / normal_stiffness(contact, separation=separation(contact, normal_load=load))
+
+
+def approach_at_rest(test: _Vibrated) -> float | Floats:
+    """Return the approach of linear springs under the load of each condition. [m]"""
+    if isinstance(test, ConditionColumns):
+        return _load_over_stiffness(test.contact, test.normal_load)
+    return load_over_stiffness(test.contact, test.normal_load)
 
 
 def _coulomb_in_plane(test: InPlaneTest) -> Floats:
@@ -46,14 +61,14 @@ def _coulomb_in_plane(test: InPlaneTest) -> Floats:
     )
 
 
-def _coulomb_longitudinal(test: FrictionTest, in_plane_fraction: float) -> Floats:
+def _coulomb_longitudinal(test: _Vibrated, in_plane_fraction: float) -> Floats:
     """Return the friction ratio by Coulomb friction under vibration along the sliding. []"""
     return friction.parallel_vibration_ratio(
         sliding_speed=test.sliding_speed, vibration_velocity=in_plane_fraction * _peak_velocity(test)
     )
 
 
-def _coulomb_oblique(test: FrictionTest, in_plane_fraction: float, vibration_direction: float) -> Floats:
+def _coulomb_oblique(test: _Vibrated, in_plane_fraction: float, vibration_direction: float) -> Floats:
     """Return the friction ratio by Coulomb friction under vibration oblique to the sliding. []"""
     return friction.oblique_vibration_ratio(
         sliding_speed=test.sliding_speed,
@@ -62,36 +77,40 @@ def _coulomb_oblique(test: FrictionTest, in_plane_fraction: float, vibration_dir
     )
 
 
-def _spring_flat(test: FrictionTest, approach: float | None = None, mindlin_ratio: float | None = None) -> Floats:
+def _spring_flat(test: _Vibrated, approach: float | None = None, mindlin_ratio: float | None = None) -> Floats:
     """Return the friction ratio by springs of constant stiffness, the profile of a flat punch. []"""
-    springs = _springs(test, mindlin_ratio)
-    at_rest = load_over_stiffness(test.contact, test.normal_load) if approach is None else approach
-    return _under_normal_oscillation(test, springs, at_rest)
+    at_rest = approach_at_rest(test) if approach is None else approach
+    return _under_normal_oscillation(test, _PER_SLIP_LENGTH, at_rest, _slip_per_approach(test, mindlin_ratio))
 
 
-def _spring_flat_on_roughness(test: FrictionTest, slip_length: float, approach_ratio: float) -> Floats:
+def _spring_flat_on_roughness(test: _Vibrated, slip_length: float, approach_ratio: float) -> Floats:
     """Return the friction ratio by springs of constant stiffness, their approach in proportion to R_q. []"""
     at_rest = approach_ratio * test.contact.roughness.rms_height
-    springs = _springs(test, test.friction_coefficient * at_rest / slip_length)
-    return _under_normal_oscillation(test, springs, at_rest)
+    return _under_normal_oscillation(test, _PER_SLIP_LENGTH, at_rest, slip_length / at_rest)
 
 
 def _spring_parabolic(test: FrictionTest) -> Floats:
     """Return the friction ratio by springs of a parabolic profile with the load and stiffness of the contact. []"""
-    springs = replace(_springs(test, None), profile="parabolic")
+    springs = replace(_PER_SLIP_LENGTH, profile="parabolic")
     hertz = 1.5 * load_over_stiffness(test.contact, test.normal_load)  # F_N = 2/3 k_z u
-    return _under_normal_oscillation(test, springs, hertz)
+    return _under_normal_oscillation(test, springs, hertz, _slip_per_approach(test, None))
 
 
-def _under_normal_oscillation(test: FrictionTest, springs: friction.SpringContact, at_rest: float) -> Floats:
-    """Return the friction ratio of a spring-coupled contact about the load-balanced approach. []"""
+def _under_normal_oscillation(
+    test: _Vibrated, springs: friction.SpringContact, at_rest: float | Floats, slip_per_approach: float | Floats
+) -> Floats:
+    """Return the friction ratio of springs about the load-balanced approach. []
+
+    The ratio depends on lengths along the sliding over the slip length alone, so that springs of unit slip per
+    approach slide more slowly.
+    """
     a = test.vibration_amplitude
     return friction.normal_oscillation_ratio(
         springs,
         approach=friction.load_balanced_approach(springs, approach=at_rest, normal_amplitude=a),
         normal_amplitude=a,
         frequency=test.frequency,
-        sliding_speed=test.sliding_speed,
+        sliding_speed=test.sliding_speed / slip_per_approach,
     )
 
 
@@ -109,22 +128,22 @@ def _spring_approximate(test: FrictionTest) -> Floats:
 
 
 def _spring_in_plane(
-    test: FrictionTest, mindlin_ratio: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
+    test: _Vibrated, mindlin_ratio: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
 ) -> Floats:
     """Return the friction ratio by springs of constant stiffness under normal and in-plane motion. []"""
     if in_plane_fraction == 0:
         return _spring_flat(test, mindlin_ratio=mindlin_ratio)
-    springs, a = _springs(test, mindlin_ratio), test.vibration_amplitude
+    slip, a = _slip_per_approach(test, mindlin_ratio), test.vibration_amplitude
     with _range_warnings_as_errors():
         return friction.combined_oscillation_ratio(
-            springs,
+            _PER_SLIP_LENGTH,
             approach=friction.load_balanced_approach(
-                springs, approach=load_over_stiffness(test.contact, test.normal_load), normal_amplitude=a
+                _PER_SLIP_LENGTH, approach=approach_at_rest(test), normal_amplitude=a
             ),
             frequency=test.frequency,
-            sliding_speed=test.sliding_speed,
+            sliding_speed=test.sliding_speed / slip,
             normal_amplitude=a,
-            in_plane_amplitude=in_plane_fraction * a,
+            in_plane_amplitude=in_plane_fraction * a / slip,
             in_plane_phase=in_plane_phase,
             steps=128,
         )
@@ -143,18 +162,16 @@ def _spring_longitudinal(rig: VibratedRig) -> Floats:
     )
 
 
-def _elliptical(test: FrictionTest, in_plane_fraction: float, in_plane_phase: float) -> float:
+def _elliptical(test: _Vibrated, in_plane_fraction: float, in_plane_phase: float) -> Floats:
     """Return the friction ratio by rigid Coulomb friction on an elliptical path. []"""
-    return -float(
-        friction.elliptical_traction_ratio(
-            normal_load=test.normal_load,
-            normal_stiffness=test.normal_load / load_over_stiffness(test.contact, test.normal_load),
-            normal_amplitude=test.vibration_amplitude,
-            in_plane_amplitude=in_plane_fraction * test.vibration_amplitude,
-            frequency=test.frequency,
-            relative_velocity=test.sliding_speed,
-            phase=-in_plane_phase,  # lag of the normal motion behind the in-plane motion
-        )
+    return -friction.elliptical_traction_ratio(
+        normal_load=test.normal_load,
+        normal_stiffness=test.normal_load / approach_at_rest(test),
+        normal_amplitude=test.vibration_amplitude,
+        in_plane_amplitude=in_plane_fraction * test.vibration_amplitude,
+        frequency=test.frequency,
+        relative_velocity=test.sliding_speed,
+        phase=-in_plane_phase,  # lag of the normal motion behind the in-plane motion
     )
 
 
@@ -169,9 +186,14 @@ def _range_warnings_as_errors() -> Iterator[None]:
             raise OutsideRange(str(caveat)) from None
 
 
-def _peak_velocity(test: FrictionTest) -> float:
+def _peak_velocity(test: _Vibrated) -> float | Floats:
     """Return the peak velocity of the normal vibration. [m/s]"""
     return 2 * pi * test.frequency * test.vibration_amplitude
+
+
+def _slip_per_approach(test: _Vibrated, mindlin_ratio: float | None) -> float | Floats:
+    """Return the slip length over the approach, with the ratio of stiffnesses of Mindlin if None."""
+    return test.friction_coefficient / (test.contact.pair.mindlin_ratio if mindlin_ratio is None else mindlin_ratio)
 
 
 def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> friction.SpringContact:
@@ -210,6 +232,7 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         (_IN_PLANE_FRACTION,),
         required_inputs=SINUSOIDAL_VIBRATION,
         source="Littmann, Storck and Wallaschek 2001",
+        takes_columns=True,
     ),
     ModelVariant(
         "coulomb-oblique-fitted",
@@ -218,6 +241,7 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         (_IN_PLANE_FRACTION, VIBRATION_DIRECTION),
         required_inputs=SINUSOIDAL_VIBRATION,
         source="Kumar and Hutchings 2004",
+        takes_columns=True,
     ),
     ModelVariant(
         "spring-flat",
@@ -243,6 +267,7 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         _spring_flat,
         (APPROACH, MINDLIN_RATIO),
         source=_POPOV_2017,
+        takes_columns=True,
     ),
     ModelVariant(
         "spring-flat-on-roughness",
@@ -250,6 +275,7 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         _spring_flat_on_roughness,
         (SLIP_LENGTH, APPROACH_RATIO),
         source=_POPOV_2017,
+        takes_columns=True,
     ),
     ModelVariant(
         "spring-in-plane",
@@ -257,6 +283,7 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         _spring_in_plane,
         (MINDLIN_RATIO, *per_rig(IN_PLANE_MOTION, "power map")),
         source="M. Popov and Q. Li 2018",
+        takes_columns=True,
     ),
     ModelVariant(
         "spring-longitudinal",
@@ -272,6 +299,7 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         IN_PLANE_MOTION,
         required_inputs=NORMAL_VIBRATION,
         source="D 2.1.4",
+        takes_columns=True,
     ),
 )
 """Variants of Coulomb friction and of spring-coupled contacts."""

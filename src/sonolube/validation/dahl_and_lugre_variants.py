@@ -1,7 +1,7 @@
 """Variants of the friction laws of Dahl and of LuGre under vibration, from the literature."""
 
 from functools import cache
-from math import exp, pi, sqrt
+from math import pi, sqrt
 from typing import Final
 
 import numpy as np
@@ -9,7 +9,12 @@ import numpy as np
 from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import RoughContact, separation
-from sonolube.validation.coulomb_and_spring_variants import LONGITUDINAL_VIBRATION, load_over_stiffness
+from sonolube.validation.condition_columns import ConditionColumns
+from sonolube.validation.coulomb_and_spring_variants import (
+    LONGITUDINAL_VIBRATION,
+    approach_at_rest,
+    load_over_stiffness,
+)
 from sonolube.validation.free_parameters import IN_PLANE_MOTION, MINDLIN_RATIO, STRIBECK_CURVE, per_rig
 from sonolube.validation.friction_model_variants import balanced_motion
 from sonolube.validation.model_variant import ModelVariant
@@ -20,11 +25,11 @@ _SETTLING_PERIODS: Final = 8  # natural periods of a driven holder before its fo
 _DAMPING_RATIO: Final = 0.2  # of the driven holder
 
 
-def _dahl(test: FrictionTest, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0) -> float:
+def _dahl(test: FrictionTest | ConditionColumns, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0) -> Floats:
     """Return the friction ratio by the law of Dahl with the stiffness of the cube, D 3.10 and 3.11. []"""
     mean_force = friction.dahl_under_vibration(
         test.contact,
-        separation=_balanced_separation(test.contact, test.normal_load, test.vibration_amplitude, test.frequency),
+        separation=_balanced_separations(test),
         friction_coefficient=test.friction_coefficient,
         sliding_speed=test.sliding_speed,
         frequency=test.frequency,
@@ -33,11 +38,17 @@ def _dahl(test: FrictionTest, in_plane_fraction: float = 0.0, in_plane_phase: fl
         phase=-in_plane_phase,  # lag of the normal motion behind the in-plane motion
         steps=256,
     )
-    return float(mean_force) / (test.friction_coefficient * test.normal_load)
+    return mean_force / (test.friction_coefficient * test.normal_load)
+
+
+def _balanced_separations(test: FrictionTest | ConditionColumns) -> Floats:
+    """Return the mean separation of each condition about which the load is balanced. [m]"""
+    separations = [_balanced_separation(test.contact, *row) for row in _motion_rows(test)]
+    return np.array(separations).reshape(np.shape(test.sliding_speed))
 
 
 def _lugre(
-    test: FrictionTest,
+    test: FrictionTest | ConditionColumns,
     mindlin_ratio: float,
     static_friction_ratio: float = 1.0,
     stribeck_velocity: float = 1.0,
@@ -45,21 +56,35 @@ def _lugre(
     in_plane_phase: float = 0.0,
 ) -> Floats:
     """Return the friction ratio by the law of LuGre, the sliding friction of the test on its Stribeck curve. []"""
-    static_excess = (static_friction_ratio - 1) * exp(-((test.sliding_speed / stribeck_velocity) ** 2))
+    static_excess = (static_friction_ratio - 1) * np.exp(-((test.sliding_speed / stribeck_velocity) ** 2))
     sliding = test.friction_coefficient * test.normal_load / (1 + static_excess)
-    law = friction.LuGreFriction(
-        coulomb_friction_force=sliding,
-        static_friction_force=static_friction_ratio * sliding,
-        stribeck_velocity=stribeck_velocity,
-        bristle_stiffness=mindlin_ratio * test.normal_load / load_over_stiffness(test.contact, test.normal_load),
-        bristle_damping=0.0,  # its mean over a period vanishes
-        viscous_coefficient=0.0,
+    stiffness = mindlin_ratio * test.normal_load / approach_at_rest(test)
+    laws = [
+        friction.LuGreFriction(
+            coulomb_friction_force=force,
+            static_friction_force=static_friction_ratio * force,
+            stribeck_velocity=stribeck_velocity,
+            bristle_stiffness=bristle,
+            bristle_damping=0.0,  # its mean over a period vanishes
+            viscous_coefficient=0.0,
+        )
+        for force, bristle in zip(np.atleast_1d(sliding).tolist(), np.atleast_1d(stiffness).tolist(), strict=True)
+    ]
+    motions = [balanced_motion(test.contact, *row) for row in _motion_rows(test)]
+    ratios = friction.lugre_ratios(
+        laws,
+        motions,
+        sliding_speed=np.atleast_1d(test.sliding_speed),
+        in_plane_fraction=in_plane_fraction,
+        in_plane_phase=in_plane_phase,
     )
-    motion = balanced_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
-    speed = test.sliding_speed
-    return friction.lugre_under_vibration(
-        law, motion, sliding_speed=speed, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
-    )
+    return ratios.reshape(np.shape(test.sliding_speed))
+
+
+def _motion_rows(test: FrictionTest | ConditionColumns) -> list[tuple[float, float, float]]:
+    """Return load, amplitude and frequency of each condition."""
+    columns = (np.atleast_1d(each).tolist() for each in (test.normal_load, test.vibration_amplitude, test.frequency))
+    return list(zip(*columns, strict=True))
 
 
 def _dahl_driven(rig: VibratedRig) -> float:
@@ -101,6 +126,7 @@ DAHL_AND_LUGRE_VARIANTS: Final = (
         "the law of Dahl with the stiffness of the cube about the load-balanced mean gap",
         _dahl,
         source=_DAHL_SOURCE,
+        takes_columns=True,
     ),
     ModelVariant(
         "dahl-in-plane",
@@ -108,6 +134,7 @@ DAHL_AND_LUGRE_VARIANTS: Final = (
         _dahl,
         _IN_PLANE_POWER_MAP,
         source=_DAHL_SOURCE,
+        takes_columns=True,
     ),
     ModelVariant(
         "lugre",
@@ -115,6 +142,7 @@ DAHL_AND_LUGRE_VARIANTS: Final = (
         _lugre,
         (MINDLIN_RATIO,),
         source=_LUGRE_SOURCE,
+        takes_columns=True,
     ),
     ModelVariant(
         "lugre-in-plane",
@@ -122,6 +150,7 @@ DAHL_AND_LUGRE_VARIANTS: Final = (
         _lugre,
         (MINDLIN_RATIO, *STRIBECK_CURVE, *_IN_PLANE_POWER_MAP),
         source=_LUGRE_SOURCE,
+        takes_columns=True,
     ),
     ModelVariant(
         "dahl-driven",

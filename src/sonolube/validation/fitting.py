@@ -195,7 +195,7 @@ def _with_values(values: Floats, indices: list[int], replaced: Floats) -> Floats
 
 def _residuals(variant: ModelVariant, tests: Tests, values: ArrayLike) -> Floats:
     """Return predicted minus measured friction ratios. []"""
-    predicted = (variant.predict(test, *np.asarray(values).tolist()) for test in tests)
+    predicted = variant.predict_all(tests, *np.asarray(values).tolist())
     return np.array(
         [
             _OUT_OF_RANGE_RESIDUAL if ratio is None else ratio - test.friction_ratio

@@ -8,6 +8,7 @@ from typing import Final
 from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import GapMotion, RoughContact, decay_length, load_balanced_motion, separation, sinusoidal_motion
+from sonolube.validation.condition_columns import ConditionColumns
 from sonolube.validation.free_parameters import (
     AMPLITUDE_FRACTION,
     DECAY_CONSTANT,
@@ -27,6 +28,18 @@ from sonolube.validation.published_tests import FrictionTest
 def balanced_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> GapMotion:
     """Return the harmonic gap motion about the mean gap at which the mean contact force is the load."""
     return load_balanced_motion(contact, _harmonic_motion(contact, load, amplitude, frequency))
+
+
+def _normal_stick_slip(test: FrictionTest | ConditionColumns, memory_length: float) -> Floats:
+    """Return the friction ratio by asperity stick-slip without in-plane motion. []"""
+    at_rest = separation(test.contact, normal_load=test.normal_load)
+    return friction.sine_stick_slip_ratio(
+        decay_length=decay_length(test.contact, separation=at_rest),
+        vibration_amplitude=test.vibration_amplitude,
+        frequency=test.frequency,
+        sliding_speed=test.sliding_speed,
+        memory_length=memory_length,
+    )
 
 
 def asperity_stick_slip(
@@ -49,14 +62,7 @@ def asperity_stick_slip(
     float
     """
     if in_plane_fraction == 0:
-        at_rest = separation(test.contact, normal_load=test.normal_load)
-        return friction.sine_stick_slip_ratio(
-            decay_length=decay_length(test.contact, separation=at_rest),
-            vibration_amplitude=test.vibration_amplitude,
-            frequency=test.frequency,
-            sliding_speed=test.sliding_speed,
-            memory_length=memory_length,
-        )
+        return _normal_stick_slip(test, memory_length)
     model = friction.AsperityStickSlip(
         memory_length=memory_length, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
     )
@@ -68,7 +74,9 @@ def _default_stick_slip(test: FrictionTest) -> Floats:
     return asperity_stick_slip(test, memory_length=friction.EMPIRICAL_MEMORY_LENGTH)
 
 
-def _stick_slip_with_decay_constant(test: FrictionTest, memory_length: float, decay_constant: float) -> Floats:
+def _stick_slip_with_decay_constant(
+    test: FrictionTest | ConditionColumns, memory_length: float, decay_constant: float
+) -> Floats:
     """Return the friction ratio by asperity stick-slip with a decay length of R_q over a fitted constant. []"""
     return friction.sine_stick_slip_ratio(
         decay_length=test.contact.roughness.rms_height / decay_constant,
@@ -106,12 +114,10 @@ def _load_balanced(test: FrictionTest, nominal_area_factor: float = 1.0) -> floa
     return float(friction.Dong2015LoadBalanced().ratio(contact, motion, sliding_speed=test.sliding_speed))
 
 
-def _kinematic(test: FrictionTest, amplitude_fraction: float = 1.0) -> float:
+def _kinematic(test: FrictionTest | ConditionColumns, amplitude_fraction: float = 1.0) -> Floats:
     """Return the friction ratio by the direction of the relative velocity, D 3.46 in closed form. []"""
     peak_velocity = amplitude_fraction * 2 * pi * test.frequency * test.vibration_amplitude
-    return float(
-        friction.transverse_vibration_ratio(sliding_speed=test.sliding_speed, vibration_velocity=peak_velocity)
-    )
+    return friction.transverse_vibration_ratio(sliding_speed=test.sliding_speed, vibration_velocity=peak_velocity)
 
 
 def _bristle_with_holder(
@@ -182,7 +188,12 @@ FRICTION_MODEL_VARIANTS: Final = (
         friction_model=friction.Dong2015LoadBalanced,
     ),
     ModelVariant(
-        "kinematic", "cos(theta) alone", _kinematic, required_inputs=SINUSOIDAL_VIBRATION, source=_KINEMATIC_SOURCE
+        "kinematic",
+        "cos(theta) alone",
+        _kinematic,
+        required_inputs=SINUSOIDAL_VIBRATION,
+        source=_KINEMATIC_SOURCE,
+        takes_columns=True,
     ),
     ModelVariant(
         "kinematic-fitted",
@@ -191,6 +202,7 @@ FRICTION_MODEL_VARIANTS: Final = (
         (AMPLITUDE_FRACTION,),
         required_inputs=SINUSOIDAL_VIBRATION,
         source=_KINEMATIC_SOURCE,
+        takes_columns=True,
     ),
     ModelVariant("asperity-stick-slip-mindlin", "asperity stick-slip, memory length after Mindlin", mindlin_stick_slip),
     ModelVariant(
@@ -205,13 +217,18 @@ FRICTION_MODEL_VARIANTS: Final = (
         _default_stick_slip,
     ),
     ModelVariant(
-        "asperity-stick-slip-fitted", "asperity stick-slip, memory length fitted", asperity_stick_slip, (MEMORY_LENGTH,)
+        "asperity-stick-slip-fitted",
+        "asperity stick-slip, memory length fitted",
+        _normal_stick_slip,
+        (MEMORY_LENGTH,),
+        takes_columns=True,
     ),
     ModelVariant(
         "asperity-stick-slip-decay-constant",
         "asperity stick-slip, memory length and decay constant of the heights fitted",
         _stick_slip_with_decay_constant,
         (MEMORY_LENGTH, DECAY_CONSTANT),
+        takes_columns=True,
     ),
     ModelVariant(
         "asperity-stick-slip-in-plane",

@@ -1,15 +1,18 @@
 """Model variants: a model of friction under vibration with its free parameters, required inputs and source."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Final, SupportsFloat
+from typing import Any, Final, SupportsFloat
+
+import numpy as np
 
 from sonolube.contact import separation
 from sonolube.errors import OutsideRange
 from sonolube.friction import FrictionModel, MeanGap
 from sonolube.friction.models.range_check import checked_ratio
+from sonolube.validation.condition_columns import condition_columns
 from sonolube.validation.free_parameters import FreeParameter
 from sonolube.validation.published_tests import Conditions
 
@@ -39,6 +42,8 @@ NORMAL_VIBRATION: Final = ("contact", "normal_load", *SINUSOIDAL_VIBRATION)
 NORMAL_VIBRATION_AND_FRICTION: Final = (*NORMAL_VIBRATION, "friction_coefficient")
 """The same with the friction coefficient without vibration."""
 
+_FEWEST_TOGETHER: Final = 8  # conditions, from which arrays are worth their making
+
 
 @dataclass(frozen=True, slots=True)
 class ModelVariant:
@@ -60,6 +65,8 @@ class ModelVariant:
         Publication of the model.
     friction_model : type of FrictionModel, optional
         Friction model of the program whose range of validity the variant has.
+    takes_columns : bool
+        Whether `ratio` takes `ConditionColumns` too, and then returns the ratios of all conditions.
     """
 
     name: str
@@ -69,6 +76,7 @@ class ModelVariant:
     required_inputs: tuple[str, ...] = NORMAL_VIBRATION_AND_FRICTION
     source: str = "this program"
     friction_model: type[FrictionModel] | None = None
+    takes_columns: bool = False
 
     def inapplicability(self, conditions: Conditions) -> str | None:
         """Return the required inputs that the conditions lack, as a sentence; None if they lack none."""
@@ -79,6 +87,10 @@ class ModelVariant:
         """Return the friction ratio for values of the free parameters; None outside the range of the model. []"""
         result = self._evaluate(conditions, values)
         return None if isinstance(result, str) else result
+
+    def predict_all(self, conditions: Sequence[Conditions], *values: float) -> list[float | None]:
+        """Return what `predict` returns for each of several conditions, computed at once where the model can."""
+        return self._together(conditions, values) or [self.predict(one, *values) for one in conditions]
 
     def range_violation(self, conditions: Conditions, *values: float) -> str | None:
         """Return the reason why the conditions are outside the range of the model; None inside it."""
@@ -107,6 +119,19 @@ class ModelVariant:
         closed = about_rest and amplitude >= float(separation(contact, normal_load=load))
         found = checked_ratio(self.friction_model(), ratio, mean_force_ratio=1.0, gap_closed=closed)
         return str(found.reason) or None
+
+    def _together(self, conditions: Sequence[Conditions], values: tuple[float, ...]) -> list[float | None] | None:
+        """Return the friction ratios of conditions at once; None where they have to be computed one by one."""
+        if not self.takes_columns or len(conditions) < _FEWEST_TOGETHER:
+            return None
+        columns = condition_columns(conditions)
+        if columns is None or any(parameter.applicable_sets for parameter in self.parameters):
+            return None
+        try:
+            ratio: Any = self.ratio(columns, **dict(zip((each.name for each in self.parameters), values, strict=True)))
+        except OutsideRange:  # of one of them
+            return None
+        return list(np.broadcast_to(ratio, len(conditions)).tolist())
 
     def _evaluate(self, conditions: Conditions, values: tuple[float, ...]) -> float | str:
         """Return the friction ratio, or the reason why the conditions are outside the range of the model."""

@@ -6,7 +6,7 @@ from sonolube.report.measured.friction import FrictionSettings, friction_sheet
 from sonolube.report.measured.groove import groove_sheet
 from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
 from sonolube.report.measured.sheet import Sheet
-from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
+from sonolube.report.measured.surface import SurfaceSettings, spacings, surface_sheet
 from sonolube.report.measured.vibration import VibrationSettings, vibration_sheet
 
 __all__ = ["friction", "groove", "impedance", "surface", "vibration"]
@@ -43,13 +43,17 @@ def friction(path: str | Path, *, sliding_speed: float | None = None, rotation_s
     )
 
 
-def surface(path: str | Path) -> Sheet:
+def surface(path: str | Path, *, spacing: str | None = None, length_unit: str | None = None) -> Sheet:
     """Roughness of a scan or of a line profile: areal parameters, summits and spectrum.
 
     Parameters
     ----------
     path : str or Path
         In any format of `sonolube.measurement.read_surface_file`.
+    spacing : str, optional
+        Distance of pixels as text, for files that lack it: "0.5 um", or of columns and rows "0.5 um, 0.6 um". [m]
+    length_unit : str, optional
+        Unit of the lengths, for files that lack it, such as "um".
 
     Returns
     -------
@@ -59,12 +63,14 @@ def surface(path: str | Path) -> Sheet:
     Raises
     ------
     InvalidInput
-        If the file cannot be read.
+        If the file cannot be read, or a spacing is no length.
     """
-    return surface_sheet(Path(path), settings=SurfaceSettings())
+    return surface_sheet(Path(path), settings=_lateral(spacing, length_unit))
 
 
-def groove(path: str | Path, *, track: int | None = None) -> Sheet:
+def groove(
+    path: str | Path, *, track: int | None = None, spacing: str | None = None, length_unit: str | None = None
+) -> Sheet:
     """Wear groove in a scan: width, depth, volumes and pile-up.
 
     Parameters
@@ -73,6 +79,10 @@ def groove(path: str | Path, *, track: int | None = None) -> Sheet:
         In any format of `sonolube.measurement.read_surface_file`.
     track : int, optional
         Which of several tracks, from 1.
+    spacing : str, optional
+        Distance of pixels, as for `surface`. [m]
+    length_unit : str, optional
+        Unit of the lengths, as for `surface`.
 
     Returns
     -------
@@ -82,9 +92,9 @@ def groove(path: str | Path, *, track: int | None = None) -> Sheet:
     Raises
     ------
     InvalidInput
-        If the file cannot be read, holds no groove, or several and no track is named.
+        If the file cannot be read, holds no groove, or several and no track is named, or a spacing is no length.
     """
-    return groove_sheet(Path(path), settings=SurfaceSettings(), track_number=track)[0]
+    return groove_sheet(Path(path), settings=_lateral(spacing, length_unit), track_number=track)[0]
 
 
 def impedance(path: str | Path, *, branches: int | None = None) -> Sheet:
@@ -131,3 +141,9 @@ def vibration(path: str | Path, *, frequency: float) -> Sheet:
         If the file cannot be read or holds no vibration.
     """
     return vibration_sheet(Path(path), settings=VibrationSettings(frequency=frequency))
+
+
+def _lateral(spacing: str | None, length_unit: str | None) -> SurfaceSettings:
+    """Settings of a file that may lack spacing and unit."""
+    along_x, along_y = spacings(spacing, name="spacing")
+    return SurfaceSettings(spacing_x=along_x, spacing_y=along_y, length_unit=length_unit)

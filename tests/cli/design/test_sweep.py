@@ -31,6 +31,20 @@ def test_a_sweep_finds_its_least_friction_and_continues_in_its_folder(
     assert "holds another sweep" in sonolube(*call, f"{VOLTS}=5V", "--out", tmp_path).refusal
 
 
+def test_a_sweep_says_which_power_is_which_as_the_simulation_of_its_best_point_does(
+    tmp_path: Path, sonolube: Program, rigs: Path
+) -> None:
+    path = rigs / "tribometer.toml"
+    alone = sonolube("simulate", path, "--set", f"{VOLTS}=28V", "--json", "--out", tmp_path).answer
+    call = ("sweep", path, "--over", f"{VOLTS}=14V,28V", "--out", tmp_path / "sweep")
+    told = sonolube(*call, "--json").answer["least_friction"]["energy_balance"]
+    assert told == alone["energy_balance"]
+    assert f"energy  {told}" in " ".join(sonolube(*call).out.split()).replace("energy ", "energy  ")
+    assert "capacitance alone" in (tmp_path / "sweep" / "sweep.html").read_text(encoding="utf-8")
+    ends = ("--from", "14V", "--to", "28V", "--points", "2", "--json", "--out", tmp_path / "study")
+    assert sonolube("sweep", path, "--of", "voltage", *ends).answer["least_friction"][0]["energy_balance"] == told
+
+
 @pytest.mark.skipif(bool(device_name("gpu")), reason="there is a GPU")
 @pytest.mark.parametrize("command", ["sweep", "map"])
 def test_without_a_gpu_one_line_says_that_the_cpu_is_used(

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -11,15 +11,19 @@ from sonolube import materials
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, TypedNumber, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.cli.console.parts import is_step, named_horn
+from sonolube.cli.console.parts import named_horn
 from sonolube.cli.console.progress import progress
 from sonolube.design.horn import HornDesign, amplitude_limits, loaded_frequency, tuned_horn
 from sonolube.design.horn_figures import horn_axis_figure
 from sonolube.fem import medium_from_material
-from sonolube.fem.figures import mode_figure
+from sonolube.fem.figures import mode_figure, shaped_surface
 from sonolube.materials import Material
 from sonolube.report import Drawing
 from sonolube.units import format_si
+from sonolube.workbench.named_parts import is_step
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SHARP = 0.2  # change of the peak stress from mesh to mesh above which it is a caveat
 _NEAREST = 3  # neighbouring modes printed
@@ -160,11 +164,13 @@ class HornAnswer(Answer):
         """Profile, motion and stress along the axis, and a picture of the mode."""
         mode = self.design.tuned.mode
         title = f"{mode.names[mode.row]}, {mode.frequency:.0f} Hz"
+
+        def picture() -> "Figure":
+            return mode_figure(shaped_surface(mode.model.mesh, mode.displacement), title=title)
+
         return {
             f"{self.name}-axis": Drawing(draw=lambda: horn_axis_figure(self.design)),
-            f"{self.name}-mode": Drawing(
-                draw=lambda: mode_figure(mode.model.mesh, mode.displacement, title=title), forms=("png",)
-            ),
+            f"{self.name}-mode": Drawing(draw=picture, forms=("png",)),
         }
 
     def _stress_rows(self) -> list[tuple[str, str]]:

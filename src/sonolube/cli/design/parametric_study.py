@@ -17,7 +17,15 @@ from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, fric
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
-from sonolube.rig import STUDY_FIGURES, Rig, frequency_grid, operating_caveats, operating_points, read_rig
+from sonolube.rig import (
+    STUDY_FIGURES,
+    Rig,
+    energy_balance,
+    frequency_grid,
+    operating_caveats,
+    operating_points,
+    read_rig,
+)
 from sonolube.rig.amplitude_source import moved_rig
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.units import format_si, to_si
@@ -128,7 +136,7 @@ class ParametricStudyAnswer(Answer):
         points, load = self.study["status"].size, format_si(self.rig.normal_load, "N")
         return [
             f"{self.rig.title}, {load}, {points} points, {friction_model_text(self.rig)}",
-            *aligned([*amplitude_rows(self.rig), *_ROWS[self.of](self.study)]),
+            *aligned([*amplitude_rows(self.rig), *_ROWS[self.of](self.study), *_energy_rows(self.study)]),
             *[f"  without result: {count} of {points}: {reason}" for reason, count in self.failures().items()],
         ]
 
@@ -269,6 +277,21 @@ def _load_rows(study: "xr.Dataset") -> Rows:
     yield "arm's frequency", f"{format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
 
 
+def _energy_rows(study: "xr.Dataset") -> Rows:
+    """How the powers of the study compare, at its point of least friction."""
+    best = extreme_point(study, outcome="friction_ratio")
+    balance = None if best is None else _balance(best)
+    if balance is not None:
+        yield "energy", balance
+
+
+def _balance(point: "xr.Dataset") -> str | None:
+    """How the power of the amplifier and the dissipated power of a point compare."""
+    return energy_balance(
+        actuator_power=float(point["actuator_power"]), dissipated_power=float(point["dissipated_power"])
+    )
+
+
 _ROWS: "dict[str, Callable[[xr.Dataset], Rows]]" = {
     "voltage": _voltage_rows,
     "speed": _speed_rows,
@@ -293,7 +316,12 @@ def _point_object(point: "xr.Dataset") -> dict[str, Any]:
     """Coordinates and outcomes of a point, for JSON."""
     names = [str(name) for name in (*point.coords, *OUTCOMES) if point[name].ndim == 0 and not _missing(point, name)]
     waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
-    return waveform | si({name: float(point[name]) for name in names if name != "waveform"})
+    balance = _balance(point)
+    return (
+        waveform
+        | si({name: float(point[name]) for name in names if name != "waveform"})
+        | ({} if balance is None else {"energy_balance": balance})
+    )
 
 
 def _missing(point: "xr.Dataset", name: Any) -> bool:

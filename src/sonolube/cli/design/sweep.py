@@ -36,7 +36,7 @@ from sonolube.dynamics.backend import usable_backend
 from sonolube.errors import InvalidInput
 from sonolube.files import expect_files
 from sonolube.report import Drawing, Page
-from sonolube.rig import Rig, operating_caveats
+from sonolube.rig import Rig, energy_balance, operating_caveats
 from sonolube.units import format_si
 from sonolube.vocabulary import unit_of
 
@@ -49,6 +49,7 @@ _CLOUD_CAPTION = (
     "Friction over each key that was swept, at all values of the others: points, at most 3000 of them, their median,"
     " and the interval of 90 %."
 )
+_LABELS = {"energy_balance": "energy"}
 _OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk", "backend")  # options without meaning for --of
 _FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg sweep.pdf")
 _OF_ONLY = ("lowest", "highest", "voltages")  # options without meaning for --over
@@ -252,11 +253,17 @@ class SweepAnswer(Answer):
         if place is None or point is None:
             return {}
         swept = {key: values[0].item() for key, values in self.plan.rows(place, place + 1).items()}
-        return swept | si({name: float(point[name]) for name in OUTCOMES if np.isfinite(point[name])})
+        powers = {name: float(point[name]) for name in ("actuator_power", "dissipated_power")}
+        balance = energy_balance(**powers)
+        return (
+            swept
+            | si({name: float(point[name]) for name in OUTCOMES if np.isfinite(point[name])})
+            | ({} if balance is None else {"energy_balance": balance})
+        )
 
     def _least_texts(self) -> list[tuple[str, str]]:
         """The same as text."""
-        return [(name, _as_text(name, value)) for name, value in self._least().items()]
+        return [(_LABELS.get(name, name), _as_text(name, value)) for name, value in self._least().items()]
 
 
 def _as_text(name: str, value: Any) -> str:

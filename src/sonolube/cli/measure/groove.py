@@ -9,12 +9,12 @@ import typer
 
 from sonolube.cli.console.options import Json, refuse_unused, si_option
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
-from sonolube.cli.measure.surface import Spacing, Unit, spacings
+from sonolube.cli.measure.surface import Spacing, Unit
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.measurement.wear_track import WearTrack
 from sonolube.report.measured.groove import RingSettings, cap_sheet, groove_sheet, ring_sheet, wear_reduction_sheet
 from sonolube.report.measured.sheet import Sheet
-from sonolube.report.measured.surface import SurfaceSettings
+from sonolube.report.measured.surface import SurfaceSettings, spacings
 from sonolube.surfaces.grooves.groove import Groove
 
 
@@ -45,7 +45,7 @@ def groove(
 
     Example: sonolube measure groove ring --groove-diameter 50mm --sliding-distance 292m --report ring.html
     """
-    spacing_x, spacing_y = spacings(pixel)
+    spacing_x, spacing_y = spacings(pixel, name="--spacing")
     settings = SurfaceSettings(spacing_x=spacing_x, spacing_y=spacing_y, length_unit=unit)
     ring = None
     if diameter is not None and slid is not None:

@@ -7,8 +7,7 @@ import typer
 
 from sonolube.cli.console.options import Json, si_option
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
-from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
-from sonolube.units import to_si
+from sonolube.report.measured.surface import SurfaceSettings, spacings, surface_sheet
 
 Spacing = Annotated[
     str | None,
@@ -36,7 +35,7 @@ def surface(
 
     Example: sonolube measure surface plate.opd --long-cutoff 25um --report plate.html
     """
-    spacing_x, spacing_y = spacings(pixel)
+    spacing_x, spacing_y = spacings(pixel, name="--spacing")
     settings = SurfaceSettings(
         spacing_x=spacing_x,
         spacing_y=spacing_y,
@@ -48,12 +47,3 @@ def surface(
     )
     sheets, refused = each_file(files, partial(surface_sheet, settings=settings), title="measuring")
     deliver_sheets(context, "surfaces", sheets, refused, page=report, test=test, as_json=json)
-
-
-def spacings(text: str | None) -> tuple[float | None, float | None]:
-    """Distances of columns and rows in m, from text such as 0.5um or 0.5um,0.6um; None where it was not given."""
-    if text is None:
-        return None, None
-    first, _, second = text.partition(",")
-    along = to_si(first, unit="m", name="--spacing")
-    return along, to_si(second, unit="m", name="--spacing") if second else along

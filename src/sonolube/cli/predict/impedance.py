@@ -12,7 +12,7 @@ from sonolube.checks import require_positive
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, si_option
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.cli.console.parts import ceramic_of, longest_axis, named_transducer, starting_size
+from sonolube.cli.console.parts import SIZE_ENTRY, ceramic_of, sizes_by_name
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.fem import Transducer
@@ -23,6 +23,7 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.report import Drawing
 from sonolube.rig import dataset
 from sonolube.units import format_si
+from sonolube.workbench.named_parts import longest_axis, named_transducer, starting_size
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,7 +72,8 @@ def compute(
         raise InvalidInput(f"--from must lie below --to, got {lowest} and {highest}")
     frequency = np.linspace(float(require_positive(frequency=lowest)), highest, count)
     reference = None if measured is None else read_impedance(measured)
-    transducer = named_transducer(part, sizes or [], ceramic=ceramic, poled=poled, drive=drive, ground=ground)
+    wiring = {"ceramic": ceramic, "poled": poled, "drive": drive, "ground": ground}
+    transducer = named_transducer(part, sizes_by_name(sizes or []), entry=SIZE_ENTRY, **wiring)
     with progress("meshing and solving") as advance:
         spectra = supported_spectra(
             transducer,

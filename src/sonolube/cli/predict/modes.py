@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -16,17 +16,8 @@ from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, ref
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem import (
-    ConvergedModes,
-    Electrodes,
-    FixedSupport,
-    Model,
-    Transducer,
-    converged_modes,
-    generate_mesh,
-    mode_names,
-)
-from sonolube.fem.figures import mode_figure
+from sonolube.fem import ConvergedModes
+from sonolube.fem.figures import ShapedSurface, mode_figure, shaped_surface
 from sonolube.fem.mode_files import (
     SupportedBody,
     elastic_rows,
@@ -38,8 +29,18 @@ from sonolube.fem.mode_files import (
     structure_modes,
 )
 from sonolube.report import Drawing
-from sonolube.units import format_si
-from sonolube.vocabulary import quantity
+from sonolube.workbench.named_parts import ALL_TRANSDUCERS, ELASTIC_PROPERTIES, named_transducer
+from sonolube.workbench.part_modes import (
+    DEFAULT_MATERIAL,
+    MODE_COUNT,
+    MODE_TOLERANCE,
+    PartModes,
+    part_modes,
+    supported_part,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _OF_STRUCTURE = ("sizes", "count", "clamp", "tolerance", "contact", "body", "body_stiffness", "body_damping")
 # arguments that change the modes of a structure
@@ -53,7 +54,7 @@ def modes(
     sizes: Sizes = None,
     material: Annotated[
         str, typer.Option(metavar="NAME", help="Material of the part; transducers have their own.")
-    ] = "stainless_steel_304",
+    ] = DEFAULT_MATERIAL,
     stiffness: Annotated[
         float | None, si_option("Pa", "Young's modulus instead of the material's.", "--young-modulus")
     ] = None,
@@ -62,10 +63,12 @@ def modes(
         typer.Option("--poisson-ratio", metavar="RATIO", help="Instead of the material's Poisson's ratio."),
     ] = None,
     mass: Annotated[float | None, si_option("kg/m3", "Density instead of the material's.", "--density")] = None,
-    count: Annotated[int, typer.Option(metavar="NUMBER", help="Number of elastic modes.")] = 6,
+    count: Annotated[int, typer.Option(metavar="NUMBER", help="Number of elastic modes.")] = MODE_COUNT,
     clamp: Annotated[list[str] | None, typer.Option(metavar="FACE", help="A face held still, such as -x.")] = None,
     axis: Annotated[str | None, typer.Option(metavar="x|y|z", help="The part's axis; its longest by default.")] = None,
-    tolerance: Annotated[float, typer.Option(metavar="RATIO", help="Largest relative error of a frequency.")] = 0.005,
+    tolerance: Annotated[
+        float, typer.Option(metavar="RATIO", help="Largest relative error of a frequency.")
+    ] = MODE_TOLERANCE,
     points: Annotated[
         Path | None, typer.Option(metavar="POINTS.csv", help="Points x, y, z in mm at which to write the shapes.")
     ] = None,
@@ -97,8 +100,7 @@ def modes(
     Example: sonolube modes block --set length=127mm --set width=60.96mm --set thickness=25.4mm
     """
     parts.require_axis(axis=axis, toward=toward)
-    is_transducer = part in parts.ALL_TRANSDUCERS
-    if is_transducer:
+    if part in ALL_TRANSDUCERS:
         refuse_unused(context, "material", because=f"for {part}, which has its own; it is for other parts")
     if points is None:
         refuse_unused(context, "toward", because="without --points, at which the component is written")
@@ -106,47 +108,37 @@ def modes(
         refuse_unused(context, "body", because="without --contact, on which it rests")
     if body is None:
         refuse_unused(context, "body_stiffness", "body_damping", because="without --body-mass, which it holds")
-    transducer = parts.named_transducer(part, sizes or []) if is_transducer else None
+    texts = parts.sizes_by_name(sizes or [])
     if contact is not None:
-        _require_output(part, transducer, contact)
+        _require_output(part, texts, contact)
+    given = dict(zip(ELASTIC_PROPERTIES, (stiffness, contraction, mass), strict=True))
+    supported = supported_part(
+        part,
+        texts,
+        material=material,
+        properties={name: value for name, value in given.items() if value is not None},
+        clamp=clamp or (),
+        entries=(parts.SIZE_ENTRY, "--material"),
+    )
+    transducer = supported.transducer
     held = (
         None
         if body is None
         else SupportedBody(body_mass=body, spring_stiffness=body_stiffness, viscous_damping=body_damping)
     )
-    geometry = parts.named_part(part, sizes or [])
-    given = dict(zip(parts.ELASTIC_PROPERTIES, (stiffness, contraction, mass), strict=True))
-    properties = {name: value for name, value in given.items() if value is not None}
-    media = parts.named_media(part, sizes or [], material, properties=properties)
-    electrodes = Electrodes() if transducer is None else transducer.electrodes
-    planes = () if transducer is None else transducer.fixed
-    fixed = (*planes, *(FixedSupport(face=face) for face in clamp or ()))
     scanned = None if points is None else parts.points_in_metres(points)
-
-    def model_at(element_size: float) -> Model:
-        mesh = generate_mesh(geometry, element_size=element_size)
-        return Model(mesh=mesh, media=media, fixed=fixed, electrodes=electrodes)
-
     with progress("meshing and solving") as advance:
-        found = converged_modes(
-            model_at,
-            count=count,
-            element_size=parts.starting_size(geometry),
-            relative_tolerance=tolerance,
-            advance=advance,
-        )
+        solved = part_modes(supported, count=count, axis=axis, tolerance=tolerance, advance=advance)
         structure = None
         if transducer is not None and contact is not None:
-            advance("reduction", len(found.nodes), len(found.nodes) + 1)
-            structure = structure_modes(found, transducer, contact=contact, body=held, command=_command(context, part))
-    along = axis or parts.longest_axis(found.model.mesh)
+            meshes = len(solved.found.nodes)
+            advance("reduction", meshes, meshes + 1)
+            command = _command(context, part)
+            structure = structure_modes(solved.found, transducer, contact=contact, body=held, command=command)
     answer = ModesAnswer(
-        part=part,
-        material="its own materials" if is_transducer else _described(material, properties),
-        found=found,
-        names=mode_names(found.model, found.modes, axis=along),
+        solved=solved,
         points=scanned,
-        direction=toward or along,
+        direction=toward or solved.axis,
         with_grid=vtu,
         with_animations=animate,
         structure=structure,
@@ -154,13 +146,14 @@ def modes(
     deliver(answer, folder=out, as_json=json)
 
 
-def _require_output(part: str, transducer: Transducer | None, contact: str) -> None:
+def _require_output(part: str, sizes: Mapping[str, str], contact: str) -> None:
     """Refuse a contact of a part without a drive, or at an output that it lacks."""
-    if transducer is None:
-        known = ", ".join(parts.ALL_TRANSDUCERS)
+    if part not in ALL_TRANSDUCERS:
+        known = ", ".join(ALL_TRANSDUCERS)
         raise InvalidInput(f"--contact {contact}: {part} has no drive; it is for transducers: {known}")
-    if contact not in transducer.outputs:
-        raise UnknownName.among(transducer.outputs, kind=f"output of {part}", name=contact)
+    outputs = named_transducer(part, sizes, entry=parts.SIZE_ENTRY).outputs
+    if contact not in outputs:
+        raise UnknownName.among(outputs, kind=f"output of {part}", name=contact)
 
 
 def _command(context: typer.Context, part: str) -> str:
@@ -175,28 +168,26 @@ def _command(context: typer.Context, part: str) -> str:
     return " ".join(["sonolube modes", part, *words])
 
 
-def _described(material: str, properties: Mapping[str, float]) -> str:
-    """Material and what replaces its properties, such as "brass with density 8.4e+03 kg/m3"."""
-    replaced = [
-        f"{name.replace('_', ' ')} {format_si(value, quantity(name).unit, digits=4)}"
-        for name, value in properties.items()
-    ]
-    return material if not replaced else f"{material} with {', '.join(replaced)}"
-
-
 @dataclass(frozen=True, kw_only=True)
 class ModesAnswer(Answer):
     """Natural frequencies of a part with their errors, and its elastic modes as pictures and files."""
 
-    part: str
-    material: str
-    found: ConvergedModes
-    names: Sequence[str]
+    solved: PartModes
     points: Floats | None
     direction: str
     with_grid: bool
     with_animations: bool
     structure: str | None
+
+    @property
+    def found(self) -> ConvergedModes:
+        """Modes on the last mesh."""
+        return self.solved.found
+
+    @property
+    def names(self) -> Sequence[str]:
+        """Names of all modes."""
+        return self.solved.names
 
     def lines(self) -> list[str]:
         """Name and natural frequency with its error of every elastic mode."""
@@ -205,23 +196,23 @@ class ModesAnswer(Answer):
         support = f"{rigid} rigid motions, " if rigid else "held, "
         nodes = f"{found.nodes[-1]} nodes in the last of {len(found.nodes)} meshes"
         return [
-            f"{self.part} of {self.material}: {support}{nodes}",
-            *[f"  {self.names[row]:<{width}}  {frequency_text(found, row)}" for row in self._rows()],
+            f"{self.solved.part.name} of {self.solved.part.material}: {support}{nodes}",
+            *[f"  {self.names[row]:<{width}}  {self._frequency(row)}" for row in self._rows()],
         ]
 
     def object(self) -> dict[str, Any]:
         """Number of rigid motions, nodes of the meshes, and name, frequency and error of every elastic mode."""
         found = self.found
         return {
-            "part": self.part,
-            "material": self.material,
+            "part": self.solved.part.name,
+            "material": self.solved.part.material,
             "rigid_motions": found.modes.rigid_body_count,
             "nodes": list(found.nodes),
             **({} if self.structure is None else {"structure": tomllib.loads(self.structure)}),
             "modes": [
                 {
                     "name": self.names[row],
-                    "text": frequency_text(found, row),
+                    "text": self._frequency(row),
                     "uncertainty": {
                         "value": float(found.natural_frequency[row] * found.frequency_error[row]),
                         "unit": "Hz",
@@ -237,21 +228,18 @@ class ModesAnswer(Answer):
             ],
         }
 
+    def assumptions(self) -> Mapping[str, str]:
+        """Dimensions of a transducer that no source prints."""
+        return self.solved.part.assumptions
+
     def figures(self) -> Mapping[str, Drawing]:
         """Picture of every elastic mode."""
-        mesh, shapes = self.found.model.mesh, self.found.modes.shapes
-        return {
-            self._file_name(row): Drawing(
-                draw=partial(mode_figure, mesh, shapes[row], title=mode_title(self.found, self.names, row)),
-                forms=("png",),
-            )
-            for row in self._rows()
-        }
+        return {self._file_name(row): Drawing(draw=partial(self._figure, row), forms=("png",)) for row in self._rows()}
 
     def files(self) -> Mapping[str, str | bytes]:
         """Shapes at points, structure for a rig file, grid and animations, as far as they are wanted."""
         files: dict[str, str | bytes] = {}
-        stem = Path(self.part).stem
+        stem = Path(self.solved.part.name).stem
         if self.points is not None:
             table = shapes_table(self.found, self.names, self.points, direction=self.direction)
             files[f"{stem}-shapes.csv"] = table
@@ -263,8 +251,7 @@ class ModesAnswer(Answer):
             with progress("animating") as advance:
                 for done, row in enumerate(self._rows()):
                     advance(self.names[row], done, len(self._rows()))
-                    title = mode_title(self.found, self.names, row)
-                    animation = mode_animation(self.found, self.found.modes.shapes[row], title=title)
+                    animation = mode_animation(self._surface(row), title=self._title(row))
                     files[f"{self._file_name(row)}.gif"] = animation
         return files
 
@@ -272,7 +259,26 @@ class ModesAnswer(Answer):
         """Indices of the elastic modes."""
         return elastic_rows(self.found)
 
+    def _surface(self, row: int) -> ShapedSurface:
+        """Surface of the part with the shape of a mode."""
+        return shaped_surface(self.found.model.mesh, self.found.modes.shapes[row])
+
+    def _figure(self, row: int) -> "Figure":
+        """Picture of a mode."""
+        return mode_figure(self._surface(row), title=self._title(row))
+
+    def _title(self, row: int) -> str:
+        """Name and natural frequency of a mode."""
+        return mode_title(self.found, self.names, row)
+
+    def _frequency(self, row: int) -> str:
+        """Natural frequency of a mode with its error."""
+        found = self.found
+        return frequency_text(
+            frequency=float(found.natural_frequency[row]), relative_error=float(found.frequency_error[row])
+        )
+
     def _file_name(self, row: int) -> str:
         """Name of the picture of a mode: part, number among the elastic modes, and name of the mode."""
         number = row - self.found.modes.rigid_body_count + 1
-        return f"{Path(self.part).stem}-{number}-{self.names[row].replace(' ', '-')}"
+        return f"{Path(self.solved.part.name).stem}-{number}-{self.names[row].replace(' ', '-')}"

@@ -1,7 +1,7 @@
 """Mean friction ratio of a normally vibrated contact by stick-slip of its asperities."""
 
 from dataclasses import dataclass
-from math import cos, exp, pi, sin
+from math import exp, pi
 from typing import ClassVar, final
 
 import numpy as np
@@ -124,7 +124,7 @@ class AsperityStickSlip(FrictionModel):
             steady = length / self.memory_length * v_r.ravel() / (motion.frequency * widest_first.size)
             return _sampled_ratio(widest_first / length, slides / length, steady / length, *_HEIGHTS)
 
-        if motion.displacement.size <= _LONGEST_PERIOD:
+        if not self.in_plane_fraction and motion.displacement.size <= _LONGEST_PERIOD:
             every = np.zeros(v_r.size, dtype=np.int64)
             closed = self.batched_ratio(
                 contact, gap_harmonics(motion), sliding_speed=v_r.ravel(), motion=every, friction_coefficient=np.nan
@@ -193,17 +193,14 @@ def _sampled_ratio(x: Floats, slides: Floats, steady: Floats, nodes: Floats, wei
             start = max(start, (above - force[k] + x[k]) / 2)  # above it no element slips backwards
         total = exp(lowest - start) * (start - envelope + 1)
         span = min(highest - lowest, _NEGLIGIBLE)
-        for j in range(nodes.size):
-            node, weight = nodes[j], weights[j]
-            angle = pi * (1 + node) / 2
-            y = lowest + span * (1 - cos(angle)) / 2  # graded towards both ends
-            total += (
-                weight * pi * span * sin(angle) / 4 * exp(lowest - y) * _element_force(x, slides, steady[i], y, force)
-            )
-            if start > highest:
-                y = highest + (start - highest) * (1 + node) / 2
-                contribution = exp(lowest - y) * _element_force(x, slides, steady[i], y, force)
-                total += weight * (start - highest) / 2 * contribution
+        angles = pi * (1 + nodes) / 2
+        heights = lowest + span * (1 - np.cos(angles)) / 2  # graded towards both ends
+        forces = _element_forces(x, slides, steady[i], heights)
+        total += np.sum(weights * pi * span * np.sin(angles) / 4 * np.exp(lowest - heights) * forces)
+        if start > highest:
+            heights = highest + (start - highest) * (1 + nodes) / 2
+            forces = _element_forces(x, slides, steady[i], heights)
+            total += np.sum(weights * (start - highest) / 2 * np.exp(lowest - heights) * forces)
         ratio[i] = total / mean_limit
     return ratio
 
@@ -229,5 +226,33 @@ def _element_force(x: Floats, slides: Floats, steady: float, y: float, force: Fl
                 step *= limit / (before - after)  # came into contact within this step
             tau = min(max(tau + step, -limit), limit)
         if abs(tau - start) <= 1e-12 * (1 + abs(start)):
+            break
+    return total / n
+
+
+@kernel(cache=True, error_model="numpy")
+def _element_forces(x: Floats, slides: Floats, steady: float, heights: Floats) -> Floats:
+    """Return the mean forces of elements in contact below some gaps, side by side, one in each SIMD lane."""
+    n, m = x.size, heights.size
+    tau, start, total = np.empty(m), np.empty(m), np.empty(m)
+    for j in range(m):
+        tau[j] = max(heights[j] - x[0], 0.0)
+    for _ in range(100):
+        for j in range(m):
+            start[j] = tau[j]
+            total[j] = 0.0
+        for k in range(n):
+            before, after = x[k], x[k + 1 if k + 1 < n else 0]
+            step = slides[k] + steady
+            closing = step / (before - after) if before > after else 0.0
+            for j in range(m):
+                total[j] += tau[j]
+                limit = max(heights[j] - after, 0.0)
+                slide = closing * limit if before > heights[j] else step  # in contact for part of the step
+                tau[j] = min(max(tau[j] + slide, -limit), limit)
+        changed = 0.0
+        for j in range(m):
+            changed = max(changed, abs(tau[j] - start[j]) / (1 + abs(start[j])))
+        if changed <= 1e-12:
             break
     return total / n

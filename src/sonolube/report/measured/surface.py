@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
 from sonolube.report.measured import sheet, surface_figures as figures
 from sonolube.report.measured.profile import is_profile, profile_sheet
-from sonolube.units import format_si
+from sonolube.units import format_si, to_si
 
 _LABELS = {
     "arithmetic_mean_height": "Sa, arithmetic mean height",
@@ -83,6 +83,31 @@ class SurfaceSettings:
     robust: bool = False
     short_cutoff_length: float | None = None
     long_cutoff_length: float | None = None
+
+
+def spacings(text: str | None, *, name: str) -> tuple[float | None, float | None]:
+    """Distances of columns and rows from text such as "0.5um" or "0.5um,0.6um"; None where there is none. [m]
+
+    Parameters
+    ----------
+    text : str or None
+    name : str
+        How a refusal calls it.
+
+    Returns
+    -------
+    tuple of float or None
+
+    Raises
+    ------
+    InvalidInput
+        If a distance is no length.
+    """
+    if text is None:
+        return None, None
+    first, _, second = text.partition(",")
+    along = to_si(first, unit="m", name=name)
+    return along, to_si(second, unit="m", name=name) if second else along
 
 
 def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
