@@ -66,7 +66,7 @@ def dark_colour(colour: object) -> tuple[float, float, float, float]:
 
 def _luminance(colour: tuple[float, float, float]) -> float:
     """Relative luminance of a colour, near enough."""
-    red, green, blue = (channel**2.2 for channel in colour)
+    red, green, blue = (float(channel**2.2) for channel in colour)
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 

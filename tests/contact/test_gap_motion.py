@@ -16,7 +16,8 @@ from sonolube.contact import (
     separation,
     sinusoidal_motion,
 )
-from sonolube.contact.gap_motion import delayed_oscillation, richardson_period_mean, richardson_period_means
+from sonolube.contact.gap_motion import delayed_oscillation
+from sonolube.contact.period_mean import richardson_period_mean, richardson_period_means
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.surfaces import Roughness
 

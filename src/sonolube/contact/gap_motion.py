@@ -1,9 +1,8 @@
-"""Periodic motions of the gap of a contact: one sampled period, batches of Fourier coefficients, and period averages.
+"""Periodic motions of the gap of a contact: one sampled period, and batches of Fourier coefficients.
 
 The record in which `sonolube.dynamics` hands over a vibration and which the models of friction and wear take.
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
@@ -13,7 +12,6 @@ from numpy.typing import ArrayLike
 from sonolube.checks import (
     Complexes,
     Floats,
-    Integers,
     require_finite,
     require_finite_complex,
     require_non_negative,
@@ -22,9 +20,8 @@ from sonolube.checks import (
 from sonolube.contact.rough import RoughContact, normal_force, normal_stiffness, separation
 from sonolube.errors import InvalidInput, OutsideRange
 
-_UNCONVERGED = "the average over a period does not converge with {samples} samples of this motion"
 _MOST_KEPT = 1024  # samples of motions that are kept at another number of phases
-_MINIMUM_SAMPLES, _MAXIMUM_SAMPLES = 256, 65536  # per period, between which a period average is refined
+_SAMPLES = 256  # per period
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -167,7 +164,7 @@ def sinusoidal_motion(
     normal_load: ArrayLike,
     vibration_amplitude: ArrayLike,
     frequency: ArrayLike,
-    samples: int = _MINIMUM_SAMPLES,
+    samples: int = _SAMPLES,
 ) -> GapMotion:
     r"""Return a sinusoidal motion of prescribed amplitude about the separation at rest.
 
@@ -284,91 +281,6 @@ def require_open_gap(contact: RoughContact, motion: GapMotion) -> Floats:
             " Reduce the amplitude, or use the load-balanced mean gap"
         )
     return d
-
-
-def richardson_period_mean(
-    mean: Callable[[GapMotion], Floats], motion: GapMotion, *, tolerance: float = 1e-5
-) -> Floats:
-    r"""Return an average over the period by doubling the samples and Richardson's extrapolation.
-
-    Parameters
-    ----------
-    mean : callable
-        Returns the average, or several, for a sampled motion, with an error of second order in the phase step.
-    motion : GapMotion
-    tolerance : float
-        Largest error of the result, relative to the larger of the average and one.
-
-    Returns
-    -------
-    ndarray, shape of what `mean` returns
-
-    Raises
-    ------
-    OutsideRange
-        If the average does not converge with 65536 phases.
-
-    Notes
-    -----
-    With the averages m_n at n phases the result is :math:`m_{2n} + (m_{2n} - m_n)/3`, once the correction is within the
-    tolerance.
-    """
-    samples = max(_MINIMUM_SAMPLES, motion.displacement.size)
-    coarse = mean(motion.resampled(samples))
-    while samples < _MAXIMUM_SAMPLES:
-        samples *= 2
-        fine = mean(motion.resampled(samples))
-        change = fine - coarse
-        # a third of the change is the error, which Richardson's extrapolation removes to the next order
-        if np.all(np.abs(change) / 3 < tolerance * np.maximum(np.abs(fine), 1.0)):
-            return fine + change / 3
-        coarse = fine
-    raise OutsideRange(_UNCONVERGED.format(samples=samples))
-
-
-def richardson_period_means(
-    mean: Callable[[Integers, Floats, Floats], Floats], motions: Sequence[GapMotion], *, tolerance: float = 1e-5
-) -> Floats:
-    """Return an average over the period of each of many motions, each with the samples that it needs alone.
-
-    Parameters
-    ----------
-    mean : callable
-        Returns the averages of some motions from their indices, and their displacement and normal force, a row each.
-    motions : sequence of GapMotion
-    tolerance : float
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        As `richardson_period_mean` of each.
-
-    Raises
-    ------
-    OutsideRange
-        If an average does not converge with 65536 phases.
-    """
-    means = np.empty(len(motions))
-    sizes = np.maximum([motion.displacement.size for motion in motions], _MINIMUM_SAMPLES)
-    for size in np.unique(sizes).tolist():
-        rows, samples = np.flatnonzero(sizes == size), size
-        coarse = mean(rows, *_stacked(motions, rows, size))
-        while rows.size:
-            if samples >= _MAXIMUM_SAMPLES:
-                raise OutsideRange(_UNCONVERGED.format(samples=samples))
-            samples *= 2
-            fine = mean(rows, *_stacked(motions, rows, samples))
-            error = (fine - coarse) / 3
-            done = np.abs(error) < tolerance * np.maximum(np.abs(fine), 1.0)
-            means[rows[done]] = (fine + error)[done]
-            rows, coarse = rows[~done], fine[~done]
-    return means
-
-
-def _stacked(motions: Sequence[GapMotion], rows: Integers, samples: int) -> tuple[Floats, Floats]:
-    """Return displacement and normal force of some motions at a number of phases, a row each."""
-    sampled = [motions[row].resampled(samples) for row in rows]
-    return np.stack([each.displacement for each in sampled]), np.stack([each.normal_force for each in sampled])
 
 
 def delayed_oscillation(values: Floats, *, phase: float) -> Floats:

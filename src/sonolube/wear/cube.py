@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.contact.gap_motion import GapMotion, load_balanced_motion, richardson_period_mean
+from sonolube.contact.gap_motion import GapMotion, load_balanced_motion
+from sonolube.contact.period_mean import richardson_period_mean
 from sonolube.contact.rough import RoughContact, real_contact_area, separation
 from sonolube.contact.separating_half_period import sampled_separating_mean, separating_half_period_mean
 

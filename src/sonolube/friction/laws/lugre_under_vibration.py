@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_finite, require_non_negative, require_positive
-from sonolube.contact.gap_motion import GapMotion, delayed_oscillation, richardson_period_mean, richardson_period_means
+from sonolube.contact.gap_motion import GapMotion, delayed_oscillation
+from sonolube.contact.period_mean import richardson_period_mean, richardson_period_means
 from sonolube.friction.laws.lugre import LuGreFriction, lugre_steady_friction
 from sonolube.friction.laws.steady_period_kernel import steady_period_mean_force
 

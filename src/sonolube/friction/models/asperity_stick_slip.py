@@ -9,14 +9,9 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_positive
 from sonolube.compilation import kernel
-from sonolube.contact.gap_motion import (
-    GapMotion,
-    GapMotionBatch,
-    delayed_oscillation,
-    gap_harmonics,
-    richardson_period_mean,
-)
+from sonolube.contact.gap_motion import GapMotion, GapMotionBatch, delayed_oscillation, gap_harmonics
 from sonolube.contact.height_distribution import ExponentialHeights
+from sonolube.contact.period_mean import richardson_period_mean
 from sonolube.contact.rough import RoughContact, decay_length, separation
 from sonolube.friction.models.asperity_stick_slip_batch import batched_stick_slip_ratio
 from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH

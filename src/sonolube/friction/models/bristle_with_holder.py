@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.contact.gap_motion import GapMotion, delayed_oscillation, require_open_gap, richardson_period_mean
+from sonolube.contact.gap_motion import GapMotion, delayed_oscillation, require_open_gap
 from sonolube.contact.mindlin import mindlin_tangential_stiffness
+from sonolube.contact.period_mean import richardson_period_mean
 from sonolube.contact.rough import RoughContact
 from sonolube.errors import InvalidInput, warn_of_range
 from sonolube.friction.bristle import (

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
 from sonolube.contact.cube import cube_tangential_stiffness
-from sonolube.contact.gap_motion import GapMotion, load_balanced_motion, require_open_gap, richardson_period_mean
+from sonolube.contact.gap_motion import GapMotion, load_balanced_motion, require_open_gap
+from sonolube.contact.period_mean import richardson_period_mean
 from sonolube.contact.rough import RoughContact, separation
 from sonolube.contact.separating_half_period import sampled_separating_mean
 from sonolube.friction.models.kinematic import kinematic_mean

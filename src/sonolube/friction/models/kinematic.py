@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
 from sonolube.compilation import kernel
-from sonolube.contact.gap_motion import GapMotion, richardson_period_mean
+from sonolube.contact.gap_motion import GapMotion
+from sonolube.contact.period_mean import richardson_period_mean
 from sonolube.contact.rough import RoughContact
 from sonolube.friction.models.model import FrictionModel, parameter
 
