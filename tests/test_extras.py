@@ -48,8 +48,8 @@ def test_every_extra_of_the_project_has_its_line_in_the_package() -> None:
 
 
 def test_every_package_that_is_imported_is_required_and_every_extra_is_used() -> None:
-    # Pillow and cycler come with matplotlib; type checkers have _typeshed; only the script of `learning` needs emcee
-    implied = {"pillow", "cycler", "pydantic-core", "-typeshed", "emcee"}
+    # Pillow, cycler and fontTools come with matplotlib; type checkers have _typeshed; only `learning` needs emcee
+    implied = {"pillow", "cycler", "fonttools", "pydantic-core", "-typeshed", "emcee"}
     optional = {name for requirements in PROJECT["optional-dependencies"].values() for name in names(requirements)}
     required = names(PROJECT["dependencies"])
     imported = imported_distributions()

@@ -15,6 +15,7 @@ from unittest.mock import patch
 import pytest
 import typer
 import xarray as xr
+from matplotlib import pyplot as plt
 from tests.cli.option_uses import EXECUTION, MODES, PLACES, TESTED_ELSEWHERE, write_inputs
 
 from sonolube.cli import main
@@ -89,7 +90,9 @@ def drawn_once(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
     with publication_style():
         figure = drawing.draw()
         fit_to_style(figure)
-    return dict.fromkeys(forms, render_figure(figure, "png", resolution=_DOTS_PER_INCH))
+    picture = render_figure(figure, "png", resolution=_DOTS_PER_INCH)
+    plt.close(figure)
+    return dict.fromkeys(forms, picture)
 
 
 @cache
