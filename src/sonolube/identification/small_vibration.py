@@ -148,7 +148,9 @@ class SmallVibration:
         drive, capacitance = self.matrices.drive_vector, self.matrices.clamped_capacitance
         added = drive[:, :, np.newaxis] * drive[:, np.newaxis, :] / capacitance[:, np.newaxis, np.newaxis]
         stiffness = self.matrices.stiffness_matrix + added
-        return _at(_natural_frequencies(np.linalg.eigvalsh(_standard_form(self._mass_roots, stiffness))), self.driven_mode)
+        return _at(
+            _natural_frequencies(np.linalg.eigvalsh(_standard_form(self._mass_roots, stiffness))), self.driven_mode
+        )
 
     @cached_property
     def free_poles(self) -> Complexes:
@@ -206,7 +208,9 @@ class SmallVibration:
         """Natural frequency of a mode counted from 1, rigid ones left out, shape (n,). [Hz]"""
         frequency = self.natural_frequencies
         if loaded:
-            frequency = _natural_frequencies(np.linalg.eigvalsh(_standard_form(self._mass_roots, self.loaded_stiffness)))
+            frequency = _natural_frequencies(
+                np.linalg.eigvalsh(_standard_form(self._mass_roots, self.loaded_stiffness))
+            )
         index = np.count_nonzero(frequency == 0, axis=1) + number - 1
         if index.max() >= frequency.shape[1]:
             raise InvalidInput(f"the structure has fewer than {number} vibration modes")

@@ -230,3 +230,37 @@ def profile_mean_limits(c: Floats, flat: bool, nodes: Floats, weights: Floats) -
     for i in range(c.size):
         means[i] = mean_friction_limit(c[i]) if flat else parabolic_mean_limit(c[i], nodes, weights)
     return means
+
+
+@kernel(cache=True)
+def balanced_approaches(c: Floats, flat: bool, nodes: Floats, weights: Floats) -> Floats:
+    """Return the mean approach, in amplitudes, at which the mean limit of a profile is that at rest at approach c."""
+    balanced = np.empty(c.size)
+    for i in range(c.size):
+        at, target = c[i], c[i] if flat else c[i] ** 1.5 / 1.5
+        for _ in range(100):  # the mean is convex in the approach, so that Newton's method falls from above to its root
+            value = mean_friction_limit(at) if flat else parabolic_mean_limit(at, nodes, weights)
+            slope = contact_fraction(at) if flat else _parabolic_slope(at, nodes, weights)
+            step = (value - target) / slope
+            at -= step
+            if not step > 4e-16 * (1 + abs(at)):
+                break
+        balanced[i] = at
+    return balanced
+
+
+@kernel(cache=True)
+def contact_fraction(c: float) -> float:
+    """Return the fraction of a period in which the limit c - cos x is positive."""
+    return 1 - acos(min(max(c, -1.0), 1.0)) / pi
+
+
+@kernel(cache=True)
+def _parabolic_slope(c: float, nodes: Floats, weights: Floats) -> float:
+    """Return the derivative of `parabolic_mean_limit` by the approach."""
+    inner, outer = sqrt(max(c - 1, 0.0)), sqrt(max(c + 1, 0.0))
+    total, half = inner, (outer - inner) / 2
+    for j in range(nodes.size):
+        q = inner + half * (1 + nodes[j])
+        total += half * weights[j] * contact_fraction(c - q * q)
+    return total
