@@ -5,6 +5,7 @@ The record in which `sonolube.dynamics` hands over a vibration and which the mod
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +21,7 @@ from sonolube.checks import (
 from sonolube.contact.rough import RoughContact, normal_force, normal_stiffness, separation
 from sonolube.errors import InvalidInput, OutsideRange
 
+_MOST_KEPT = 2048  # phases of motions that are kept, some 30 kB each
 _MINIMUM_SAMPLES, _MAXIMUM_SAMPLES = 256, 65536  # per period, between which a period average is refined
 
 
@@ -311,16 +313,22 @@ def richardson_period_mean(
     tolerance.
     """
     samples = max(_MINIMUM_SAMPLES, motion.displacement.size)
-    coarse = mean(motion.resampled(samples))
+    coarse = mean(_kept_resampled(motion, samples))
     while samples < _MAXIMUM_SAMPLES:
         samples *= 2
-        fine = mean(motion.resampled(samples))
+        fine = mean(_kept_resampled(motion, samples) if samples <= _MOST_KEPT else motion.resampled(samples))
         change = fine - coarse
         # a third of the change is the error, which Richardson's extrapolation removes to the next order
         if np.all(np.abs(change) / 3 < tolerance * np.maximum(np.abs(fine), 1.0)):
             return fine + change / 3
         coarse = fine
     raise OutsideRange(f"the average over a period does not converge with {samples} samples of this motion")
+
+
+@lru_cache(maxsize=64)
+def _kept_resampled(motion: GapMotion, samples: int) -> GapMotion:
+    """Return a resampled motion, kept because fits average the same motions again and again."""
+    return motion.resampled(samples)
 
 
 def delayed_oscillation(values: Floats, *, phase: float) -> Floats:

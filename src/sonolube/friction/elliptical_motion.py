@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.compilation import kernel
 
+_FEW = 20_000  # points for which plain Python takes less than compiling
+
 
 def contact_time_fraction(
     *, normal_load: ArrayLike, normal_stiffness: ArrayLike, normal_amplitude: ArrayLike
@@ -119,7 +121,7 @@ def elliptical_traction_ratio(
         require_finite(relative_velocity=relative_velocity),
         require_finite(phase=phase),
     )
-    return _traction(
+    return _traction.for_points(load.size, at_first=_FEW)(
         (load / np.maximum(force_amplitude, load)).ravel(),
         (force_amplitude / load).ravel(),
         (u * omega).ravel(),

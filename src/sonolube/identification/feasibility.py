@@ -76,7 +76,7 @@ def consistent_facts(bounded: BoundedModel, facts: Sequence[Fact], *, seed: int)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _FeasibilityOracle:
-    """Memoised searches: feasible points with the facts that each satisfies, and how often a set was searched in vain."""
+    """Memoised searches: feasible points with the facts that each satisfies, and the number of failures of a set."""
 
     bounded: BoundedModel
     facts: Sequence[Fact]

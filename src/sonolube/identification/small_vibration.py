@@ -124,6 +124,11 @@ class SmallVibration:
         """Undamped natural frequencies, contact free, drive short-circuited, ascending, shape (n, k). [Hz]"""
         return _natural_frequencies(self._eigenpairs[0])
 
+    def _frequencies_with(self, stiffness: Floats) -> Floats:
+        """Undamped natural frequencies with other stiffness matrices, ascending, shape (n, k). [Hz]"""
+        squares = np.asarray(np.linalg.eigvalsh(_standard_form(self._mass_roots, stiffness)), dtype=np.float64)
+        return _natural_frequencies(squares)
+
     @cached_property
     def mode_shapes(self) -> Floats:
         """Mass-normalised shapes of the same modes in columns, shape (n, k, k)."""
@@ -148,9 +153,7 @@ class SmallVibration:
         drive, capacitance = self.matrices.drive_vector, self.matrices.clamped_capacitance
         added = drive[:, :, np.newaxis] * drive[:, np.newaxis, :] / capacitance[:, np.newaxis, np.newaxis]
         stiffness = self.matrices.stiffness_matrix + added
-        return _at(
-            _natural_frequencies(np.linalg.eigvalsh(_standard_form(self._mass_roots, stiffness))), self.driven_mode
-        )
+        return _at(self._frequencies_with(stiffness), self.driven_mode)
 
     @cached_property
     def free_poles(self) -> Complexes:
@@ -208,9 +211,7 @@ class SmallVibration:
         """Natural frequency of a mode counted from 1, rigid ones left out, shape (n,). [Hz]"""
         frequency = self.natural_frequencies
         if loaded:
-            frequency = _natural_frequencies(
-                np.linalg.eigvalsh(_standard_form(self._mass_roots, self.loaded_stiffness))
-            )
+            frequency = self._frequencies_with(self.loaded_stiffness)
         index = np.count_nonzero(frequency == 0, axis=1) + number - 1
         if index.max() >= frequency.shape[1]:
             raise InvalidInput(f"the structure has fewer than {number} vibration modes")

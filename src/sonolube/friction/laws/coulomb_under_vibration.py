@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.compilation import kernel
 
+_FEW = 20_000  # points for which plain Python takes less than compiling
+
 
 def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
     r"""Return the mean friction ratio under vibration along the sliding direction by Coulomb's law. []
@@ -131,7 +133,9 @@ def oblique_vibration_ratio(
     """
     v_r, v_1 = _speeds(sliding_speed, vibration_velocity)
     v_r, v_1, angle = np.broadcast_arrays(v_r, v_1, require_finite(vibration_direction=vibration_direction))
-    ratio = _oblique(v_r.ravel(), v_1.ravel(), np.cos(angle).ravel(), np.sin(angle).ravel())
+    ratio = _oblique.for_points(v_r.size, at_first=_FEW)(
+        v_r.ravel(), v_1.ravel(), np.cos(angle).ravel(), np.sin(angle).ravel()
+    )
     return ratio.reshape(v_r.shape)
 
 

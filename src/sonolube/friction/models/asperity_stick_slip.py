@@ -120,11 +120,11 @@ class AsperityStickSlip(FrictionModel):
         def mean_over_limit(sampled: GapMotion) -> Floats:
             widest_first = np.roll(sampled.displacement, -int(np.argmax(sampled.displacement)))
             in_plane = self.in_plane_fraction * delayed_oscillation(widest_first, phase=self.in_plane_phase)
-            slides = length / self.memory_length * (np.roll(in_plane, -1) - in_plane)
+            slides = length / self.memory_length * np.diff(in_plane, append=in_plane[:1])
             steady = length / self.memory_length * v_r.ravel() / (motion.frequency * widest_first.size)
             return _sampled_ratio(widest_first / length, slides / length, steady / length, *_HEIGHTS)
 
-        if motion.displacement.size <= _LONGEST_PERIOD:
+        if not self.in_plane_fraction and motion.displacement.size <= _LONGEST_PERIOD:
             every = np.zeros(v_r.size, dtype=np.int64)
             closed = self.batched_ratio(
                 contact, gap_harmonics(motion), sliding_speed=v_r.ravel(), motion=every, friction_coefficient=np.nan

@@ -23,6 +23,9 @@ __all__ = ["SpringContact", "critical_speed", "load_balanced_approach"]  # the r
 NODES = np.polynomial.legendre.leggauss(48)
 """Gauss-Legendre rule over the springs of a parabolic profile."""
 
+FEW = 20_000
+"""Springs for which plain Python takes less than compiling. []"""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SpringContact:
@@ -140,9 +143,11 @@ def load_balanced_approach(contact: SpringContact, *, approach: ArrayLike, norma
     """
     a = require_non_negative(normal_amplitude=normal_amplitude)
     u, a = np.broadcast_arrays(require_positive(approach=approach), a)
-    lost = a > u if contact.profile == "flat" else a > 0  # for part of the period, or at some springs
+    flat = contact.profile == "flat"
+    lost = a > u if flat else a > 0  # for part of the period, or at some springs
     balanced = u.astype(np.float64)
-    balanced[lost] = a[lost] * balanced_approaches(u[lost] / a[lost], contact.profile == "flat", *NODES)
+    approaches = balanced_approaches.for_points(int(lost.sum()) * (1 if flat else NODES[0].size), at_first=FEW)
+    balanced[lost] = a[lost] * approaches(u[lost] / a[lost], flat, *NODES)
     return balanced
 
 
