@@ -17,6 +17,9 @@ from typing import Any, Generic, ParamSpec, TypeVar, cast
 P = ParamSpec("P")
 R = TypeVar("R", covariant=True)
 
+INNER: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of a kernel that only kernels call: without wrappers it compiles sooner and needs no cache."""
+
 _PLAIN_CALLS = 8  # calls of the largest size that run as plain Python though a compiled kernel may be there
 _POINTS_RUN: ContextVar[dict[int, int] | None] = ContextVar("points_run", default=None)
 _BUILDING = RLock()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_positive
-from sonolube.compilation import kernel
+from sonolube.compilation import INNER, kernel
 from sonolube.contact.gap_motion import (
     GapMotion,
     GapMotionBatch,
@@ -177,38 +177,59 @@ class AsperityStickSlip(FrictionModel):
         )
 
 
-@kernel(cache=True)
 def _sampled_ratio(x: Floats, slides: Floats, steady: Floats, nodes: Floats, weights: Floats) -> Floats:
     """Return the mean friction over the mean limit, for gaps, vibration slides and steady slides in decay lengths."""
-    lowest, highest = x.min(), x.max()
-    mean_limit = np.mean(np.exp(lowest - x))
     ratio = np.empty(steady.size)
-    force = np.empty(x.size)
-    for i in range(steady.size):
-        # the force of elements in permanent contact is their height less a common envelope
-        above = highest + 2 * (highest - lowest) + 2 * np.sum(np.abs(slides))
-        envelope = above - _element_force(x, slides, steady[i], above, force)
-        start = highest
-        for k in range(x.size):
-            start = max(start, (above - force[k] + x[k]) / 2)  # above it no element slips backwards
-        total = exp(lowest - start) * (start - envelope + 1)
-        span = min(highest - lowest, _NEGLIGIBLE)
-        for j in range(nodes.size):
-            node, weight = nodes[j], weights[j]
-            angle = pi * (1 + node) / 2
-            y = lowest + span * (1 - cos(angle)) / 2  # graded towards both ends
-            total += (
-                weight * pi * span * sin(angle) / 4 * exp(lowest - y) * _element_force(x, slides, steady[i], y, force)
-            )
-            if start > highest:
-                y = highest + (start - highest) * (1 + node) / 2
-                contribution = exp(lowest - y) * _element_force(x, slides, steady[i], y, force)
-                total += weight * (start - highest) / 2 * contribution
-        ratio[i] = total / mean_limit
+    _sum_elements(x, slides, steady, float(x.min()), float(x.max()), nodes, weights, np.empty(x.size), ratio)
     return ratio
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True, _nrt=False)
+def _sum_elements(
+    x: Floats,
+    slides: Floats,
+    steady: Floats,
+    lowest: float,
+    highest: float,
+    nodes: Floats,
+    weights: Floats,
+    force: Floats,
+    ratio: Floats,
+) -> None:
+    """Write the mean friction of all elements over their mean limit, from the least and the greatest gap."""
+    mean_limit = distance = 0.0
+    for k in range(x.size):
+        mean_limit += exp(lowest - x[k])
+        distance += abs(slides[k])
+    mean_limit /= x.size
+    above, span = highest + 2 * (highest - lowest) + 2 * distance, min(highest - lowest, _NEGLIGIBLE)
+    for i in range(steady.size):
+        start = total = share = 0.0
+        for turn in range(-1, 2 * nodes.size):  # one call of _element_force, which is long to compile
+            j, in_contact = turn // 2, turn % 2 == 1  # throughout the period, or for a part of it
+            y = above
+            if turn >= 0 and not in_contact:
+                angle = pi * (1 + nodes[j]) / 2
+                y = lowest + span * (1 - cos(angle)) / 2  # graded towards both ends
+                share = weights[j] * pi * span * sin(angle) / 4
+            elif turn >= 0:
+                if not start > highest:
+                    continue
+                y = highest + (start - highest) * (1 + nodes[j]) / 2
+                share = weights[j] * (start - highest) / 2
+            mean = _element_force(x, slides, steady[i], y, force)
+            if turn >= 0:
+                total += share * (exp(lowest - y) * mean) if in_contact else share * exp(lowest - y) * mean
+                continue
+            # the force of elements in permanent contact is their height less a common envelope
+            start = highest
+            for k in range(x.size):
+                start = max(start, (above - force[k] + x[k]) / 2)  # above it no element slips backwards
+            total = exp(lowest - start) * (start - (above - mean) + 1)
+        ratio[i] = total / mean_limit
+
+
+@kernel(**INNER, _nrt=False)
 def _element_force(x: Floats, slides: Floats, steady: float, y: float, force: Floats) -> float:
     """Return the mean force of the element in contact below gap y, and write it at every phase, widest gap first."""
     n = x.size

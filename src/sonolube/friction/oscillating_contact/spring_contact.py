@@ -190,5 +190,6 @@ def mean_normal_forces(contact: SpringContact, u: Floats, a: Floats) -> Floats:
     power, factor = (1.0, 1.0) if flat else (1.5, 2 / 3)
     moves = a > 0
     scale = np.where(moves, a, 1.0)
-    moving = scale**power * profile_mean_limits((u / scale).ravel(), flat, *NODES).reshape(u.shape)
+    mean_limits = profile_mean_limits.for_points(u.size * (1 if flat else NODES[0].size), at_first=FEW)
+    moving = scale**power * mean_limits((u / scale).ravel(), flat, *NODES).reshape(u.shape)
     return np.asarray(np.where(moves, moving, factor * np.maximum(u, 0.0) ** power))
