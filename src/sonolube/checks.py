@@ -14,6 +14,8 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
+_DOUBLE = np.dtype(np.float64)
+
 
 def require_finite(**values: ArrayLike) -> Floats:
     """Return the first value as a float array; refuse any that is not a finite number.
@@ -78,12 +80,16 @@ def require_within(lower: float, upper: float, /, **values: ArrayLike) -> Floats
 def _require(accepts: Callable[[Any], Any], demand: str, values: Mapping[str, Any]) -> Floats:
     """Return the first value as a float array; refuse any value that is not finite or not accepted."""
     for name, value in values.items():
-        if isinstance(value, float) and isfinite(value) and accepts(value):  # the common case, in a tenth of the time
+        number = value.item() if type(value) is np.ndarray and not value.ndim and value.dtype is _DOUBLE else value
+        if (
+            isinstance(number, float) and isfinite(number) and accepts(number)
+        ):  # the common case, in a tenth of the time
             continue
         array = _floats(name, value)
         _refuse_unless(np.isfinite(array), array, name, "must be finite")
         _refuse_unless(accepts(array), array, name, demand)
-    return _floats(*next(iter(values.items())))
+    first = next(iter(values.values()))
+    return np.asarray(first) if type(first) is float else _floats(next(iter(values)), first)
 
 
 def _refuse_unless(accepted: NDArray[np.bool_], array: Floats, name: str, demand: str) -> None:

@@ -17,6 +17,9 @@ from typing import Any, Generic, ParamSpec, TypeVar, cast
 P = ParamSpec("P")
 R = TypeVar("R", covariant=True)
 
+INNER: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of a kernel that only kernels call: without wrappers it compiles sooner and needs no cache."""
+
 _PLAIN_CALLS = 8  # calls of the largest size that run as plain Python though a compiled kernel may be there
 _POINTS_RUN: ContextVar[dict[int, int] | None] = ContextVar("points_run", default=None)
 _BUILDING = RLock()
@@ -85,12 +88,15 @@ class Kernel(Generic[P, R]):
             Largest number, of all calls inside `few_points`, for which plain Python takes less than compiling the
             kernel. It runs so where the compiled kernel is there too, lest the last digits depend on that.
         """
-        if not self._runs_plain(count, most, at_first):
-            return self.compiled
+        return self._guarded if self.takes_few(count, most=most, at_first=at_first) else self.compiled
+
+    def takes_few(self, count: int, *, most: int = 4, at_first: int = 0) -> bool:
+        """Return whether this many points are not to be compiled for, and count them; arguments of `for_points`."""
         run = _POINTS_RUN.get()
-        if run is not None:
-            run[id(self)] = run.get(id(self), 0) + count
-        return self._guarded
+        if run is None or not self._runs_plain(count, most, at_first):
+            return False
+        run[id(self)] = run.get(id(self), 0) + count
+        return True
 
     def lanes(self, count: int, compiled: int, *, most: int = 4, at_first: int = 0) -> int:
         """Return the points of a block of SIMD lanes: one where `for_points` runs as plain Python."""

@@ -20,7 +20,7 @@ from sonolube.checks import (
 from sonolube.contact.rough import RoughContact, normal_force, normal_stiffness, separation
 from sonolube.errors import InvalidInput, OutsideRange
 
-_MOST_KEPT = 1024  # samples of motions that are kept at another number of phases
+_MOST_KEPT = 2048  # samples of motions that are kept at another number of phases
 _SAMPLES = 256  # per period
 
 

@@ -200,12 +200,13 @@ def tuned_mode(
     Notes
     -----
     The secant search uses elements of order two. Its result is corrected by Newton steps with the slope found: first
-    for the difference to order three on the same mesh, then for that to the converged frequency.
+    for the difference to order three on the same mesh, then for that to the converged frequency. Bodies are meshed at
+    lengths of seven digits: a free mesh can change with the last bit of a length, and so with the order of summation.
     """
     require_positive(frequency=frequency, length=length, element_size=element_size)
 
     def frequency_at(length: float, order: int) -> float:
-        model = model_at(length, element_size)
+        model = model_at(_seven_digits(length), element_size)
         model = replace(model, mesh=change_order(grade_reentrant_edges(model.mesh, levels=1), order=order))
         modes = natural_modes(model, count=count)
         if advance:
@@ -221,6 +222,7 @@ def tuned_mode(
     slope = exponent * frequency / found
     found -= (frequency_at(found, _FINE_ORDER) - frequency) / slope
     for _ in range(_MOST_CORRECTIONS):
+        found = _seven_digits(found)
         mode = named_mode(
             lambda size, at=found: model_at(at, size),  # type: ignore[misc]
             name=name,
@@ -237,6 +239,11 @@ def tuned_mode(
     raise NotConverged(
         f"{name} came within {abs(difference):.3g} Hz of {frequency:g} Hz; request a smaller relative_tolerance"
     )
+
+
+def _seven_digits(length: float) -> float:
+    """Length rounded to seven significant digits."""
+    return float(f"{length:.6e}")
 
 
 def _mode_index(names: tuple[str, ...], name: str) -> int:

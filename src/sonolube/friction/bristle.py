@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats, require_non_negative
-from sonolube.compilation import kernel
+from sonolube.compilation import INNER, kernel
 from sonolube.errors import InvalidInput
 
 __all__ = ["RIGID", "Holder"]  # the kernels serve this room only
@@ -96,7 +96,7 @@ def holder_propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Flo
     return np.ascontiguousarray(propagator[:2, :2]), propagator[:2, 2] - by_last, by_last
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def _force_after_slide(force: float, k: float, limit: float, slide: float, exponent: float) -> float:
     """Return the force after a slide at constant stiffness and limit, before the clipping to the next limit."""
     if exponent == 0.0 or slide == 0.0:
@@ -107,7 +107,7 @@ def _force_after_slide(force: float, k: float, limit: float, slide: float, expon
     return asymptote + (force - asymptote) * math.exp(-k * abs(slide) / limit)
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady: Floats, exponent: float) -> Floats:
     """Return the mean force of a bristle on a holder without mass over its steady period, for each sliding speed.
 
@@ -144,7 +144,7 @@ def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady:
     return means
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def mean_force_inertial_holder(
     k: Floats,
     limit: Floats,
@@ -204,7 +204,7 @@ def mean_force_inertial_holder(
     return means, settled
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def _period(
     state: Floats,
     k: Floats,

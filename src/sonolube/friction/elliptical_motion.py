@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.compilation import kernel
+from sonolube.compilation import INNER, kernel
+
+_FEW = 20_000  # points for which plain Python takes less than compiling
 
 
 def contact_time_fraction(
@@ -119,7 +121,7 @@ def elliptical_traction_ratio(
         require_finite(relative_velocity=relative_velocity),
         require_finite(phase=phase),
     )
-    return _traction(
+    return _traction.for_points(load.size, at_first=_FEW)(
         (load / np.maximum(force_amplitude, load)).ravel(),
         (force_amplitude / load).ravel(),
         (u * omega).ravel(),
@@ -128,7 +130,7 @@ def elliptical_traction_ratio(
     ).reshape(load.shape)
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def _half_contact_phases(load_ratio: Floats) -> Floats:
     """Return half the phase of contact for each load over the amplitude of the force."""
     phases = np.empty(load_ratio.size)
@@ -137,7 +139,7 @@ def _half_contact_phases(load_ratio: Floats) -> Floats:
     return phases
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def _half_contact_phase(load_ratio: float) -> float:
     """Return the root h of sin h - h cos h = pi times the load over the amplitude of the force, by Halley's method."""
     if load_ratio >= 1.0:
@@ -156,14 +158,14 @@ def _half_contact_phase(load_ratio: float) -> float:
     return h
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def _force_integral(low: float, high: float, half: float, offset: float) -> float:
     """Return the integral of max(cos x + offset, 0), which vanishes beyond +-half, over an interval."""
     low, high = max(low, -half), min(high, half)
     return sin(high) - sin(low) + offset * (high - low) if high > low else 0.0
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def _traction(load_ratio: Floats, amplitude_ratio: Floats, v_1: Floats, v: Floats, lag: Floats) -> Floats:
     """Return the mean traction over the friction, from load and force amplitude over each other, velocities and lag."""
     ratio = np.empty(load_ratio.size)

@@ -6,6 +6,7 @@ Points are the natural logarithms of the parameters: a step is a relative change
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -193,14 +194,17 @@ def residual_jacobian(bounded: BoundedModel, facts: Sequence[Fact], point: Float
 
 def _violations(facts: Sequence[Fact], observed: Mapping[str, Floats]) -> Floats:
     """Distances of the logarithms of observables to the interval that agrees with each fact, shape (n, facts)."""
-    columns = []
-    for fact in facts:
-        logarithm = np.log(np.maximum(observed[fact.name], np.finfo(float).tiny))
-        target = _TARGET * fact.tolerance
-        low = math.log(fact.value - target) if fact.relation != "<=" and fact.value > target else -math.inf
-        high = math.log(fact.value + target) if fact.relation != ">=" else math.inf
-        columns.append(np.maximum(np.maximum(low - logarithm, logarithm - high), 0.0))
-    return np.stack(columns, axis=-1)
+    logarithms = np.log(np.maximum(np.array([observed[fact.name] for fact in facts]), np.finfo(float).tiny)).T
+    low, high = np.array([_agreeing_interval(fact) for fact in facts]).T
+    return np.asarray(np.maximum(np.maximum(low - logarithms, logarithms - high), 0.0))
+
+
+@cache
+def _agreeing_interval(fact: Fact) -> tuple[float, float]:
+    """Logarithms of the interval of an observable that agrees with a fact."""
+    target = _TARGET * fact.tolerance
+    low = math.log(fact.value - target) if fact.relation != "<=" and fact.value > target else -math.inf
+    return low, math.log(fact.value + target) if fact.relation != ">=" else math.inf
 
 
 def _least_squares(

@@ -76,37 +76,42 @@ def consistent_facts(bounded: BoundedModel, facts: Sequence[Fact], *, seed: int)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _FeasibilityOracle:
-    """Memoised searches: feasible points with the facts that each satisfies, and sets for which every search failed."""
+    """Memoised searches: feasible points with the facts that each satisfies, and the number of failures of a set."""
 
     bounded: BoundedModel
     facts: Sequence[Fact]
     seed: int
     found: list[tuple[frozenset[str], Floats]] = field(default_factory=list)
-    failed: set[frozenset[str]] = field(default_factory=set)
+    failures: dict[frozenset[str], int] = field(default_factory=dict)
 
     def is_satisfiable(self, names: frozenset[str]) -> bool:
-        """Whether a feasible point of these facts is known or found by a few searches."""
-        if not names or any(names <= satisfied for satisfied, _ in self.found):
+        """Whether a feasible point of these facts is known, or else found by a few searches of no refuted subset."""
+        if not names or self._is_known(names):
             return True
-        if names in self.failed or not self._search(names, attempts=_ATTEMPTS):
-            self.failed.add(names)
+        if any(refused <= names for refused in self.failures):
             return False
-        return True
+        return self._search(names, attempts=_ATTEMPTS)
 
     def refute(self, conflicts: Sequence[frozenset[str]]) -> bool:
         """Search each conflict again; where one is refuted, forget the failures on its subsets and return true."""
         refuted = [conflict for conflict in conflicts if self._search(conflict, attempts=_CONFIRMING_ATTEMPTS)]
-        self.failed.difference_update({names for names in self.failed if any(names <= known for known in refuted)})
+        for names in [names for names in self.failures if self._is_known(names)]:
+            del self.failures[names]
         return bool(refuted)
 
+    def _is_known(self, names: frozenset[str]) -> bool:
+        """Whether some feasible point of these facts has been found."""
+        return any(names <= satisfied for satisfied, _ in self.found)
+
     def _search(self, names: frozenset[str], *, attempts: int) -> bool:
-        """Whether one of several seeds finds a feasible point, which is then recorded."""
+        """Whether one of several seeds finds a feasible point, which is then recorded; seeds that failed are over."""
         chosen = [fact for fact in self.facts if fact.name in names]
-        for attempt in range(attempts):
+        for attempt in range(self.failures.get(names, 0), attempts):
             point = find_feasible_point(self.bounded, chosen, seed=self.seed + attempt)
             if point is not None:
                 self.found.append((self._satisfied(point), point))
                 return True
+            self.failures[names] = attempt + 1
         return False
 
     def _satisfied(self, point: Floats) -> frozenset[str]:

@@ -106,7 +106,7 @@ class SmallVibration:
     @cached_property
     def _inverse_mass(self) -> Floats:
         """Inverse of the mass matrices, shape (n, k, k)."""
-        return np.asarray(np.linalg.inv(self.matrices.mass_matrix), dtype=np.float64)
+        return np.asarray(self._mass_roots.transpose(0, 2, 1) @ self._mass_roots)
 
     @cached_property
     def _standard_stiffness(self) -> Floats:
@@ -114,14 +114,25 @@ class SmallVibration:
         return _standard_form(self._mass_roots, self.matrices.stiffness_matrix)
 
     @cached_property
+    def _eigenpairs(self) -> tuple[Floats, Floats]:
+        """Squared angular frequencies, ascending, and eigenvectors of the same problem."""
+        squares, vectors = np.linalg.eigh(self._standard_stiffness)
+        return squares, vectors
+
+    @cached_property
     def natural_frequencies(self) -> Floats:
         """Undamped natural frequencies, contact free, drive short-circuited, ascending, shape (n, k). [Hz]"""
-        return _natural_frequencies(self._standard_stiffness)
+        return _natural_frequencies(self._eigenpairs[0])
+
+    def _frequencies_with(self, stiffness: Floats) -> Floats:
+        """Undamped natural frequencies with other stiffness matrices, ascending, shape (n, k). [Hz]"""
+        squares = np.asarray(np.linalg.eigvalsh(_standard_form(self._mass_roots, stiffness)), dtype=np.float64)
+        return _natural_frequencies(squares)
 
     @cached_property
     def mode_shapes(self) -> Floats:
         """Mass-normalised shapes of the same modes in columns, shape (n, k, k)."""
-        return np.asarray(self._mass_roots.transpose(0, 2, 1) @ np.linalg.eigh(self._standard_stiffness)[1])
+        return np.asarray(self._mass_roots.transpose(0, 2, 1) @ self._eigenpairs[1])
 
     @cached_property
     def driven_mode(self) -> NDArray[np.intp]:
@@ -142,7 +153,7 @@ class SmallVibration:
         drive, capacitance = self.matrices.drive_vector, self.matrices.clamped_capacitance
         added = drive[:, :, np.newaxis] * drive[:, np.newaxis, :] / capacitance[:, np.newaxis, np.newaxis]
         stiffness = self.matrices.stiffness_matrix + added
-        return _at(_natural_frequencies(_standard_form(self._mass_roots, stiffness)), self.driven_mode)
+        return _at(self._frequencies_with(stiffness), self.driven_mode)
 
     @cached_property
     def free_poles(self) -> Complexes:
@@ -200,7 +211,7 @@ class SmallVibration:
         """Natural frequency of a mode counted from 1, rigid ones left out, shape (n,). [Hz]"""
         frequency = self.natural_frequencies
         if loaded:
-            frequency = _natural_frequencies(_standard_form(self._mass_roots, self.loaded_stiffness))
+            frequency = self._frequencies_with(self.loaded_stiffness)
         index = np.count_nonzero(frequency == 0, axis=1) + number - 1
         if index.max() >= frequency.shape[1]:
             raise InvalidInput(f"the structure has fewer than {number} vibration modes")
@@ -252,9 +263,8 @@ def settling_time_of(pole: Complexes) -> Floats:
     return np.asarray(math.log(1 / _SETTLED) / np.maximum(-pole.real, _TINY))
 
 
-def _natural_frequencies(standard: Floats) -> Floats:
-    """Undamped natural frequencies in Hz, ascending, zero for rigid modes, shape (n, k), by the standard form."""
-    squares = np.linalg.eigvalsh(standard)
+def _natural_frequencies(squares: Floats) -> Floats:
+    """Undamped natural frequencies in Hz from ascending squares of angular ones, zero for rigid modes, shape (n, k)."""
     rigid = squares <= _RIGID * squares[:, -1:]
     return np.asarray(np.sqrt(np.where(rigid, 0.0, squares)) / (2 * np.pi))
 

@@ -150,9 +150,11 @@ def _affine_arrays(build: StructureBuilder, reference: Mapping[str, float]) -> _
     if np.any(deviation > _AFFINE * np.maximum(np.abs(tripled), np.abs(origin))):
         return None
 
+    slopes = np.stack(list(changes.values()))
+
     def arrays(parameters: Mapping[str, Floats], added: Mapping[str, float]) -> Floats:
-        growth = np.stack([parameters[name] / value - 1 for name, value in reference.items()])
-        result = origin + np.einsum("pn,pa->na", growth, np.stack(list(changes.values())))
+        growth = np.array([parameters[name] / value - 1 for name, value in reference.items()])
+        result = origin + growth.T @ slopes
         for name, value in added.items():
             result += value / reference[name] * changes[name]
         return np.asarray(result)

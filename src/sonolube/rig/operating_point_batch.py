@@ -47,7 +47,7 @@ NUMBERS = (
 )
 """Numbers of an operating point, the columns of a batch."""
 
-_FEW = 2000  # points for which plain Python takes less than compiling
+_FEW = 15_000  # points for which plain Python takes less than compiling
 _REFUSED = STATUSES.index(REFUSED)
 _REASONS = {
     "periodic": "the vibration repeats with the drive",

@@ -25,6 +25,7 @@ from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.design import optimisation_options as options
 from sonolube.cli.design.optimisation_answer import OptimisationAnswer
+from sonolube.compilation import few_points
 from sonolube.design import optimisation
 from sonolube.errors import InvalidInput
 from sonolube.rig import read_rig, rig_content
@@ -38,6 +39,7 @@ class Objective(StrEnum):
     VOLTAGE = "voltage"
 
 
+@few_points()
 def optimise(
     context: typer.Context,
     rig: RigPath,

@@ -9,13 +9,14 @@ from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.gap_laws.protocol import GapLaw
 from sonolube.dynamics.gap_laws.table import kernel_law
 from sonolube.dynamics.harmonic_balance.floquet_kernel import SQUARINGS, monodromy_power_norms, period_workspace
+from sonolube.dynamics.harmonic_balance.floquet_rows import power_norms_of_motions
 from sonolube.dynamics.harmonic_balance.receptance import PoleResidueModel
-from sonolube.dynamics.kernels.simd import LANES, uniform_blocks
+from sonolube.dynamics.kernels.simd import uniform_blocks
 
 STABILITY_THRESHOLD = 1e-6
 """Floquet exponent per period above which a motion counts as unstable, beyond rounding. []"""
 _KICKS_PER_RADIAN = 8  # of the structure's fastest mode
-_FEW: Final = {"most": 1024, "at_first": 10_000}  # kicks for which plain Python takes less than loading and compiling
+_FEW: Final = {"most": 20_000, "at_first": 200_000}  # kicks for which arrays take less than loading and compiling
 _HARMONICS_STEP = 4  # to which numbers of harmonics are rounded up
 _MOST_KICKS = 2**22  # per period, which take seconds
 
@@ -77,17 +78,22 @@ def floquet_exponents(
     needed = np.where(stability_undetermined(model, omega), 0.0, np.ceil(_KICKS_PER_RADIAN * _fastest(model) / omega))
     kicks = np.maximum(samples, needed.astype(np.int64))
     kicks, count = _rounded_up(kicks), -(-count // _HARMONICS_STEP) * _HARMONICS_STEP  # so that few are alone
-    steps = int(kicks.sum())
-    lanes = monodromy_power_norms.lanes(steps, LANES, **_FEW)
-    chosen = uniform_blocks(np.arange(omega.size), count, kicks, lanes=lanes)
-    settings = np.stack([omega, load, gap_law.equilibrium_coordinate(load), mean], axis=1)
     drift = _transition_matrices(model, 2 * np.pi / (kicks * omega))
-    work = period_workspace(2 * model.trace.size, int(count.max(initial=0)))
     pairs = np.hstack([model.contact_input, model.displacement_output, model.velocity_output])
-    parts = np.ascontiguousarray(harmonics).view(np.float64)
     powers, norms = np.empty((2, omega.size))
-    power_norms = monodromy_power_norms.for_points(steps, **_FEW)
-    power_norms(*variant, law, pairs, settings, drift, parts, count, kicks, chosen, work, powers, norms)
+    if monodromy_power_norms.takes_few(int(kicks.sum()), **_FEW):
+        settings = np.stack([omega, load, mean], axis=1)
+        with np.errstate(all="ignore"):
+            for own in (np.flatnonzero(kicks == each) for each in np.unique(kicks)):
+                motions = settings[own], drift[own], harmonics[own, : count[own].max()]
+                powers[own], norms[own] = power_norms_of_motions(gap_law, pairs, *motions, int(kicks[own[0]]))
+    else:
+        settings = np.stack([omega, load, gap_law.equilibrium_coordinate(load), mean], axis=1)
+        chosen = uniform_blocks(np.arange(omega.size), count, kicks)
+        work = period_workspace(2 * model.trace.size, int(count.max(initial=0)))
+        parts = np.ascontiguousarray(harmonics).view(np.float64)
+        power_norms = monodromy_power_norms.compiled
+        power_norms(*variant, law, pairs, settings, drift, parts, count, kicks, chosen, work, powers, norms)
     return np.asarray((powers * np.log(2.0) + 0.5 * np.log(norms)) / 2.0 ** (SQUARINGS - 1))
 
 

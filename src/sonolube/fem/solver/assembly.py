@@ -86,20 +86,21 @@ def assemble_matrices(model: Model) -> GlobalMatrices:
         for own in _chunks(np.flatnonzero(mesh.region_of_element == index), mesh.order):
             elements = mesh.elements[own]
             masses, gradient_products = _integrals(mesh.nodes[elements], mesh.order)
+            at = pattern.positions(elements)
             elastic = gradient_products @ c.transpose(1, 3, 0, 2).reshape(9, 9)
-            mass.add(elements, medium.density * masses)  # of one direction
-            stiffness.add(elements, elastic)
+            mass.add(at, medium.density * masses)  # of one direction
+            stiffness.add(at, elastic)
             if medium.elastic_loss:
-                stiffness_loss.add(elements, medium.elastic_loss * elastic)
+                stiffness_loss.add(at, medium.elastic_loss * elastic)
             if medium.stress_constants is not None and medium.permittivity is not None:
                 e = POTENTIAL_SCALE * medium.stress_constants[:, _VOIGT]  # e_lik
-                coupling.add(elements, gradient_products @ e.transpose(2, 0, 1).reshape(9, 3))
+                coupling.add(at, gradient_products @ e.transpose(2, 0, 1).reshape(9, 3))
                 capacitance = gradient_products @ (POTENTIAL_SCALE**2 * medium.permittivity.ravel())
-                dielectric.add(elements, capacitance)
+                dielectric.add(at, capacitance)
                 if medium.loss_tangent:
-                    dielectric_loss.add(elements, medium.loss_tangent * capacitance)
+                    dielectric_loss.add(at, medium.loss_tangent * capacitance)
     for spring in model.springs:
-        stiffness.add(mesh.faces[spring.face], _foundation_matrices(mesh, spring))
+        stiffness.add(pattern.positions(mesh.faces[spring.face]), _foundation_matrices(mesh, spring))
     return GlobalMatrices(
         mass=_repeated_in_three_directions(mass.matrix()),
         stiffness=stiffness.matrix(),
@@ -127,8 +128,9 @@ def scalar_mass_matrix(model: Model) -> sparse.csc_array:
     density = np.array([model.media[region].density for region in mesh.regions])[mesh.region_of_element]
     jacobian = np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], gradient, optimize=True)
     mass = np.linalg.det(jacobian) * weights * density[:, np.newaxis]
-    total = _Accumulator(_SparsityPattern.of(mesh), (1, 1))
-    total.add(mesh.elements, (value * mass[:, np.newaxis]) @ value.T)
+    pattern = _SparsityPattern.of(mesh)
+    total = _Accumulator(pattern, (1, 1))
+    total.add(pattern.positions(mesh.elements), (value * mass[:, np.newaxis]) @ value.T)
     return total.matrix()
 
 
@@ -203,9 +205,8 @@ class _Accumulator:
         self.pattern, self.components = pattern, components
         self.blocks: Floats | None = None
 
-    def add(self, cells: Integers, values: Floats) -> None:
-        """Add element matrices of shape (e, a, a, rows * columns), or (e, a, a) of one component."""
-        positions = self.pattern.positions(cells)
+    def add(self, positions: Integers, values: Floats) -> None:
+        """Add element matrices, shape (e, a, a, rows * columns) or (e, a, a) of one component, at their positions."""
         entries = values.reshape(positions.size, -1).T
         if self.blocks is None:
             self.blocks = np.zeros((len(entries), len(self.pattern.keys)))

@@ -18,7 +18,7 @@ from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.fem.solver.mesh import Mesh
 
-_LEAF = 5  # elements of a part that is not bisected further
+_LEAF = 320  # nodes of the elements, counted in each, of a part that is not bisected further
 _LEAST_PART = 0.2  # of the elements, in the smaller part of a bisection
 _IMBALANCE_PENALTY = 1.0  # relative increase of the weight of a separator from equal parts to an empty one
 _NORMALS = np.array(
@@ -62,7 +62,7 @@ def nested_dissection(mesh: Mesh) -> list[Integers]:
         own, local = np.unique(nodes, return_inverse=True)
         local = local.reshape(nodes.shape)
         is_free = free[own]  # not in a separator yet
-        if len(part) <= _LEAF:
+        if nodes.size <= _LEAF:
             group = own[is_free]
         else:
             order, count, separator = _bisection(projections[part], local, is_free)

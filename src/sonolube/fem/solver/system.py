@@ -185,8 +185,7 @@ def shift_invert_solver(model: Model, equations: SystemMatrices, *, shift: float
     if not equations.potential_count:
         return multifrontal_factor(elastic, groups=groups, signs=signs)
     size = len(equations.free_dofs)
-    blocks = [[elastic, equations.coupling], [equations.coupling.T, -equations.dielectric]]
-    coupled = sparse.csc_array(sparse.block_array(blocks, format="csc"))
+    coupled = _symmetric_block_matrix(elastic, equations.coupling, -equations.dielectric)
     solve = multifrontal_factor(coupled, groups=groups, signs=signs)
 
     def condensed(right: NDArray[Any]) -> NDArray[Any]:
@@ -195,6 +194,13 @@ def shift_invert_solver(model: Model, equations: SystemMatrices, *, shift: float
         return solve(padded)[:size]
 
     return condensed
+
+
+def _symmetric_block_matrix(first: sparse.csc_array, coupling: sparse.csc_array, last: sparse.csc_array) -> Any:
+    """Matrix of two symmetric blocks and their coupling, by rows, which scipy stacks several times as fast."""
+    upper, lower = (sparse.csr_array((each.data, each.indices, each.indptr), each.shape) for each in (first, last))
+    rows = sparse.block_array([[upper, coupling.tocsr()], [sparse.csr_array(coupling.T), lower]], format="csr")
+    return sparse.csc_array((rows.data, rows.indices, rows.indptr), shape=rows.shape)  # symmetric
 
 
 def _elimination_order(model: Model, equations: SystemMatrices) -> tuple[list[Integers], list[int]]:

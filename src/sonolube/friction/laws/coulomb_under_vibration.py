@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.compilation import kernel
+from sonolube.compilation import INNER, kernel
+
+_FEW = 20_000  # points for which plain Python takes less than compiling
 
 
 def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
@@ -131,7 +133,9 @@ def oblique_vibration_ratio(
     """
     v_r, v_1 = _speeds(sliding_speed, vibration_velocity)
     v_r, v_1, angle = np.broadcast_arrays(v_r, v_1, require_finite(vibration_direction=vibration_direction))
-    ratio = _oblique(v_r.ravel(), v_1.ravel(), np.cos(angle).ravel(), np.sin(angle).ravel())
+    ratio = _oblique.for_points(v_r.size, at_first=_FEW)(
+        v_r.ravel(), v_1.ravel(), np.cos(angle).ravel(), np.sin(angle).ravel()
+    )
     return ratio.reshape(v_r.shape)
 
 
@@ -140,7 +144,7 @@ def _speeds(sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> tuple[Fl
     return (require_positive(sliding_speed=sliding_speed), require_non_negative(vibration_velocity=vibration_velocity))
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
     """Return the mean cosine of the angle between relative velocity and sliding direction over a period."""
     ratios = np.ones(v_r.size)
@@ -169,7 +173,7 @@ def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
     return ratios
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def _complete_integral(k_c: float, p: float, a: float, b: float) -> float:
     """Return Bulirsch's integral cel(k_c, p, a, b) for p > 0 by his arithmetic-geometric mean.
 

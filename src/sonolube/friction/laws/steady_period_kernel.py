@@ -8,7 +8,7 @@ from sonolube.compilation import kernel
 __all__: list[str] = []  # kernel of this room
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def steady_period_mean_force(stiffness: Floats, limit: Floats, slides: Floats, durations: Floats) -> Floats:
     """Return the mean force of each row of steps over its steady period.
 

@@ -115,7 +115,7 @@ class AsperityStickSlip(FrictionModel):
         def mean_over_limit(sampled: GapMotion) -> Floats:
             widest_first = np.roll(sampled.displacement, -int(np.argmax(sampled.displacement)))
             in_plane = self.in_plane_fraction * delayed_oscillation(widest_first, phase=self.in_plane_phase)
-            slides = length / self.memory_length * (np.roll(in_plane, -1) - in_plane)
+            slides = length / self.memory_length * np.diff(in_plane, append=in_plane[:1])
             steady = length / self.memory_length * v_r.ravel() / (motion.frequency * widest_first.size)
             return _sampled_ratio(widest_first / length, slides / length, steady / length, *_HEIGHTS)
 
@@ -172,82 +172,63 @@ class AsperityStickSlip(FrictionModel):
         )
 
 
-@kernel(cache=True)
 def _sampled_ratio(x: Floats, slides: Floats, steady: Floats, nodes: Floats, weights: Floats) -> Floats:
     """Return the mean friction over the mean limit, for gaps, vibration slides and steady slides in decay lengths."""
-    lowest, highest = x.min(), x.max()
-    mean_limit = np.mean(np.exp(lowest - x))
+    lowest, highest = float(x.min()), float(x.max())
+    mean_limit = np.exp(lowest - x).mean()
+    permanent = np.array([highest + 2 * (highest - lowest) + 2 * np.abs(slides).sum()])
+    span, angles = min(highest - lowest, _NEGLIGIBLE), pi * (1 + nodes) / 2
+    graded = lowest + span * (1 - np.cos(angles)) / 2  # towards both ends
+    shares = weights * pi * span * np.sin(angles) / 4
     ratio = np.empty(steady.size)
-    force = np.empty(x.size)
-    for i in range(steady.size):
+    for i, slide in enumerate(steady.tolist()):
         # the force of elements in permanent contact is their height less a common envelope
-        above = highest + 2 * (highest - lowest) + 2 * np.sum(np.abs(slides))
-        envelope = above - _element_force(x, slides, steady[i], above, force)
-        start = highest
-        for k in range(x.size):
-            start = max(start, (above - force[k] + x[k]) / 2)  # above it no element slips backwards
-        total = exp(lowest - start) * (start - envelope + 1)
-        span = min(highest - lowest, _NEGLIGIBLE)
-        angles = pi * (1 + nodes) / 2
-        heights = lowest + span * (1 - np.cos(angles)) / 2  # graded towards both ends
-        forces = _element_forces(x, slides, steady[i], heights)
-        total += np.sum(weights * pi * span * np.sin(angles) / 4 * np.exp(lowest - heights) * forces)
+        (force,), (least,) = _element_forces(x, slides, slide, permanent)
+        start = max(highest, (permanent[0] - least) / 2)  # above it no element slips backwards
+        total = exp(lowest - start) * (start - (permanent[0] - force) + 1)
+        total += shares @ (np.exp(lowest - graded) * _element_forces(x, slides, slide, graded)[0])
         if start > highest:
-            heights = highest + (start - highest) * (1 + nodes) / 2
-            forces = _element_forces(x, slides, steady[i], heights)
-            total += np.sum(weights * (start - highest) / 2 * np.exp(lowest - heights) * forces)
+            between = highest + (start - highest) * (1 + nodes) / 2
+            forces = np.exp(lowest - between) * _element_forces(x, slides, slide, between)[0]
+            total += (start - highest) / 2 * (weights @ forces)
         ratio[i] = total / mean_limit
     return ratio
 
 
-@kernel(cache=True)
-def _element_force(x: Floats, slides: Floats, steady: float, y: float, force: Floats) -> float:
-    """Return the mean force of the element in contact below gap y, and write it at every phase, widest gap first."""
-    n = x.size
-    tau = max(y - x[0], 0.0)
-    for _ in range(100):
-        start = tau
-        total = 0.0
-        for k in range(n):
-            force[k] = tau
-            total += tau
-            before, after = x[k], x[k + 1 if k + 1 < n else 0]
-            limit = y - after
-            if limit <= 0:
-                tau = 0.0
-                continue
-            step = slides[k] + steady
-            if before > y:
-                step *= limit / (before - after)  # came into contact within this step
-            tau = min(max(tau + step, -limit), limit)
-        if abs(tau - start) <= 1e-12 * (1 + abs(start)):
-            break
-    return total / n
-
-
-@kernel(cache=True, error_model="numpy")
 def _element_forces(x: Floats, slides: Floats, steady: float, heights: Floats) -> Floats:
-    """Return the mean forces of elements in contact below some gaps, side by side, one in each SIMD lane."""
+    """Return of elements in contact below some gaps the mean force, and the least force less the gap, a row each."""
+    forces = np.empty((2, heights.size))
+    _write_element_forces(x, slides, steady, heights, np.empty((2, heights.size)), forces)
+    return forces
+
+
+@kernel(cache=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)
+def _write_element_forces(
+    x: Floats, slides: Floats, steady: float, heights: Floats, work: Floats, forces: Floats
+) -> None:
+    """Write forces of elements, side by side, one in each SIMD lane, from the widest gap until the period repeats."""
     n, m = x.size, heights.size
-    tau, start, total = np.empty(m), np.empty(m), np.empty(m)
+    tau, before_period, total, least = work[0], work[1], forces[0], forces[1]
     for j in range(m):
         tau[j] = max(heights[j] - x[0], 0.0)
     for _ in range(100):
         for j in range(m):
-            start[j] = tau[j]
-            total[j] = 0.0
+            before_period[j] = tau[j]
+            total[j], least[j] = 0.0, tau[j] - x[0]
         for k in range(n):
             before, after = x[k], x[k + 1 if k + 1 < n else 0]
             step = slides[k] + steady
             closing = step / (before - after) if before > after else 0.0
             for j in range(m):
                 total[j] += tau[j]
+                least[j] = min(least[j], tau[j] - before)
                 limit = max(heights[j] - after, 0.0)
                 slide = closing * limit if before > heights[j] else step  # in contact for part of the step
                 tau[j] = min(max(tau[j] + slide, -limit), limit)
         changed = 0.0
         for j in range(m):
-            changed = max(changed, abs(tau[j] - start[j]) / (1 + abs(start[j])))
+            changed = max(changed, abs(tau[j] - before_period[j]) / (1 + abs(before_period[j])))
         if changed <= 1e-12:
             break
-    return total / n
+    for j in range(m):
+        total[j] /= n

@@ -17,7 +17,7 @@ from sonolube.friction.scaled_bessel import scaled_bessel_i0
 SINE_TOLERANCE = 8e-5
 """Largest error of a friction ratio by neglecting the higher harmonics of a vibration. []"""
 
-_FEW = 2000  # points for which plain Python takes less than compiling
+_FEW = 3000  # points for which plain Python takes less than compiling
 _LOG_BETA, _LOG_SPEED = (-6.0, 4.1), (-11.0, 0.0)  # ranges of the table of sines
 _ROWS, _COLUMNS = 300, 330
 _NODES = np.polynomial.legendre.leggauss(32)

@@ -20,7 +20,7 @@ Five of the tests have a printed roughness, that of the others is by comparison 
 the length is 1.35 um, 0.97 to 1.99 um."""
 
 _PHASES = np.polynomial.legendre.leggauss(32)
-_FEW = 1000  # points for which plain Python takes less than compiling
+_FEW = 8000  # points for which plain Python takes less than compiling
 _NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
 
@@ -129,7 +129,7 @@ def sine_stick_slip_ratio(
     return harmonic_ratio(beta.ravel(), v.ravel(), scaled_bessel_i0(beta).ravel(), *_PHASES).reshape(beta.shape)
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def _harmonic_ratio(beta: Floats, v: Floats, i0e_beta: Floats, nodes: Floats, weights: Floats) -> Floats:
     """Return the friction ratio for each amplitude over decay length and each reduced speed."""
     ratio = np.ones(beta.size)

@@ -125,7 +125,7 @@ def kinematic_mean(
     return richardson_period_mean(mean, motion).reshape(v_r.shape)
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def _weighted_cosine(weights: Floats, velocity: Floats, speeds: Floats) -> Floats:
     """Return the mean of weight times v_r/sqrt(v_r^2 + v^2), both linear between samples, exactly for any v_r."""
     n = weights.size

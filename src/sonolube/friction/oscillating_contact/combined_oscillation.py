@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.compilation import kernel
+from sonolube.compilation import INNER, kernel
 from sonolube.errors import InvalidInput, OutsideRange, warn_of_range
 from sonolube.friction.oscillating_contact.spring_contact import SpringContact
 
@@ -118,7 +118,7 @@ def combined_oscillation_ratio(
     return ratio.reshape(shape)
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def _mean_ratios(
     u: Floats,
     slide_per_period: Floats,
@@ -154,7 +154,7 @@ def _mean_ratios(
     return ratio, settled
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def _steady_period(limit: Floats, offset: float, x: Floats, y: Floats) -> tuple[float, float, bool]:
     """Return the mean force along x and the mean limit of one spring over its steady period, as deformations."""
     n = limit.size - 1
@@ -174,7 +174,7 @@ def _steady_period(limit: Floats, offset: float, x: Floats, y: Floats) -> tuple[
     return friction / n, mean_limit / n, mean_limit == 0.0
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def _after_slide(p: float, q: float, before: float, after: float, dx: float, dy: float) -> tuple[float, float]:
     """Return the deformation of a spring after a straight slide while its limit changes from `before` to `after`."""
     if after <= 0.0:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.friction.oscillating_contact.spring_contact import NODES, SpringContact, require_contact
+from sonolube.friction.oscillating_contact.spring_contact import FEW, NODES, SpringContact, require_contact
 from sonolube.friction.oscillating_contact.stick_slip_phases import (
     flat_longitudinal_ratio,
     flat_normal_ratio,
@@ -77,8 +77,9 @@ def normal_oscillation_ratio(
     v = np.minimum(v_r / np.maximum(contact.slip_per_approach * omega * a, v_r), 1.0)
     c = np.where(a > 0, u / np.where(a > 0, a, 1.0), 2.0)
     if contact.profile == "flat":
-        return flat_normal_ratio(c.ravel(), v.ravel()).reshape(u.shape)
-    return parabolic_normal_ratio(c.ravel(), v.ravel(), *NODES).reshape(u.shape)
+        return flat_normal_ratio.for_points(c.size, at_first=FEW)(c.ravel(), v.ravel()).reshape(u.shape)
+    parabolic_ratio = parabolic_normal_ratio.for_points(c.size * NODES[0].size, at_first=FEW)
+    return parabolic_ratio(c.ravel(), v.ravel(), *NODES).reshape(u.shape)
 
 
 def longitudinal_oscillation_ratio(

@@ -8,7 +8,6 @@ for all directions, `compliant_guide` for a slider on a guide with spring and ma
 published approximations.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -17,12 +16,15 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.friction.oscillating_contact.stick_slip_phases import profile_mean_limits
+from sonolube.friction.oscillating_contact.stick_slip_phases import balanced_approaches, profile_mean_limits
 
 __all__ = ["SpringContact", "critical_speed", "load_balanced_approach"]  # the rest serves this package only
 
 NODES = np.polynomial.legendre.leggauss(48)
 """Gauss-Legendre rule over the springs of a parabolic profile."""
+
+FEW = 20_000
+"""Springs for which plain Python takes less than compiling. []"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -137,19 +139,16 @@ def load_balanced_approach(contact: SpringContact, *, approach: ArrayLike, norma
 
     .. math:: \langle F_n(u - a \cos\omega t) \rangle = F_n(u_0), \qquad F_n \propto \max(u, 0)^p
 
-    by bisection, with p = 1 for the flat and 3/2 for the parabolic profile.
+    by Newton's method, with p = 1 for the flat and 3/2 for the parabolic profile.
     """
     a = require_non_negative(normal_amplitude=normal_amplitude)
     u, a = np.broadcast_arrays(require_positive(approach=approach), a)
-    load = mean_normal_forces(contact, u, np.zeros_like(a)).ravel()
-    force = _force_of_approach(contact, a.ravel())
-    low, high = np.minimum(-a, u).ravel(), u.flatten()
-    for _ in range(60):
-        middle = (low + high) / 2
-        too_high = force(middle) > load
-        np.copyto(high, middle, where=too_high)
-        np.copyto(low, middle, where=~too_high)
-    return np.asarray((low + high) / 2).reshape(u.shape)
+    flat = contact.profile == "flat"
+    lost = a > u if flat else a > 0  # for part of the period, or at some springs
+    balanced = u.astype(np.float64)
+    approaches = balanced_approaches.for_points(int(lost.sum()) * (1 if flat else NODES[0].size), at_first=FEW)
+    balanced[lost] = a[lost] * approaches(u[lost] / a[lost], flat, *NODES)
+    return balanced
 
 
 def require_contact(*, approach: ArrayLike, normal_amplitude: ArrayLike) -> tuple[Floats, Floats]:
@@ -187,19 +186,10 @@ def require_contact(*, approach: ArrayLike, normal_amplitude: ArrayLike) -> tupl
 
 def mean_normal_forces(contact: SpringContact, u: Floats, a: Floats) -> Floats:
     """Return the mean normal force in units of one spring (flat), or of the springs per length (parabolic)."""
-    return _force_of_approach(contact, a.ravel())(u.ravel()).reshape(u.shape)
-
-
-def _force_of_approach(contact: SpringContact, a: Floats) -> Callable[[Floats], Floats]:
-    """Return the mean normal forces of these amplitudes, shape (n,), as a function of the mean approaches."""
     flat = contact.profile == "flat"
     power, factor = (1.0, 1.0) if flat else (1.5, 2 / 3)
     moves = a > 0
-    all_move, scale = bool(moves.all()), np.where(moves, a, 1.0)
-    unit, limits = scale**power, profile_mean_limits.compiled
-
-    def force(u: Floats) -> Floats:
-        moving = unit * limits(u / scale, flat, *NODES)
-        return moving if all_move else np.where(moves, moving, factor * np.maximum(u, 0.0) ** power)
-
-    return force
+    scale = np.where(moves, a, 1.0)
+    mean_limits = profile_mean_limits.for_points(u.size * (1 if flat else NODES[0].size), at_first=FEW)
+    moving = scale**power * mean_limits((u / scale).ravel(), flat, *NODES).reshape(u.shape)
+    return np.asarray(np.where(moves, moving, factor * np.maximum(u, 0.0) ** power))

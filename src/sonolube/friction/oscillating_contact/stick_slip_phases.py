@@ -22,12 +22,12 @@ from math import acos, cos, pi, sin, sqrt
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.compilation import INNER, kernel
 
 __all__: list[str] = []  # kernels of this room
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def stick_crossing_phase(
     v: float, level: float, first: float, last: float, from_first: float, from_last: float
 ) -> float:
@@ -67,7 +67,7 @@ def stick_crossing_phase(
     return x
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def half_stick_phase(v: float, contact: float) -> float:
     """Return half the phase of sticking h of an element that comes into contact at the phase m - h, sin m = v h/sin h.
 
@@ -91,7 +91,7 @@ def half_stick_phase(v: float, contact: float) -> float:
     return (stick_crossing_phase(v, level, extremum, end, bottom, 2 * pi * v - bottom) - start) / 2
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def normalized_deficit(v: float) -> float:
     """Return the mean friction deficit S(v) of an element that is always in contact, in amplitudes of its limit.
 
@@ -115,7 +115,7 @@ def normalized_deficit(v: float) -> float:
     return v * (1 - h * cos(h) / sin(h)) ** 2 / pi
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def mean_friction_limit(c: float) -> float:
     """Return the mean of the limit max(c - cos x, 0) over a period."""
     if c >= 1.0:
@@ -125,7 +125,7 @@ def mean_friction_limit(c: float) -> float:
     return (c * (pi - acos(c)) + sqrt(1 - c * c)) / pi
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def mean_deficit_normal(c: float, v: float) -> float:
     """Return the mean friction deficit of an element with the limit max(c - cos x, 0)."""
     if v >= 1.0 or c <= -sqrt(1 - v * v):
@@ -139,7 +139,7 @@ def mean_deficit_normal(c: float, v: float) -> float:
     return sqrt(max(1 - (v * h / s) ** 2, 0.0)) * (s - h * cos(h)) / pi
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def mean_force_longitudinal(stroke: float, v: float) -> float:
     """Return the mean force over the limit of an element whose end oscillates by `stroke`, in slip lengths."""
     if v >= 1.0 or stroke <= 0.0:
@@ -158,7 +158,7 @@ def mean_force_longitudinal(stroke: float, v: float) -> float:
     return 1 - deficit / (2 * pi)
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def flat_normal_ratio(c: Floats, v: Floats) -> Floats:
     """Return the friction ratio of a flat profile under normal oscillation, for mean approaches c and speeds v."""
     ratio = np.empty(c.size)
@@ -167,7 +167,7 @@ def flat_normal_ratio(c: Floats, v: Floats) -> Floats:
     return ratio
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def parabolic_normal_ratio(c: Floats, v: Floats, nodes: Floats, weights: Floats) -> Floats:
     """Return the friction ratio of a parabolic profile under normal oscillation, with mean limits c - q^2."""
     ratio = np.empty(c.size)
@@ -183,7 +183,7 @@ def parabolic_normal_ratio(c: Floats, v: Floats, nodes: Floats, weights: Floats)
     return ratio
 
 
-@kernel(cache=True)
+@kernel(**INNER)
 def parabolic_mean_limit(c: float, nodes: Floats, weights: Floats) -> float:
     """Return the integral of the mean limits over the springs of a parabolic profile."""
     inner, outer = sqrt(max(c - 1, 0.0)), sqrt(max(c + 1, 0.0))
@@ -195,7 +195,7 @@ def parabolic_mean_limit(c: float, nodes: Floats, weights: Floats) -> float:
     return total
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def flat_longitudinal_ratio(stroke: Floats, v: Floats) -> Floats:
     """Return the friction ratio of a flat profile under longitudinal oscillation, for strokes and speeds."""
     ratio = np.empty(stroke.size)
@@ -204,7 +204,7 @@ def flat_longitudinal_ratio(stroke: Floats, v: Floats) -> Floats:
     return ratio
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def parabolic_longitudinal_ratio(stroke: Floats, v: Floats, nodes: Floats, weights: Floats) -> Floats:
     """Return the friction ratio of a parabolic profile under longitudinal oscillation, for strokes at its centre."""
     ratio = np.ones(stroke.size)
@@ -223,10 +223,44 @@ def parabolic_longitudinal_ratio(stroke: Floats, v: Floats, nodes: Floats, weigh
     return ratio
 
 
-@kernel(cache=True)
+@kernel(cache=True, no_cfunc_wrapper=True)
 def profile_mean_limits(c: Floats, flat: bool, nodes: Floats, weights: Floats) -> Floats:
     """Return the mean limit of a flat profile, or its integral over a parabolic one, for each mean approach c."""
     means = np.empty(c.size)
     for i in range(c.size):
         means[i] = mean_friction_limit(c[i]) if flat else parabolic_mean_limit(c[i], nodes, weights)
     return means
+
+
+@kernel(cache=True, no_cfunc_wrapper=True)
+def balanced_approaches(c: Floats, flat: bool, nodes: Floats, weights: Floats) -> Floats:
+    """Return the mean approach, in amplitudes, at which the mean limit of a profile is that at rest at approach c."""
+    balanced = np.empty(c.size)
+    for i in range(c.size):
+        at, target = c[i], c[i] if flat else c[i] ** 1.5 / 1.5
+        for _ in range(100):  # the mean is convex in the approach, so that Newton's method falls from above to its root
+            value = mean_friction_limit(at) if flat else parabolic_mean_limit(at, nodes, weights)
+            slope = contact_fraction(at) if flat else _parabolic_slope(at, nodes, weights)
+            step = (value - target) / slope
+            at -= step
+            if not step > 4e-16 * (1 + abs(at)):
+                break
+        balanced[i] = at
+    return balanced
+
+
+@kernel(**INNER)
+def contact_fraction(c: float) -> float:
+    """Return the fraction of a period in which the limit c - cos x is positive."""
+    return 1 - acos(min(max(c, -1.0), 1.0)) / pi
+
+
+@kernel(**INNER)
+def _parabolic_slope(c: float, nodes: Floats, weights: Floats) -> float:
+    """Return the derivative of `parabolic_mean_limit` by the approach."""
+    inner, outer = sqrt(max(c - 1, 0.0)), sqrt(max(c + 1, 0.0))
+    total, half = inner, (outer - inner) / 2
+    for j in range(nodes.size):
+        q = inner + half * (1 + nodes[j])
+        total += half * weights[j] * contact_fraction(c - q * q)
+    return total

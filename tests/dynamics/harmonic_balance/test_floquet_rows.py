@@ -1,0 +1,57 @@
+"""Stability by array operations over all kicks: the same exponents as the compiled kernel gives."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pytest import MonkeyPatch, approx
+
+from sonolube.checks import Floats
+from sonolube.compilation import few_points
+from sonolube.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap, steady_state
+from sonolube.dynamics.harmonic_balance import solver
+from sonolube.dynamics.harmonic_balance.floquet_exponent import floquet_exponents
+from sonolube.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms
+from sonolube.dynamics.structure import Structure
+
+STACK, ARM = np.array([-1.0, 1.0, 0.0]), np.array([0.0, 1.0, -1.0])
+STRUCTURE = Structure(
+    mass_matrix=np.diag([0.15, 0.35, 0.5]),
+    damping_matrix=30.0 * np.outer(STACK, STACK) + 20.0 * np.outer(ARM, ARM),
+    stiffness_matrix=2e9 * np.outer(STACK, STACK) + 2e5 * np.outer(ARM, ARM),
+    drive_vector=17.36 * STACK,
+    contact_vector=np.array([1.0, 0.0, 0.0]),
+    clamped_capacitance=2.093e-7,
+)
+SEPARATION = np.linspace(0.0, 60e-6, 200)
+LAWS: dict[str, GapLaw] = {
+    "exponential": ExponentialGap(decay_length=2e-6),
+    "Hertz": HertzGap(tip_radius=5e-3, effective_modulus=1e11),
+    "linear": LinearGap(normal_stiffness=5e6),
+    "table": TabulatedGap(
+        separation=SEPARATION,
+        normal_force=100 * np.exp(-SEPARATION / 4e-6),
+        normal_stiffness=100 / 4e-6 * np.exp(-SEPARATION / 4e-6),
+    ),
+}
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.3])
+@pytest.mark.parametrize("name", LAWS)
+def test_exponents_are_those_of_the_kernel(name: str, damping: float, monkeypatch: MonkeyPatch) -> None:
+    found: list[tuple[Floats, Floats]] = []
+
+    def both(*arguments: object) -> Floats:
+        compiled = floquet_exponents(*arguments)  # type: ignore[arg-type]
+        with few_points(), monkeypatch.context() as patch:
+            patch.setattr(type(monodromy_power_norms), "compiled", None)
+            found.append((compiled, floquet_exponents(*arguments)))  # type: ignore[arg-type]
+        return compiled
+
+    monkeypatch.setattr(solver, "floquet_exponents", both)
+    volts = np.linspace(0.1, 40, 30)
+    law = replace(LAWS[name], force_damping=damping)  # type: ignore[type-var]
+    steady_state(STRUCTURE, law, normal_load=3.0, frequency=np.linspace(5e3, 40e3, 30), voltage_amplitude=volts)
+    assert found
+    for compiled, by_rows in found:
+        assert by_rows == approx(compiled, abs=1e-9, rel=1e-9)
