@@ -11,6 +11,7 @@ from .contact_temperature import (
 )
 from .datasets import dataset as dataset, gridded as gridded, write_netcdf as write_netcdf
 from .distribution import Distribution as Distribution, LogNormal as LogNormal, Normal as Normal, Uniform as Uniform
+from .excitation import energy_balance as energy_balance
 from .file.edit import with_tables as with_tables
 from .file.json_schema import rig_schema as rig_schema
 from .file.reader import (
@@ -59,7 +60,6 @@ from .parametric_study import (
     voltage_study as voltage_study,
     waveform_study as waveform_study,
 )
-from .power_comparison import energy_balance as energy_balance
 from .record import (
     AMPLITUDE_SOURCES as AMPLITUDE_SOURCES,
     AmplitudeSource as AmplitudeSource,

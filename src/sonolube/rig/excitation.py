@@ -1,5 +1,6 @@
-"""Drive voltage of a rig: waveform, start-up ramp, harmonics, extremes and amplifier power."""
+"""Drive voltage of a rig: waveform, start-up ramp, harmonics, extremes, amplifier power and its balance."""
 
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from sonolube.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform
 from sonolube.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.record import Rig
+from sonolube.units import format_si
 
 _VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first
 
@@ -136,6 +138,35 @@ def amplifier_power(
         voltage_peak_to_peak=_swing(drive, voltage_peak_to_peak),
         frequency=drive.frequency if frequency is None else frequency,
     )
+
+
+def energy_balance(*, actuator_power: float | None, dissipated_power: float | None) -> str | None:
+    """Return how the power of the amplifier and the dissipated power compare, and why, in one line.
+
+    Parameters
+    ----------
+    actuator_power : float or None
+        That a linear amplifier supplies, D 1.9; None or NaN where it is not known. [W]
+    dissipated_power : float or None
+        That the computed motion turns into heat; None or NaN where no structure gives it. [W]
+
+    Returns
+    -------
+    str or None
+        None where one of them is not known.
+    """
+    known = [power for power in (actuator_power, dissipated_power) if power is not None and isfinite(power)]
+    if len(known) < 2:
+        return None
+    supplied, dissipated = known
+    capacitive, motional = format_si(supplied, "W"), format_si(dissipated, "W")
+    which = (
+        f"{capacitive} charges the actuator's capacitance alone, from the supply of a linear amplifier (D 1.9);"
+        f" {motional} is what the computed motion turns into heat in stack, dampers and contact"
+    )
+    if dissipated <= supplied:
+        return which
+    return f"{which}: D 1.9 leaves the current of the motion out, so that the amplifier must supply the larger"
 
 
 def _swing(drive: Drive, voltage_peak_to_peak: ArrayLike | None) -> Floats:

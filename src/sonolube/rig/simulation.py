@@ -12,11 +12,16 @@ from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
 from sonolube.rig.amplitude_source import ResolvedVibration, resolved_vibration, source_caveats
 from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.excitation import actuator_capacitance, amplifier_power, voltage_harmonics, voltage_range
+from sonolube.rig.excitation import (
+    actuator_capacitance,
+    amplifier_power,
+    energy_balance,
+    voltage_harmonics,
+    voltage_range,
+)
 from sonolube.rig.friction_and_wear import mean_friction, mean_over_time, wear_model_of
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
-from sonolube.rig.power_comparison import energy_balance
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
 from sonolube.units import format_si
