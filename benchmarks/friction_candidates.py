@@ -89,6 +89,11 @@ def wearing_in(test: FrictionTest, memory_length: float, wear_in_length: float =
     return sine(test, memory_length, test.contact.roughness.rms_height / 3 * np.exp(-slid / wear_in_length))
 
 
+def nominal_amplitude(test: FrictionTest, memory_length: float, power: float = 1.0) -> float:
+    share = test.vibration_amplitude / 2.5e-6 if test.set_name == "B" else 1.0  # of that at 28 V, D appendix A 3.1.3
+    return sine(replace(test, vibration_amplitude=test.vibration_amplitude * share ** (power - 1)), memory_length)
+
+
 def mindlin_like(test: FrictionTest, memory_length: float, exponent: float) -> float:
     return sine(test, memory_length * (test.friction_coefficient / 0.3) ** exponent)
 
@@ -130,11 +135,13 @@ def named(name: str, ratio: Any, *parameters: FreeParameter) -> ModelVariant:
 
 
 (ZERO,) = per_rig((number("zero_error", 0.2, 0.0, 2.0, default=0.0),), "power map")
+(POWER,) = per_rig((number("power", 1.2, 0.5, 3.0, default=1.0),), "power map")
 (WEAR_IN,) = per_rig((number("wear_in_length", 3.0, 0.3, 1e3, default=1e9),), "power map")
 CANDIDATES = (
     *compared_models(_KEPT),
     *compared_models(_IN_PLANE),
     named("zero of the load cell in B", zero_error, ZERO),
+    named("amplitude of B with voltage^p", nominal_amplitude, POWER),
     named("plates of B smooth with distance", wearing_in, WEAR_IN),
     named("lognormal memory lengths", distributed, number("spread", 0.5, 0.01, 3.0)),
     named("memory length with friction^p", mindlin_like, number("exponent", 0.1, -2.0, 2.0)),
