@@ -107,7 +107,7 @@ def mode_figure(surface: ShapedSurface, *, title: str, amplitude: float = 1.0) -
         middle = 1e3 * (points.max(axis=0) + points.min(axis=0)) / 2
         half = 1e3 * extent * 0.5 + 90 * extent.max()
         axes.set(**{f"{k}lim": (middle[i] - half[i], middle[i] + half[i]) for i, k in enumerate("xyz")})
-        axes.set_box_aspect(half, zoom=0.96 - 0.28 * half[2] / np.linalg.norm(half))  # tall ones need room for labels
+        axes.set_box_aspect(half, zoom=0.96 - 0.32 * half[2] / np.linalg.norm(half))  # tall ones need room for labels
         figure.suptitle(f"{title}\nlargest displacement drawn as {_EXAGGERATION:.0%} of the part's length", fontsize=9)
         _label_axes(axes, half)
         figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.14, label="displacement over its largest")
