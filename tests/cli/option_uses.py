@@ -405,11 +405,11 @@ MODES = {
         "horn design",
         ("conical_horn", "--frequency", "20kHz", "--material", "titanium_6al4v", "--tolerance", "0.3"),
         {
-            "--frequency": "30kHz",
+            "--frequency": "20.5kHz",
             "--material": "aluminium_2024",
             "--gain": "2",
             "--amplitude": "20um",
-            "--set": "radius=10mm",
+            "--set": "radius=19mm",
             "--mode": "axial 2",
             "--axis": "x",
             "--tool-mass": "50g",
@@ -418,7 +418,17 @@ MODES = {
     ),
     "horn of even thickness": Mode(
         "horn design",
-        ("cylinder", "--frequency", "20kHz", "--material", "titanium_6al4v", "--tolerance", "0.3"),
+        (
+            "cylinder",
+            "--set",
+            "radius=10mm",
+            "--frequency",
+            "40kHz",
+            "--material",
+            "titanium_6al4v",
+            "--tolerance",
+            "0.3",
+        ),
         {"--tune": "radius"},
     ),
     "friction of recordings": Mode(

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 import pytest
 import typer
@@ -41,9 +40,16 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
+    """Empty files of a figure whose parts are drawn, but not rendered."""
+    plt.close(drawing.draw())
+    return dict.fromkeys(forms, b"")
+
+
 @pytest.fixture(autouse=True)
-def compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Compiled kernels also for few points: once they are compiled, a third of the time, with the same statements."""
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No figure is rendered, and few points are computed as many are: the same statements, faster once compiled."""
+    monkeypatch.setattr("sonolube.report.page.drawn", drawn)
     monkeypatch.setattr(Kernel, "_runs_plain", lambda *_: False)
 
 
@@ -90,12 +96,6 @@ def _numbers(path: Path) -> str:
         return hashlib.sha256(b"".join(data[name].values.tobytes() for name in sorted(map(str, data)))).hexdigest()
 
 
-def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
-    """Empty files of a figure whose parts are drawn, but not rendered; without the option it is rendered."""
-    plt.close(drawing.draw())
-    return dict.fromkeys(forms, b"")
-
-
 @cache
 def options_of(name: str) -> frozenset[str]:
     """Options of a command as typed; of a pair such as --track/--no-track the one that is not the default."""
@@ -124,8 +124,7 @@ def test_an_option_changes_the_answer_or_is_refused_by_name(name: str, given: st
         changed = tuple(value[1] if word == value[0] else word for word in base)
     else:
         changed = (*base, given) if value is None else (*base, given, value)
-    with patch("sonolube.report.page.drawn", drawn):
-        after = outcome(mode.command, changed, folder, f"{name}{given}".replace(" ", ""))
+    after = outcome(mode.command, changed, folder, f"{name}{given}".replace(" ", ""))
     if after.code:
         assert after.code == 2, after.line
         assert given.removeprefix("--").replace("-", "_") in after.line.replace("-", "_"), after.line

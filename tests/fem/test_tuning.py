@@ -17,6 +17,7 @@ from sonolube.fem import (
     tuned_mode,
 )
 from sonolube.fem.solver.element_order import change_order
+from sonolube.fem.solver.modes import NotConverged
 
 E, NU, RHO = 200e9, 0.3, 8000.0
 
@@ -57,6 +58,15 @@ def test_a_tuned_horn_keeps_its_frequency_on_a_finer_mesh_of_another_order() -> 
     assert finer.mesh.node_count > 1.2 * change_order(found.mode.model.mesh, order=2).node_count
     assert modes.natural_frequency[row] == approx(30e3, rel=1e-3)
     assert modes.natural_frequency[row] == approx(found.mode.frequency, rel=5e-4)
+
+
+def test_a_size_that_the_frequency_hardly_depends_on_is_refused() -> None:
+    def model_at(width: float, element_size: float) -> Model:
+        mesh = box_mesh(length=0.124, width=width, thickness=0.006, divisions=(4, 1, 1))
+        return Model(mesh=mesh, media={"block": SLIM})
+
+    with raises(NotConverged, match=r"^no length near 0.0\d+ m gives 20000 Hz; start nearer .*, or tune another size$"):
+        tuned_mode(model_at, name="axial 1", axis="x", frequency=20e3, length=0.004, element_size=0.025)
 
 
 def test_a_missing_mode_is_refused_with_the_names_of_those_found() -> None:

@@ -24,6 +24,7 @@ _MOST_STEPS = 12
 _FIRST_STEP, _LARGEST_STEP = 0.05, 0.2  # of the length; the first must exceed the scatter between meshes
 _DIFFERENCE = 0.06  # of the length, to either side for the slope, large against the scatter between meshes
 _MOST_CORRECTIONS = 5
+_NO_LENGTH = "no length near {start:.4g} m gives {target:g} Hz; start nearer to the solution, or tune another size"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -220,7 +221,7 @@ def tuned_mode(
     shorter, longer = found * (1 - _DIFFERENCE), found * (1 + _DIFFERENCE)
     exponent = float(np.log(coarse_frequency(longer) / coarse_frequency(shorter)) / np.log(longer / shorter))
     slope = exponent * frequency / found
-    found -= (frequency_at(found, _FINE_ORDER) - frequency) / slope
+    found = _corrected(found, frequency_at(found, _FINE_ORDER) - frequency, slope, frequency)
     for _ in range(_MOST_CORRECTIONS):
         found = _seven_digits(found)
         mode = named_mode(
@@ -235,7 +236,7 @@ def tuned_mode(
         difference = mode.frequency - frequency
         if abs(difference) <= max(_TOLERANCE, mode.frequency_error) * frequency:
             return TunedMode(length=found, mode=mode, frequency_per_length=slope)
-        found -= difference / slope
+        found = _corrected(found, difference, slope, frequency)
     raise NotConverged(
         f"{name} came within {abs(difference):.3g} Hz of {frequency:g} Hz; request a smaller relative_tolerance"
     )
@@ -244,6 +245,14 @@ def tuned_mode(
 def _seven_digits(length: float) -> float:
     """Length rounded to seven significant digits."""
     return float(f"{length:.6e}")
+
+
+def _corrected(length: float, difference: float, slope: float, target: float) -> float:
+    """Length after a Newton step against a difference of frequency, refused where no positive one is left."""
+    corrected = length - difference / slope
+    if not 0 < corrected < np.inf:
+        raise NotConverged(_NO_LENGTH.format(start=length, target=target))
+    return corrected
 
 
 def _mode_index(names: tuple[str, ...], name: str) -> int:
@@ -270,6 +279,4 @@ def _secant_length(frequency_at: Callable[[float], float], target: float, start:
         candidate = length + float(np.clip(step, -_LARGEST_STEP * length, _LARGEST_STEP * length))
         low, high = (max(lower, length), upper) if difference > 0 else (lower, min(upper, length))
         candidate = candidate if low < candidate < high else (low + min(high, 2 * length)) / 2
-    raise NotConverged(
-        f"no length near {start:.4g} m gives {target:g} Hz; start nearer to the solution, or change another size"
-    )
+    raise NotConverged(_NO_LENGTH.format(start=start, target=target))
