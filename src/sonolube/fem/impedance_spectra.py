@@ -1,9 +1,11 @@
 """Impedance spectra of a transducer, free and with faces clamped, and their contents as files."""
 
 import io
+import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +21,7 @@ from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.meshing import generate_mesh
 from sonolube.fem.solver.model import FixedSupport, Model
 from sonolube.fem.vtk_export import vtu_text
+from sonolube.threads import thread_pool
 
 _LEAST_COUPLING = 0.05  # effective coupling factor from which a mode counts as driven by the voltage
 
@@ -95,16 +98,28 @@ def supported_spectra(
     --------
     converged_port, harmonic_response
     """
+    one_at_a_time = threading.RLock()
 
     @lru_cache
-    def mesh_at(size: float) -> Mesh:
+    def kept_mesh(size: float) -> Mesh:
         return generate_mesh(transducer.geometry, element_size=size)
 
-    def spectrum(fixed: tuple[FixedSupport, ...]) -> SupportedSpectrum:
+    def mesh_at(size: float) -> Mesh:
+        with one_at_a_time:
+            return kept_mesh(size)
+
+    def told(*progress: Any) -> None:
+        if advance:
+            with one_at_a_time:
+                advance(*progress)
+
+    def spectrum(faces: Sequence[str]) -> SupportedSpectrum:
+        fixed = tuple(FixedSupport(face=face) for face in faces)
+
         def model_at(size: float) -> Model:
             return transducer.model(mesh_at(size), fixed=fixed)
 
-        held = {support.face for support in fixed}
+        held = set(faces)
         port = converged_electromechanical_model(
             model_at,
             outputs={name: output for name, output in transducer.outputs.items() if output.face not in held},
@@ -112,15 +127,14 @@ def supported_spectra(
             highest_frequency=float(frequency[-1]),
             element_size=element_size,
             relative_tolerance=relative_tolerance,
-            advance=advance,
+            advance=told,
         )
         port = replace(port, reduction=transducer.whole(port.reduction))
         return SupportedSpectrum(port=port, response=harmonic_response(port.reduction, frequency=frequency))
 
-    spectra = {"free": spectrum(())}
-    if clamped_faces:
-        spectra["clamped"] = spectrum(tuple(FixedSupport(face=face) for face in clamped_faces))
-    return spectra
+    supports = {"free": (), "clamped": clamped_faces} if clamped_faces else {"free": ()}
+    with thread_pool(len(supports)) as pool:
+        return dict(zip(supports, pool.map(spectrum, supports.values()), strict=True))
 
 
 def spectrum_table(spectrum: SupportedSpectrum) -> str:

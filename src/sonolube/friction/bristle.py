@@ -127,6 +127,9 @@ def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady:
     ndarray, shape (m,)
     """
     n = k.size
+    largest = 0.0
+    for j in range(n):
+        largest = max(largest, limit[j])
     means = np.empty(steady.size)
     for i in range(steady.size):
         force = limit[0]  # slip at the smallest load, unless the in-plane motion reverses it
@@ -138,7 +141,7 @@ def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady:
                 force = _force_after_slide(force, (k[j] + k[following]) / 2, mid_limit, slides[j] + steady[i], exponent)
                 force = min(max(force, -limit[following]), limit[following])
                 total += force
-            if abs(force - start) <= 1e-12 * limit.max():
+            if abs(force - start) <= 1e-12 * largest:
                 break
         means[i] = total / n
     return means

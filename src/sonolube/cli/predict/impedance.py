@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -21,13 +21,10 @@ from sonolube.fem.impedance_spectra import SupportedSpectrum, coupled_modes_grid
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.report import Drawing
-from sonolube.rig import dataset
+from sonolube.rig.datasets import labelled
+from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.units import format_si
 from sonolube.workbench.named_parts import longest_axis, named_transducer, starting_size
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _FILES = "{part}-impedance.* {part}-impedance-free.* {part}-impedance-clamped.* {part}-modes-*.vtu"
 
@@ -161,10 +158,10 @@ class ImpedanceAnswer(Answer):
         draw = lambda: impedance_figure(self.spectra, title=title, measured=measured)  # noqa: E731
         return {f"{self._stem()}-impedance": Drawing(draw=draw)}
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> Mapping[str, str | LabelledArrays]:
         """Table and dataset of each spectrum, and its coupled modes where they are wanted."""
         stem = self._stem()
-        files: dict[str, str | xr.Dataset] = {}
+        files: dict[str, str | LabelledArrays] = {}
         for name, spectrum in self.spectra.items():
             values = {
                 "frequency": spectrum.response.frequency,
@@ -174,7 +171,7 @@ class ImpedanceAnswer(Answer):
             }
             title = f"Impedance of {stem.replace('_', ' ')}, {name}"
             files[f"{stem}-impedance-{name}.csv"] = spectrum_table(spectrum)
-            files[f"{stem}-impedance-{name}.nc"] = dataset(values, along="frequency", title=title)
+            files[f"{stem}-impedance-{name}.nc"] = labelled(values, along="frequency", title=title)
             if self.with_modes:
                 files[f"{stem}-modes-{name}.vtu"] = coupled_modes_grid(spectrum)
         return files

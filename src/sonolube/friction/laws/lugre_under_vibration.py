@@ -75,7 +75,7 @@ def lugre_under_vibration(
     speeds, own = v_r.reshape(-1, 1), _Columns.of([law])
 
     def mean_force(sampled: GapMotion) -> Floats:
-        oscillation = fraction * delayed_oscillation(sampled.displacement, phase=lag)
+        oscillation = _in_plane(sampled.displacement, fraction, lag)
         load = _mid_load(sampled.normal_force, motion.normal_load)
         bristle_force = _mean_force(own, load, oscillation, speeds, motion.frequency)
         return bristle_force + law.viscous_coefficient * speeds[:, 0]
@@ -127,7 +127,7 @@ def lugre_ratios(
     steady = law.limit(v_r[:, np.newaxis]) + law.viscous_coefficient * v_r[:, np.newaxis]
 
     def mean_ratio(rows: Integers, displacement: Floats, normal_force: Floats) -> Floats:
-        oscillation = fraction * delayed_oscillation(displacement, phase=lag)
+        oscillation = _in_plane(displacement, fraction, lag)
         speeds, load = v_r[rows, np.newaxis], _mid_load(normal_force, loads[rows])
         own = law.rows(rows)
         bristle_force = _mean_force(own, load, oscillation, speeds, frequencies[rows])
@@ -159,6 +159,11 @@ class _Columns(NamedTuple):
         """Return the limit of the bristle force under the dead load at relative velocities. [N]"""
         F_c, F_s = self.coulomb_friction_force, self.static_friction_force
         return np.asarray(F_c + (F_s - F_c) * np.exp(-((v / self.stribeck_velocity) ** 2)))
+
+
+def _in_plane(displacement: Floats, fraction: float, lag: float) -> Floats:
+    """Return the motion along the sliding that goes with samples of that along the normal. [m]"""
+    return fraction * delayed_oscillation(displacement, phase=lag) if fraction else np.zeros(displacement.shape)
 
 
 def _mid_load(normal_force: Floats, normal_load: float | Floats) -> Floats:
