@@ -1,15 +1,16 @@
 """Mean friction ratio of a normally vibrated contact by stick-slip of its asperities."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import exp, pi
 from typing import ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, Integers, require_positive
+from sonolube.checks import Complexes, Floats, Integers, require_positive
 from sonolube.compilation import kernel
-from sonolube.contact.gap_motion import GapMotion, GapMotionBatch, delayed_oscillation, gap_harmonics
+from sonolube.contact.gap_motion import GapMotion, GapMotionBatch, gap_harmonics
 from sonolube.contact.height_distribution import ExponentialHeights
 from sonolube.contact.period_mean import richardson_period_mean
 from sonolube.contact.rough import RoughContact, decay_length, separation
@@ -17,7 +18,12 @@ from sonolube.friction.models.asperity_stick_slip_batch import batched_stick_sli
 from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
 from sonolube.friction.models.model import FrictionModel, parameter
 
-_HEIGHTS = np.polynomial.legendre.leggauss(64)
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
+_EVEN, _EVEN_WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2  # of a quadrature from 0 to 1
+_GRADED, _GRADED_WEIGHTS = (
+    (1 - np.cos(pi * _EVEN)) / 2,
+    _EVEN_WEIGHTS * pi * np.sin(pi * _EVEN) / 2,
+)  # towards both ends
 _LONGEST_PERIOD = 8192  # phases of a motion whose harmonics are worth a try
 _NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
@@ -113,11 +119,11 @@ class AsperityStickSlip(FrictionModel):
         length = float(decay_length(contact, separation=separation(contact, normal_load=motion.normal_load)))
 
         def mean_over_limit(sampled: GapMotion) -> Floats:
-            widest_first = np.roll(sampled.displacement, -int(np.argmax(sampled.displacement)))
-            in_plane = self.in_plane_fraction * delayed_oscillation(widest_first, phase=self.in_plane_phase)
-            slides = length / self.memory_length * np.diff(in_plane, append=in_plane[:1])
-            steady = length / self.memory_length * v_r.ravel() / (motion.frequency * widest_first.size)
-            return _sampled_ratio(widest_first / length, slides / length, steady / length, *_HEIGHTS)
+            gap, steps = _from_widest_gap(sampled)
+            delays = np.exp(-1j * self.in_plane_phase * np.arange(steps.size))
+            slides = self.in_plane_fraction / self.memory_length * np.fft.irfft(steps * delays, gap.size)
+            steady = v_r.ravel() / (self.memory_length * motion.frequency * gap.size)
+            return _sampled_ratio(gap / length, slides, steady)
 
         if not self.in_plane_fraction and motion.displacement.size <= _LONGEST_PERIOD:
             every = np.zeros(v_r.size, dtype=np.int64)
@@ -172,25 +178,34 @@ class AsperityStickSlip(FrictionModel):
         )
 
 
-def _sampled_ratio(x: Floats, slides: Floats, steady: Floats, nodes: Floats, weights: Floats) -> Floats:
+@lru_cache(maxsize=64)
+def _from_widest_gap(motion: GapMotion) -> tuple[Floats, Complexes]:
+    """Return the displacement from its widest on, and the harmonics of its steps; kept for fits."""
+    gap = np.roll(motion.displacement, -int(np.argmax(motion.displacement)))
+    harmonics = np.fft.rfft(gap)
+    harmonics[0] = 0.0
+    return gap, harmonics * (np.exp(2j * pi * np.arange(harmonics.size) / gap.size) - 1)
+
+
+def _sampled_ratio(x: Floats, slides: Floats, steady: Floats) -> Floats:
     """Return the mean friction over the mean limit, for gaps, vibration slides and steady slides in decay lengths."""
     lowest, highest = float(x.min()), float(x.max())
     mean_limit = np.exp(lowest - x).mean()
     permanent = np.array([highest + 2 * (highest - lowest) + 2 * np.abs(slides).sum()])
-    span, angles = min(highest - lowest, _NEGLIGIBLE), pi * (1 + nodes) / 2
-    graded = lowest + span * (1 - np.cos(angles)) / 2  # towards both ends
-    shares = weights * pi * span * np.sin(angles) / 4
+    span = min(highest - lowest, _NEGLIGIBLE)
+    graded, between = span * _GRADED, highest - lowest
+    shares = span * _GRADED_WEIGHTS * np.exp(-graded)
     ratio = np.empty(steady.size)
     for i, slide in enumerate(steady.tolist()):
         # the force of elements in permanent contact is their height less a common envelope
         (force,), (least,) = _element_forces(x, slides, slide, permanent)
         start = max(highest, (permanent[0] - least) / 2)  # above it no element slips backwards
         total = exp(lowest - start) * (start - (permanent[0] - force) + 1)
-        total += shares @ (np.exp(lowest - graded) * _element_forces(x, slides, slide, graded)[0])
+        total += shares @ _element_forces(x, slides, slide, lowest + graded)[0]
         if start > highest:
-            between = highest + (start - highest) * (1 + nodes) / 2
-            forces = np.exp(lowest - between) * _element_forces(x, slides, slide, between)[0]
-            total += (start - highest) / 2 * (weights @ forces)
+            heights = between + (start - highest) * _EVEN
+            forces = np.exp(-heights) * _element_forces(x, slides, slide, lowest + heights)[0]
+            total += (start - highest) * (_EVEN_WEIGHTS @ forces)
         ratio[i] = total / mean_limit
     return ratio
 
