@@ -15,6 +15,7 @@ from pytest import CaptureFixture, MonkeyPatch, raises
 from sonolube.cli import main
 from sonolube.cli.console import answer, progress
 from sonolube.cli.console.outputs import OutputFolder
+from sonolube.compilation import Kernel
 from sonolube.fem import electromechanical_model, mode_files, tuning
 from sonolube.fem.solver import convergence
 from sonolube.fem.solver.model import Model
@@ -47,6 +48,12 @@ class Run:
 
 
 Program = Callable[..., Run]
+
+
+@pytest.fixture
+def compiled_kernels(monkeypatch: MonkeyPatch) -> None:
+    """Few points are computed as many are: the same statements, faster once they are compiled."""
+    monkeypatch.setattr(Kernel, "_runs_plain", lambda *_: False)
 
 
 @pytest.fixture

@@ -19,7 +19,6 @@ from tests.cli.option_uses import EXECUTION, MODES, PLACES, TESTED_ELSEWHERE, wr
 
 from sonolube.cli import main
 from sonolube.cli.commands import COMMANDS
-from sonolube.compilation import Kernel
 from sonolube.report import Drawing
 
 pytestmark = pytest.mark.slow
@@ -47,10 +46,9 @@ def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
 
 
 @pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No figure is rendered, and few points are computed as many are: the same statements, faster once compiled."""
+def quick(monkeypatch: pytest.MonkeyPatch, compiled_kernels: None) -> None:
+    """No figure is rendered, and kernels are compiled."""
     monkeypatch.setattr("sonolube.report.page.drawn", drawn)
-    monkeypatch.setattr(Kernel, "_runs_plain", lambda *_: False)
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,8 @@ from tests.cli.conftest import Program
 from sonolube.figure import FIGURE_STYLES, render_figure
 from sonolube.report import page
 
+pytestmark = pytest.mark.usefixtures("compiled_kernels")
+
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = RIGS / "tribometer.toml"
 COMMANDS = {

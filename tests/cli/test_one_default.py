@@ -8,6 +8,8 @@ import pytest
 import xarray as xr
 from pytest import approx
 
+pytestmark = pytest.mark.usefixtures("compiled_kernels")
+
 Program = Callable[..., Any]
 SPEED, LOAD = 20.3e-3, 3.0
 OVER = ("--over", "sliding.sliding_speed=20.3mm/s")

@@ -8,6 +8,8 @@ import pytest
 import xarray as xr
 from pytest import approx
 
+pytestmark = pytest.mark.usefixtures("compiled_kernels")
+
 Program = Callable[..., Any]
 
 

@@ -15,6 +15,8 @@ from tests.cli.conftest import Program
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.protocol import duration, flattened, protocol_from, protocol_text, read_protocol
 
+pytestmark = pytest.mark.usefixtures("compiled_kernels")
+
 ROOT = Path(__file__).parents[3]
 POWER_MAP = ROOT / "examples" / "rigs" / "power_map.toml"
 TRIBOMETER = ROOT / "examples" / "rigs" / "tribometer.toml"

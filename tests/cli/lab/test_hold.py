@@ -11,6 +11,8 @@ from tests.lab.rig_stand_ins import instrument_rig
 
 from sonolube.lab.records import read_run
 
+pytestmark = pytest.mark.usefixtures("compiled_kernels")
+
 SHORT = ("--duration", "6s", "--run-in", "0.5s", "--friction", "0.75N", "--step-to", "30mm/s")
 
 
