@@ -543,7 +543,7 @@ MODES = {
     ),
     "lab hold": Mode(
         "lab hold",
-        (str(RIGS / "power_map.toml"), "--duration", "0.5s", "--run-in", "0.1s"),
+        (str(RIGS / "power_map.toml"), "--duration", "1s", "--run-in", "0.1s"),
         {
             "--friction": "0.9N",
             "--step-to": "40mm/s",
@@ -557,7 +557,7 @@ MODES = {
             "--quality": "20",
             "--coupling": "0.3",
             "--run-in": "0.2s",
-            "--duration": "0.6s",
+            "--duration": "1.2s",
             "--device": "FOLDER/devices.toml",
             "--seed": "1",
             "--tag": "mine",
