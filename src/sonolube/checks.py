@@ -80,10 +80,9 @@ def require_within(lower: float, upper: float, /, **values: ArrayLike) -> Floats
 def _require(accepts: Callable[[Any], Any], demand: str, values: Mapping[str, Any]) -> Floats:
     """Return the first value as a float array; refuse any value that is not finite or not accepted."""
     for name, value in values.items():
+        # the common case of one number, in a tenth of the time
         number = value.item() if type(value) is np.ndarray and not value.ndim and value.dtype is _DOUBLE else value
-        if (
-            isinstance(number, float) and isfinite(number) and accepts(number)
-        ):  # the common case, in a tenth of the time
+        if isinstance(number, float) and isfinite(number) and accepts(number):
             continue
         array = _floats(name, value)
         _refuse_unless(np.isfinite(array), array, name, "must be finite")

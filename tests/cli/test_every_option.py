@@ -21,7 +21,7 @@ from sonolube.cli import main
 from sonolube.cli.commands import COMMANDS
 from sonolube.report import Drawing
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("compiled_kernels")]
 
 _TIME_OF_RUN = re.compile(r"\d{8}T\d{6}Z")  # in the name of its folder
 CASES = [
@@ -40,15 +40,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
-    """Empty files of a figure whose parts are drawn, but not rendered."""
+    """Empty files of a figure whose parts are drawn, but not rendered; without the option it is rendered."""
     plt.close(drawing.draw())
     return dict.fromkeys(forms, b"")
-
-
-@pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch, compiled_kernels: None) -> None:
-    """No figure is rendered, and kernels are compiled."""
-    monkeypatch.setattr("sonolube.report.page.drawn", drawn)
 
 
 @dataclass(frozen=True)
@@ -114,7 +108,9 @@ def test_the_table_has_every_option_of_every_command() -> None:
 
 
 @pytest.mark.parametrize(("name", "given"), CASES)
-def test_an_option_changes_the_answer_or_is_refused_by_name(name: str, given: str, folder: Path) -> None:
+def test_an_option_changes_the_answer_or_is_refused_by_name(
+    name: str, given: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     mode = MODES[name]
     base = tuple(mode.base)
     value = mode.values.get(given)
@@ -122,7 +118,9 @@ def test_an_option_changes_the_answer_or_is_refused_by_name(name: str, given: st
         changed = tuple(value[1] if word == value[0] else word for word in base)
     else:
         changed = (*base, given) if value is None else (*base, given, value)
-    after = outcome(mode.command, changed, folder, f"{name}{given}".replace(" ", ""))
+    with monkeypatch.context() as patch:
+        patch.setattr("sonolube.report.page.drawn", drawn)
+        after = outcome(mode.command, changed, folder, f"{name}{given}".replace(" ", ""))
     if after.code:
         assert after.code == 2, after.line
         assert given.removeprefix("--").replace("-", "_") in after.line.replace("-", "_"), after.line

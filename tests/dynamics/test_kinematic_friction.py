@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.special import ellipk
+from tests.dynamics.tribometer_chain import TRIBOMETER
 
 from sonolube.dynamics import (
     ExponentialGap,
@@ -20,18 +21,9 @@ from sonolube.dynamics import (
     steady_state,
 )
 from sonolube.dynamics.harmonic_balance.extrema import response_measures
-from sonolube.dynamics.structure import Structure, drive_receptance
+from sonolube.dynamics.structure import drive_receptance
 from sonolube.errors import InvalidInput
 
-STACK, ARM = np.array([-1.0, 1.0, 0.0]), np.array([0.0, 1.0, -1.0])
-TRIBOMETER = Structure(
-    mass_matrix=np.diag([0.15, 0.35, 0.5]),
-    damping_matrix=30.0 * np.outer(STACK, STACK) + 20.0 * np.outer(ARM, ARM),
-    stiffness_matrix=2e9 * np.outer(STACK, STACK) + 2e5 * np.outer(ARM, ARM),
-    drive_vector=17.36 * STACK,
-    contact_vector=np.array([1.0, 0.0, 0.0]),
-    clamped_capacitance=2.093e-7,
-)
 ROUGH = ExponentialGap(decay_length=2e-6)
 SPEEDS = np.geomspace(1e-3, 1.0, 16)
 

@@ -7,22 +7,14 @@ import pytest
 from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.integrate import solve_ivp
+from tests.dynamics.tribometer_chain import TRIBOMETER
 
 from sonolube.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, Status, SteadyStates, steady_state
 from sonolube.dynamics.linear import poles
 from sonolube.dynamics.stability import floquet_multipliers
-from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
+from sonolube.dynamics.structure import drive_receptance, with_contact_spring
 from sonolube.errors import InvalidInput
 
-STACK, ARM = np.array([-1.0, 1.0, 0.0]), np.array([0.0, 1.0, -1.0])
-TRIBOMETER = Structure(
-    mass_matrix=np.diag([0.15, 0.35, 0.5]),
-    damping_matrix=30.0 * np.outer(STACK, STACK) + 20.0 * np.outer(ARM, ARM),
-    stiffness_matrix=2e9 * np.outer(STACK, STACK) + 2e5 * np.outer(ARM, ARM),
-    drive_vector=17.36 * STACK,
-    contact_vector=np.array([1.0, 0.0, 0.0]),
-    clamped_capacitance=2.093e-7,
-)
 ROUGH = ExponentialGap(decay_length=2e-6)
 
 

@@ -24,8 +24,8 @@ structure = Structure(
     clamped_capacitance=2e-7,
 )
 states = steady_state(
-    structure, ExponentialGap(decay_length=2e-6, force_damping=0.5), normal_load=3.0, frequency=22e3,
-    voltage_amplitude=14.0, stability=True, relative_tolerance=1e-4, workers=2,
+    structure, ExponentialGap(decay_length=2e-6, force_damping={damping}), normal_load=3.0, frequency=22e3,
+    voltage_amplitude=14.0, stability={stability}, relative_tolerance={tolerance}, workers=2,
 )
 friction_averages(states, sliding_speed=[0.1])
 kernels = [kernel.compiled for kernel in (newton_solve, monodromy_power_norms, elliptic_averages)]
@@ -33,9 +33,13 @@ print([sum(kernel.stats.cache_misses.values()) for kernel in kernels])
 """
 
 
-def test_the_caller_compiles_only_the_first_kernel_and_loads_the_others_from_the_cache(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("damping", "stability", "tolerance"), [(0.0, True, 1e-6), (0.5, False, 1e-4)])
+def test_the_caller_compiles_only_the_first_kernel_and_loads_the_others_from_the_cache(
+    tmp_path: Path, damping: float, stability: bool, tolerance: float
+) -> None:
     def compiled() -> str:
-        command, environment = [sys.executable, "-c", CALL], os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+        call = CALL.format(damping=damping, stability=stability, tolerance=tolerance)
+        command, environment = [sys.executable, "-c", call], os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
         return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.strip()
 
     assert compiled() == "[1, 0, 0]"

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pytest import approx, raises
+from tests.identified import identified_tribometer
 
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.identification import identify, pin_on_disc_model
@@ -113,10 +114,16 @@ def test_the_example_has_the_forward_model_of_the_published_facts_bit_for_bit() 
         assert np.array_equal(found[name], values), name
 
 
-def test_the_example_asks_for_the_identification_of_the_published_facts() -> None:
-    problem, published = read_facts(FACTS), tribometer_problem()
-    assert problem.facts == published.facts
-    assert problem.bounds == published.bounds
+@pytest.mark.slow
+def test_the_example_gives_the_identification_of_the_published_facts_bit_for_bit() -> None:
+    problem = read_facts(FACTS)
+    found = identify(rig_forward_model(RIG, problem), facts=problem.facts, bounds=problem.bounds)
+    expected = identified_tribometer()
+    assert found.estimates == expected.estimates
+    assert found.observed == expected.observed
+    assert found.directions == expected.directions
+    assert found.consistent_fits == expected.consistent_fits
+    assert found.conflicts == expected.conflicts
 
 
 def test_a_rig_is_identified_from_facts_of_its_own(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from sonolube.contact import decay_length
@@ -26,7 +27,7 @@ AGREES = 1e-3
 LANES = 96  # points marched together for as long as the fastest drive among them needs
 
 Array = NDArray[np.float64]
-POINTS = 2400
+SIZES = [pytest.param(960), pytest.param(9600, marks=pytest.mark.slow)]
 
 
 @cache
@@ -89,24 +90,27 @@ def disagreement(states: SteadyStates) -> Array:
     return np.asarray(np.abs(found / expected - 1).max(axis=0))
 
 
-def test_a_slow_start_from_rest_ends_in_the_vibration_that_is_called_periodic() -> None:
-    states = balanced(POINTS)
+@pytest.mark.parametrize("points", SIZES)
+def test_a_slow_start_from_rest_ends_in_the_vibration_that_is_called_periodic(points: int) -> None:
+    states = balanced(points)
     periodic = states.status == Status.PERIODIC
     agreeing = disagreement(states)[periodic] < AGREES
     assert periodic.mean() > 0.98
     assert agreeing.mean() >= 0.995
 
 
-def test_every_point_has_a_status_and_every_solution_its_numbers() -> None:
-    states = balanced(POINTS)
+@pytest.mark.parametrize("points", SIZES)
+def test_every_point_has_a_status_and_every_solution_its_numbers(points: int) -> None:
+    states = balanced(points)
     assert np.isin(states.status, [status.value for status in Status]).all()
     found = states.status != Status.NOT_CONVERGED
     assert np.isfinite(states.vibration_amplitude[found]).all()
     assert np.isfinite(states.coexisting_amplitude[states.status == Status.MULTISTABLE]).all()
 
 
-def test_what_is_called_unstable_does_not_last() -> None:
-    states = balanced(POINTS)
+@pytest.mark.parametrize("points", SIZES)
+def test_what_is_called_unstable_does_not_last(points: int) -> None:
+    states = balanced(points)
     for point in np.flatnonzero(states.status == Status.UNSTABLE):
         found = march_until_settled(
             STRUCTURE,

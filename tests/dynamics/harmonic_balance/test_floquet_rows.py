@@ -5,23 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx
+from tests.dynamics.tribometer_chain import TRIBOMETER
 
 from sonolube.checks import Floats
 from sonolube.compilation import Kernel, few_points
 from sonolube.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap, steady_state
 from sonolube.dynamics.harmonic_balance import solver
 from sonolube.dynamics.harmonic_balance.floquet_exponent import floquet_exponents
-from sonolube.dynamics.structure import Structure
 
-STACK, ARM = np.array([-1.0, 1.0, 0.0]), np.array([0.0, 1.0, -1.0])
-STRUCTURE = Structure(
-    mass_matrix=np.diag([0.15, 0.35, 0.5]),
-    damping_matrix=30.0 * np.outer(STACK, STACK) + 20.0 * np.outer(ARM, ARM),
-    stiffness_matrix=2e9 * np.outer(STACK, STACK) + 2e5 * np.outer(ARM, ARM),
-    drive_vector=17.36 * STACK,
-    contact_vector=np.array([1.0, 0.0, 0.0]),
-    clamped_capacitance=2.093e-7,
-)
 SEPARATION = np.linspace(0.0, 60e-6, 200)
 LAWS: dict[str, GapLaw] = {
     "exponential": ExponentialGap(decay_length=2e-6),
@@ -54,7 +45,7 @@ def test_exponents_are_those_of_the_kernel(name: str, damping: float, monkeypatc
     volts, frequency = np.linspace(0.1, 40, 6), np.linspace(5e3, 40e3, 6)
     law = replace(LAWS[name], force_damping=damping)  # type: ignore[type-var]
     with few_points():
-        steady_state(STRUCTURE, law, normal_load=3.0, frequency=frequency, voltage_amplitude=volts)
+        steady_state(TRIBOMETER, law, normal_load=3.0, frequency=frequency, voltage_amplitude=volts)
     assert found
     for by_loops, by_rows in found:
         assert by_rows == approx(by_loops, abs=1e-9, rel=1e-9)

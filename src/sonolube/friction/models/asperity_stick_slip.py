@@ -20,10 +20,8 @@ from sonolube.friction.models.model import FrictionModel, parameter
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 _EVEN, _EVEN_WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2  # of a quadrature from 0 to 1
-_GRADED, _GRADED_WEIGHTS = (
-    (1 - np.cos(pi * _EVEN)) / 2,
-    _EVEN_WEIGHTS * pi * np.sin(pi * _EVEN) / 2,
-)  # towards both ends
+_GRADED = (1 - np.cos(pi * _EVEN)) / 2  # the same with nodes towards both ends
+_GRADED_WEIGHTS = pi / 2 * np.sin(pi * _EVEN) * _EVEN_WEIGHTS
 _LONGEST_PERIOD = 8192  # phases of a motion whose harmonics are worth a try
 _NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
@@ -192,8 +190,9 @@ def _sampled_ratio(x: Floats, slides: Floats, steady: Floats) -> Floats:
     lowest, highest = float(x.min()), float(x.max())
     mean_limit = np.exp(lowest - x).mean()
     permanent = np.array([highest + 2 * (highest - lowest) + 2 * np.abs(slides).sum()])
-    span = min(highest - lowest, _NEGLIGIBLE)
-    graded, between = span * _GRADED, highest - lowest
+    stroke = highest - lowest
+    span = min(stroke, _NEGLIGIBLE)
+    graded = span * _GRADED
     shares = span * _GRADED_WEIGHTS * np.exp(-graded)
     ratio = np.empty(steady.size)
     for i, slide in enumerate(steady.tolist()):
@@ -203,7 +202,7 @@ def _sampled_ratio(x: Floats, slides: Floats, steady: Floats) -> Floats:
         total = exp(lowest - start) * (start - (permanent[0] - force) + 1)
         total += shares @ _element_forces(x, slides, slide, lowest + graded)[0]
         if start > highest:
-            heights = between + (start - highest) * _EVEN
+            heights = stroke + (start - highest) * _EVEN
             forces = np.exp(-heights) * _element_forces(x, slides, slide, lowest + heights)[0]
             total += (start - highest) * (_EVEN_WEIGHTS @ forces)
         ratio[i] = total / mean_limit
