@@ -24,6 +24,7 @@ _MOST_STEPS = 12
 _FIRST_STEP, _LARGEST_STEP = 0.05, 0.2  # of the length; the first must exceed the scatter between meshes
 _DIFFERENCE = 0.06  # of the length, to either side for the slope, large against the scatter between meshes
 _MOST_CORRECTIONS = 5
+_FARTHEST = 10.0  # length after a correction over that before, at which the frequency hardly depends on it
 _NO_LENGTH = "no length near {start:.4g} m gives {target:g} Hz; start nearer to the solution, or tune another size"
 
 
@@ -248,9 +249,9 @@ def _seven_digits(length: float) -> float:
 
 
 def _corrected(length: float, difference: float, slope: float, target: float) -> float:
-    """Length after a Newton step against a difference of frequency, refused where no positive one is left."""
-    corrected = length - difference / slope
-    if not 0 < corrected < np.inf:
+    """Length after a Newton step against a difference of frequency, refused where it is far from the one before."""
+    corrected = length - difference / slope if slope else np.inf
+    if not length / _FARTHEST < corrected < _FARTHEST * length:
         raise NotConverged(_NO_LENGTH.format(start=length, target=target))
     return corrected
 
