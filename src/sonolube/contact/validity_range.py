@@ -1,6 +1,8 @@
 """Validity range of the statistical contact model: caveats of a contact, and the range of exponential heights."""
 
+from collections.abc import Callable
 from dataclasses import fields, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,9 +23,11 @@ MINIMUM_CONTACT_COUNT = 30
 """Number of asperities in contact below which the mean of the model is not representative of one contact. []"""
 
 
-_HALVINGS = 48  # of the bracket of an end of the range, to rounding
+_POINTS = 500  # at which the loads are compared, a twentieth of the heights' standard deviation apart
+_SECANTS = 6  # between two of them, to rounding
 
 
+@lru_cache(maxsize=64)
 def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) -> tuple[float, float] | None:
     """Return the range of normalized separations in which exponential heights approximate Gaussian ones.
 
@@ -67,22 +71,32 @@ def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) ->
         return log_force(h) - np.log(load)
 
     # within the table, and short of where the loads underflow
-    h = heights.standard_deviation * np.linspace(TABLE_RANGE[0] + 0.01, 20, 1000)
-    ratios, tolerance = log_ratio(h), np.log(factor)
+    h = heights.standard_deviation * np.linspace(TABLE_RANGE[0] + 0.01, 20, _POINTS)
+    ratios, tolerance = log_ratio(h), float(np.log(factor))
     peak = int(ratios.argmax())
     if ratios[peak] <= -tolerance:
         return None
 
-    def separation_at(level: float, low: int, high: int) -> float:
-        ends, rising = h[[low, high]], ratios[low] < level
-        for _ in range(_HALVINGS):
-            middle = ends.mean(keepdims=True)
-            ends[0 if (log_ratio(middle) < level) == rising else 1] = middle[0]
-        return float(ends.mean())
+    def separation_at(level: float, part: slice) -> float:
+        beyond = np.flatnonzero(np.diff(ratios[part] < level))
+        return _crossing(log_ratio, level, *h[part][beyond[0] : beyond[0] + 2]) if beyond.size else float(h[-1])
 
-    highest = separation_at(-tolerance, peak, -1)
-    lowest = separation_at(tolerance, peak, -1) if ratios[peak] > tolerance else separation_at(-tolerance, 0, peak)
-    return lowest, highest
+    falling, rising = slice(peak, None), slice(peak + 1)
+    highest = separation_at(-tolerance, falling)
+    too_high = ratios[peak] > tolerance
+    return separation_at(tolerance, falling) if too_high else separation_at(-tolerance, rising), highest
+
+
+def _crossing(function: Callable[[Floats], Floats], level: float, low: float, high: float) -> float:
+    """Return where a nearly straight function has a level, by secants from two places on either side of it."""
+    x = np.array([low, high])
+    y = function(x) - level
+    for _ in range(_SECANTS):
+        if y[1] == y[0]:
+            break
+        x = np.array([x[1], x[1] - y[1] * (x[1] - x[0]) / (y[1] - y[0])])
+        y = np.array([y[1], float(function(x[1:])[0]) - level])
+    return float(x[1])
 
 
 def contact_caveats(contact: RoughContact, *, separation: ArrayLike) -> tuple[str, ...]:

@@ -1,6 +1,7 @@
 """Linear structure with one electrical port and one contact point: its matrices and its frequency responses."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,6 +46,8 @@ class Structure:
     with the drive voltage V, the contact force :math:`F_n` and the dead load :math:`F_N`. The displacement of the
     contact, positive away from the other body, is :math:`c^T x`; the charge on the stack is
     :math:`q = C_S V + b^T x`. Displacements count from the static equilibrium under the dead load without voltage.
+
+    Structures are equal where all their numbers are.
     """
 
     mass_matrix: Floats
@@ -71,6 +74,18 @@ class Structure:
             vector = require_finite(**{name: getattr(self, name)})
             if vector.shape != (n,):
                 raise InvalidInput(f"{name} must have shape ({n},), got {vector.shape}")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Structure) and self._numbers == other._numbers
+
+    def __hash__(self) -> int:
+        return hash(self._numbers)
+
+    @cached_property
+    def _numbers(self) -> tuple[bytes | None, ...]:
+        """Bits of every field, in which two structures are compared."""
+        values = (getattr(self, part.name) for part in fields(self))
+        return tuple(None if each is None else np.asarray(each, dtype=np.float64).tobytes() for each in values)
 
     @property
     def coordinates(self) -> int:

@@ -267,8 +267,7 @@ def _amplitude_by(rig: Rig, source: AmplitudeSource) -> float:
     if found.sine_amplitude is not None:
         return found.sine_amplitude
     assert found.driven is not None
-    drive = found.driven.drive
-    return _amplitude(found.driven, found.driven.voltage_peak_to_peak, drive.frequency, rig.normal_load, 1.0)
+    return _amplitude(_Excited.by_own_drive(found.driven), 1.0)
 
 
 def _calibrated(rig: DrivenRig) -> DrivenRig:
@@ -286,10 +285,7 @@ def _calibrated(rig: DrivenRig) -> DrivenRig:
         )
     sine = replace(rig, drive=replace(rig.drive, waveform="sine", waveform_samples=None))
     by = rig if stated.voltage_peak_to_peak is None and stated.frequency is None else sine
-    measurement = _Measurement(
-        rig=by, by=(by.structure, by.contact, by.drive), amplitude=wanted, volts=volts, frequency=f, load=load
-    )
-    scale = _drive_scale(measurement)
+    scale = _drive_scale(_Excited(rig=by, voltage_peak_to_peak=volts, frequency=f, normal_load=load), wanted)
     if scale is None:
         raise InvalidInput(
             f"{rig.title}: no scale of its drive gives the measured amplitude of {format_si(wanted, 'm')}; choose the"
@@ -306,39 +302,53 @@ def _calibrated(rig: DrivenRig) -> DrivenRig:
     return replace(rig, structure=structure, stack=stack, calibration=scale, amplitude_source="measured")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Measurement:
-    """An amplitude measured under a voltage, frequency and load; the rig counts by what gives its motion."""
+@dataclass(frozen=True, kw_only=True)
+class _Excited:
+    """A rig under a voltage, frequency and load; it counts by what gives its motion."""
 
     rig: DrivenRig = field(compare=False)
-    by: tuple[Structure, RoughContact, Drive]
-    amplitude: float
-    volts: float
+    voltage_peak_to_peak: float
     frequency: float
-    load: float
+    normal_load: float
+    by: tuple[Structure, RoughContact, Drive] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "by", (self.rig.structure, self.rig.contact, self.rig.drive))
+
+    @classmethod
+    def by_own_drive(cls, rig: DrivenRig) -> "_Excited":
+        """Return a rig under its own drive and load."""
+        return cls(
+            rig=rig,
+            voltage_peak_to_peak=rig.voltage_peak_to_peak,
+            frequency=rig.drive.frequency,
+            normal_load=rig.normal_load,
+        )
 
 
 @lru_cache(maxsize=64)
-def _drive_scale(at: _Measurement) -> float | None:
+def _drive_scale(excited: _Excited, amplitude: float) -> float | None:
     """Return the factor on the drive at which the computed amplitude is the measured one, by secants; None for none."""
-    scale, last = 1.0, (0.0, -at.amplitude)
+    scale, last = 1.0, (0.0, -amplitude)
     for _ in range(_ROUNDS):
-        error = _amplitude(at.rig, at.volts, at.frequency, at.load, scale) - at.amplitude
-        if not abs(error) > _CLOSE * at.amplitude:
+        error = _amplitude(excited, scale) - amplitude
+        if not abs(error) > _CLOSE * amplitude:
             break
         step = (scale - last[0]) / (error - last[1]) * error
         last, scale = (scale, error), scale - step
-    found = np.isfinite(error) and abs(error) <= 1e3 * _CLOSE * at.amplitude and scale > 0
+    found = np.isfinite(error) and abs(error) <= 1e3 * _CLOSE * amplitude and scale > 0
     return scale if found else None
 
 
-def _amplitude(rig: DrivenRig, volts: float, frequency: float, load: float, scale: float) -> float:
+@lru_cache(maxsize=256)
+def _amplitude(excited: _Excited, scale: float) -> float:
     """Return the computed amplitude under a drive and load, the drive scaled; NaN where none was found. [m]"""
+    rig, volts, load = excited.rig, excited.voltage_peak_to_peak, excited.normal_load
     states = steady_state(
         rig.structure,
         gap_law_of(rig),
         normal_load=load,
-        frequency=frequency,
+        frequency=excited.frequency,
         voltage_harmonics=scale * voltage_harmonics(rig.drive, voltage_peak_to_peak=volts),
         voltage_offset=rig.drive.offset_ratio * volts,
         separation=separation(rig.contact, normal_load=load),
