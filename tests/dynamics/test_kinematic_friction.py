@@ -45,8 +45,9 @@ def random_states(points: int, damping: float = 0.0) -> SteadyStates:
 
 def brute_force(states: SteadyStates, point: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     contact = contact_motion(states, point, samples=400_000)
-    ratio = SPEEDS[:, np.newaxis] / np.hypot(SPEEDS[:, np.newaxis], contact.velocity)
-    return ratio.mean(axis=1), (ratio * contact.normal_force / states.normal_load[point]).mean(axis=1)
+    squared_velocity, relative_force = np.square(contact.velocity), contact.normal_force / states.normal_load[point]
+    ratios = [speed / np.sqrt(speed**2 + squared_velocity) for speed in SPEEDS]
+    return np.array([each.mean() for each in ratios]), np.array([np.mean(each * relative_force) for each in ratios])
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.2])

@@ -197,9 +197,10 @@ def contact_motion(states: SteadyStates, point: int | tuple[int, ...], *, sample
         raise InvalidInput(f"point {point} has no motion: {states.reason(point)}")
     harmonics = states.harmonics[point][: int(states.harmonic_count[point])]
     orders = np.arange(1, harmonics.size + 1)
-    basis = np.exp(2j * np.pi * np.multiply.outer(np.arange(samples) / samples, orders))
     omega = 2 * np.pi * states.frequency[point]
-    x = states.mean_displacement[point] + (basis @ harmonics).real
-    v = (basis @ (1j * omega * orders * harmonics)).real
+    spectra = np.zeros((2, samples), dtype=np.complex128)  # orders beyond the samples fall on lower ones
+    np.add.at(spectra, (slice(None), orders % samples), [harmonics, 1j * omega * orders * harmonics])
+    x, v = np.fft.ifft(spectra, norm="forward").real
+    x += states.mean_displacement[point]
     force = damped_force(states.gap_law, x, v, states.normal_load[point])
     return ContactMotion(displacement=x, velocity=v, normal_force=force)
