@@ -81,8 +81,19 @@ def _subsets_by_decreasing_size(names: Sequence[str]) -> list[frozenset[str]]:
 def _minimal_conflict(
     unsatisfiable: frozenset[str], names: Sequence[str], is_satisfiable: Callable[[frozenset[str]], bool]
 ) -> frozenset[str]:
-    """Minimal unsatisfiable subset of an unsatisfiable set, by deletion in the order of `names`."""
-    for name in names:
-        if name in unsatisfiable and not is_satisfiable(unsatisfiable - {name}):
-            unsatisfiable -= {name}
+    """Minimal unsatisfiable subset of an unsatisfiable set, by deletion in the order of `names`.
+
+    Members up to the next that must stay are deleted at once, and that one is found by halving.
+    """
+    undecided = [name for name in names if name in unsatisfiable]
+    while undecided:
+        deleted, stays = 0, len(undecided) + 1  # so many can be deleted, so many cannot
+        while stays - deleted > 1:
+            middle = (deleted + stays) // 2
+            if is_satisfiable(unsatisfiable.difference(undecided[:middle])):
+                stays = middle
+            else:
+                deleted = middle
+        unsatisfiable = unsatisfiable.difference(undecided[:deleted])
+        undecided = undecided[stays:]
     return unsatisfiable
