@@ -8,7 +8,7 @@ from enum import StrEnum
 from sonolube.reproduce.row import Row, Verdict
 
 Summary = Callable[[Sequence[Row]], tuple[str, str]]
-"""What the rows of a claim print, and what was computed for them, each in a few words."""
+"""Printed and computed value of a claim's rows, each in a few words."""
 
 
 class ClaimVerdict(StrEnum):

@@ -41,7 +41,7 @@ REMEDIES: Final[Mapping[str, str]] = MappingProxyType(
         "holder_mass": "a mass that moves with the holder, which no rig file states",
     }
 )
-"""What to add where a required input of a model is missing, by its name in `REQUIRED_INPUTS`."""
+"""Entry to add for a missing input of a model, by its name in `REQUIRED_INPUTS`."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sonolube.design.horn_shapes import TunableBody
 
 SIZE_ENTRY = "as --set "
-"""How a refusal of a command tells to give a size."""
+"""Prefix by which a refusal names the option for a size."""
 
 _COARSE = 0.02  # m, fine enough to show the longest axis of most parts
 

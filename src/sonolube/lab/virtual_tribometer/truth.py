@@ -1,4 +1,4 @@
-"""What a virtual test was made of, as a dataset with units."""
+"""True values behind a virtual test, as a dataset with units."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

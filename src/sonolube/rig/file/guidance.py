@@ -1,4 +1,4 @@
-"""How to obtain the numbers that a rig file requires, and what they typically are; the list is `guidance.toml`."""
+"""Guidance on the entries that a rig file requires: source and typical values of each, from `guidance.toml`."""
 
 import tomllib
 from collections.abc import Mapping
