@@ -39,7 +39,7 @@ class TruthSetting:
 def truth_dataset(
     settings: Sequence[TruthSetting], *, sizes: Disturbances, single: Mapping[str, tuple[float, str]], title: str
 ) -> "xr.Dataset":
-    """What a virtual test was made of.
+    """True values behind a virtual test.
 
     Parameters
     ----------
