@@ -94,14 +94,27 @@ class BlockAverages:
 
     def modes(self) -> Floats:
         """Wavenumbers of the Fourier modes of a box around the field, one of each pair k, -k, in 1/m, shape (n, 2)."""
+        along_x, along_y, of_x, of_y = self._mode_components()
+        return np.stack([along_x[of_x], along_y[of_y]], axis=1)
+
+    def fourier_waves(self) -> tuple[Floats, Floats]:
+        """Cosine and sine of each of `modes` at the centre of each block, both of shape (blocks, modes)."""
+        along_x, along_y, of_x, of_y = self._mode_components()
+        cos_x, sin_x = self.waves(np.stack([along_x, 0 * along_x], axis=1))
+        cos_y, sin_y = self.waves(np.stack([0 * along_y, along_y], axis=1))
+        cos_x, sin_x, cos_y, sin_y = cos_x[:, of_x], sin_x[:, of_x], cos_y[:, of_y], sin_y[:, of_y]
+        return cos_x * cos_y - sin_x * sin_y, sin_x * cos_y + cos_x * sin_y
+
+    def _mode_components(self) -> tuple[Floats, Floats, NDArray[np.intp], NDArray[np.intp]]:
+        """Wavenumbers along x and along y in 1/m, and the numbers of those of each Fourier mode."""
         longer = self.longer_side
         box_x, box_y = (_PERIOD * length for length in self.field)
         reach_x, reach_y = (int(box / (SHORTEST_RELATIVE_WAVELENGTH * longer)) for box in (box_x, box_y))
-        i, j = (part.ravel() for part in np.meshgrid(np.arange(reach_x + 1), np.arange(-reach_y, reach_y + 1)))
-        modes = np.stack([i / box_x, j / box_y], axis=1)
-        return np.asarray(
-            modes[((i > 0) | (j > 0)) & (np.hypot(*modes.T) <= 1 / (SHORTEST_RELATIVE_WAVELENGTH * longer))]
-        )
+        along_x, along_y = np.arange(reach_x + 1) / box_x, np.arange(-reach_y, reach_y + 1) / box_y
+        of_x, of_y = (part.ravel() for part in np.meshgrid(np.arange(along_x.size), np.arange(along_y.size)))
+        half = (of_x > 0) | (of_y > reach_y)
+        kept = half & (np.hypot(along_x[of_x], along_y[of_y]) <= 1 / (SHORTEST_RELATIVE_WAVELENGTH * longer))
+        return along_x, along_y, of_x[kept], of_y[kept]
 
     def waves(self, modes: Floats) -> tuple[Floats, Floats]:
         """Cosine and sine of each mode at the centre of each block, both of shape (blocks, modes)."""
