@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solveh_banded
+from scipy.linalg.lapack import dptsv
 from scipy.optimize import minimize
 
 from sonolube.checks import Floats
@@ -179,30 +179,29 @@ def _residual_sum(points: _Blocks, direction: float, curvature: float) -> float:
         return math.inf
     transverse, arc_length = arc_coordinates(points.x, points.y, direction, curvature)
     z, t = points.height, arc_length - arc_length.mean()
-    projected = _projected_products(transverse, points.side, np.stack([z, t]))
-    zz, zt, tt = z @ z - projected[0, 0], z @ t - projected[0, 1], t @ t - projected[1, 1]
+    (p_zz, p_zt), (_, p_tt) = _projected_products(transverse, points.side, z, t)
+    zz, zt, tt = z @ z - p_zz, z @ t - p_zt, t @ t - p_tt
     return float(zz - zt**2 / max(tt, np.finfo(float).tiny))
 
 
-def _projected_products(transverse: Floats, step: float, values: Floats) -> Floats:
+def _projected_products(transverse: Floats, step: float, *values: Floats) -> Floats:
     """Scalar products of the projections of values on piecewise linear functions of the distance from the track."""
     position = (transverse - transverse.min()) / step
     knot = position.astype(np.intp)
     share = position - knot
     knots = int(knot.max()) + 2
-    banded = np.zeros((2, knots))
-    banded[1] = np.bincount(knot, (1 - share) ** 2, minlength=knots)
-    banded[1] += np.bincount(knot + 1, share**2, minlength=knots)
-    banded[0, 1:] = np.bincount(knot, share * (1 - share), minlength=knots)[:-1]
-    banded[1] += _REGULARIZATION * banded[1].max()
-    moments = np.stack(
-        [
-            np.bincount(knot, (1 - share) * value, minlength=knots)
-            + np.bincount(knot + 1, share * value, minlength=knots)
-            for value in values
-        ]
-    )
-    return np.asarray(moments @ solveh_banded(banded, moments.T, check_finite=False))
+    count = np.bincount(knot, minlength=knots)
+    first, second = (np.bincount(knot, power, minlength=knots) for power in (share, share**2))
+    diagonal = count - 2 * first + second
+    diagonal[1:] += second[:-1]
+    diagonal += _REGULARIZATION * diagonal.max()
+    moments = np.empty((knots, len(values)), order="F")
+    for column, value in enumerate(values):
+        farther = np.bincount(knot, share * value, minlength=knots)
+        moments[:, column] = np.bincount(knot, value, minlength=knots) - farther
+        moments[1:, column] += farther[:-1]
+    _, _, coefficients, _ = dptsv(diagonal, (first - second)[:-1], moments)
+    return np.asarray(moments.T @ coefficients)
 
 
 def _section(points: _Blocks, track: GrooveTrack) -> _Section:
