@@ -211,7 +211,7 @@ def _labels(masks: tuple[Mask, Mask], kept: Mask, edges: list[NDArray[np.intp]],
     labels = np.full(masks[0].shape, -1, dtype=np.intp)
     for mask, numbers in zip(masks, (np.arange(unworn), np.where(kept, unworn + np.cumsum(kept) - 1, -1)), strict=True):
         of_cell = np.full(edges[0].size * edges[1].size, -1, dtype=np.intp)
-        of_cell[np.unique(cell[mask])] = numbers
+        of_cell[np.flatnonzero(np.bincount(cell[mask]))] = numbers
         labels[mask] = of_cell[cell[mask]]
     return labels
 
