@@ -72,14 +72,15 @@ class PlaneWaveSearch:
 
     def __init__(self, blocks: BlockAverages, *, noise: tuple[float, ...] | None = None, form_terms: int = 3) -> None:
         self._blocks, self._form_terms = blocks, form_terms
-        self._root = np.sqrt(blocks.weight / blocks.per_part(noise or _noise_of_neighbours(blocks)))[:, None]
-        form, section = self._root * blocks.form(form_terms), self._root * blocks.section
+        self._root = np.sqrt(blocks.weight / blocks.per_part(noise or _noise_of_neighbours(blocks)))
+        self._places = np.stack([blocks.x, blocks.y])
+        form, section = (self._root[:, None] * functions for functions in (blocks.form(form_terms), blocks.section))
         self._linear = np.concatenate([form, section], axis=1)
         # an orthonormal basis of both, that of the section zero at the unworn blocks
         self._section_basis = np.linalg.qr(section[blocks.unworn :])[0]
         form[blocks.unworn :] -= self._section_basis @ (self._section_basis.T @ form[blocks.unworn :])
         self._form_basis = np.linalg.qr(form)[0]
-        height = self._root[:, 0] * blocks.mean_height
+        height = self._root * blocks.mean_height
         self._height = height - self._expanded(self._coefficients(height))
         self._fits: dict[bytes, PlaneWaveFit] = {}
 
@@ -101,7 +102,7 @@ class PlaneWaveSearch:
         and amplitudes are refined together by Gauss-Newton steps. A wave is kept if it lowers the Bayesian information
         criterion, in which it counts four parameters.
         """
-        best = self._refined(np.empty((0, 2)))
+        (best,) = self._refined([np.empty((0, 2))])
         fits = [best]
         sufficient = False
         for _ in range(_MOST_WAVES + 1):
@@ -111,7 +112,7 @@ class PlaneWaveSearch:
             if sufficient or len(best.modes) == _MOST_WAVES:
                 break
             modes = _local_maxima(self._candidates.modes, gain)[:starts]
-            extended = [self._refined(np.vstack([best.modes, mode])) for mode in modes]
+            extended = self._refined([np.vstack([best.modes, mode]) for mode in modes])
             fits += extended
             most_probable = min(extended, key=lambda fit: fit.cost)
             if most_probable.cost >= best.cost:
@@ -127,10 +128,10 @@ class PlaneWaveSearch:
     @cached_property
     def _candidates(self) -> "_Candidates":
         """Fourier modes from which waves start."""
-        cosine, sine = (self._root * wave for wave in self._blocks.fourier_waves())
+        cosine, sine = (self._root * wave.T for wave in self._blocks.fourier_waves())
         of_cosine, of_sine = self._coefficients(cosine), self._coefficients(sine)
         cc, ss, cs = (
-            np.einsum("ij,ij->j", first, second) - np.einsum("ij,ij->j", of_first, of_second)
+            np.einsum("ij,ij->i", first, second) - np.einsum("ij,ij->i", of_first, of_second)
             for first, second, of_first, of_second in (
                 (cosine, cosine, of_cosine, of_cosine),
                 (sine, sine, of_sine, of_sine),
@@ -142,58 +143,77 @@ class PlaneWaveSearch:
     def _misfit_reduction(self, residual: Floats) -> Floats:
         """Reduction of the residual sum of squares by each of the candidates, of a projected residual."""
         _, cosine, sine, cc, ss, cs = self._candidates
-        a, b = cosine.T @ residual, sine.T @ residual
+        a, b = cosine @ residual, sine @ residual
         return np.asarray((ss * a**2 - 2 * cs * a * b + cc * b**2) / np.maximum(cc * ss - cs**2, _ROUNDING * cc * ss))
 
-    def _coefficients(self, columns: Floats) -> Floats:
-        """Coefficients of the projection of columns on form and section."""
-        of_section = self._section_basis.T @ columns[self._blocks.unworn :]
-        return np.concatenate([self._form_basis.T @ columns, of_section])
+    def _coefficients(self, rows: Floats) -> Floats:
+        """Coefficients of the projection on form and section of rows of values at the blocks."""
+        flat = rows.reshape(-1, rows.shape[-1])
+        found = np.concatenate([flat @ self._form_basis, flat[:, self._blocks.unworn :] @ self._section_basis], axis=1)
+        return found.reshape(*rows.shape[:-1], -1)
 
     def _expanded(self, coefficients: Floats) -> Floats:
-        """Projection on form and section of given coefficients."""
+        """Projection on form and section of given coefficients, rows of values at the blocks."""
         form_terms = self._form_basis.shape[1]
-        columns = self._form_basis @ coefficients[:form_terms]
-        columns[self._blocks.unworn :] += self._section_basis @ coefficients[form_terms:]
-        return columns
+        rows = coefficients[..., :form_terms] @ self._form_basis.T
+        rows[..., self._blocks.unworn :] += coefficients[..., form_terms:] @ self._section_basis.T
+        return np.asarray(rows)
 
     def _waves(self, modes: Floats) -> Floats:
-        """Weighted cosines and sines of modes at each block."""
-        return self._root * np.concatenate(self._blocks.waves(modes), axis=1)
+        """Weighted cosines and sines of modes, shape (..., n, 2), at each block, shape (..., 2 n, blocks)."""
+        phase = 2 * math.pi * (modes @ self._places)
+        return self._root * np.concatenate([np.cos(phase), np.sin(phase)], axis=-2)
 
     def _derivatives(self, waves: Floats, amplitudes: Floats) -> Floats:
         """Derivatives of the waves with respect to their wavenumbers along x, then along y."""
-        (cosine, sine), (c, s) = np.split(waves, 2, axis=1), amplitudes.reshape(2, -1)
+        (cosine, sine), (c, s) = np.split(waves, 2, axis=-2), np.split(amplitudes[..., None], 2, axis=-2)
         by_phase = 2 * math.pi * (s * cosine - c * sine)
-        return np.concatenate([self._blocks.x[:, None] * by_phase, self._blocks.y[:, None] * by_phase], axis=1)
+        return np.concatenate([self._blocks.x * by_phase, self._blocks.y * by_phase], axis=-2)
 
-    def _refined(self, modes: Floats) -> PlaneWaveFit:
-        """Plane waves of least misfit near the given ones, found once."""
-        start = modes.tobytes()
-        if start not in self._fits:
-            self._fits[start] = self._least_misfit(modes)
-        return self._fits[start]
+    def _refined(self, starts: list[Floats]) -> list[PlaneWaveFit]:
+        """Plane waves of least misfit near given ones, each found once."""
+        new = {start.tobytes(): start for start in starts if start.tobytes() not in self._fits}
+        if new:
+            self._fits.update(zip(new, self._least_misfits(np.stack(list(new.values()))), strict=True))
+        return [self._fits[start.tobytes()] for start in starts]
 
-    def _least_misfit(self, modes: Floats) -> PlaneWaveFit:
-        """Plane waves of least misfit near the given ones by Gauss-Newton steps; infinite cost where these diverge."""
-        amplitudes, residual = np.empty(0), self._height
-        misfit = float(residual @ residual)
-        for _ in range(_NEWTON_STEPS if len(modes) else 0):
-            waves = self._waves(modes)
+    def _least_misfits(self, modes: Floats) -> list[PlaneWaveFit]:
+        """Plane waves of least misfit near starts by Gauss-Newton steps; infinite cost where these diverge.
+
+        Parameters
+        ----------
+        modes : ndarray, shape (starts, n, 2)
+        """
+        count, longest_step = modes.shape[1], 1 / (3 * self._blocks.longer_side)
+        amplitudes, residuals = np.zeros((len(modes), 2 * count)), np.tile(self._height, (len(modes), 1))
+        misfits = np.sum(residuals**2, axis=1)
+        active = np.arange(len(modes))
+        for _ in range(_NEWTON_STEPS if count else 0):
+            waves = self._waves(modes[active])
             of_waves = self._coefficients(waves)
-            amplitudes = _solved(waves.T @ waves - of_waves.T @ of_waves, waves.T @ self._height)
-            residual = self._height - waves @ amplitudes + self._expanded(of_waves @ amplitudes)
-            previous, misfit = misfit, float(residual @ residual)
-            if abs(previous - misfit) < _CONVERGED:
+            fitted = _solved(_products(waves) - _products(of_waves), waves @ self._height)
+            explained, of_explained = ((fitted[:, None] @ each)[:, 0] for each in (waves, of_waves))
+            residual = self._height - explained + self._expanded(of_explained)
+            misfit = np.sum(residual**2, axis=1)
+            moving = np.abs(misfits[active] - misfit) >= _CONVERGED
+            amplitudes[active], residuals[active], misfits[active] = fitted, residual, misfit
+            if not moving.any():
                 break
-            derivatives = self._derivatives(waves, amplitudes)
+            active, waves, of_waves, fitted, residual = (
+                each[moving] for each in (active, waves, of_waves, fitted, residual)
+            )
+            derivatives = self._derivatives(waves, fitted)
             jacobian = np.concatenate([waves, derivatives], axis=1)
             projected = np.concatenate([of_waves, self._coefficients(derivatives)], axis=1)
-            step = _solved(jacobian.T @ jacobian - projected.T @ projected, jacobian.T @ residual)
-            step = step[amplitudes.size :].reshape(2, -1).T
-            longest_step = 1 / (3 * self._blocks.longer_side)
-            modes = modes + step * np.minimum(1.0, longest_step / np.maximum(np.hypot(*step.T), _ROUNDING))[:, None]
-        return PlaneWaveFit(modes, amplitudes, residual, self._cost(modes, amplitudes, misfit))
+            moments = (jacobian @ residual[..., None])[..., 0]
+            step = _solved(_products(jacobian) - _products(projected), moments)[:, 2 * count :]
+            step = step.reshape(-1, 2, count).swapaxes(1, 2)
+            size = np.maximum(np.linalg.norm(step, axis=2, keepdims=True), _ROUNDING)
+            modes[active] += step * np.minimum(1.0, longest_step / size)
+        return [
+            PlaneWaveFit(mode, amplitude, residual, self._cost(mode, amplitude, float(misfit)))
+            for mode, amplitude, residual, misfit in zip(modes, amplitudes, residuals, misfits, strict=True)
+        ]
 
     def _cost(self, modes: Floats, amplitudes: Floats, misfit: float) -> float:
         """Bayesian information criterion, up to a constant; infinite for waves out of range."""
@@ -205,19 +225,19 @@ class PlaneWaveSearch:
         ):
             return math.inf
         count = self._height.size
-        cost = count * math.log(max(misfit, _ROUNDING) / count) + count - float(np.sum(np.log(self._root[:, 0] ** 2)))
+        cost = count * math.log(max(misfit, _ROUNDING) / count) + count - float(np.sum(np.log(self._root**2)))
         return cost + float(np.sum(np.log(self._blocks.weight))) + (self._form_terms + 4 * len(modes)) * math.log(count)
 
     def _model(self, fit: PlaneWaveFit) -> WavinessModel:
         """Waviness model of a fit, with form, section and response."""
         waves = self._waves(fit.modes)
-        unexplained = self._root[:, 0] * self._blocks.mean_height - waves @ fit.amplitudes
-        linear = _solved(self._linear.T @ self._linear, self._linear.T @ unexplained)
-        jacobian = np.concatenate([self._linear, waves, self._derivatives(waves, fit.amplitudes)], axis=1)
+        unexplained = self._root * self._blocks.mean_height - fit.amplitudes @ waves
+        (linear,) = _solved((self._linear.T @ self._linear)[None], (unexplained @ self._linear)[None])
+        jacobian = np.concatenate([self._linear, waves.T, self._derivatives(waves, fit.amplitudes).T], axis=1)
         size = np.maximum(np.linalg.norm(jacobian, axis=0), np.finfo(float).tiny)
         inverse = np.linalg.pinv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
         kept = np.concatenate([np.arange(self._form_terms), np.arange(linear.size, jacobian.shape[1])])
-        response = inverse @ (self._root * jacobian).T
+        response = inverse @ (self._root[:, None] * jacobian).T
         cosine, sine = fit.amplitudes.reshape(2, -1)
         return WavinessModel(
             form=linear[: self._form_terms],
@@ -245,11 +265,18 @@ class _Candidates(NamedTuple):
     cs: Floats
 
 
-def _solved(gram: Floats, moments: Floats) -> Floats:
-    """Solution of normal equations with scaled columns, of least norm where they are singular."""
-    size = np.sqrt(np.maximum(np.diag(gram), 0.0))
+def _products(rows: Floats) -> Floats:
+    """Scalar products of the rows of each matrix."""
+    return np.asarray(rows @ rows.swapaxes(-1, -2))
+
+
+def _solved(grams: Floats, moments: Floats) -> Floats:
+    """Solutions of normal equations with scaled columns, of least norm where they are singular."""
+    size = np.sqrt(np.maximum(np.einsum("ijj->ij", grams), 0.0))
     size[size == 0] = 1.0
-    return np.asarray(np.linalg.lstsq(gram / np.outer(size, size), moments / size, rcond=_ROUNDING)[0] / size)
+    scaled = zip(grams / (size[:, :, None] * size[:, None, :]), moments / size, strict=True)
+    solved = [np.linalg.lstsq(gram, moment, rcond=_ROUNDING)[0] for gram, moment in scaled]
+    return np.asarray(np.stack(solved) / size)
 
 
 def _local_maxima(candidates: Floats, gain: Floats) -> Floats:
