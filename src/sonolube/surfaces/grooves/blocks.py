@@ -178,7 +178,7 @@ def block_averages(
     x, y = centred_coordinates(surface)
     fields = (x, y, surface.height - section, section, transverse, rotated, bent, arc_length)
     edges = block_edges(surface, longer / _BLOCKS)
-    unworn, groove = (block_means(fields, mask, edges) for mask in (counted & ~inside, worn))
+    unworn, groove = block_means(fields[:4], counted & ~inside, edges), block_means(fields, worn, edges)
     if unworn.shape[1] < _LEAST_UNWORN:
         raise InvalidInput(f"only {unworn.shape[1]} blocks of {longer / _BLOCKS:.2g} m are unworn; scan a wider field")
     kept = np.abs(groove[2]) < _OUTLIER * _block_deviation(unworn[2], groove[2])
@@ -187,7 +187,7 @@ def block_averages(
     if groove.size:
         hats, modulations = _hat_functions(groove[4], _KNOT * longer), _modulations(groove[3], groove[7] / longer)
         free = np.column_stack([hats, modulations, groove[5:7].T])
-    both = np.concatenate([unworn, groove], axis=1)
+    both = np.concatenate([unworn, groove[[0, 1, 2, 3, -1]]], axis=1)
     return BlockAverages(
         x=both[0],
         y=both[1],

@@ -150,19 +150,19 @@ class PlaneWaveSearch:
         """Coefficients of the projection on form and section of rows of values at the blocks."""
         flat = rows.reshape(-1, rows.shape[-1])
         found = np.concatenate([flat @ self._form_basis, flat[:, self._blocks.unworn :] @ self._section_basis], axis=1)
-        return found.reshape(*rows.shape[:-1], -1)
+        return found.reshape(*rows.shape[:-1], found.shape[1])
 
     def _expanded(self, coefficients: Floats) -> Floats:
         """Projection on form and section of given coefficients, rows of values at the blocks."""
         form_terms = self._form_basis.shape[1]
-        rows = coefficients[..., :form_terms] @ self._form_basis.T
+        rows = np.asarray(coefficients[..., :form_terms] @ self._form_basis.T)
         rows[..., self._blocks.unworn :] += coefficients[..., form_terms:] @ self._section_basis.T
-        return np.asarray(rows)
+        return rows
 
     def _waves(self, modes: Floats) -> Floats:
         """Weighted cosines and sines of modes, shape (..., n, 2), at each block, shape (..., 2 n, blocks)."""
         phase = 2 * math.pi * (modes @ self._places)
-        return self._root * np.concatenate([np.cos(phase), np.sin(phase)], axis=-2)
+        return np.asarray(self._root * np.concatenate([np.cos(phase), np.sin(phase)], axis=-2))
 
     def _derivatives(self, waves: Floats, amplitudes: Floats) -> Floats:
         """Derivatives of the waves with respect to their wavenumbers along x, then along y."""

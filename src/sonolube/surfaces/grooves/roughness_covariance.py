@@ -170,15 +170,16 @@ def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> Ro
     periods_y, periods_x = np.abs(fft.fftfreq(shape[0], 1 / mean.shape[0])), fft.rfftfreq(shape[1], 1 / mean.shape[1])
     counted_waves = (periods_y[:, None] > _LOWEST) | (periods_x > _LOWEST)
     counted_waves &= (periods_y[:, None] < _HIGHEST * mean.shape[0] / 2) & (periods_x < _HIGHEST * mean.shape[1] / 2)
-    weight = np.broadcast_to(_doubled(shape), counted_waves.shape)[counted_waves]
+    used = np.flatnonzero(counted_waves)
+    weight = np.broadcast_to(_doubled(shape), counted_waves.shape).take(used)
     weight *= total / math.prod(shape) / 2  # as many as there are cells, in pairs
-    periodogram = np.abs(fft.rfft2(mean, shape)[counted_waves]) ** 2 / total
+    periodogram = np.abs(fft.rfft2(mean, shape).take(used)) ** 2 / total
     variance = max(float(np.sum(mean**2)) / total, np.finfo(float).tiny)
 
     def without_noise(parameters: Floats) -> Floats:
         """Expected periodogram of heights without the noise, whose own is its variance at all wavenumbers."""
         covariance = _lags(_density(parameters, shape, cells.cell_sides), shape)
-        return np.asarray(fft.hfft(fft.rfft(covariance * overlap, axis=1), shape[0], axis=0)[counted_waves])
+        return np.asarray(fft.hfft(fft.rfft(covariance * overlap, axis=1), shape[0], axis=0).take(used))
 
     floor = 1e-9 * variance
     best: tuple[float, Floats, Floats] | None = None

@@ -109,7 +109,7 @@ class UnwornReference:
         """Standard deviation between the waviness models of a weighted sum of the reference's heights."""
         x, y = centred_coordinates(self.surface)
         probable = model_probabilities(self.models)
-        total = np.array([float(np.sum(model.heights(x, y) * weights)) for model in self.models])
+        total = np.array([model.height_sum(x, y, weights) for model in self.models])
         return math.sqrt(float(probable @ (total - probable @ total) ** 2))
 
     def random_part(self, surface: HeightMap) -> Floats:
