@@ -10,6 +10,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.surfaces.grooves.blocks import SHORTEST_RELATIVE_WAVELENGTH, BlockAverages
 from sonolube.surfaces.grooves.waviness_model import WavinessModel
+from sonolube.surfaces.height_map import Mask
 
 _MOST_WAVES = 4
 _LONGEST = 3.0  # wavelength over the longer side: longer ones are form
@@ -111,7 +112,7 @@ class PlaneWaveSearch:
             sufficient = bool(gain.max() < 2 * math.log(best.residual.size))
             if sufficient or len(best.modes) == _MOST_WAVES:
                 break
-            modes = _local_maxima(self._candidates.modes, gain)[:starts]
+            modes = _local_maxima(self._candidates, gain)[:starts]
             extended = self._refined([np.vstack([best.modes, mode]) for mode in modes])
             fits += extended
             most_probable = min(extended, key=lambda fit: fit.cost)
@@ -138,11 +139,12 @@ class PlaneWaveSearch:
                 (cosine, sine, of_cosine, of_sine),
             )
         )
-        return _Candidates(self._blocks.modes(), cosine, sine, cc, ss, cs)
+        modes = self._blocks.modes()
+        return _Candidates(modes, _neighbours(modes), cosine, sine, cc, ss, cs)
 
     def _misfit_reduction(self, residual: Floats) -> Floats:
         """Reduction of the residual sum of squares by each of the candidates, of a projected residual."""
-        _, cosine, sine, cc, ss, cs = self._candidates
+        _, _, cosine, sine, cc, ss, cs = self._candidates
         a, b = cosine @ residual, sine @ residual
         return np.asarray((ss * a**2 - 2 * cs * a * b + cc * b**2) / np.maximum(cc * ss - cs**2, _ROUNDING * cc * ss))
 
@@ -258,6 +260,7 @@ class _Candidates(NamedTuple):
     """Fourier modes with their weighted waves at the blocks, and scalar products of the projected ones."""
 
     modes: Floats
+    neighbours: Mask
     cosine: Floats
     sine: Floats
     cc: Floats
@@ -274,16 +277,22 @@ def _solved(grams: Floats, moments: Floats) -> Floats:
     """Solutions of normal equations with scaled columns, of least norm where they are singular."""
     size = np.sqrt(np.maximum(np.einsum("ijj->ij", grams), 0.0))
     size[size == 0] = 1.0
-    scaled = zip(grams / (size[:, :, None] * size[:, None, :]), moments / size, strict=True)
-    solved = [np.linalg.lstsq(gram, moment, rcond=_ROUNDING)[0] for gram, moment in scaled]
-    return np.asarray(np.stack(solved) / size)
+    values, vectors = np.linalg.eigh(grams / (size[:, :, None] * size[:, None, :]))
+    kept = values > _ROUNDING * values.max(axis=1, keepdims=True)
+    along = ((moments / size)[:, None] @ vectors)[:, 0]
+    solved = vectors @ np.where(kept, along / np.where(kept, values, 1.0), 0.0)[..., None]
+    return np.asarray(solved[..., 0] / size)
 
 
-def _local_maxima(candidates: Floats, gain: Floats) -> Floats:
+def _neighbours(modes: Floats) -> Mask:
+    """Whether each mode or its opposite is next to each of the others, or the same."""
+    spacing = np.min(np.ptp(modes, axis=0) / np.maximum([len(np.unique(k)) - 1 for k in modes.T], 1))
+    distance = np.hypot(*(modes[:, None] - modes[None, :]).T)
+    opposite = np.hypot(*(modes[:, None] + modes[None, :]).T)
+    return np.asarray(np.minimum(distance, opposite) < 1.5 * spacing)
+
+
+def _local_maxima(candidates: _Candidates, gain: Floats) -> Floats:
     """Modes whose reduction exceeds that of all neighbours, the largest first."""
-    spacing = np.min(np.ptp(candidates, axis=0) / np.maximum([len(np.unique(k)) - 1 for k in candidates.T], 1))
-    distance = np.hypot(*(candidates[:, None] - candidates[None, :]).T)
-    opposite = np.hypot(*(candidates[:, None] + candidates[None, :]).T)
-    near = np.minimum(distance, opposite) < 1.5 * spacing
-    maxima = np.flatnonzero(gain >= np.max(np.where(near, gain[None, :], -np.inf), axis=1))
-    return candidates[maxima[np.argsort(-gain[maxima])]]
+    maxima = np.flatnonzero(gain >= np.max(np.where(candidates.neighbours, gain[None, :], -np.inf), axis=1))
+    return candidates.modes[maxima[np.argsort(-gain[maxima])]]

@@ -263,7 +263,7 @@ def _most_likely_power(noise: Floats, prior: Floats, line: Floats, z: Floats, va
     root = cholesky(noise, lower=True)
     q = np.linalg.qr(solve_triangular(root, line, lower=True), mode="complete")[0][:, 3:]
     whitened = solve_triangular(root, solve_triangular(root, prior, lower=True).T, lower=True)
-    values, vectors = eigh(q.T @ whitened @ q)
+    values, vectors = eigh(q.T @ whitened @ q, driver="evd")
     values = np.maximum(values, 0.0)
     squares = np.square(vectors.T @ (q.T @ solve_triangular(root, z, lower=True)))
     powers = variance * np.logspace(-4, 12, 129)
