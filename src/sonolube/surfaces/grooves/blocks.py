@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ _OUTLIER = 5.0  # deviation of a worn block from the mean section, over the stan
 _DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class BlockAverages:
     """Means of a scan over square blocks, unworn blocks first.
 
@@ -97,6 +98,7 @@ class BlockAverages:
         along_x, along_y, of_x, of_y = self._mode_components()
         return np.stack([along_x[of_x], along_y[of_y]], axis=1)
 
+    @cached_property
     def fourier_waves(self) -> tuple[Floats, Floats]:
         """Cosine and sine of each of `modes` at the centre of each block, both of shape (blocks, modes)."""
         along_x, along_y, of_x, of_y = self._mode_components()

@@ -16,7 +16,7 @@ from sonolube.surfaces.height_map import HeightMap, Mask
 
 _SCREENED, _COARSE, _FINE = 36, 72, 160  # blocks along the longer side
 _LEAST_POINTS = 100  # measured blocks
-_KEPT = 0.5  # residual of a start above the least one over that of the median, up to which it is not screened out
+_KEPT = 0.25  # residual of a start above the least one over that of the median, up to which it is not screened out
 _DIRECTIONS = 60
 _TURNS = (-1.0, -0.4, -0.15, 0.0, 0.15, 0.4, 1.0)  # change of direction of the track over the longer side, in rad
 _MOST_BENT = 4.0  # of a refined track, in rad

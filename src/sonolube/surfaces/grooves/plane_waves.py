@@ -129,7 +129,7 @@ class PlaneWaveSearch:
     @cached_property
     def _candidates(self) -> "_Candidates":
         """Fourier modes from which waves start."""
-        cosine, sine = (self._root * wave.T for wave in self._blocks.fourier_waves())
+        cosine, sine = (self._root * wave.T for wave in self._blocks.fourier_waves)
         of_cosine, of_sine = self._coefficients(cosine), self._coefficients(sine)
         cc, ss, cs = (
             np.einsum("ij,ij->i", first, second) - np.einsum("ij,ij->i", of_first, of_second)

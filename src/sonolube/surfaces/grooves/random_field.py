@@ -42,7 +42,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     modes = blocks.modes()
     count, free = len(modes), 3 + blocks.section.shape[1]
     form = blocks.form(6)
-    design = np.concatenate([form[:, :3], blocks.section, form[:, 3:], *blocks.fourier_waves()], axis=1)
+    design = np.concatenate([form[:, :3], blocks.section, form[:, 3:], *blocks.fourier_waves], axis=1)
     parts = [_Part.of(blocks, design, part) for part in blocks.parts]
     wavenumber = np.hypot(*modes.T)
     ring = np.minimum((wavenumber / wavenumber.max() * _RINGS).astype(np.intp), _RINGS - 1)
