@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ _OUTLIER = 5.0  # deviation of a worn block from the mean section, over the stan
 _DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class BlockAverages:
     """Means of a scan over square blocks, unworn blocks first.
 
@@ -94,14 +95,28 @@ class BlockAverages:
 
     def modes(self) -> Floats:
         """Wavenumbers of the Fourier modes of a box around the field, one of each pair k, -k, in 1/m, shape (n, 2)."""
+        along_x, along_y, of_x, of_y = self._mode_components()
+        return np.stack([along_x[of_x], along_y[of_y]], axis=1)
+
+    @cached_property
+    def fourier_waves(self) -> tuple[Floats, Floats]:
+        """Cosine and sine of each of `modes` at the centre of each block, both of shape (blocks, modes)."""
+        along_x, along_y, of_x, of_y = self._mode_components()
+        cos_x, sin_x = self.waves(np.stack([along_x, 0 * along_x], axis=1))
+        cos_y, sin_y = self.waves(np.stack([0 * along_y, along_y], axis=1))
+        cos_x, sin_x, cos_y, sin_y = cos_x[:, of_x], sin_x[:, of_x], cos_y[:, of_y], sin_y[:, of_y]
+        return cos_x * cos_y - sin_x * sin_y, sin_x * cos_y + cos_x * sin_y
+
+    def _mode_components(self) -> tuple[Floats, Floats, NDArray[np.intp], NDArray[np.intp]]:
+        """Wavenumbers along x and along y in 1/m, and the numbers of those of each Fourier mode."""
         longer = self.longer_side
         box_x, box_y = (_PERIOD * length for length in self.field)
         reach_x, reach_y = (int(box / (SHORTEST_RELATIVE_WAVELENGTH * longer)) for box in (box_x, box_y))
-        i, j = (part.ravel() for part in np.meshgrid(np.arange(reach_x + 1), np.arange(-reach_y, reach_y + 1)))
-        modes = np.stack([i / box_x, j / box_y], axis=1)
-        return np.asarray(
-            modes[((i > 0) | (j > 0)) & (np.hypot(*modes.T) <= 1 / (SHORTEST_RELATIVE_WAVELENGTH * longer))]
-        )
+        along_x, along_y = np.arange(reach_x + 1) / box_x, np.arange(-reach_y, reach_y + 1) / box_y
+        of_x, of_y = (part.ravel() for part in np.meshgrid(np.arange(along_x.size), np.arange(along_y.size)))
+        half = (of_x > 0) | (of_y > reach_y)
+        kept = half & (np.hypot(along_x[of_x], along_y[of_y]) <= 1 / (SHORTEST_RELATIVE_WAVELENGTH * longer))
+        return along_x, along_y, of_x[kept], of_y[kept]
 
     def waves(self, modes: Floats) -> tuple[Floats, Floats]:
         """Cosine and sine of each mode at the centre of each block, both of shape (blocks, modes)."""
@@ -165,7 +180,7 @@ def block_averages(
     x, y = centred_coordinates(surface)
     fields = (x, y, surface.height - section, section, transverse, rotated, bent, arc_length)
     edges = block_edges(surface, longer / _BLOCKS)
-    unworn, groove = (block_means(fields, mask, edges) for mask in (counted & ~inside, worn))
+    unworn, groove = block_means(fields[:4], counted & ~inside, edges), block_means(fields, worn, edges)
     if unworn.shape[1] < _LEAST_UNWORN:
         raise InvalidInput(f"only {unworn.shape[1]} blocks of {longer / _BLOCKS:.2g} m are unworn; scan a wider field")
     kept = np.abs(groove[2]) < _OUTLIER * _block_deviation(unworn[2], groove[2])
@@ -174,7 +189,7 @@ def block_averages(
     if groove.size:
         hats, modulations = _hat_functions(groove[4], _KNOT * longer), _modulations(groove[3], groove[7] / longer)
         free = np.column_stack([hats, modulations, groove[5:7].T])
-    both = np.concatenate([unworn, groove], axis=1)
+    both = np.concatenate([unworn, groove[[0, 1, 2, 3, -1]]], axis=1)
     return BlockAverages(
         x=both[0],
         y=both[1],
@@ -198,7 +213,7 @@ def _labels(masks: tuple[Mask, Mask], kept: Mask, edges: list[NDArray[np.intp]],
     labels = np.full(masks[0].shape, -1, dtype=np.intp)
     for mask, numbers in zip(masks, (np.arange(unworn), np.where(kept, unworn + np.cumsum(kept) - 1, -1)), strict=True):
         of_cell = np.full(edges[0].size * edges[1].size, -1, dtype=np.intp)
-        of_cell[np.unique(cell[mask])] = numbers
+        of_cell[np.flatnonzero(np.bincount(cell[mask]))] = numbers
         labels[mask] = of_cell[cell[mask]]
     return labels
 

@@ -5,19 +5,23 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solveh_banded
+from scipy.linalg.lapack import dptsv
 from scipy.optimize import minimize
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.surfaces.grooves.plane_coordinates import arc_coordinates, block_edges, block_means, centred_coordinates
 from sonolube.surfaces.grooves.track import GrooveTrack
-from sonolube.surfaces.height_map import HeightMap
+from sonolube.surfaces.height_map import HeightMap, Mask
 
-_COARSE, _FINE = 72, 160  # blocks along the longer side
+_SCREENED, _COARSE, _FINE = 36, 72, 160  # blocks along the longer side
+_LEAST_POINTS = 100  # measured blocks
+_KEPT = 0.25  # residual of a start above the least one over that of the median, up to which it is not screened out
 _DIRECTIONS = 60
 _TURNS = (-1.0, -0.4, -0.15, 0.0, 0.15, 0.4, 1.0)  # change of direction of the track over the longer side, in rad
+_MOST_BENT = 4.0  # of a refined track, in rad
 _LEAST_BLOCKS = 0.1  # of a bin of the section, over those of the fullest
+_EXTREME = 1e-3  # fraction of the blocks, less than those of the narrowest track
 _LEAST_UNWORN = 0.06  # fraction of the section
 _LEAST_WORN = 3  # bins
 _LEAST_CONTRAST = 5.0  # depth over the standard deviation beside the groove
@@ -111,6 +115,12 @@ def detect_groove(surface: HeightMap) -> DetectedGroove:
     )
 
 
+def height_range(surface: HeightMap) -> float:
+    """Range of the heights of a scan without the extreme 0.1 %: no track in it is deeper. [m]"""
+    low, high = np.quantile(_block_means(surface, _FINE).height, [_EXTREME, 1 - _EXTREME])
+    return float(high - low)
+
+
 class _Blocks(NamedTuple):
     """Means of a scan over square blocks."""
 
@@ -136,11 +146,6 @@ def _block_means(surface: HeightMap, blocks: int) -> _Blocks:
     reach = max(rows * surface.spacing_y, columns * surface.spacing_x)
     fields = (*centred_coordinates(surface), surface.height)
     px, py, height, _ = block_means(fields, surface.measured, block_edges(surface, reach / blocks))
-    if height.size < 100:
-        raise InvalidInput(
-            f"detection of a groove requires at least 100 measured blocks of {reach / blocks:.2g} m, got {height.size};"
-            " scan a larger field or more finely"
-        )
     side = max(surface.spacing_x, surface.spacing_y, reach / blocks)
     return _Blocks(px, py, height - height.mean(), side, reach)
 
@@ -148,10 +153,17 @@ def _block_means(surface: HeightMap, blocks: int) -> _Blocks:
 def _track(surface: HeightMap) -> GrooveTrack:
     """Track through the centre of the field of least residual, by grid search and simplex refinement."""
     points = _block_means(surface, _COARSE)
-    starts = [(math.pi * step / _DIRECTIONS, turn / points.reach) for step in range(_DIRECTIONS) for turn in _TURNS]
-    residuals = [_residual_sum(points, *start) for start in starts]
-    best = starts[int(np.argmin(residuals))]
-    direction, curvature = _refined_track(points, *best)
+    if points.height.size < _LEAST_POINTS:
+        side = points.reach / _COARSE
+        raise InvalidInput(
+            f"detection of a groove requires at least {_LEAST_POINTS} measured blocks of {side:.2g} m, got"
+            f" {points.height.size}; scan a larger field or more finely"
+        )
+    residuals = _residuals_of_starts(_block_means(surface, _SCREENED), np.ones((len(_TURNS), _DIRECTIONS), np.bool_))
+    screened = residuals <= residuals.min() + _KEPT * (np.median(residuals) - residuals.min())
+    residuals = _residuals_of_starts(points, screened)
+    turn, step = np.unravel_index(int(np.argmin(residuals)), residuals.shape)
+    direction, curvature = _refined_track(points, math.pi * step / _DIRECTIONS, _TURNS[turn] / points.reach)
     direction, curvature = _refined_track(_block_means(surface, _FINE), direction, curvature)
     half_turns = math.floor(direction / math.pi)  # reversal of the direction changes the sign of the curvature
     return GrooveTrack(
@@ -161,11 +173,22 @@ def _track(surface: HeightMap) -> GrooveTrack:
     )
 
 
+def _residuals_of_starts(points: _Blocks, chosen: Mask) -> Floats:
+    """Residual sums of squares of chosen starts, infinite for the others, shape (turns, directions)."""
+    residuals = np.full(chosen.shape, math.inf)
+    for row, turn, steps in zip(residuals, _TURNS, chosen, strict=True):
+        row[steps] = _residual_sums(points, math.pi * np.flatnonzero(steps) / _DIRECTIONS, turn / points.reach)
+    return residuals
+
+
 def _refined_track(points: _Blocks, direction: float, curvature: float) -> tuple[float, float]:
     """Direction and curvature of least residual near the given ones, by the simplex method of Nelder and Mead."""
 
     def at(offset: Floats) -> float:
-        return _residual_sum(points, direction + offset[0], curvature + offset[1] / points.reach)
+        bent = curvature + offset[1] / points.reach
+        if abs(bent) * points.reach > _MOST_BENT:
+            return math.inf
+        return float(_residual_sums(points, np.array([direction + offset[0]]), bent)[0])
 
     simplex = np.array([[0.0, 0.0], [0.03, 0.0], [0.0, 0.08]])
     options = {"initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-6 * at(np.zeros(2)), "maxfev": 120}
@@ -173,36 +196,46 @@ def _refined_track(points: _Blocks, direction: float, curvature: float) -> tuple
     return float(direction + found[0]), float(curvature + found[1] / points.reach)
 
 
-def _residual_sum(points: _Blocks, direction: float, curvature: float) -> float:
-    """Residual sum of squares of the heights about one section and a slope along the track."""
-    if abs(curvature) * points.reach > 4:
-        return math.inf
-    transverse, arc_length = arc_coordinates(points.x, points.y, direction, curvature)
-    z, t = points.height, arc_length - arc_length.mean()
-    projected = _projected_products(transverse, points.side, np.stack([z, t]))
-    zz, zt, tt = z @ z - projected[0, 0], z @ t - projected[0, 1], t @ t - projected[1, 1]
-    return float(zz - zt**2 / max(tt, np.finfo(float).tiny))
+def _residual_sums(points: _Blocks, directions: Floats, curvature: float) -> Floats:
+    """Residual sums of squares of the heights about one section and a slope along the track, for each direction."""
+    if not directions.size:
+        return np.empty(0)
+    transverse, arc_length = arc_coordinates(points.x, points.y, directions[:, None], curvature)
+    z, t = points.height, arc_length - arc_length.mean(axis=1, keepdims=True)
+    of_z, of_zt, of_t = _projected_products(transverse, points.side, np.broadcast_to(z, t.shape), t)
+    zz, zt, tt = z @ z - of_z, t @ z - of_zt, np.einsum("ij,ij->i", t, t) - of_t
+    return np.asarray(zz - zt**2 / np.maximum(tt, np.finfo(float).tiny))
 
 
-def _projected_products(transverse: Floats, step: float, values: Floats) -> Floats:
-    """Scalar products of the projections of values on piecewise linear functions of the distance from the track."""
-    position = (transverse - transverse.min()) / step
+def _projected_products(transverse: Floats, step: float, z: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:
+    """Scalar products z z, z t and t t of the projections on piecewise linear functions of the distance from the track.
+
+    Each row is a track of its own; their tridiagonal systems are solved as one.
+    """
+    position = (transverse - transverse.min(axis=1, keepdims=True)) / step
     knot = position.astype(np.intp)
     share = position - knot
-    knots = int(knot.max()) + 2
-    banded = np.zeros((2, knots))
-    banded[1] = np.bincount(knot, (1 - share) ** 2, minlength=knots)
-    banded[1] += np.bincount(knot + 1, share**2, minlength=knots)
-    banded[0, 1:] = np.bincount(knot, share * (1 - share), minlength=knots)[:-1]
-    banded[1] += _REGULARIZATION * banded[1].max()
-    moments = np.stack(
-        [
-            np.bincount(knot, (1 - share) * value, minlength=knots)
-            + np.bincount(knot + 1, share * value, minlength=knots)
-            for value in values
-        ]
-    )
-    return np.asarray(moments @ solveh_banded(banded, moments.T, check_finite=False))
+    rows, knots = len(knot), int(knot.max()) + 2
+    knot += knots * np.arange(rows)[:, None]
+
+    def total(values: Floats | None = None) -> Floats:
+        weights = None if values is None else values.ravel()
+        return np.bincount(knot.ravel(), weights, minlength=rows * knots).astype(np.float64, copy=False)
+
+    first, second = total(share), total(share**2)
+    diagonal = total() - 2 * first + second
+    diagonal[1:] += second[:-1]  # the last knot of a row has no points
+    by_row = diagonal.reshape(rows, knots)
+    by_row += _REGULARIZATION * by_row.max(axis=1, keepdims=True)
+    moments = np.empty((rows * knots, 2), order="F")
+    for moment, values in zip(moments.T, (z, t), strict=True):
+        farther = total(share * values)
+        moment[:] = total(values) - farther
+        moment[1:] += farther[:-1]
+    _, _, coefficients, _ = dptsv(diagonal, (first - second)[:-1], moments)
+    pairs = (0, 0), (0, 1), (1, 1)
+    of_z, of_zt, of_t = ((moments[:, i] * coefficients[:, j]).reshape(rows, knots).sum(axis=1) for i, j in pairs)
+    return of_z, of_zt, of_t
 
 
 def _section(points: _Blocks, track: GrooveTrack) -> _Section:

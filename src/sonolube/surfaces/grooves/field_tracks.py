@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.surfaces.form_removal import fit_form
-from sonolube.surfaces.grooves.detection import DetectedGroove, detect_groove
+from sonolube.surfaces.grooves.detection import DetectedGroove, detect_groove, height_range
 from sonolube.surfaces.height_map import HeightMap, Mask
 
 _MOST_TRACKS = 8
@@ -98,6 +98,8 @@ def field_tracks(surface: HeightMap) -> FieldTracks:
     others: list[str] = []
     rest, masked = surface, surface
     for _ in range(_MOST_TRACKS):
+        if found and height_range(rest) < _LEAST_DEPTH * max(track.groove_depth for track in found):
+            break
         try:
             detected = detect_groove(rest)
         except (NoGroove, InvalidInput):

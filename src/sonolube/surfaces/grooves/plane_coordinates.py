@@ -1,7 +1,5 @@
 """Coordinates in the field of a scan: Cartesian from its centre, and along a circular arc."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,15 +27,15 @@ def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
     return x[None, :], y[:, None]
 
 
-def arc_coordinates(x: Floats, y: Floats, direction: float, curvature: float) -> tuple[Floats, Floats]:
+def arc_coordinates(x: Floats, y: Floats, direction: float | Floats, curvature: float) -> tuple[Floats, Floats]:
     r"""Curvilinear coordinates of points with respect to a circle through the origin.
 
     Parameters
     ----------
     x, y : ndarray
         Cartesian coordinates that broadcast against each other, in m.
-    direction : float
-        Direction of the circle at the origin, in rad.
+    direction : float or ndarray
+        Direction of the circle at the origin, in rad; an array broadcasts against the coordinates.
     curvature : float
         Curvature of the circle in 1/m, positive for a centre to the left; zero for a line.
 
@@ -57,13 +55,13 @@ def arc_coordinates(x: Floats, y: Floats, direction: float, curvature: float) ->
 
     which has the limit :math:`s = l`, :math:`t = a` of a line without cancellation.
     """
-    cos, sin = math.cos(direction), math.sin(direction)
+    cos, sin = np.cos(direction), np.sin(direction)
     ahead, left = x * cos + y * sin, y * cos - x * sin
     if curvature == 0:
         return left, ahead
-    from_centre = np.sqrt(np.square(1 - curvature * left) + np.square(curvature * ahead))  # times the curvature
-    transverse = (2 * left - curvature * (np.square(left) + np.square(ahead))) / (1 + from_centre)
-    return transverse, np.arctan2(curvature * ahead, 1 - curvature * left) / curvature
+    power = 2 * left - curvature * (np.square(left) + np.square(ahead))
+    from_centre = np.sqrt(np.maximum(1 - curvature * power, 0.0))  # times the curvature
+    return power / (1 + from_centre), np.arctan2(curvature * ahead, 1 - curvature * left) / curvature
 
 
 def monomials(u: Floats, v: Floats, terms: int) -> list[Floats]:

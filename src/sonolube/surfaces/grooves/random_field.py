@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.lapack import dpotrf, dpotri
 
 from sonolube.checks import Floats
 from sonolube.surfaces.grooves.blocks import HEIGHT_RESOLUTION, BlockAverages
@@ -41,7 +42,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     modes = blocks.modes()
     count, free = len(modes), 3 + blocks.section.shape[1]
     form = blocks.form(6)
-    design = np.concatenate([form[:, :3], blocks.section, form[:, 3:], *blocks.waves(modes)], axis=1)
+    design = np.concatenate([form[:, :3], blocks.section, form[:, 3:], *blocks.fourier_waves], axis=1)
     parts = [_Part.of(blocks, design, part) for part in blocks.parts]
     wavenumber = np.hypot(*modes.T)
     ring = np.minimum((wavenumber / wavenumber.max() * _RINGS).astype(np.intp), _RINGS - 1)
@@ -57,7 +58,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         precision = sum(part.gram / variance for part, variance in pairs)
         precision[np.diag_indices(free)] *= 1 + _ROUNDING
         precision[bound, bound] += prior
-        covariance = np.linalg.inv(precision)
+        covariance = _inverse(precision)
         mean = covariance @ sum(part.moment / variance for part, variance in pairs)
         used_noise, previous = noise, density
         freedom = np.bincount(rings, 1 - prior * np.diag(covariance)[free:], minlength=_RINGS)
@@ -111,6 +112,17 @@ class _Part(NamedTuple):
         """Noise variance for given coefficients and effective number of parameters."""
         estimate = self.residual_sum(mean) / max(self.blocks - used, 1.0)
         return float(max(estimate, (_NEGLIGIBLE * scale) ** 2, HEIGHT_RESOLUTION**2))
+
+
+def _inverse(precision: Floats) -> Floats:
+    """Inverse of a symmetric matrix, by Cholesky's factor unless rounding has made it indefinite."""
+    factor, indefinite = dpotrf(precision, lower=True)
+    if indefinite:
+        return np.asarray(np.linalg.inv(precision))
+    lower, _ = dpotri(factor, lower=True)
+    inverse = lower + lower.T  # the upper part of either factor is zero
+    np.fill_diagonal(inverse, np.diag(lower))
+    return np.asarray(inverse)
 
 
 def _log_noise(parts: list[_Part], noise: Floats) -> float:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy import fft, stats
@@ -165,18 +166,20 @@ def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> Ro
     shape = _padded(mean.shape)
     window = mask.astype(np.float64)
     total = float(window.sum())
-    overlap = fft.irfft2(np.abs(fft.rfft2(window, shape)) ** 2, shape) / total
-    periodogram = np.abs(fft.rfft2(mean, shape)) ** 2 / total
+    overlap = _lags(np.abs(fft.rfft2(window, shape)) ** 2 / total, shape)
     periods_y, periods_x = np.abs(fft.fftfreq(shape[0], 1 / mean.shape[0])), fft.rfftfreq(shape[1], 1 / mean.shape[1])
     counted_waves = (periods_y[:, None] > _LOWEST) | (periods_x > _LOWEST)
     counted_waves &= (periods_y[:, None] < _HIGHEST * mean.shape[0] / 2) & (periods_x < _HIGHEST * mean.shape[1] / 2)
-    weight = _doubled(shape) * counted_waves * (total / math.prod(shape)) / 2  # as many as there are cells, in pairs
+    used = np.flatnonzero(counted_waves)
+    weight = np.broadcast_to(_doubled(shape), counted_waves.shape).take(used)
+    weight *= total / math.prod(shape) / 2  # as many as there are cells, in pairs
+    periodogram = np.abs(fft.rfft2(mean, shape).take(used)) ** 2 / total
     variance = max(float(np.sum(mean**2)) / total, np.finfo(float).tiny)
 
-    def expected(parameters: Floats) -> Floats:
-        covariance = fft.irfft2(_density(parameters, shape, cells.cell_sides), shape)
-        covariance[0, 0] += math.exp(parameters[5])
-        return np.asarray(fft.rfft2(covariance * overlap).real)
+    def without_noise(parameters: Floats) -> Floats:
+        """Expected periodogram of heights without the noise, whose own is its variance at all wavenumbers."""
+        covariance = _lags(_density(parameters, shape, cells.cell_sides), shape)
+        return np.asarray(fft.hfft(fft.rfft(covariance * overlap, axis=1), shape[0], axis=0).take(used))
 
     floor = 1e-9 * variance
     best: tuple[float, Floats, Floats] | None = None
@@ -191,7 +194,7 @@ def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> Ro
                 math.log(0.05 * variance),
             ]
         )
-        found = _scored(start, expected, periodogram, weight, floor, math.log(_LEAST_NOISE * variance))
+        found = _scored(start, without_noise, periodogram, weight, floor, math.log(_LEAST_NOISE * variance))
         if best is None or found[0] < best[0]:
             best = found
     assert best is not None
@@ -205,7 +208,7 @@ def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> Ro
 
 def _scored(
     start: Floats,
-    expected: Callable[[Floats], Floats],
+    without_noise: Callable[[Floats], Floats],
     periodogram: Floats,
     weight: Floats,
     floor: float,
@@ -213,27 +216,34 @@ def _scored(
 ) -> tuple[float, Floats, Floats]:
     """Minus log-likelihood, parameters and covariance, by Fisher's scoring from a start."""
 
-    def cost(parameters: Floats) -> tuple[float, Floats]:
-        mean = np.maximum(expected(parameters), floor)
-        change = parameters - start
-        return float(np.sum(weight * (np.log(mean) + periodogram / mean))) + float(change @ (_PRIOR * change)) / 2, mean
+    def cost(parameters: Floats, rough: Floats) -> float:
+        mean, change = np.maximum(rough + math.exp(parameters[5]), floor), parameters - start
+        return float(np.sum(weight * (np.log(mean) + periodogram / mean))) + float(change @ (_PRIOR * change)) / 2
 
-    theta = start
-    value, mean = cost(theta)
+    def stepped(parameters: Floats, rough: Floats) -> list[Floats]:
+        """Expected periodograms with each parameter a step larger."""
+        noise, factor = math.exp(parameters[5]), math.exp(_STEP)
+        shapes = [without_noise(parameters + _STEP * row) + noise for row in np.eye(6)[1:5]]
+        return [factor * rough + noise, *shapes, rough + factor * noise]
+
+    theta, rough = start, without_noise(start)
+    value = cost(theta, rough)
     damping = 1e-3
     information = np.eye(6)
     for _ in range(_ITERATIONS):
-        slopes = np.stack([(np.maximum(expected(theta + _STEP * row), floor) / mean - 1) / _STEP for row in np.eye(6)])
+        mean = np.maximum(rough + math.exp(theta[5]), floor)
+        slopes = (np.maximum(stepped(theta, rough), floor) / mean - 1) / _STEP
         weighted = slopes * weight
-        gradient = np.einsum("aij,ij->a", weighted, periodogram / mean - 1) - _PRIOR * (theta - start)
-        information = np.einsum("aij,bij->ab", weighted, slopes) + np.diag(_PRIOR)
+        gradient = weighted @ (periodogram / mean - 1) - _PRIOR * (theta - start)
+        information = weighted @ slopes.T + np.diag(_PRIOR)
         for _ in range(8):
             step = np.linalg.solve(information + damping * np.diag(np.diag(information) + 1e-9), gradient)
             step *= min(1.0, _LARGEST_STEP / max(float(np.max(np.abs(step))), 1e-12))
             trial = theta + step
             trial[4] = min(trial[4], math.log(_HIGHEST_EXPONENT))
             trial[5] = max(trial[5], least_noise)
-            tried, tried_mean = cost(trial)
+            tried_rough = without_noise(trial)
+            tried = cost(trial, tried_rough)
             if tried <= value:
                 break
             damping = max(10 * damping, 1e-2)
@@ -241,7 +251,7 @@ def _scored(
             break
         moved = float(np.max(np.abs(trial - theta)))
         gained = value - tried
-        theta, value, mean, damping = trial, tried, tried_mean, damping / 10
+        theta, value, rough, damping = trial, tried, tried_rough, damping / 10
         if moved < _CONVERGED or gained < 1e-2:
             break
     return value, theta, np.asarray(np.linalg.pinv(information + 1e-6 * np.eye(6)), dtype=np.float64)
@@ -261,15 +271,26 @@ def _doubled(shape: tuple[int, int]) -> Floats:
     return twice[None, :]
 
 
+def _lags(spectrum: Floats, shape: tuple[int, int]) -> Floats:
+    """Inverse transform of an even spectrum, at lags of zero and more along y; the others follow by point symmetry."""
+    return np.asarray(fft.irfft(fft.ihfft(spectrum, axis=0), shape[1], axis=1))
+
+
+@lru_cache(maxsize=4)
+def _wavenumbers(shape: tuple[int, int], spacing: tuple[float, float]) -> tuple[Floats, Floats, Floats, Floats]:
+    """Products kx kx, ky ky and kx ky of the wavenumbers of a periodic grid, and the transfer function of its cells."""
+    ky, kx = fft.fftfreq(shape[0], spacing[0])[:, None], fft.rfftfreq(shape[1], spacing[1])
+    return kx**2, ky**2, kx * ky, (np.sinc(ky * spacing[0]) * np.sinc(kx * spacing[1])) ** 2
+
+
 def _density(parameters: Floats, shape: tuple[int, int], spacing: tuple[float, float]) -> Floats:
     """Eigenvalues of the covariance of cell means on the periodic grid, in m2, without the noise."""
-    ky, kx = fft.fftfreq(shape[0], spacing[0])[:, None], fft.rfftfreq(shape[1], spacing[1])
+    along_x, along_y, mixed, averaging = _wavenumbers(shape, spacing)
     variance, length, a, b, exponent, _ = parameters
     size = math.hypot(a, b)
     cosh, sinh = math.cosh(size), math.sinh(size) / size if size > 1e-12 else 1.0
-    squared = kx**2 * (cosh + a * sinh) + ky**2 * (cosh - a * sinh) + 2 * b * sinh * kx * ky
+    squared = along_x * (cosh + a * sinh) + along_y * (cosh - a * sinh) + 2 * b * sinh * mixed
     hurst = math.exp(exponent)
     inner = (2 * math.pi) ** 2 * math.exp(2 * length)
-    continuous = 4 * math.pi * hurst * math.exp(variance + 2 * length)
-    averaging = (np.sinc(ky * spacing[0]) * np.sinc(kx * spacing[1])) ** 2
-    return np.asarray(continuous / math.prod(spacing) * np.exp(-(1 + hurst) * np.log1p(inner * squared)) * averaging)
+    continuous = 4 * math.pi * hurst * math.exp(variance + 2 * length) / math.prod(spacing)
+    return np.asarray(continuous * np.exp(-(1 + hurst) * np.log1p(inner * squared)) * averaging)

@@ -1,7 +1,7 @@
 """Smooth mean cross-section between the edges, by a spline of greatest likelihood in correlated noise."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -75,7 +75,7 @@ def section_curve(
     """
     noise = math.sqrt(float(np.median(np.diag(covariance))))
     left, right = edges
-    found = None
+    fitted: tuple[tuple[Floats, Floats, Floats], Floats, list[_Edge | None]] | None = None
     for _ in range(_PASSES):
         inside = (s > left) & (s < right)
         if np.count_nonzero(inside) < _LEAST_POINTS:
@@ -86,45 +86,65 @@ def section_curve(
         heights = fit.at(points[0])
         depth = -float(heights.min())
         ends = [
-            None if cut[0] else _edge(*points, heights, depth),
-            None if cut[1] else _edge(*mirrored, heights[::-1], depth),
+            None if cut[0] else _Edge.of(*points, heights, depth),
+            None if cut[1] else _Edge.of(*mirrored, heights[::-1], depth),
         ]
-        found = _curve(_floor(*points, heights, depth), points[0], ends, depth)
+        fitted = points, heights, ends
         level = -min(_FLANK * depth + noise, depth / 3)
-        fine = np.linspace(found.left, found.right, _FINE)
+        fine = np.linspace(*_places(points[0], ends), _FINE)
         low = fine[fit.at(fine) < level]
         if low.size < 2:
             break
         left = edges[0] if cut[0] else max(float(low[0]), s[0] - 1e-12)
         right = edges[1] if cut[1] else min(float(low[-1]), s[-1] + 1e-12)
-    return found
+    return None if fitted is None else _curve(*fitted)
 
 
 class _Edge(NamedTuple):
-    """Zero of a flank, with its standard deviation and slope; distances count inwards."""
+    """Zero of a flank; distances count inwards."""
 
-    place: float
-    deviation: float
-    slope: float
+    flank: "_Spline"
+    outermost: float
+    first: float  # point of the flank
+    last: float
+    secant: float  # slope
 
+    @classmethod
+    def of(cls, s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: float) -> "_Edge":
+        """Edge before the first of the points, by a spline through those of its flank."""
+        deep = np.flatnonzero(heights < -_FLANK_END * depth)
+        count = max(min(_LEAST_FLANK, s.size), int(deep[0]) + 1 if deep.size else s.size)
+        flank = _Spline.of(s[:count], z[:count], covariance[:count, :count], _integrated_thrice)
+        secant = float(heights[0] - heights[count - 1]) / float(s[count - 1] - s[0])
+        outermost = float(s[0] + heights[0] / (_LEAST_SLOPE * secant))
+        return cls(flank, outermost, float(s[0]), float(s[count - 1]), secant)
 
-def _edge(s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: float) -> _Edge:
-    """Edge before the first of the points, by a spline through those of its flank."""
-    deep = np.flatnonzero(heights < -_FLANK_END * depth)
-    count = max(min(_LEAST_FLANK, s.size), int(deep[0]) + 1 if deep.size else s.size)
-    flank = _Spline.of(s[:count], z[:count], covariance[:count, :count], _integrated_thrice)
-    secant = float(heights[0] - heights[count - 1]) / float(s[count - 1] - s[0])
-    outermost = s[0] + heights[0] / (_LEAST_SLOPE * secant)
-    outwards = np.linspace(float(s[count - 1]), outermost, _FINE)
-    curves = np.concatenate([flank.at(outwards)[None], flank.draws(outwards)])
-    places = _crossing(outwards, curves)
-    lost = places <= outermost  # a parabola that turns back: its tangent at the last point instead
-    at_end = np.array([np.interp(float(s[0]), outwards[::-1], curve[::-1]) for curve in curves[lost]])
-    places[lost] = s[0] + at_end / secant
-    step = float(s[1] - s[0])
-    slope = abs(float(np.diff(flank.at(places[0] + np.array([0.0, 2 * step])))[0])) / (2 * step)
-    slope = min(max(slope, _LEAST_SLOPE * secant), _LARGEST_SLOPE * secant)
-    return _Edge(float(places[0]), _deviation(places[1:]), slope)
+    @property
+    def place(self) -> float:
+        """Zero of the flank's posterior mean, in m."""
+        return float(self._zeros(self.flank.at(self._outwards)[None])[0])
+
+    def deviation(self) -> float:
+        """Standard deviation of the place over draws, in m."""
+        return _deviation(self._zeros(self.flank.draws(self._outwards)))
+
+    def slope(self, step: float) -> float:
+        """Slope of the flank over two steps in m from its zero, per metre."""
+        slope = abs(float(np.diff(self.flank.at(self.place + np.array([0.0, 2 * step])))[0])) / (2 * step)
+        return min(max(slope, _LEAST_SLOPE * self.secant), _LARGEST_SLOPE * self.secant)
+
+    @property
+    def _outwards(self) -> Floats:
+        return np.linspace(self.last, self.outermost, _FINE)
+
+    def _zeros(self, curves: Floats) -> Floats:
+        """Zero of each curve along the flank outwards."""
+        outwards = self._outwards
+        places = _crossing(outwards, curves)
+        lost = places <= self.outermost  # a parabola that turns back: its tangent at the last point instead
+        at_end = np.array([np.interp(self.first, outwards[::-1], curve[::-1]) for curve in curves[lost]])
+        places[lost] = self.first + at_end / self.secant
+        return places
 
 
 def _floor(s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: float) -> tuple["_Spline", Floats]:
@@ -138,22 +158,31 @@ def _floor(s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: flo
     return spline, np.linspace(s[first], s[last - 1], _FINE)
 
 
-def _curve(floor: tuple["_Spline", Floats], s: Floats, ends: list[_Edge | None], of_whole: float) -> SectionCurve:
-    """Edges and depth from the splines of the floor and of the flanks, and the depth of the spline of the whole."""
-    spline, fine = floor
+def _places(s: Floats, ends: Sequence[_Edge | None]) -> tuple[float, float]:
+    """Places of both edges, the first and the last of the points where they are cut."""
+    left, right = ends
+    return float(s[0]) if left is None else left.place, float(s[-1]) if right is None else -right.place
+
+
+def _curve(points: tuple[Floats, Floats, Floats], heights: Floats, ends: Sequence[_Edge | None]) -> SectionCurve:
+    """Edges and depth from the splines of the floor and of the flanks, with the heights of the spline of the whole."""
+    of_whole = -float(heights.min())
+    spline, fine = _floor(*points, heights, of_whole)
     mean = spline.at(fine)
     depths = -spline.draws(fine).min(axis=1)
     excess = float(depths.mean() + mean.min())
-    left, right = ends
+    left, right = _places(points[0], ends)
+    steps = float(points[0][1] - points[0][0]), float(points[0][-1] - points[0][-2])
+    slopes = [math.inf if end is None else end.slope(step) for end, step in zip(ends, steps, strict=True)]
     return SectionCurve(
-        left=float(s[0]) if left is None else left.place,
-        right=float(s[-1]) if right is None else -right.place,
+        left=left,
+        right=right,
         depth=-float(mean.min()) - _CORRECTIONS * excess,
         deepest=float(fine[np.argmin(mean)]),
-        width_deviation=math.hypot(*(end.deviation for end in ends if end is not None)),
+        width_deviation=math.hypot(*(end.deviation() for end in ends if end is not None)),
         depth_deviation=math.hypot(_deviation(depths), excess, of_whole + float(mean.min())),
-        left_slope=math.inf if left is None else left.slope,
-        right_slope=math.inf if right is None else right.slope,
+        left_slope=slopes[0],
+        right_slope=slopes[1],
     )
 
 
@@ -234,7 +263,7 @@ def _most_likely_power(noise: Floats, prior: Floats, line: Floats, z: Floats, va
     root = cholesky(noise, lower=True)
     q = np.linalg.qr(solve_triangular(root, line, lower=True), mode="complete")[0][:, 3:]
     whitened = solve_triangular(root, solve_triangular(root, prior, lower=True).T, lower=True)
-    values, vectors = eigh(q.T @ whitened @ q)
+    values, vectors = eigh(q.T @ whitened @ q, driver="evd")
     values = np.maximum(values, 0.0)
     squares = np.square(vectors.T @ (q.T @ solve_triangular(root, z, lower=True)))
     powers = variance * np.logspace(-4, 12, 129)

@@ -9,7 +9,7 @@ from sonolube.checks import Floats
 from sonolube.surfaces.form_removal import fit_form
 from sonolube.surfaces.grooves.blocks import BlockAverages, block_averages
 from sonolube.surfaces.grooves.plane_coordinates import centred_coordinates
-from sonolube.surfaces.grooves.plane_waves import fit_plane_waves
+from sonolube.surfaces.grooves.plane_waves import PlaneWaveSearch
 from sonolube.surfaces.grooves.random_field import fit_random_field
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.grooves.waviness_model import WavinessModel, model_probabilities
@@ -109,7 +109,7 @@ class UnwornReference:
         """Standard deviation between the waviness models of a weighted sum of the reference's heights."""
         x, y = centred_coordinates(self.surface)
         probable = model_probabilities(self.models)
-        total = np.array([float(np.sum(model.heights(x, y) * weights)) for model in self.models])
+        total = np.array([model.height_sum(x, y, weights) for model in self.models])
         return math.sqrt(float(probable @ (total - probable @ total) ** 2))
 
     def random_part(self, surface: HeightMap) -> Floats:
@@ -147,7 +147,7 @@ def unworn_reference(
     Notes
     -----
     Two kinds of waviness models are averaged with weights proportional to their evidence: up to four plane waves of any
-    length above a sixth of the field, which extend coherently below the groove (`fit_plane_waves`), and a Gaussian
+    length above a sixth of the field, which extend coherently below the groove (`PlaneWaveSearch`), and a Gaussian
     random field (`fit_random_field`), whose part that the unworn pixels do not determine contributes to the
     uncertainty. Both are also fitted to the worn pixels: a groove of constant section hides only waves across it, so
     that variations along it are used, weighted by how constant the section is.
@@ -169,14 +169,15 @@ def unworn_reference(
 
 def _models(blocks: BlockAverages) -> list[WavinessModel]:
     """Waviness models of the blocks, the most probable first; plane waves alone where they are sufficient."""
-    if fit_plane_waves(blocks, form_terms=_FORM_TERMS, starts=1)[1]:
-        plane_waves, sufficient = fit_plane_waves(blocks, form_terms=_FORM_TERMS)
-        if sufficient:
-            return plane_waves
+    search = PlaneWaveSearch(blocks, form_terms=_FORM_TERMS)
+    if search.stepwise(starts=1).sufficient:
+        waves = search.stepwise()
+        if waves.sufficient:
+            return search.models(waves)
     random = fit_random_field(blocks)
     found = [random]
     for terms in (3, 6):
-        quick = fit_plane_waves(blocks, noise=random.noise, form_terms=terms, starts=1)[0]
-        if quick[0].cost < random.cost + _HOPELESS:
-            found += fit_plane_waves(blocks, noise=random.noise, form_terms=terms)[0]
+        search = PlaneWaveSearch(blocks, noise=random.noise, form_terms=terms)
+        if search.stepwise(starts=1).fits[0].cost < random.cost + _HOPELESS:
+            found += search.models(search.stepwise())
     return sorted(found, key=lambda model: model.cost)

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.surfaces.grooves.plane_coordinates import monomials
+
+_POWERS_X, _POWERS_Y = [0, 1, 0, 2, 1, 0], [0, 0, 1, 0, 1, 2]  # of the terms of the form
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -59,8 +60,10 @@ class WavinessModel:
 
     def form_alone(self, x: Floats, y: Floats) -> Floats:
         """Heights of the form in m at positions x, shape (1, columns), and y, shape (rows, 1), in m."""
-        terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
-        return np.asarray(sum(factor * power for factor, power in zip(self.form, terms, strict=True)))
+        along_x, along_y = self._powers(x.ravel(), y.ravel())
+        table = np.zeros((3, 3))
+        table[_POWERS_Y[: self.form.size], _POWERS_X[: self.form.size]] = self.form
+        return np.asarray(along_y @ table @ along_x.T)
 
     def heights(self, x: Floats, y: Floats) -> Floats:
         """Heights of form and waves in m at positions x, shape (1, columns), and y, shape (rows, 1), in m."""
@@ -68,21 +71,31 @@ class WavinessModel:
         waves = (along_y * (self.cosine - 1j * self.sine)) @ along_x.T
         return np.asarray(self.form_alone(x, y) + waves.real)
 
+    def height_sum(self, x: Floats, y: Floats, weights: Floats) -> float:
+        """Weighted sum of the heights in m."""
+        linear = np.concatenate([self.form, self.cosine, self.sine])
+        return float(self.height_sum_gradient(x, y, weights)[: linear.size] @ linear)
+
     def height_sum_gradient(self, x: Floats, y: Floats, weights: Floats) -> Floats:
         """Gradient of a weighted sum of the heights with respect to the fitted parameters, shape (p,)."""
-        terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
-        form = [float(np.sum(power * weights)) for power in terms]
         x, y = x.ravel(), y.ravel()
+        powers_x, powers_y = self._powers(x, y)
+        moments = powers_y.T @ weights @ powers_x
+        form = moments[_POWERS_Y[: self.form.size], _POWERS_X[: self.form.size]]
         along_x, along_y = self._complex_waves(x, y)
         in_rows = weights @ along_x  # (rows, n)
         waves = np.sum(along_y * in_rows, axis=0)
-        sums = [np.array(form), waves.real, waves.imag]
+        sums = [form, waves.real, waves.imag]
         if not self.random:  # d/dk of c cos + s sin = 2 pi x (-c sin + s cos)
             amplitude = 2 * math.pi * (self.sine + 1j * self.cosine)
             by_x = np.sum(along_y * (weights @ (x[:, None] * along_x)), axis=0)
             by_y = np.sum(y[:, None] * along_y * in_rows, axis=0)
             sums += [(amplitude * by_x).real, (amplitude * by_y).real]
         return np.concatenate(sums)
+
+    def _powers(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Powers 0 to 2 of x/l and of y/l, whose products are the terms of the form."""
+        return np.vander(x / self.half_side, 3, increasing=True), np.vander(y / self.half_side, 3, increasing=True)
 
     def _complex_waves(self, x: Floats, y: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Factors exp(2 pi i k_x x) and exp(2 pi i k_y y), whose products are the waves."""
