@@ -14,6 +14,8 @@ from sonolube.surfaces.grooves.plane_coordinates import arc_coordinates, block_e
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap, Mask
 
+__all__ = ["DetectedGroove", "detect_groove"]  # `height_range` serves this room only
+
 _SCREENED, _COARSE, _FINE = 36, 72, 160  # blocks along the longer side
 _LEAST_POINTS = 100  # measured blocks
 _KEPT = 0.25  # residual of a start above the least one over that of the median, up to which it is not screened out

@@ -50,12 +50,24 @@ class PlaneWaves:
 
 
 class PlaneWaveFit(NamedTuple):
-    """Plane waves of least misfit."""
+    """Plane waves of least misfit.
 
-    modes: Floats  # wavenumbers in 1/m, (n, 2)
-    amplitudes: Floats  # cosines, sines
-    residual: Floats  # of the weighted blocks
-    cost: float  # Bayesian information criterion, up to a constant
+    Parameters
+    ----------
+    modes : ndarray, shape (n, 2)
+        Wavenumbers along x and y. [1/m]
+    amplitudes : ndarray, shape (2 n,)
+        Of the cosines, then of the sines. [m]
+    residual : ndarray, shape (blocks,)
+        Misfit of the blocks over the standard deviation of their noise. []
+    cost : float
+        Bayesian information criterion, up to a constant; infinite for waves out of range. []
+    """
+
+    modes: Floats
+    amplitudes: Floats
+    residual: Floats
+    cost: float
 
 
 class PlaneWaveSearch:
@@ -123,7 +135,16 @@ class PlaneWaveSearch:
         return PlaneWaves([distinct[cost] for cost in sorted(distinct)], sufficient)
 
     def models(self, waves: PlaneWaves) -> list[WavinessModel]:
-        """Waviness models of fits, with form, section and response."""
+        """Waviness models of fits, with form, section and response.
+
+        Parameters
+        ----------
+        waves : PlaneWaves
+
+        Returns
+        -------
+        list of WavinessModel
+        """
         return [self._model(fit) for fit in waves.fits]
 
     @cached_property
