@@ -55,13 +55,13 @@ class PlaneWaveFit(NamedTuple):
     Parameters
     ----------
     modes : ndarray, shape (n, 2)
-        Wavenumbers along x and y. [1/m]
+        Wavenumbers along x and y, in 1/m.
     amplitudes : ndarray, shape (2 n,)
-        Of the cosines, then of the sines. [m]
+        Of the cosines, then of the sines, in m.
     residual : ndarray, shape (blocks,)
-        Misfit of the blocks over the standard deviation of their noise. []
+        Misfit of the blocks over the standard deviation of their noise.
     cost : float
-        Bayesian information criterion, up to a constant; infinite for waves out of range. []
+        Bayesian information criterion, up to a constant; infinite for waves out of range.
     """
 
     modes: Floats
