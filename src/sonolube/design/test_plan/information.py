@@ -11,7 +11,7 @@ with the noise D of the measurement. The mutual information of model and outcome
 is the expected fall of the entropy of the model's weights w by the tests.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import log
@@ -23,9 +23,12 @@ from scipy.special import logsumexp, ndtri
 from sonolube.checks import Floats, Integers
 from sonolube.design.sobol import sobol_sample
 
+_Information = Callable[[Iterable[int]], float]
+
 _ROUNDS: Final = 5  # of exchanges, at most
 _GAIN: Final = 1e-9  # bits, below which an exchange is none
 _LEAST_VARIANCE: Final = 1e-12
+_NEGLIGIBLE: Final = -700.0  # logarithm of a share that changes no sum; below it, exp is many times slower
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -105,7 +108,8 @@ def mutual_information(models: Sequence[ModelOutcomes], points: Integers, *, noi
     total = 0.0
     for index, (model, pair) in enumerate(zip(models, samples, strict=True)):
         for outcomes in pair:
-            each = np.stack([one.log_density(outcomes, own=place == index) for place, one in enumerate(mixtures)])
+            terms = _terms(outcomes)
+            each = np.stack([one.log_density(terms, own=place == index) for place, one in enumerate(mixtures)])
             total += model.weight * float(np.mean(each[index] - logsumexp(each + logs[:, None], axis=0))) / 2
     return max(total, 0.0) / log(2)
 
@@ -118,11 +122,9 @@ def _normals(count: int, columns: int, seed: int) -> Floats:
 
 @dataclass(frozen=True, slots=True)
 class _Mixture:
-    """Equally weighed normal distributions in b dimensions, prepared for many evaluations."""
+    """Equally weighed normal distributions in b dimensions, whose logarithms are polynomials of second degree."""
 
-    quadratic: Floats  # (b * b, j)
-    linear: Floats  # (b, j)
-    constant: Floats  # (j,)
+    coefficients: Floats  # (b * b + b + 1, j), of the terms of `_terms`
 
     @classmethod
     def of(cls, means: Floats, factor: Floats) -> "_Mixture":
@@ -132,18 +134,28 @@ class _Mixture:
         linear = np.einsum("jab,jb->ja", precision, means)
         logs = np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1) + 0.5 * means.shape[1] * np.log(2 * np.pi)
         constant = -0.5 * np.einsum("ja,ja->j", linear, means) - logs
-        return cls(-0.5 * precision.reshape(len(means), -1).T, linear.T, constant)
+        return cls(np.column_stack([-0.5 * precision.reshape(len(means), -1), linear, constant]).T)
 
-    def log_density(self, outcomes: Floats, *, own: bool) -> Floats:
-        """Logarithm of the density at n outcomes; those drawn from this mixture, in order, leave out their own part."""
-        products = (outcomes[:, :, None] * outcomes[:, None, :]).reshape(len(outcomes), -1)
-        logs = products @ self.quadratic + outcomes @ self.linear + self.constant
-        parts = self.constant.size
+    def log_density(self, terms: Floats, *, own: bool) -> Floats:
+        """Logarithm of the density at the terms of n outcomes; those drawn from this mixture leave out their own part.
+
+        Each outcome of its own is drawn from the part in the same place.
+        """
+        logs = terms @ self.coefficients
+        parts = len(self.coefficients.T)
         if own:
             np.fill_diagonal(logs, -np.inf)
             parts -= 1
         highest = logs.max(axis=1, keepdims=True)
-        return np.asarray(np.log(np.exp(logs - highest).sum(axis=1)) + highest[:, 0] - np.log(parts))
+        logs -= highest
+        shares = np.exp(np.clip(logs, _NEGLIGIBLE, 0.0, out=logs), out=logs)
+        return np.asarray(np.log(shares.sum(axis=1)) + highest[:, 0] - np.log(parts))
+
+
+def _terms(outcomes: Floats) -> Floats:
+    """Products, values and one: terms of a polynomial of second degree of n outcomes, shape (n, b * b + b + 1)."""
+    products = outcomes[:, :, None] * outcomes[:, None, :]
+    return np.column_stack([products.reshape(len(outcomes), -1), outcomes, np.ones(len(outcomes))])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -193,39 +205,40 @@ def best_batch(
     .. [1] G. E. P. Box and W. J. Hill, Technometrics 9, 57 (1967): discrimination among models by expected entropy.
     .. [2] V. V. Fedorov, Theory of Optimal Experiments, Academic Press 1972: exchanges.
     """
+    known: dict[tuple[int, ...], float] = {}
+
+    def information(points: Iterable[int]) -> float:
+        batch = tuple(sorted(points))  # the search meets many of them again
+        if batch not in known:
+            known[batch] = mutual_information(models, np.array(batch), noise=noise, seed=seed)
+        return known[batch]
+
+    candidates = [int(each) for each in allowed]
     chosen: list[int] = []
     for _ in range(count):
-        chosen.append(_best_addition(models, chosen, noise, allowed, seed)[0])
+        chosen.append(_best_addition(information, chosen, candidates))
     for _ in range(_ROUNDS):
-        if not _exchanged(models, chosen, noise, allowed, seed):
+        if not _exchanged(information, chosen, candidates):
             break
     rest, chosen = chosen, []
     while rest:  # exchanges leave another order than that of the gains
-        chosen.append(_best_addition(models, chosen, noise, np.array(rest), seed)[0])
+        chosen.append(_best_addition(information, chosen, rest))
         rest = [each for each in rest if each not in chosen]
-    information = [
-        mutual_information(models, np.array(chosen[:size]), noise=noise, seed=seed) for size in range(1, count + 1)
-    ]
-    return Batch(points=tuple(chosen), information=tuple(information))
+    return Batch(points=tuple(chosen), information=tuple(information(chosen[:size]) for size in range(1, count + 1)))
 
 
-def _best_addition(
-    models: Sequence[ModelOutcomes], fixed: Sequence[int], noise: Floats, allowed: Integers, seed: int
-) -> tuple[int, float]:
-    """Candidate that adds most to some tests, and the information of both."""
-    rest = [int(each) for each in allowed if each not in fixed]
-    found = [mutual_information(models, np.array([*fixed, each]), noise=noise, seed=seed) for each in rest]
-    best = int(np.argmax(found))
-    return rest[best], found[best]
+def _best_addition(information: _Information, fixed: Sequence[int], candidates: Sequence[int]) -> int:
+    """Candidate with which some tests have the most information."""
+    rest = [each for each in candidates if each not in fixed]
+    return rest[int(np.argmax([information([*fixed, each]) for each in rest]))]
 
 
-def _exchanged(models: Sequence[ModelOutcomes], chosen: list[int], noise: Floats, allowed: Integers, seed: int) -> bool:
+def _exchanged(information: _Information, chosen: list[int], candidates: Sequence[int]) -> bool:
     """Exchange each test for the best candidate in its place; whether any was."""
     changed = False
     for place in range(len(chosen)):
         fixed = chosen[:place] + chosen[place + 1 :]
-        now = mutual_information(models, np.array([*fixed, chosen[place]]), noise=noise, seed=seed)
-        best, gained = _best_addition(models, fixed, noise, allowed, seed)
-        if gained > now + _GAIN:
+        best = _best_addition(information, fixed, candidates)
+        if information([*fixed, best]) > information(chosen) + _GAIN:
             chosen[place], changed = best, True
     return changed
