@@ -12,7 +12,8 @@ from sonolube.lab.devices import DriveSetting
 from sonolube.prediction import learned
 from sonolube.prediction.inputs import rig_inputs
 from sonolube.prediction.predictive import ratio_draws
-from sonolube.rig import Rig, wear_point
+from sonolube.rig import Rig, simulate, steady_vibration
+from sonolube.wear import cube_wear_rate
 
 _DRAWS: Final = 64  # of which one is taken
 _CLOSE: Final = 0.02  # of the rig's voltage, between two known ones of which a level is interpolated
@@ -70,7 +71,8 @@ class FrictionDraw:
         self.friction_coefficient = float(friction.value * np.exp(friction.spread * rng.standard_normal()))
         self._row = int(rng.integers(_DRAWS))
         self._known: dict[object, dict[float, FrictionLevel]] = defaultdict(dict)
-        self._wear_rate = float(wear_point(rig).intrinsic_wear_rate)
+        self._wear_rate = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
+        steady_vibration(rig)  # refuses a rig of which no wear under vibration is known
 
     def at(self, setting: DriveSetting | None, sliding_speed: float) -> FrictionLevel:
         """Level at a setting of the drive and a sliding speed.
@@ -115,16 +117,17 @@ class FrictionDraw:
     def _computed(self, setting: DriveSetting, sliding_speed: float) -> FrictionLevel:
         """Level with vibration, by the models of the rig."""
         without = self.friction_coefficient * self._rig.normal_load
-        rig = self._set(setting, sliding_speed)
-        inputs = rig_inputs(rig)
-        draws = ratio_draws(learned().friction, inputs.at(), count=_DRAWS, seed=self._seed)
+        found = simulate(self._set(setting, sliding_speed))
+        amplitude, worn = found.friction.vibration_amplitude, found.wear.wear_rate
+        inputs = replace(self._inputs, frequency=setting.frequency)  # the others are those of the rig at any drive
+        at = inputs.at(vibration_amplitude=amplitude, sliding_speed=sliding_speed)
+        draws = ratio_draws(learned().friction, at, count=_DRAWS, seed=self._seed)
         ratio = float(draws.friction_ratio[self._row, 0])
-        worn = wear_point(rig).wear_rate
         return FrictionLevel(
             friction_force=ratio * without,
             friction_ratio=ratio,
-            vibration_amplitude=inputs.amplitude.value,
-            wear_rate=self._wear_rate if worn is None or not np.isfinite(worn) else float(worn),
+            vibration_amplitude=amplitude,
+            wear_rate=float(worn) if np.isfinite(worn) else self._wear_rate,
         )
 
     def _set(self, setting: DriveSetting, sliding_speed: float) -> Rig:
