@@ -76,26 +76,25 @@ def nested_dissection(mesh: Mesh) -> list[Integers]:
 
 def _bisection(projections: Floats, local: Integers, free: NDArray[np.bool_]) -> tuple[Integers, int, Integers]:
     """Elements sorted along the best direction, the number of them before the cut, and the nodes of its separator."""
-    cuts = [_best_cut(projection, local, free) for projection in projections.T]
-    _, order, count, separator = min(cuts, key=lambda cut: cut[0])
-    return order, count, separator
-
-
-def _best_cut(projection: Floats, local: Integers, free: NDArray[np.bool_]) -> tuple[float, Integers, int, Integers]:
-    """Weight of the best cut across one direction, followed by the three items of `_bisection`."""
-    elements = len(local)
-    order = np.argsort(projection, kind="stable")
-    nodes, rank = local[order].ravel(), np.repeat(np.arange(elements), local.shape[1])
-    first, last = np.empty(len(free), dtype=np.int64), np.empty(len(free), dtype=np.int64)
-    last[nodes] = rank  # the last of repeated assignments holds
-    first[nodes[::-1]] = rank[::-1]
-    begun, ended = (np.bincount(ends[free] + 1, minlength=elements + 1) for ends in (first, last))
+    elements, size = len(local), len(free)
+    directions, bins = np.arange(projections.shape[1])[:, np.newaxis], elements + 1
+    orders = np.argsort(projections.T, axis=1, kind="stable")
+    nodes = (local[orders].reshape(len(directions), -1) + size * directions).ravel()
+    ranks = np.tile(np.repeat(np.arange(elements), local.shape[1]), len(directions))
+    first, last = (np.empty((len(directions), size), dtype=np.int64) for _ in range(2))
+    last.ravel()[nodes] = ranks  # the last of repeated assignments holds
+    first.ravel()[nodes[::-1]] = ranks[::-1]
+    begun, ended = (
+        np.bincount((ends[:, free] + 1 + bins * directions).ravel(), minlength=bins * directions.size)
+        for ends in (first, last)
+    )
+    cut = np.cumsum((begun - ended).reshape(len(directions), -1), axis=1)  # nodes on both sides, by elements before
     least = max(1, round(_LEAST_PART * elements))
     counts = np.arange(least, elements - least + 1)
-    weights = np.cumsum(begun - ended)[counts] * (1 + _IMBALANCE_PENALTY * (2 * counts / elements - 1) ** 2)
-    best = int(np.argmin(weights))
-    count = int(counts[best])
-    return float(weights[best]), order, count, np.flatnonzero(free & (first < count) & (last >= count))
+    weights = cut[:, counts] * (1 + _IMBALANCE_PENALTY * (2 * counts / elements - 1) ** 2)
+    best, position = np.unravel_index(np.argmin(weights), weights.shape)
+    count = int(counts[position])
+    return orders[best], count, np.flatnonzero(free & (first[best] < count) & (last[best] >= count))
 
 
 def multifrontal_factor(
@@ -145,7 +144,7 @@ def multifrontal_factor(
     order = np.concatenate(groups)
     position = np.empty_like(order)
     position[order] = np.arange(len(order))
-    fronts = list(_fronts(matrix[:, order], position, [len(group) for group in groups], signs))
+    fronts = list(_fronts(matrix, groups, signs, position))
 
     def solve(right: Floats) -> Floats:
         columns = np.ascontiguousarray(right[order].reshape(len(order), -1))
@@ -189,31 +188,32 @@ class _Front:
 
 
 def _fronts(
-    columns: sparse.csc_array, position: Integers, sizes: Sequence[int], signs: Sequence[int]
+    matrix: sparse.csc_array, groups: Sequence[Integers], signs: Sequence[int], position: Integers
 ) -> Iterator[_Front]:
-    """Fronts of a matrix with columns already in the order of elimination, and the position of each row in it."""
+    """Fronts of a matrix in the order of elimination, in which each unknown has the given position."""
     index = _FrontIndex(len(position))
-    updates: list[list[_Update]] = [[] for _ in sizes]  # Schur complements to be added to each front
-    group_at = np.repeat(np.arange(len(sizes)), sizes)
+    updates: list[list[_Update]] = [[] for _ in groups]  # Schur complements to be added to each front
+    group_at = np.repeat(np.arange(len(groups)), [len(group) for group in groups])
     stop = 0
-    for size, sign, received in zip(sizes, signs, updates, strict=True):
+    for group, sign, received in zip(groups, signs, updates, strict=True):
+        size = len(group)
         start, stop = stop, stop + size
-        entries = slice(columns.indptr[start], columns.indptr[stop])
-        rows, values = position[columns.indices[entries]], columns.data[entries]
-        column = np.repeat(np.arange(size), np.diff(columns.indptr[start : stop + 1]))
+        entries, column = _column_entries(matrix, group)
+        rows, values = position[matrix.indices[entries]], matrix.data[entries]
         later = index.union(rows, *(positions for positions, _ in received), after=stop)
         local = index.local(start, stop, later)
         diagonal, below, schur = (np.zeros(shape, order="F") for shape in _block_shapes(size, len(later)))
         is_own, is_later = (rows >= start) & (rows < stop), rows >= stop
         diagonal[local[rows[is_own]], column[is_own]] = values[is_own]
-        below[local[rows[is_later]], column[is_later]] = values[is_later]
+        below[local[rows[is_later]] - size, column[is_later]] = values[is_later]
         for positions, update in received:
-            count = int(np.searchsorted(positions, stop))
-            i, j = local[positions[:count]], local[positions[count:]]
-            # Transposed, so that the order in memory is that of the indices.
-            diagonal.T[i[:, np.newaxis], i] += update.T[:count, :count]
-            below.T[i[:, np.newaxis], j] += update.T[:count, count:]
-            schur.T[j[:, np.newaxis], j] += update.T[count:, count:]
+            count, numbers = int(np.searchsorted(positions, stop)), local[positions]
+            # Transposed, so that the order in memory is that of the indices; one axis at a time, which is faster.
+            spread = np.zeros((len(positions), size + len(later)))
+            spread[:, numbers] = update.T
+            diagonal.T[numbers[:count]] += spread[:count, :size]
+            below.T[numbers[:count]] += spread[:count, size:]
+            schur.T[numbers[count:] - size] += spread[count:, size:]
         received.clear()
         diagonal = _cholesky(diagonal, sign)
         if later.size:
@@ -221,6 +221,14 @@ def _fronts(
             schur = dsyrk(-sign, below, beta=1.0, c=schur, lower=1, overwrite_c=1)
             updates[group_at[later[0]]].append((later, schur))
         yield _Front(own=slice(start, stop), later=later, sign=sign, diagonal=diagonal, below=below)
+
+
+def _column_entries(matrix: sparse.csc_array, columns: Integers) -> tuple[Integers, Integers]:
+    """Places in the arrays of a sparse matrix of the entries of some columns, and the number of the column of each."""
+    first = matrix.indptr[columns]
+    counts = matrix.indptr[columns + 1] - first
+    number = np.repeat(np.arange(len(columns)), counts)
+    return np.arange(len(number)) + (first - np.cumsum(counts) + counts)[number], number
 
 
 class _FrontIndex:
@@ -240,9 +248,9 @@ class _FrontIndex:
         return found
 
     def local(self, start: int, stop: int, later: Integers) -> Integers:
-        """Table from positions to local numbers: own unknowns count from zero, and later ones from zero again."""
+        """Table from positions to the numbers in a front: first its own unknowns, then the later ones."""
         self.numbers[start:stop] = np.arange(stop - start)
-        self.numbers[later] = np.arange(len(later))
+        self.numbers[later] = stop - start + np.arange(len(later))
         return self.numbers
 
 
