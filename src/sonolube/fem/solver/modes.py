@@ -22,6 +22,7 @@ _RESIDUAL = 1e-5  # norm of a residual over the eigenvalue; the relative error o
 _MOST_STEPS = 60
 _RANK_TOLERANCE = 1e-14  # square of the smallest over the largest length of independent vectors in a block
 _ROUNDING = 1e-26  # square of the length of a unit vector that remains as rounding of zero
+_Basis = tuple[Floats, Floats]  # mass-orthonormal vectors, and their products with the mass matrix
 
 
 class NotConverged(SonolubeError, ArithmeticError):
@@ -127,8 +128,10 @@ def lanczos_modes(model: Model, equations: SystemMatrices, *, inverse: LinearSol
     most = len(equations.free_dofs) - rigid.shape[1] - 2
     if not 1 <= count <= most:
         raise InvalidInput(f"count must be from 1 to {most} on this mesh, got {count}")
-    rigid, _ = _mass_orthonormal(rigid, equations.mass, rounding=0.0)
-    squares, elastic = _block_lanczos(equations.mass, inverse, shift=spectral_shift(model), count=count, deflated=rigid)
+    rigid, mass_rigid = _mass_orthonormal(rigid, equations.mass @ rigid)
+    squares, elastic = _block_lanczos(
+        equations.mass, inverse, shift=spectral_shift(model), count=count, deflated=(rigid, mass_rigid)
+    )
     squares = np.concatenate([np.zeros(rigid.shape[1]), squares])
     return NaturalModes(
         natural_frequency=np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi),
@@ -138,10 +141,10 @@ def lanczos_modes(model: Model, equations: SystemMatrices, *, inverse: LinearSol
 
 
 def _block_lanczos(
-    mass: sparse.csc_array, inverse: LinearSolver, *, shift: float, count: int, deflated: Floats
+    mass: sparse.csc_array, inverse: LinearSolver, *, shift: float, count: int, deflated: _Basis
 ) -> tuple[Floats, Floats]:
     """Squared angular frequencies and mass-orthonormal shapes of the lowest modes besides the deflated ones."""
-    size, first = len(deflated), deflated.shape[1]
+    size, first = deflated[0].shape
     random = np.random.default_rng(1)
     basis, projection = deflated, np.zeros((0, 0))  # the latter of the inverse times the mass matrix
     block = mass_block = np.zeros((size, 0))
@@ -149,35 +152,33 @@ def _block_lanczos(
         if not block.shape[1]:  # at the start, or after an invariant subspace
             start = inverse(mass @ random.standard_normal((size, _BLOCK_SIZE)))
             block, mass_block = _orthonormal_beside(basis, start, mass)
-        basis = np.hstack([basis, block])
+        basis = np.hstack([basis[0], block]), np.hstack([basis[1], mass_block])
         image = inverse(mass_block)
-        columns, added = basis.T @ (mass @ image), block.shape[1]
-        remainder = image - basis @ columns
+        columns, added = basis[1].T @ image, block.shape[1]
+        remainder = image - basis[0] @ columns
         block, mass_block = _orthonormal_beside(basis, remainder, mass, rounding=_ROUNDING * np.sum(columns**2))
         columns, coupling = columns[first:], mass_block.T @ image
         projection = np.block([[projection, columns[:-added]], [columns[:-added].T, columns[-added:]]])
         values, vectors = (part[..., : -count - 1 : -1] for part in np.linalg.eigh((projection + projection.T) / 2))
         residual = np.linalg.norm(coupling @ vectors[-added:], axis=0)
-        if basis.shape[1] == size or (len(values) == count and np.all(residual < _RESIDUAL * values)):
-            return shift + 1 / values, basis[:, first:] @ vectors
+        if basis[0].shape[1] == size or (len(values) == count and np.all(residual < _RESIDUAL * values)):
+            return shift + 1 / values, basis[0][:, first:] @ vectors
     raise NotConverged("the modes did not converge; ask for fewer, or check the mesh")
 
 
-def _orthonormal_beside(
-    basis: Floats, block: Floats, mass: sparse.csc_array, *, rounding: float = 0.0
-) -> tuple[Floats, Floats]:
+def _orthonormal_beside(basis: _Basis, block: Floats, mass: sparse.csc_array, *, rounding: float = 0.0) -> _Basis:
     """Mass-orthonormal basis of a block's component orthogonal to a given basis, and its product with mass."""
-    vectors, mass_vectors = _mass_orthonormal(block, mass, rounding=rounding)
-    return _mass_orthonormal(vectors - basis @ (basis.T @ mass_vectors), mass, rounding=0.0)  # twice is enough
+    vectors, mass_vectors = _mass_orthonormal(block, mass @ block, rounding=rounding)
+    overlap = basis[1].T @ vectors
+    return _mass_orthonormal(vectors - basis[0] @ overlap, mass_vectors - basis[1] @ overlap)  # twice is enough
 
 
-def _mass_orthonormal(block: Floats, mass: sparse.csc_array, *, rounding: float) -> tuple[Floats, Floats]:
+def _mass_orthonormal(block: Floats, mass_block: Floats, *, rounding: float = 0.0) -> _Basis:
     """Mass-orthonormal basis of the numerically independent span of a block, and its product with mass."""
-    mass_block = mass @ block
     squares, rotation = np.linalg.eigh(block.T @ mass_block)
     independent = squares > max(_RANK_TOLERANCE * squares.max(initial=0.0), rounding)
     scaled = rotation[:, independent] / np.sqrt(squares[independent])
-    return np.asarray(block @ scaled), np.asarray(mass_block @ scaled)
+    return block @ scaled, mass_block @ scaled
 
 
 def spectral_shift(model: Model) -> float:
