@@ -11,6 +11,7 @@ from sonolube.errors import InvalidInput
 from sonolube.fem import Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
 from sonolube.fem.mass_loading import face_residual_compliance, mass_loaded_frequencies
 from sonolube.fem.solver.element_order import change_order
+from sonolube.fem.solver.mapping import determinant, jacobian_matrices
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.fem.solver.modes import lanczos_modes, spectral_shift
 from sonolube.fem.solver.postprocessing import gauss_point_stress, nodal_average, von_mises_stress
@@ -298,7 +299,7 @@ def section_motion(mode: NamedMode, axis: str) -> tuple[Floats, Floats]:
     mesh, along = mode.model.mesh, DIRECTIONS.index(axis)
     points, weights = simplex_quadrature(2 * mesh.order, corners=4)
     value, gradient = shape_functions(mesh.order, points)
-    volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], gradient, optimize=True)) * weights
+    volume = determinant(jacobian_matrices(mesh.nodes[mesh.elements], gradient)) * weights
     position, displacement = (field[mesh.elements, along] @ value for field in (mesh.nodes, mode.displacement))
     edges = np.linspace(position.min(), position.max(), _SLICES + 1)
     slices = np.clip(np.digitize(position, edges) - 1, 0, _SLICES - 1).ravel()

@@ -21,6 +21,7 @@ from scipy import sparse
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
+from sonolube.fem.solver.mapping import adjugate, determinant, jacobian_matrices
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import FaceSpring, Model
 from sonolube.fem.solver.simplex import lagrange_nodes, shape_functions, simplex_quadrature
@@ -86,16 +87,16 @@ def assemble_matrices(model: Model) -> GlobalMatrices:
         for own in _chunks(np.flatnonzero(mesh.region_of_element == index), mesh.order):
             elements = mesh.elements[own]
             masses, gradient_products = _integrals(mesh.nodes[elements], mesh.order)
-            at = pattern.positions(elements)
-            elastic = gradient_products @ c.transpose(1, 3, 0, 2).reshape(9, 9)
+            at = pattern.positions_of_elements[own].ravel()
+            elastic = c.transpose(0, 2, 1, 3).reshape(9, 9) @ gradient_products
             mass.add(at, medium.density * masses)  # of one direction
             stiffness.add(at, elastic)
             if medium.elastic_loss:
                 stiffness_loss.add(at, medium.elastic_loss * elastic)
             if medium.stress_constants is not None and medium.permittivity is not None:
                 e = POTENTIAL_SCALE * medium.stress_constants[:, _VOIGT]  # e_lik
-                coupling.add(at, gradient_products @ e.transpose(2, 0, 1).reshape(9, 3))
-                capacitance = gradient_products @ (POTENTIAL_SCALE**2 * medium.permittivity.ravel())
+                coupling.add(at, e.transpose(1, 2, 0).reshape(3, 9) @ gradient_products)
+                capacitance = POTENTIAL_SCALE**2 * medium.permittivity.reshape(1, 9) @ gradient_products
                 dielectric.add(at, capacitance)
                 if medium.loss_tangent:
                     dielectric_loss.add(at, medium.loss_tangent * capacitance)
@@ -126,11 +127,10 @@ def scalar_mass_matrix(model: Model) -> sparse.csc_array:
     points, weights = simplex_quadrature(2 * mesh.order, corners=4)
     value, gradient = shape_functions(mesh.order, points)
     density = np.array([model.media[region].density for region in mesh.regions])[mesh.region_of_element]
-    jacobian = np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], gradient, optimize=True)
-    mass = np.linalg.det(jacobian) * weights * density[:, np.newaxis]
+    volume = determinant(jacobian_matrices(mesh.nodes[mesh.elements], gradient)) * weights
     pattern = _SparsityPattern.of(mesh)
     total = _Accumulator(pattern, (1, 1))
-    total.add(pattern.positions(mesh.elements), (value * mass[:, np.newaxis]) @ value.T)
+    total.add(pattern.positions_of_elements.ravel(), _mass_integrals(value, volume * density[:, np.newaxis]))
     return total.matrix()
 
 
@@ -177,19 +177,31 @@ class _SparsityPattern:
         First node times the number of nodes, plus the second.
     size : int
         Number of nodes.
+    positions_of_elements : ndarray of int, shape (e, a a)
+        Positions in `keys` of the pairs of nodes of each element.
     """
 
     keys: Integers
     size: int
+    positions_of_elements: Integers
 
     @classmethod
     def of(cls, mesh: Mesh) -> "_SparsityPattern":
         """Pattern of the matrices of a mesh."""
-        keys = np.sort(_pair_keys(mesh.elements, mesh.node_count))  # several times as fast as numpy.unique
-        return cls(keys=keys[np.diff(keys, prepend=-1) > 0], size=mesh.node_count)
+        keys = _pair_keys(mesh.elements, mesh.node_count)
+        order = np.argsort(keys)  # several times as fast as numpy.unique
+        ordered = keys[order]
+        is_first = np.diff(ordered, prepend=-1) > 0
+        positions = np.empty_like(keys)
+        positions[order] = np.cumsum(is_first) - 1
+        return cls(
+            keys=ordered[is_first],
+            size=mesh.node_count,
+            positions_of_elements=positions.reshape(len(mesh.elements), -1),
+        )
 
     def positions(self, cells: Integers) -> Integers:
-        """Positions in `keys` of the pairs of nodes of elements or triangles."""
+        """Positions in `keys` of the pairs of nodes of some triangles."""
         return np.searchsorted(self.keys, _pair_keys(cells, self.size))
 
 
@@ -206,12 +218,11 @@ class _Accumulator:
         self.blocks: Floats | None = None
 
     def add(self, positions: Integers, values: Floats) -> None:
-        """Add element matrices, shape (e, a, a, rows * columns) or (e, a, a) of one component, at their positions."""
-        entries = values.reshape(positions.size, -1).T
+        """Add the entries of element matrices at their positions, one row for each component."""
         if self.blocks is None:
-            self.blocks = np.zeros((len(entries), len(self.pattern.keys)))
-        for block, entry in zip(self.blocks, entries, strict=True):
-            block += np.bincount(positions, weights=entry, minlength=block.size)
+            self.blocks = np.zeros((len(values), len(self.pattern.keys)))
+        for block, entries in zip(self.blocks, values, strict=True):
+            np.add.at(block, positions, entries)
 
     def matrix(self) -> sparse.csc_array:
         """Assembled sparse matrix."""
@@ -229,7 +240,13 @@ class _Accumulator:
 
 def _repeated_in_three_directions(matrix: sparse.csc_array) -> sparse.csc_array:
     """Matrix of all displacement components from that of one component."""
-    return sparse.csc_array(sparse.kron(matrix, sparse.eye_array(3)))
+    size, lengths = matrix.shape[0], np.repeat(np.diff(matrix.indptr), 3)
+    ends = np.cumsum(lengths)
+    shift = np.repeat(matrix.indptr[:-1], 3) - ends + lengths  # from the entries of each column to those repeated
+    column = np.repeat(np.arange(3 * size), lengths)
+    entries = np.arange(len(column)) + shift[column]
+    rows = 3 * matrix.indices[entries] + column % 3
+    return sparse.csc_array((matrix.data[entries], rows, np.append(0, ends)), shape=(3 * size, 3 * size))
 
 
 def _chunks(elements: Integers, order: int) -> list[Integers]:
@@ -240,19 +257,24 @@ def _chunks(elements: Integers, order: int) -> list[Integers]:
 
 
 def _integrals(nodes: Floats, order: int) -> tuple[Floats, Floats]:
-    """Element integrals of N_a N_b, shape (e, a, a), and of dN_a/dx_k dN_b/dx_l, shape (e, a, a, 9)."""
+    """Element integrals of N_a N_b, shape (1, e a a), and of dN_a/dx_k dN_b/dx_l, shape (9, e a a)."""
     points, weights = simplex_quadrature(2 * order, corners=4)
     value, local_gradient = shape_functions(order, points)
     count, size = nodes.shape[:2]
-    jacobian = np.einsum("eax,adq->eqdx", nodes, local_gradient, optimize=True)
-    volume = np.linalg.det(jacobian) * weights
-    if not np.all(volume > 0):
+    jacobian = jacobian_matrices(nodes, local_gradient)
+    scale = determinant(jacobian)
+    if not np.all(scale > 0):
         raise InvalidInput("a curved element is turned inside out; mesh the body with smaller elements")
-    masses = (value * volume[:, np.newaxis]) @ value.T
-    inverse = np.linalg.inv(jacobian) * np.sqrt(volume)[:, :, np.newaxis, np.newaxis]
-    gradient = (inverse @ local_gradient.transpose(2, 1, 0)).reshape(count, len(weights), 3 * size)  # (e, q, ka)
-    products = (gradient.transpose(0, 2, 1) @ gradient).reshape(count, 3, size, 3, size)
-    return masses, products.transpose(0, 2, 4, 1, 3).reshape(count, size, size, 9)
+    inverse = (adjugate(jacobian) * np.sqrt(weights / scale)).transpose(3, 2, 0, 1).reshape(len(weights), -1, 3)
+    gradient = (inverse @ local_gradient.transpose(2, 1, 0)).reshape(len(weights), count, -1).swapaxes(0, 1)
+    products = (gradient.swapaxes(1, 2) @ gradient).reshape(count, 3, size, 3, size)  # of (e, q, ka)
+    return _mass_integrals(value, scale * weights), products.transpose(1, 3, 0, 2, 4).reshape(9, -1)
+
+
+def _mass_integrals(value: Floats, weights: Floats) -> Floats:
+    """Element integrals of N_a N_b, shape (1, e a a), from the weights of each element's points."""
+    products = (value[:, np.newaxis] * value).reshape(-1, value.shape[1])
+    return (weights @ products.T).reshape(1, -1)
 
 
 def _face_masses(mesh: Mesh, triangles: Integers) -> Floats:
@@ -265,8 +287,8 @@ def _face_masses(mesh: Mesh, triangles: Integers) -> Floats:
 
 
 def _foundation_matrices(mesh: Mesh, spring: FaceSpring) -> Floats:
-    """Stiffness matrices of the triangles of an elastic foundation, shape (t, b, b, 9)."""
+    """Stiffness matrices of the triangles of an elastic foundation, shape (9, t b b)."""
     masses = _face_masses(mesh, mesh.faces[spring.face])
     n = spring.along
     direction = np.eye(3) if n is None else np.outer(n, n) / np.dot(n, n)
-    return np.asarray(spring.spring_stiffness / masses.sum() * masses[..., np.newaxis] * direction.ravel())
+    return np.outer(direction, spring.spring_stiffness / masses.sum() * masses)

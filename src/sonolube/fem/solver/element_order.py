@@ -6,6 +6,7 @@ import numpy as np
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
+from sonolube.fem.solver.mapping import determinant, jacobian_matrices
 from sonolube.fem.solver.mesh import HIGHEST_ORDER, Mesh
 from sonolube.fem.solver.simplex import lagrange_nodes, shape_functions, simplex_quadrature
 
@@ -155,7 +156,7 @@ def untangle_nodes(nodes: Floats, elements: Integers, *, order: int) -> Floats:
     barycentric = lagrange_nodes(order, corners=4) / order
     untangled = nodes.copy()
     for _ in range(_MOST_STEPS):
-        jacobian = np.linalg.det(np.einsum("eax,adq->eqdx", untangled[elements], gradients, optimize=True))
+        jacobian = determinant(jacobian_matrices(untangled[elements], gradients))
         tangled = elements[jacobian.min(axis=1) < _LEAST_JACOBIAN * np.abs(jacobian).mean(axis=1)]
         if not len(tangled):
             break

@@ -207,7 +207,7 @@ def _mesh_of_subdivision(mesh: Mesh, subdivision: _Subdivision) -> Mesh:
         points = np.einsum("ac,ecd->ead", lagrange_nodes(order, corners=4) / order, subdivision.barycentric)
         weights, _ = shape_functions(order, points.reshape(-1, 4))
         weights = weights.reshape(len(weights), *points.shape[:2])
-        return np.asarray(np.einsum("bea,ebx->eax", weights, parent.nodes[parent.elements][subdivision.parents]))
+        return weights.transpose(1, 2, 0) @ parent.nodes[parent.elements][subdivision.parents]
 
     return mesh_from_elements(
         subdivision.corners,
