@@ -214,7 +214,14 @@ def tuned_collar(
     at_initial = residuals(initial)
     steps = np.diag(np.where(high > _STEP, _STEP, -_STEP))
     jacobian = np.column_stack([(residuals(step) - at_initial) / step.sum() for step in steps])
-    solution = least_squares(residuals, initial, jac=lambda _: jacobian, bounds=(low, high), xtol=1e-2, ftol=1e-2)
+    solution = least_squares(
+        lambda changes: residuals(changes) if changes.any() else at_initial,
+        initial,
+        jac=lambda _: jacobian,
+        bounds=(low, high),
+        xtol=1e-2,
+        ftol=1e-2,
+    )
     return _scaled(guess, dict(zip(names, np.exp(solution.x).tolist(), strict=True)))
 
 
