@@ -198,8 +198,9 @@ def contact_motion(states: SteadyStates, point: int | tuple[int, ...], *, sample
     harmonics = states.harmonics[point][: int(states.harmonic_count[point])]
     orders = np.arange(1, harmonics.size + 1)
     omega = 2 * np.pi * states.frequency[point]
-    spectra = np.zeros((2, samples), dtype=np.complex128)  # orders beyond the samples fall on lower ones
-    np.add.at(spectra, (slice(None), orders % samples), [harmonics, 1j * omega * orders * harmonics])
+    spectra = np.zeros((2, samples), dtype=np.complex128)
+    for spectrum, values in zip(spectra, (harmonics, 1j * omega * orders * harmonics), strict=True):
+        np.add.at(spectrum, orders % samples, values)  # orders beyond the samples fall on lower ones
     x, v = np.fft.ifft(spectra, norm="forward").real
     x += states.mean_displacement[point]
     force = damped_force(states.gap_law, x, v, states.normal_load[point])
