@@ -17,7 +17,7 @@ def jacobian_matrices(nodes: Floats, gradient: Floats) -> Floats:
     Parameters
     ----------
     nodes : ndarray, shape (e, a, 3)
-        Coordinates of the nodes of each element. [m]
+        Coordinates of the nodes of each element, in m.
     gradient : ndarray, shape (a, d, q)
         Derivatives of the shape functions by `shape_functions`.
 
