@@ -39,6 +39,7 @@ _COMMON = {
     "grid.alpha": 0.25,
     "legend.frameon": False,
     "pdf.fonttype": 42,
+    "savefig.bbox": "standard",  # whatever a user's own style says, lest it crop figures off their stated width
     "svg.fonttype": "none",
     "svg.hashsalt": "sonolube",
 }
