@@ -71,6 +71,17 @@ def test_the_validity_range_of_exponential_heights_widens_with_the_roughness_par
     assert widths == sorted(widths)
 
 
+def test_a_larger_factor_never_narrows_the_validity_range() -> None:
+    ranges = [exponential_validity_range(TYPICAL, factor=factor) for factor in (2.0, 30.0, 1e4, 1e12, 1e80)]
+    found = np.array([valid for valid in ranges if valid is not None])
+    assert len(found) == 5
+    assert np.all(np.diff(found[:, 0]) <= 0)
+    assert np.all(np.diff(found[:, 1]) >= 0)
+    beta = TYPICAL.roughness.roughness_parameter
+    deviation = GaussianHeights.from_roughness_parameter(roughness_parameter=beta).standard_deviation
+    assert found[-1] / deviation == approx([-6.0, 20.0], rel=0.01)  # all that is compared
+
+
 @mark.parametrize("beta", [0.015, 0.03])
 def test_smooth_surfaces_have_no_validity_range(beta: float) -> None:
     assert exponential_validity_range(with_roughness_parameter(beta)) is None

@@ -143,6 +143,17 @@ def test_amplitude_and_extreme_forces_are_those_of_the_sampled_motion() -> None:
     assert states.mean_normal_force == approx(contact.normal_force.mean(), rel=1e-9)
 
 
+@pytest.mark.parametrize("samples", [2, 3, 5, 16])
+def test_a_few_samples_of_a_motion_are_among_many(samples: int) -> None:
+    states = steady_state(
+        TRIBOMETER, ROUGH, normal_load=80.0, frequency=11.2e3, voltage_amplitude=voltage_for(8e-6, 11.2e3)
+    )
+    assert samples < 2 * int(states.harmonic_count)
+    few, many = (contact_motion(states, (), samples=count) for count in (samples, 1000 * samples))
+    assert few.displacement == approx(many.displacement[::1000], rel=1e-12, abs=1e-18)
+    assert few.velocity == approx(many.velocity[::1000], rel=1e-12, abs=1e-12)
+
+
 def test_motions_with_more_than_two_extrema_are_measured_by_samples() -> None:
     k = np.array([1, 5])
     drive = np.zeros(5, dtype=complex)

@@ -126,3 +126,12 @@ def test_a_matrix_that_is_not_symmetric_is_refused() -> None:
 def test_frequency_zero_is_refused() -> None:
     with raises(InvalidInput, match=r"frequency must be positive, got 0\.0 Hz"):
         electrical_admittance(ONE_MASS, frequency=[1e3, 0.0])
+
+
+def test_structures_are_equal_where_all_their_numbers_are() -> None:
+    again = replace(ONE_MASS, mass_matrix=np.array([[0.1]]))
+    assert (again, hash(again)) == (ONE_MASS, hash(ONE_MASS))
+    for name in ("mass_matrix", "damping_matrix", "stiffness_matrix", "drive_vector", "contact_vector"):
+        assert replace(ONE_MASS, **{name: 1.001 * getattr(ONE_MASS, name)}) != ONE_MASS
+    assert replace(ONE_MASS, clamped_capacitance=201e-9) != ONE_MASS
+    assert replace(ONE_MASS, load_vector=np.array([1.0])) != ONE_MASS

@@ -38,6 +38,17 @@ def test_constraints_without_conflict_are_tried_once() -> None:
     assert len(tried) == 1
 
 
+def test_a_conflict_of_two_among_sixteen_is_found_by_halving() -> None:
+    tried: list[frozenset[str]] = []
+
+    def is_satisfiable(names: frozenset[str]) -> bool:
+        tried.append(names)
+        return not {"g", "n"} <= names
+
+    assert consistent_subsets("abcdefghijklmnop", is_satisfiable).conflicts == (frozenset("gn"),)
+    assert len(tried) < 16  # one by one it takes 19
+
+
 def test_more_constraints_than_can_be_enumerated_are_refused() -> None:
     with raises(InvalidInput, match="at most 16 facts can be checked for consistency, got 17"):
         consistent_subsets([str(number) for number in range(17)], lambda names: True)

@@ -77,14 +77,15 @@ def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) ->
     if ratios[peak] <= -tolerance:
         return None
 
-    def separation_at(level: float, part: slice) -> float:
+    def separation_at(level: float, part: slice, end: float) -> float:
         beyond = np.flatnonzero(np.diff(ratios[part] < level))
-        return _crossing(log_ratio, level, *h[part][beyond[0] : beyond[0] + 2]) if beyond.size else float(h[-1])
+        return _crossing(log_ratio, level, *h[part][beyond[0] : beyond[0] + 2]) if beyond.size else end
 
-    falling, rising = slice(peak, None), slice(peak + 1)
-    highest = separation_at(-tolerance, falling)
-    too_high = ratios[peak] > tolerance
-    return separation_at(tolerance, falling) if too_high else separation_at(-tolerance, rising), highest
+    falling, rising, (first, last) = slice(peak, None), slice(peak + 1), h[[0, -1]].tolist()
+    highest = separation_at(-tolerance, falling, last)
+    if ratios[peak] > tolerance:
+        return separation_at(tolerance, falling, last), highest
+    return separation_at(-tolerance, rising, first), highest
 
 
 def _crossing(function: Callable[[Floats], Floats], level: float, low: float, high: float) -> float:
