@@ -4,12 +4,16 @@ import json
 import re
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import pytest
-from pytest import approx, mark, raises
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from pytest import MonkeyPatch, approx, mark, raises
 
 from sonolube.errors import InvalidInput
+from sonolube.figure import render_figure
 from sonolube.report import (
     MeasurementReport,
     measurement_lines,
@@ -63,6 +67,19 @@ def page(plate: Path, tmp_path: Path) -> str:
     friction = friction_sheet(recording_file(tmp_path / "a<b>.csv", 0.5), settings=FrictionSettings(sliding_speed=0.02))
     report = report_of(friction, surface_sheet(plate, settings=NPY))
     return write_measurement_report(report, path=tmp_path / "page.html").read_text(encoding="utf-8")
+
+
+def test_axes_write_micrometres_as_other_figures_do(plate: Path, tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
+    texts: list[str] = []
+
+    def read(figure: Figure, form: str, **options: Any) -> bytes:
+        texts.extend(text.get_text() for text in figure.findobj(Text))
+        return render_figure(figure, form, **options)
+
+    monkeypatch.setattr("sonolube.report.page.render_figure", read)
+    write_measurement_report(report_of(surface_sheet(plate, settings=NPY)), path=tmp_path / "page.html")
+    assert any("µm" in text for text in texts)
+    assert [text for text in texts if re.search(r"\bum", text)] == []
 
 
 def test_the_page_needs_no_other_file(page: str) -> None:

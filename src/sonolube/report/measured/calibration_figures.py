@@ -24,7 +24,7 @@ def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> "Figure
     bottom.plot(um, force - model, ".", color=COLOURS[0], markersize=2)
     bottom.axhline(0, color="0.5", linewidth=0.6)
     top.set(ylabel="force (N)")
-    bottom.set(xlabel="displacement (um)", ylabel="residual (N)")
+    bottom.set(xlabel="displacement (µm)", ylabel="residual (N)")
     top.legend()
     return figure
 

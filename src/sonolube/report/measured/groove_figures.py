@@ -38,7 +38,7 @@ def view(groove: Groove) -> "Figure":
     )
     low, high = np.nanquantile(z, [0.002, 0.998])
     axes.plot_surface(*np.meshgrid(x, y), z, cmap="cividis", vmin=low, vmax=high, rstride=1, cstride=1, linewidth=0)
-    axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="height (um)")
+    axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="height (µm)")
     axes.set_box_aspect((x[-1], y[-1], 0.35 * x[-1]), zoom=0.92)
     axes.invert_yaxis()  # as on the map, whose first row is the top
     axes.view_init(elev=38, azim=-62)
@@ -63,7 +63,7 @@ def sections(groove: Groove) -> "Figure":
     axes.axhline(0, color=COLOURS[1], linewidth=1, linestyle="--", label="unworn surface")
     edges = 1e3 * groove.groove_width * np.array([-0.5, 0.5])
     axes.plot(edges, [0, 0], MARKERS[1], color=COLOURS[1], label="edges")
-    axes.set(xlabel="distance from the track (mm)", ylabel="height (um)")
+    axes.set(xlabel="distance from the track (mm)", ylabel="height (µm)")
     figure.legend(loc="outside upper center", ncols=3)
     return figure
 
@@ -97,7 +97,7 @@ def ring(worn: WearTrack) -> "Figure":
     axes.axhspan(low, high, color=COLOURS[5], alpha=0.4, linewidth=0, label="95 %")
     axes.axhline(float(area.mean()), color=COLOURS[0], linewidth=1.2, label="mean")
     axes.plot(place, area, MARKERS[1], color=COLOURS[1], label="scans")
-    axes.set(xlabel="scan", ylabel="section (um²)", xticks=place)
+    axes.set(xlabel="scan", ylabel="section (µm²)", xticks=place)
     figure.legend(loc="outside upper center", ncols=3)
     return figure
 

@@ -63,5 +63,5 @@ def spectrum(found: ProfileSpectrum, *, cutoff: float | None) -> "Figure":
         axes.axvline(1 / cutoff, color="0.3", linewidth=1.0, linestyle=LINES[1])
     axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m$^3$)")
     above = axes.secondary_xaxis("top", functions=(wavelength, wavelength))
-    above.set_xlabel("wavelength (um)")
+    above.set_xlabel("wavelength (µm)")
     return figure

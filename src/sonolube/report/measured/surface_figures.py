@@ -57,7 +57,7 @@ def show_map(axes: "Axes", surface: HeightMap) -> None:
 def length_scale(lengths: Floats) -> tuple[str, float]:
     """Unit in which lengths have readable numbers, and its number in a metre."""
     spread = float(np.nanquantile(lengths, 0.99) - np.nanquantile(lengths, 0.01))
-    return next(((unit, scale) for unit, scale in (("nm", 1e9), ("um", 1e6)) if spread * scale < _LONGEST), ("mm", 1e3))
+    return next(((unit, scale) for unit, scale in (("nm", 1e9), ("µm", 1e6)) if spread * scale < _LONGEST), ("mm", 1e3))
 
 
 @captioned("Abbott curve", "Share of the surface at or above each height, with the core by its equivalent line.")
@@ -108,7 +108,7 @@ def spectrum(radial: RadialSpectrum) -> "Figure":
     axes.loglog(radial.wavenumber[inner], radial.areal_spectral_density[inner])
     axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m⁴)")
     above = axes.secondary_xaxis("top", functions=(wavelength, wavelength))
-    above.set_xlabel("wavelength (um)")
+    above.set_xlabel("wavelength (µm)")
     return figure
 
 

@@ -58,6 +58,6 @@ def proportion(volts: Floats, amplitudes: Floats, fit: AmplitudePerVolt) -> "Fig
     )
     axes.plot(line, 1e6 * fit.amplitude_per_volt * line, color=COLOURS[0], linewidth=1.2, label="in proportion")
     axes.plot(volts, 1e6 * amplitudes, MARKERS[1], color=COLOURS[1], linestyle="none", label="recordings")
-    axes.set(xlabel="voltage, peak to peak (V)", ylabel="amplitude (um)", xlim=(0, None), ylim=(0, None))
+    axes.set(xlabel="voltage, peak to peak (V)", ylabel="amplitude (µm)", xlim=(0, None), ylim=(0, None))
     axes.legend()
     return figure
