@@ -8,7 +8,7 @@ from pytest import approx
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import RUN_COLUMNS, read_runs, run_caveats
-from sonolube.measurement.run_selection import checked_ratios, setting, with_columns, without_copies
+from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting, with_columns
 from sonolube.units import to_si
 from sonolube.vocabulary import quantities
 
@@ -75,14 +75,11 @@ def test_uncertain_forces_and_wear_rates_give_those_of_their_ratios(tmp_path: Pa
     assert float(runs["wear_rate_ratio"][0]) == approx(0.25)
 
 
-def test_equal_rows_are_copies_unless_their_names_differ(tmp_path: Path) -> None:
+def test_equal_rows_count_and_are_said_unless_their_names_differ(tmp_path: Path) -> None:
     rows = "sliding_speed [mm/s],friction_ratio{}\n" + "20,0.5{}\n" * 3
-    kept, caveats = without_copies(read_runs(table(tmp_path, rows.format("", "", "", ""))))
-    assert kept.sizes["run"] == 1
-    assert caveats[0].startswith("2 of 3 runs equal another in every digit")
-    kept, caveats = without_copies(read_runs(table(tmp_path, rows.format(",run", ",a", ",b", ",c"))))
-    assert kept.sizes["run"] == 3
-    assert caveats == ()
+    (caveat,) = copies_caveat(read_runs(table(tmp_path, rows.format("", "", "", ""))))
+    assert caveat.startswith("2 of 3 runs equal another in every digit; they count as repeats")
+    assert copies_caveat(read_runs(table(tmp_path, rows.format(",run", ",a", ",b", ",c")))) == ()
 
 
 @pytest.mark.parametrize(

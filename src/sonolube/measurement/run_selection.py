@@ -1,4 +1,4 @@
-"""Measured runs as estimates need them: without copies, within what vibration does, settings of the rig filled in."""
+"""Measured runs as estimates need them: within what vibration does, settings of the rig filled in, copies said."""
 
 from typing import TYPE_CHECKING, Final
 
@@ -46,8 +46,8 @@ def checked_ratios(runs: "xr.Dataset", *, title: str) -> Floats:
     return ratio
 
 
-def without_copies(runs: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
-    """Return the runs without those that equal an earlier one in every digit, and a caveat about them.
+def copies_caveat(runs: "xr.Dataset") -> tuple[str, ...]:
+    """Caveat about runs that equal an earlier one in every digit, which count as repeats.
 
     Parameters
     ----------
@@ -56,21 +56,20 @@ def without_copies(runs: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
 
     Returns
     -------
-    xarray.Dataset
     tuple of str
-        Empty where there is no copy.
+        Empty where there is no such run.
     """
     numbers = [runs[name].to_numpy() for name in runs.data_vars if runs[name].dtype.kind == "f"]
     columns = [np.nan_to_num(np.asarray(column, float), nan=np.inf) for column in numbers]
     if "run" in runs.coords:
         columns.append(np.unique(runs["run"].to_numpy(), return_inverse=True)[1].astype(float))
     rows = np.column_stack(columns)
-    first = np.sort(np.unique(rows, axis=0, return_index=True)[1])
-    copies = len(rows) - first.size
+    copies = len(rows) - len(np.unique(rows, axis=0))
     if not copies:
-        return runs, ()
-    return runs.isel(run=first), (
-        f"{copies} of {len(rows)} runs equal another in every digit; they count as copies, not as repeats",
+        return ()
+    return (
+        f"{copies} of {len(rows)} runs equal another in every digit; they count as repeats: remove them where they are"
+        " copies of one run",
     )
 
 

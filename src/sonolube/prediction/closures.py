@@ -48,26 +48,39 @@ class UncertainConditions:
     ----------
     conditions : Conditions
         As stated: arrays of shape (n,).
-    decay_length_spread, amplitude_spread : float
-        Standard deviation of the logarithm of the factor by which all decay lengths, or amplitudes, may be off.
+    decay_length_spread : float or None
+        Standard deviation of the logarithm of the factor by which all decay lengths may be off, where they were
+        measured; None where they are those of the population, whose scatter between rigs is learned.
+    amplitude_spread : float
+        Standard deviation of the logarithm of the factor by which all amplitudes may be off.
     amplitude_factor : float
-        Median of that factor for the amplitudes.
+        Median of that factor.
     """
 
     conditions: Conditions
-    decay_length_spread: float
+    decay_length_spread: float | None
     amplitude_spread: float
     amplitude_factor: float = 1.0
 
-    @property
-    def length_spread(self) -> float:
-        """Standard deviation of the logarithm of decay length over amplitude, on which closures depend."""
-        return hypot(self.decay_length_spread, self.amplitude_spread)
+    def log_length_factor(self, *, length_factor: Floats, length_spread: Floats, deviates: Floats) -> Floats:
+        """Logarithm of the factor on decay length over amplitude, on which friction models depend.
 
-    @property
-    def log_length_factor(self) -> float:
-        """Median of the logarithm of the factor on decay length over amplitude."""
-        return -log(self.amplitude_factor)
+        Parameters
+        ----------
+        length_factor, length_spread : ndarray
+            Logarithms of the median factor of the population and of its scatter between rigs.
+        deviates : ndarray, broadcast against them
+            Standard normal deviates.
+
+        Returns
+        -------
+        ndarray, shape of the broadcast arguments
+        """
+        if self.decay_length_spread is None:
+            middle, spread = length_factor, np.hypot(np.exp(length_spread), self.amplitude_spread)
+        else:
+            middle, spread = np.zeros_like(length_factor), hypot(self.decay_length_spread, self.amplitude_spread)
+        return np.asarray(middle - log(self.amplitude_factor) + spread * deviates)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

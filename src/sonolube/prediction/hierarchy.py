@@ -1,13 +1,17 @@
 """Hierarchical model of friction ratios: population of rigs, rigs, tests; its likelihood and its prior.
 
-For one closure with the parameter theta, test i on rig r has the friction ratio
+For one friction model f with the parameter theta, test i on rig r has the friction ratio
 
     R_i = f(x_i; theta_r, l_r) + delta_r(x_i) + e_i,    e_i ~ N(0, u_i^2),
-    ln theta_r ~ N(mu, tau^2),    ln (a/l)_r ~ N(ln (a/l) - kappa, s_l^2 + s_a^2),
-    delta_r = w(f) g_r,    g_r ~ Gaussian process, sigma^2 exp(-d^2 / (2 lambda^2)), d the distance in (ln a, ln v).
+    ln theta_r ~ N(mu, tau^2),    ln (l/a)_r ~ N(ln (l_0/a) + kappa, tau_l^2 + s_a^2),
+    delta_r = s_r w(f) g_r,    g_r ~ Gaussian process, sigma^2 exp(-d^2 / (2 lambda^2)), d the distance in (ln a, ln v),
+    s_r^2 = nu / chi^2_nu.
 
-The factor exp(kappa) on the decay length l is common to all rigs: l follows from an assumed distribution of heights.
-The discrepancy delta vanishes with the reduction, such as without vibration: w rises from 0 at f = 1 to 1 at f <= 0.8.
+The decay length l of a worn contact is a quantity of each rig: l_0 is a reference, exp(kappa) the factor on it common to
+all rigs, tau_l the scatter between rigs. Where l was measured it takes the place of l_0 exp(kappa), its error that of tau_l.
+The discrepancy delta is least without a reduction: w rises from 0.25 at f = 1 to 1 at f <= 0.8. Outside the range of the published
+tests it grows with the distance D from it, in logarithms: w is at least 0.25 + D/2, and sigma is larger by sqrt(1 + D^2). Its scale s_r
+is heavy-tailed, so that runs of a rig that no parameter explains widen the discrepancy instead of the noise.
 """
 
 from dataclasses import dataclass
@@ -15,22 +19,60 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import logsumexp, ndtri
+from scipy.special import chdtri, logsumexp, ndtr, ndtri
 
 from sonolube.checks import Floats, Integers
-from sonolube.prediction.closures import Closure, Conditions
-from sonolube.prediction.evidence import TestedRig
+from sonolube.prediction.closures import Closure, Conditions, UncertainConditions
+from sonolube.prediction.evidence import TestedRig, distance_from_tests
 
-HYPERPARAMETERS: Final = ("parameter", "length_factor", "rig_spread", "discrepancy", "correlation_length")
-"""Their logarithms, in this order, are the columns of every array of hyperparameters: mu, kappa, tau, sigma, lambda."""
+HYPERPARAMETERS: Final = (
+    *("parameter", "length_factor", "parameter_spread", "length_spread"),
+    *("discrepancy", "correlation_length"),
+)
+"""Their logarithms, in this order, are the columns of every array of hyperparameters: mu, kappa, tau, tau_l, sigma, lambda."""
 
-_MEDIANS: Final = (1.0, 0.1, 0.08, 0.7)  # prior medians of exp(kappa), tau, sigma and lambda
-_SPREADS: Final = (0.5, 0.7, 0.5, 0.6)  # and the standard deviations of their logarithms
+OWN_DEVIATES: Final = 3
+"""What one rig has of its own, as standard normal deviates: of ln theta, of ln l/a, of the scale of the discrepancy."""
+
 _FULL_DISCREPANCY: Final = 0.2  # reduction from which the discrepancy is as large as it becomes
+_LEAST_DISCREPANCY: Final = 0.25  # share of it without a reduction
+_PER_DISTANCE: Final = 0.5  # rise of that share with the distance from the published tests
+_FREEDOM: Final = 4.0  # degrees of freedom nu of the scale of the discrepancy
+_FARTHEST: Final = 6.0  # deviates of that scale
 _NODES: Final = 64  # of the integral over what one rig has of its own
 _PARAMETERS: Final = np.linspace(-5.0, 5.0, 81)  # of ln theta from its prior median, where f is tabulated
-_LENGTHS: Final = np.linspace(-3.0, 3.0, 49)  # of the logarithm of the factor on the decay length, likewise
+_LENGTHS: Final = np.linspace(-5.0, 5.0, 81)  # of the logarithm of the factor on the decay length, likewise
 _BATCH: Final = 256  # rows of hyperparameters at a time, to bound memory
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Prior:
+    """Lognormal priors of the hyperparameters other than the parameter: median, and deviation of the logarithm.
+
+    Parameters
+    ----------
+    length_factor, parameter_spread, length_spread, discrepancy, correlation_length : tuple of float
+    parameter_deviation : float or None
+        Of the logarithm of the parameter; that of the friction model where None.
+    """
+
+    length_factor: tuple[float, float] = (1.0, 0.7)
+    parameter_spread: tuple[float, float] = (0.3, 0.6)
+    length_spread: tuple[float, float] = (0.7, 0.5)
+    discrepancy: tuple[float, float] = (0.08, 0.5)
+    correlation_length: tuple[float, float] = (0.7, 0.6)
+    parameter_deviation: float | None = None
+
+    def of(self, closure: Closure) -> tuple[Floats, Floats]:
+        """Means and standard deviations of the normal prior of the logarithms, each of shape (6,)."""
+        others = [getattr(self, name) for name in HYPERPARAMETERS[1:]]
+        means = np.log([closure.median, *(median for median, _ in others)])
+        own = closure.spread if self.parameter_deviation is None else self.parameter_deviation
+        return means, np.array([own, *(deviation for _, deviation in others)])
+
+
+POPULATION_PRIOR: Final = Prior()
+"""Prior with decay lengths unknown: weak, and the same for every way that was compared."""
 
 
 def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
@@ -64,25 +106,57 @@ def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
     return np.asarray(ndtri((shift + np.arange(1, count + 1)[:, None] * steps) % 1.0))
 
 
-def hyperprior(closure: Closure) -> tuple[Floats, Floats]:
-    """Means and standard deviations of the normal prior of the logarithms of the hyperparameters.
+def log_hyperprior(closure: Closure, hyperparameters: Floats, prior: Prior = POPULATION_PRIOR) -> Floats:
+    """Logarithm of the prior density, but for a constant, of each row of hyperparameters."""
+    means, deviations = prior.of(closure)
+    return np.asarray(-0.5 * np.sum(((hyperparameters - means) / deviations) ** 2, axis=-1))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OwnParameters:
+    """What one rig has of its own, for rows of hyperparameters and deviates.
 
     Parameters
     ----------
-    closure : Closure
+    log_parameter : ndarray, shape (...)
+        Of the friction model.
+    log_factor : ndarray, shape (...)
+        On decay length over amplitude.
+    log_discrepancy : ndarray, shape (...)
+        Of the standard deviation of the discrepancy, s_r sigma.
+    """
+
+    log_parameter: Floats
+    log_factor: Floats
+    log_discrepancy: Floats
+
+
+def own_parameters(hyperparameters: Floats, deviates: Floats, at: UncertainConditions) -> OwnParameters:
+    """Parameters of one rig from hyperparameters and standard normal deviates.
+
+    Parameters
+    ----------
+    hyperparameters : ndarray, shape (..., 6)
+    deviates : ndarray, shape (..., 3), broadcast against them
+    at : UncertainConditions
 
     Returns
     -------
-    means, deviations : ndarray, shape (5,)
+    OwnParameters
     """
-    means = np.log([closure.median, *_MEDIANS])
-    return means, np.array([closure.spread, *_SPREADS])
+    mu, kappa, tau, tau_l, sigma, _ = np.moveaxis(hyperparameters, -1, 0)
+    factor = at.log_length_factor(length_factor=kappa, length_spread=tau_l, deviates=deviates[..., 1])
+    return OwnParameters(
+        log_parameter=np.asarray(mu + np.exp(tau) * deviates[..., 0]),
+        log_factor=factor,
+        log_discrepancy=np.asarray(sigma + log_discrepancy_scale(deviates[..., 2])),
+    )
 
 
-def log_hyperprior(closure: Closure, hyperparameters: Floats) -> Floats:
-    """Logarithm of the prior density, but for a constant, of each row of hyperparameters."""
-    means, deviations = hyperprior(closure)
-    return np.asarray(-0.5 * np.sum(((hyperparameters - means) / deviations) ** 2, axis=-1))
+def log_discrepancy_scale(deviates: Floats) -> Floats:
+    """Logarithm of the scale s = sqrt(nu/chi^2_nu) of the discrepancy of a rig, rising with its normal deviate."""
+    chi_squared = chdtri(_FREEDOM, ndtr(np.minimum(deviates, _FARTHEST)))
+    return np.asarray(0.5 * np.log(_FREEDOM / chi_squared))
 
 
 def squared_distances(one: Conditions, other: Conditions) -> Floats:
@@ -105,14 +179,14 @@ def squared_distances(one: Conditions, other: Conditions) -> Floats:
 
 @dataclass(frozen=True, slots=True)
 class RigLikelihood:
-    """Likelihood of the tests of one rig under one closure, integrated over what the rig has of its own.
+    """Likelihood of the tests of one rig under one friction model, integrated over what the rig has of its own.
 
     Parameters
     ----------
     closure : Closure
     rig : TestedRig
-    deviates : ndarray, shape (j, 2)
-        Standard normal deviates of ln theta and of ln (l/a), over which is averaged.
+    deviates : ndarray, shape (j, 3)
+        Standard normal deviates, over which is averaged.
     table : ndarray, shape (p, q, n)
         Friction ratio of each test over logarithms of theta and of the factor on l/a.
     """
@@ -127,14 +201,14 @@ class RigLikelihood:
         """Likelihood with the friction ratios tabulated."""
         at = rig.at.conditions.scaled(decay_length=np.exp(_LENGTHS)[:, None])
         table = closure.ratio(np.log(closure.median) + _PARAMETERS[:, None, None], at)
-        return cls(closure, rig, standard_normals(_NODES, columns=2, seed=1), table)
+        return cls(closure, rig, standard_normals(_NODES, columns=OWN_DEVIATES, seed=1), table)
 
     def __call__(self, hyperparameters: Floats) -> Floats:
         """Logarithm of the likelihood of each row of hyperparameters.
 
         Parameters
         ----------
-        hyperparameters : ndarray, shape (h, 5)
+        hyperparameters : ndarray, shape (h, 6)
             Logarithms, in the order of `HYPERPARAMETERS`.
 
         Returns
@@ -147,22 +221,18 @@ class RigLikelihood:
     def _batch(self, hyperparameters: Floats) -> Floats:
         """Logarithm of the likelihood of not too many rows."""
         at = self.rig.at
-        mu, kappa, tau, sigma, length = hyperparameters.T
-        ratio = self._ratios(
-            mu[:, None] + np.exp(tau)[:, None] * self.deviates[:, 0],
-            kappa[:, None] + at.log_length_factor + at.length_spread * self.deviates[:, 1],
-        )
+        own = own_parameters(hyperparameters[:, None], self.deviates, at)
+        ratio = self._ratios(own)
         residual = self.rig.friction_ratio - ratio
-        distances = squared_distances(at.conditions, at.conditions)
-        correlated = discrepancy_covariance(distances, log_deviation=sigma, log_length=length)
-        room = headroom(ratio)
-        covariance = correlated[:, None] * room[..., :, None] * room[..., None, :] + np.diag(self.rig.uncertainty**2)
+        covariance = covariance_of_tests(
+            ratio, self.rig, log_discrepancy=own.log_discrepancy, log_length=hyperparameters[:, None, 5]
+        )
         return np.asarray(logsumexp(log_normal_density(residual, covariance), axis=1) - np.log(_NODES))
 
-    def _ratios(self, logs: Floats, log_factors: Floats) -> Floats:
-        """Friction ratios at logarithms of theta and of the factor on l/a, shape (h, j), bilinear in the table."""
-        i, right = _place(logs - np.log(self.closure.median), _PARAMETERS)
-        k, up = _place(log_factors, _LENGTHS)
+    def _ratios(self, own: OwnParameters) -> Floats:
+        """Friction ratios, shape (h, j, n), bilinear in the table."""
+        i, right = _place(own.log_parameter - np.log(self.closure.median), _PARAMETERS)
+        k, up = _place(own.log_factor, _LENGTHS)
         low = self.table[i, k] * (1 - right) + self.table[i + 1, k] * right
         high = self.table[i, k + 1] * (1 - right) + self.table[i + 1, k + 1] * right
         return np.asarray(low * (1 - up) + high * up)
@@ -175,27 +245,54 @@ def _place(values: Floats, grid: Floats) -> tuple[Integers, Floats]:
     return below, (steps - below)[..., None]
 
 
-def discrepancy_covariance(distances: Floats, *, log_deviation: ArrayLike, log_length: ArrayLike) -> Floats:
-    """Covariances of the discrepancy for each pair of hyperparameters.
+def covariance_of_tests(ratio: Floats, rig: TestedRig, *, log_discrepancy: Floats, log_length: Floats) -> Floats:
+    """Covariance of the measured ratios of a rig about those of a friction model.
 
     Parameters
     ----------
-    distances : ndarray, shape (n, m)
-        By `squared_distances`.
-    log_deviation, log_length : array_like, shape (h,)
-        Logarithms of standard deviation sigma and correlation length lambda.
+    ratio : ndarray, shape (..., n)
+        By the friction model.
+    rig : TestedRig
+        Of n tests.
+    log_discrepancy, log_length : ndarray, shape (...)
+        Logarithms of the standard deviation of the discrepancy and of its correlation length.
 
     Returns
     -------
-    ndarray, shape (h, n, m)
+    ndarray, shape (..., n, n)
     """
-    variance, length = (np.exp(2 * np.asarray(each))[:, None, None] for each in (log_deviation, log_length))
-    return np.asarray(variance * np.exp(-0.5 * distances / length))
+    at = rig.at.conditions
+    side = discrepancy_deviation(ratio, at, log_discrepancy=log_discrepancy)
+    near = discrepancy_correlation(at, at, log_length=log_length)
+    return np.asarray(near * side[..., :, None] * side[..., None, :] + np.diag(rig.uncertainty**2))
 
 
-def headroom(ratio: Floats) -> Floats:
-    """Standard deviation of the discrepancy over sigma: 0 without a reduction of friction, 1 from one of 0.2 on. []"""
-    return np.clip((1 - ratio) / _FULL_DISCREPANCY, 0.0, 1.0)
+def discrepancy_correlation(one: Conditions, other: Conditions, *, log_length: ArrayLike) -> Floats:
+    """Correlation exp(-d^2/(2 lambda^2)) of the discrepancy, shape (..., n, m), for each correlation length."""
+    inverse = np.exp(-2 * np.asarray(log_length))[..., None, None]
+    return np.asarray(np.exp(-0.5 * squared_distances(one, other) * inverse))
+
+
+def discrepancy_deviation(ratio: Floats, at: Conditions, *, log_discrepancy: Floats) -> Floats:
+    """Standard deviation of the discrepancy at conditions.
+
+    Parameters
+    ----------
+    ratio : ndarray, shape (..., n)
+        By the friction model.
+    at : Conditions
+        Of n tests.
+    log_discrepancy : ndarray, shape (...)
+        Logarithm of the largest within the range of the published tests.
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+    """
+    distance = distance_from_tests(at)
+    least = np.minimum(_LEAST_DISCREPANCY + _PER_DISTANCE * distance, 1.0)
+    share = np.clip((1 - ratio) / _FULL_DISCREPANCY, least, 1.0) * np.sqrt(1 + distance**2)
+    return np.asarray(np.exp(log_discrepancy)[..., None] * share)
 
 
 def log_normal_density(residual: Floats, covariance: Floats) -> Floats:

@@ -7,21 +7,21 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.contact import decay_length
 from sonolube.errors import InvalidInput
 from sonolube.prediction.closures import Conditions, UncertainConditions
+from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH
+from sonolube.prediction.posterior import learned
 from sonolube.rig import Distribution, FrictionPoint, Rig, friction_point
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
-from sonolube.rig.linear_response import rest_separation
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
-_ROUGHNESS_KEY: Final = "contact.roughness.rms_height"
+_LENGTH_KEYS: Final = ("contact.decay_length", "contact.normal_stiffness")
 _FRICTION_KEY: Final = "friction.friction_coefficient"
-_GIVEN_ROUGHNESS: Final = 0.1
-_ASSUMED_ROUGHNESS: Final = 0.5
+_GIVEN_LENGTH: Final = 0.3  # of a decay length without a distribution
 _AMPLITUDE_SPREADS: Final = {"measured": AMPLITUDE_ERROR, "computed": 0.15, "waveguide": 0.15, "per-volt": 0.1}
 _GIVEN_FRICTION: Final = 0.1
+_SAME_VALUE: Final = 1e-3  # relative, within which a distribution is about the value of the rig
 _AMPLITUDE_KEYS: Final = {
     "measured": ("vibration.vibration_amplitude",),
     "computed": ("stack.free_stroke_per_volt",),
@@ -70,10 +70,10 @@ class RigInputs:
 
     Parameters
     ----------
-    roughness, amplitude, friction : Input
-        Root mean square height, vibration amplitude and intrinsic coefficient of friction: the uncertain ones.
-    decay_length : float
-        Of the contact at the median roughness. [m]
+    decay_length, amplitude, friction : Input
+        Decay length of the contact force, vibration amplitude and intrinsic coefficient of friction: the uncertain ones.
+    measured_length : bool
+        Whether the decay length is known on this rig; else it is that of the population.
     frequency : float
         Of the vibration. [Hz]
     sliding_speed : float
@@ -86,10 +86,10 @@ class RigInputs:
         Friction by the rig's own model.
     """
 
-    roughness: Input
+    decay_length: Input
     amplitude: Input
     friction: Input
-    decay_length: float
+    measured_length: bool
     frequency: float
     sliding_speed: float
     normal_load: float
@@ -98,13 +98,13 @@ class RigInputs:
 
     @property
     def uncertain(self) -> tuple[Input, Input, Input]:
-        """Roughness, amplitude and dry friction."""
-        return self.roughness, self.amplitude, self.friction
+        """Decay length, amplitude and dry friction."""
+        return self.decay_length, self.amplitude, self.friction
 
     def with_input(self, known: Input) -> "RigInputs":
         """Return the inputs with the uncertain one of the same name replaced."""
-        roughness, amplitude, friction = (known if known.name == each.name else each for each in self.uncertain)
-        return replace(self, roughness=roughness, amplitude=amplitude, friction=friction)
+        length, amplitude, friction = (known if known.name == each.name else each for each in self.uncertain)
+        return replace(self, decay_length=length, amplitude=amplitude, friction=friction)
 
     def at(
         self, *, vibration_amplitude: ArrayLike | None = None, sliding_speed: ArrayLike | None = None
@@ -113,14 +113,15 @@ class RigInputs:
         amplitude = self.amplitude.value if vibration_amplitude is None else vibration_amplitude
         speed = self.sliding_speed if sliding_speed is None else sliding_speed
         a, v = np.broadcast_arrays(np.atleast_1d(np.asarray(amplitude, float)), np.asarray(speed, float))
+        length = self.decay_length.value if self.measured_length else REFERENCE_DECAY_LENGTH
         return UncertainConditions(
             conditions=Conditions(
                 vibration_amplitude=a,
                 frequency=np.full(a.shape, self.frequency),
                 sliding_speed=v,
-                decay_length=np.full(a.shape, self.decay_length),
+                decay_length=np.full(a.shape, length),
             ),
-            decay_length_spread=self.roughness.spread,
+            decay_length_spread=self.decay_length.spread if self.measured_length else None,
             amplitude_spread=self.amplitude.spread,
         )
 
@@ -148,13 +149,12 @@ def rig_inputs(rig: Rig) -> RigInputs:
     point = friction_point(rig)
     if not point.vibration_amplitude > 0:
         raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is 0 m")
-    roughness = _roughness(rig)
-    factor = roughness.value / rig.contact.roughness.rms_height
+    length = _measured_decay_length(rig)
     return RigInputs(
-        roughness=roughness,
+        decay_length=length or _decay_length_of_the_population(),
         amplitude=_amplitude(rig, point),
         friction=_friction(rig),
-        decay_length=factor * float(decay_length(rig.contact, separation=rest_separation(rig))),
+        measured_length=length is not None,
         frequency=rig.drive.frequency,
         sliding_speed=rig.sliding_speed,
         normal_load=rig.normal_load,
@@ -163,21 +163,35 @@ def rig_inputs(rig: Rig) -> RigInputs:
     )
 
 
-def _roughness(rig: Rig) -> Input:
-    """Root mean square height of the surfaces."""
-    assumed = any(_ROUGHNESS_KEY.startswith(key) for key in rig.assumptions)
-    value, spread, reason = _own_distribution(rig, _ROUGHNESS_KEY) or (
-        rig.contact.roughness.rms_height,
-        _ASSUMED_ROUGHNESS if assumed else _GIVEN_ROUGHNESS,
-        "assumed in the rig file, not measured" if assumed else "given without a distribution",
-    )
+def _measured_decay_length(rig: Rig) -> Input | None:
+    """Decay length of the contact force as known on the rig, where the rig file has one of its own."""
+    length, origin = rig.contact.decay_length, rig.decay_length_origin or "stated"
+    if length is None or origin == "published_tests":
+        return None
+    spread, reason = _GIVEN_LENGTH, "given without a distribution"
+    for key in _LENGTH_KEYS:
+        if own := rig.uncertainty.get(key):
+            spread, reason = _lognormal(own)[1], f"{own.text} in the rig file"
     return Input(
-        name="rms_height",
-        label="roughness",
+        name="decay_length",
+        label="decay length of the contact",
+        value=length,
+        spread=spread,
+        reason=f"{origin.replace('_', ' ')}; {reason}",
+        remedy="a run with vibration on this rig",
+    )
+
+
+def _decay_length_of_the_population() -> Input:
+    """Decay length of the force of worn contacts by the published tests."""
+    value, spread = learned().friction.decay_length()
+    return Input(
+        name="decay_length",
+        label="decay length of the contact",
         value=value,
         spread=spread,
-        reason=reason,
-        remedy="a scan of the worn track",
+        reason="of worn contacts by published tests; no roughness tells it",
+        remedy="a run with vibration on this rig, or its contact stiffness (`sonolube measure stiffness`)",
     )
 
 
@@ -198,9 +212,14 @@ def _amplitude(rig: Rig, point: FrictionPoint) -> Input:
 
 
 def _friction(rig: Rig) -> Input:
-    """Intrinsic coefficient of friction."""
-    given = (rig.friction_coefficient, _GIVEN_FRICTION, "given without a distribution")
-    value, spread, reason = _own_distribution(rig, _FRICTION_KEY) or given
+    """Intrinsic coefficient of friction: that of the rig, with its distribution where that is about this value."""
+    value, spread, reason = rig.friction_coefficient, _GIVEN_FRICTION, "given without a distribution"
+    if own := rig.uncertainty.get(_FRICTION_KEY):
+        middle, deviation = _lognormal(own)
+        if abs(middle / value - 1) < _SAME_VALUE:
+            spread, reason = deviation, f"{own.text} in the rig file"
+        else:
+            reason = f"given in place of {own.text}"
     return Input(
         name="friction_coefficient",
         label="dry friction",
@@ -209,12 +228,6 @@ def _friction(rig: Rig) -> Input:
         reason=reason,
         remedy="a run without vibration on the same pair",
     )
-
-
-def _own_distribution(rig: Rig, key: str) -> tuple[float, float, str] | None:
-    """Median, spread and reason by the distribution of the rig file, where it has one."""
-    own = rig.uncertainty.get(key)
-    return None if own is None else (*_lognormal(own), f"{own.text} in the rig file")
 
 
 def _lognormal(distribution: Distribution) -> tuple[float, float]:

@@ -12,9 +12,8 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.prediction.closures import CLOSURES, Closure
 from sonolube.prediction.evidence import TestedRig, published_rigs
-from sonolube.prediction.hierarchy import RigLikelihood, hyperprior, log_hyperprior
-from sonolube.prediction.posterior import LEARNED_FILE, published_log_likelihoods, write_learned
-from sonolube.prediction.stacking import stacking_weights, unseen_log_densities
+from sonolube.prediction.hierarchy import POPULATION_PRIOR, RigLikelihood, log_hyperprior
+from sonolube.prediction.posterior import LEARNED_FILE, write_learned
 from sonolube.prediction.wear import WEAR_PRIOR, log_wear_posterior, published_wear
 
 __all__: list[str] = []
@@ -26,14 +25,14 @@ _DRAWS: Final = 1024  # kept of each posterior
 def sampled_hyperparameters(
     closure: Closure, rigs: tuple[TestedRig, ...], *, steps: int = 3000, seed: int = 0
 ) -> Floats:
-    """Draws from the posterior of one closure, shape (draws, 5), the first third of the steps left out."""
+    """Draws from the posterior of one friction model, shape (draws, 6), the first third of the steps left out."""
     likelihoods = [RigLikelihood.of(closure, rig) for rig in rigs]
 
     def log_density(rows: Floats) -> Floats:
         prior = log_hyperprior(closure, rows)
         return np.asarray(prior + np.sum([likelihood(rows) for likelihood in likelihoods], axis=0))
 
-    return ensemble_draws(log_density, hyperprior(closure), steps=steps, seed=seed)
+    return ensemble_draws(log_density, POPULATION_PRIOR.of(closure), steps=steps, seed=seed)
 
 
 def ensemble_draws(
@@ -72,14 +71,8 @@ def ensemble_draws(
 
 
 def learn(path: Path) -> None:
-    """Sample all posteriors, weigh the closures, and write what was learned."""
-    log_likelihoods = published_log_likelihoods()
-    densities = [unseen_log_densities(log_likelihoods[closure.name]) for closure in CLOSURES]
-    weights = stacking_weights(np.array(densities))
-    friction = {
-        closure.name: (float(weight), sampled_hyperparameters(closure, published_rigs()))
-        for closure, weight in zip(CLOSURES, weights, strict=True)
-    }
+    """Sample all posteriors and write what was learned."""
+    friction = {closure.name: sampled_hyperparameters(closure, published_rigs()) for closure in CLOSURES}
     centres, deviations = np.array(WEAR_PRIOR)
     wear = ensemble_draws(
         lambda rows: log_wear_posterior(rows, published_wear()), (centres, deviations), steps=3000, seed=0

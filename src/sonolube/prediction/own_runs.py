@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import run_caveats
-from sonolube.measurement.run_selection import checked_ratios, setting, without_copies
+from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting
 from sonolube.prediction.evidence import TestedRig
 from sonolube.prediction.inputs import Input, RigInputs
 
@@ -66,11 +66,9 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
     count = runs.sizes["run"]
     if count > _MOST_RUNS:
         raise InvalidInput(f"{title}: {count} runs; at most {_MOST_RUNS} update a prediction: average repeats")
-    checked_ratios(runs, title=title)
+    ratio, copies = checked_ratios(runs, title=title), copies_caveat(runs)
     if np.any(np.isfinite(setting(runs, "vibration_direction", np.nan))):
         raise InvalidInput(f"{title}: a prediction is of vibration along the normal; leave out runs with a direction")
-    runs, copies = without_copies(runs)
-    ratio = checked_ratios(runs, title=title)
     amplitude, speed = _amplitudes(runs, inputs), setting(runs, "sliding_speed", inputs.sliding_speed)
     for name, values in (("vibration_amplitude", amplitude), ("sliding_speed", speed)):
         if not np.all(values > 0):
@@ -80,7 +78,7 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
     caveats = (*run_caveats(runs), *copies, *caveats)
     loads = setting(runs, "normal_load", inputs.normal_load)
     if np.any(np.abs(loads / inputs.normal_load - 1) > 0.5):
-        caveats += ("some runs have a load far from the rig's; closures do not depend on the load",)
+        caveats += ("some runs have a load far from the rig's; the friction model does not depend on the load",)
     return OwnRuns(
         tested=TestedRig(name=title, at=at, friction_ratio=ratio, uncertainty=uncertainty),
         friction=_intrinsic(runs, loads),

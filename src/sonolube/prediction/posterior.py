@@ -1,4 +1,4 @@
-"""Posterior of the hyperparameters given the published tests: draws and weights by closure, shipped as data."""
+"""Posterior of the hyperparameters given the published tests: draws by friction model, shipped as data."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from scipy.special import logsumexp
 
 from sonolube.checks import Floats
 from sonolube.files import write_atomically
 from sonolube.prediction.closures import CLOSURES, Closure
-from sonolube.prediction.evidence import TestedRig, published_rigs
-from sonolube.prediction.hierarchy import HYPERPARAMETERS, RigLikelihood, hyperprior, standard_normals
-from sonolube.prediction.stacking import importance_weights, stacking_weights, unseen_log_densities
+from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, TestedRig, published_rigs
+from sonolube.prediction.hierarchy import HYPERPARAMETERS, POPULATION_PRIOR, Prior, RigLikelihood, standard_normals
 from sonolube.prediction.wear import WEAR_HYPERPARAMETERS, WearPosterior, published_wear
 
 LEARNED_FILE: Final = "learned.json"
@@ -26,22 +26,25 @@ PRIOR_DRAWS: Final = 16384
 """Evenly spread draws from the prior, with which rigs are left out."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Posterior:
-    """Posterior of one closure.
+    """Posterior of one friction model.
 
     Parameters
     ----------
     closure : Closure
-    weight : float
-        Of the closure, sum 1 over all.
-    hyperparameters : ndarray, shape (h, 5)
+    hyperparameters : ndarray, shape (h, 6)
         Draws, equally probable: logarithms, in the order of `HYPERPARAMETERS`.
     """
 
     closure: Closure
-    weight: float
     hyperparameters: Floats
+
+    def decay_length(self) -> tuple[float, float]:
+        """Median of the decay length of a worn contact on a further rig, in m, and the deviation of its logarithm."""
+        kappa, tau_l = self.hyperparameters[:, 1], self.hyperparameters[:, 3]
+        median = REFERENCE_DECAY_LENGTH * float(np.exp(np.median(kappa)))
+        return median, float(np.sqrt(np.var(kappa) + np.mean(np.exp(2 * tau_l))))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,12 +53,15 @@ class Learned:
 
     Parameters
     ----------
-    friction : tuple of Posterior
-        By closure.
+    friction : Posterior
+        Of the friction model that predicts.
+    compared : tuple of Posterior
+        Of all friction models that a test plan tells apart.
     wear : WearPosterior
     """
 
-    friction: tuple[Posterior, ...]
+    friction: Posterior
+    compared: tuple[Posterior, ...]
     wear: WearPosterior
 
 
@@ -69,26 +75,21 @@ def learned() -> Learned:
     """
     content = json.loads(files(__package__).joinpath(LEARNED_FILE).read_text(encoding="utf-8"))
     known = {closure.name: closure for closure in CLOSURES}
-    friction = tuple(
+    compared = tuple(
         Posterior(
-            closure=known[name],
-            weight=entry["weight"],
-            hyperparameters=np.column_stack([entry["draws"][each] for each in HYPERPARAMETERS]),
+            closure=known[name], hyperparameters=np.column_stack([entry["draws"][each] for each in HYPERPARAMETERS])
         )
         for name, entry in content["friction"].items()
     )
     wear = np.column_stack([content["wear"]["draws"][each] for each in WEAR_HYPERPARAMETERS])
-    return Learned(friction=friction, wear=WearPosterior(hyperparameters=wear))
+    return Learned(friction=compared[0], compared=compared, wear=WearPosterior(hyperparameters=wear))
 
 
-def write_learned(path: Path, *, friction: Mapping[str, tuple[float, Floats]], wear: Floats) -> None:
-    """Write weight and draws of each closure, and the draws for wear, with the fingerprint of the tests."""
+def write_learned(path: Path, *, friction: Mapping[str, Floats], wear: Floats) -> None:
+    """Write the draws of each friction model, and those for wear, with the fingerprint of the tests."""
     content = {
         "evidence": evidence_fingerprint(),
-        "friction": {
-            name: {"weight": round(weight, 4), "draws": _columns(HYPERPARAMETERS, draws)}
-            for name, (weight, draws) in friction.items()
-        },
+        "friction": {name: {"draws": _columns(HYPERPARAMETERS, draws)} for name, draws in friction.items()},
         "wear": {"draws": _columns(WEAR_HYPERPARAMETERS, wear)},
     }
     write_atomically(path, json.dumps(content).replace("], ", "],\n") + "\n")  # one column a line
@@ -96,60 +97,64 @@ def write_learned(path: Path, *, friction: Mapping[str, tuple[float, Floats]], w
 
 def evidence_fingerprint() -> str:
     """Hash of the published tests and the priors, by which stale data are recognised."""
-    numbers: list[Any] = [[closure.name, *np.round(np.ravel(hyperprior(closure)), 6)] for closure in CLOSURES]
+    numbers: list[Any] = [[closure.name, *np.round(np.ravel(POPULATION_PRIOR.of(closure)), 6)] for closure in CLOSURES]
     numbers += [_digits(rig) for rig in published_rigs()]
     numbers += [[pair.name, *np.round(pair.wear_rate_ratio, 6), pair.uncertainty] for pair in published_wear()]
     return sha256(repr([list(map(str, row)) for row in numbers]).encode()).hexdigest()[:16]
 
 
-def posteriors_without(
-    log_likelihoods: Mapping[str, Floats], *, left_out: tuple[int, ...] = (), closures: Sequence[Closure] = CLOSURES
-) -> tuple[Posterior, ...]:
-    """Posteriors and weights by all rigs but some, by importance resampling of draws from the prior.
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Population:
+    """Draws from the prior of one friction model with their likelihoods, by which rigs are left out at no cost.
 
     Parameters
     ----------
-    log_likelihoods : mapping of str to ndarray, shape (h, r)
-        By name of the closure, as `published_log_likelihoods` returns them.
-    left_out : tuple of int
-        Columns of rigs.
-    closures : sequence of Closure
-
-    Returns
-    -------
-    tuple of Posterior
+    closure : Closure
+    draws : ndarray, shape (h, 6)
+        From the prior, evenly spread.
+    log_likelihoods : ndarray, shape (h, r)
+        Of each draw and each rig.
     """
-    densities = [unseen_log_densities(log_likelihoods[each.name], left_out=left_out) for each in closures]
-    weights = stacking_weights(np.array(densities))
-    rng = np.random.default_rng(0)
-    found = []
-    for closure, weight in zip(closures, weights, strict=True):
-        share = importance_weights(log_likelihoods[closure.name], left_out=left_out)
-        rows = rng.choice(share.size, size=share.size, p=share)
-        found.append(Posterior(closure=closure, weight=float(weight), hyperparameters=prior_draws(closure)[rows]))
-    return tuple(found)
 
+    closure: Closure
+    draws: Floats
+    log_likelihoods: Floats
 
-def prior_draws(closure: Closure) -> Floats:
-    """Draws from the prior of the hyperparameters evenly spread, shape (`PRIOR_DRAWS`, 5)."""
-    means, deviations = hyperprior(closure)
-    return means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
+    @classmethod
+    def of(cls, closure: Closure, rigs: Sequence[TestedRig], *, prior: Prior = POPULATION_PRIOR) -> "Population":
+        """Population of some rigs under a prior."""
+        means, deviations = prior.of(closure)
+        draws = means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
+        logs = np.column_stack([RigLikelihood.of(closure, rig)(draws) for rig in rigs])
+        return cls(closure=closure, draws=draws, log_likelihoods=logs)
 
+    def posterior(self, *, without: tuple[int, ...] = ()) -> Posterior:
+        """Posterior by all rigs but some, by importance resampling of the draws.
 
-def rig_log_likelihoods(closure: Closure, rigs: Sequence[TestedRig]) -> Floats:
-    """Logarithm of the likelihood of each rig at each draw from the prior, shape (h, r)."""
-    return np.column_stack([RigLikelihood.of(closure, rig)(prior_draws(closure)) for rig in rigs])
+        Parameters
+        ----------
+        without : tuple of int
+            Places of the rigs left out.
+
+        Returns
+        -------
+        Posterior
+        """
+        total = np.delete(self.log_likelihoods, without, axis=1).sum(axis=1)
+        share = np.exp(total - logsumexp(total))
+        rows = np.random.default_rng(0).choice(share.size, size=share.size, p=share)
+        return Posterior(closure=self.closure, hyperparameters=self.draws[rows])
 
 
 @cache
-def published_log_likelihoods() -> Mapping[str, Floats]:
-    """Logarithm of the likelihood of each published rig at each draw from the prior, by name of the closure.
+def published_population() -> Population:
+    """Population of the published rigs under the friction model that predicts.
 
     Returns
     -------
-    mapping of str to ndarray, shape (h, r)
+    Population
     """
-    return {closure.name: rig_log_likelihoods(closure, published_rigs()) for closure in CLOSURES}
+    return Population.of(CLOSURES[0], published_rigs())
 
 
 def _columns(names: Sequence[str], draws: Floats) -> dict[str, list[float]]:

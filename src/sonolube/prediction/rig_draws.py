@@ -1,4 +1,13 @@
-"""Draws of what a rig has of its own under one closure, from the population and weighed by tests of the rig."""
+"""Draws of what a rig has of its own under one friction model, from the population and conditioned on its own tests.
+
+Tests of a rig condition the draws by sequential Monte Carlo: the likelihood is raised step by step to its full power, and
+after each step the draws are resampled and moved by Metropolis steps. Deviates are standard normal before the tests, so that
+a step costs one evaluation of the likelihood.
+
+References
+----------
+P. Del Moral, A. Doucet and A. Jasra, J. R. Stat. Soc. B 68, 411 (2006). doi:10.1111/j.1467-9868.2006.00553.x
+"""
 
 from dataclasses import dataclass, replace
 from typing import Final
@@ -9,95 +18,203 @@ from scipy.special import logsumexp
 from sonolube.checks import Floats, Integers
 from sonolube.prediction.closures import Conditions, UncertainConditions
 from sonolube.prediction.evidence import TestedRig
-from sonolube.prediction.hierarchy import discrepancy_covariance, headroom, squared_distances, standard_normals
+from sonolube.prediction.hierarchy import (
+    OWN_DEVIATES,
+    OwnParameters,
+    covariance_of_tests,
+    discrepancy_correlation,
+    discrepancy_deviation,
+    log_normal_density,
+    own_parameters,
+    standard_normals,
+)
 from sonolube.prediction.posterior import Posterior
 
-_POOL: Final = 4096  # draws of each closure before they are weighed
-_ROWS: Final = 256  # weighed at a time, to bound memory
+_POOL: Final = 8192  # draws that are weighed
+_ENOUGH: Final = 1000  # effective draws from which weighing alone does
+_MOVED: Final = 2048  # draws that are moved, for up to some tens of tests
+_LEAST_MOVED: Final = 256  # for very many
+_ENTRIES: Final = 4e6  # of all covariances of the tests, to bound time and memory
+_KEPT: Final = 0.5  # effective share of the draws that a step keeps
+_MOVES: Final = 4  # of each kind after each step
+_LAST_MOVES: Final = 8
+_STRIDE: Final = 1.2  # of a move, in standard deviations of the draws
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RigDraws:
-    """Draws of one closure for one rig, with their weights by its own tests.
-
-    Parameters
-    ----------
-    posterior : Posterior
-    hyperparameters : ndarray, shape (p, 5)
-    log_parameter : ndarray, shape (p,)
-        Of the closure.
-    log_factor : ndarray, shape (p,)
-        On decay length over amplitude.
-    log_weights : ndarray, shape (p,)
-    deviation : ndarray, shape (p,)
-        Of the tests, squared and normalised.
-    """
-
-    posterior: Posterior
-    hyperparameters: Floats
-    log_parameter: Floats
-    log_factor: Floats
-    log_weights: Floats
-    deviation: Floats
-
-    def means(self, at: Conditions, rows: Integers | slice = slice(None)) -> Floats:
-        """Return the friction ratios of the closure without discrepancy, shape (rows, m). []"""
-        scaled = at.scaled(decay_length=np.exp(self.log_factor[rows])[:, None])
-        return np.asarray(self.posterior.closure.ratio(self.log_parameter[rows][:, None], scaled))
-
-    def resampled(self, count: int, rng: np.random.Generator) -> Integers:
-        """Return rows, drawn systematically by weight, in their order."""
-        cumulative = np.cumsum(np.exp(self.log_weights - logsumexp(self.log_weights)))
-        rows = np.searchsorted(cumulative, (np.arange(count) + rng.random()) / count)
-        return np.minimum(rows, self.log_weights.size - 1)
-
-
-def rig_draws(posterior: Posterior, at: UncertainConditions, *, seed: int, own: TestedRig | None) -> RigDraws:
-    """Return draws of a closure for a rig, weighed by the likelihood of its own tests.
+    """Equally probable draws of one friction model for one rig.
 
     Parameters
     ----------
     posterior : Posterior
     at : UncertainConditions
         Whose spreads are those of the rig.
-    seed : int
+    rows : ndarray of int, shape (p,)
+        Of the hyperparameters.
+    deviates : ndarray, shape (p, 3)
+        What the rig has of its own.
     own : TestedRig or None
-        Equal weights without tests.
+        Tests on which the draws, and the discrepancy, are conditioned.
+    log_evidence : float
+        Logarithm of the density of these tests.
+    """
+
+    posterior: Posterior
+    at: UncertainConditions
+    rows: Integers
+    deviates: Floats
+    own: TestedRig | None = None
+    log_evidence: float = 0.0
+
+    @property
+    def hyperparameters(self) -> Floats:
+        """Hyperparameters of each draw, shape (p, 6)."""
+        return self.posterior.hyperparameters[self.rows]
+
+    @property
+    def parameters(self) -> OwnParameters:
+        """Parameters of each draw."""
+        return own_parameters(self.hyperparameters, self.deviates, self.at)
+
+    def means(self, conditions: Conditions) -> Floats:
+        """Friction ratios of the friction model without discrepancy, shape (p, m). []"""
+        own = self.parameters
+        scaled = conditions.scaled(decay_length=np.exp(own.log_factor)[:, None])
+        return np.asarray(self.posterior.closure.ratio(own.log_parameter[:, None], scaled))
+
+    def normals(self, conditions: Conditions) -> tuple[Floats, Floats]:
+        """Means and standard deviations of the normal distribution of the ratio by each draw, each of shape (p, m)."""
+        mean = self.means(conditions)
+        side = self._deviation(mean, conditions)
+        if self.own is None:
+            return mean, side
+        tested = self.own.at.conditions
+        seen = self.means(tested)
+        near = discrepancy_correlation(conditions, tested, log_length=self.hyperparameters[:, 5])
+        across = near * side[:, :, None] * self._deviation(seen, tested)[:, None, :]
+        gain = np.swapaxes(np.linalg.solve(self.covariance(seen), np.swapaxes(across, 1, 2)), 1, 2)
+        mean = mean + np.einsum("pmn,pn->pm", gain, self.own.friction_ratio - seen)
+        return mean, np.sqrt(np.maximum(side**2 - np.einsum("pmn,pmn->pm", gain, across), 0.0))
+
+    def _deviation(self, ratio: Floats, at: Conditions) -> Floats:
+        """Standard deviation of the discrepancy by each draw, shape (p, m)."""
+        return discrepancy_deviation(ratio, at, log_discrepancy=self.parameters.log_discrepancy)
+
+    def covariance(self, seen: Floats) -> Floats:
+        """Covariance of the rig's own tests about the ratios of the friction model, shape (p, n, n)."""
+        assert self.own is not None
+        return covariance_of_tests(
+            seen, self.own, log_discrepancy=self.parameters.log_discrepancy, log_length=self.hyperparameters[:, 5]
+        )
+
+    def log_density(self) -> Floats:
+        """Logarithm of the density of the rig's own tests by each draw, shape (p,)."""
+        assert self.own is not None
+        seen = self.means(self.own.at.conditions)
+        return log_normal_density(self.own.friction_ratio - seen, self.covariance(seen))
+
+    def taken(self, rows: Integers) -> "RigDraws":
+        """Some of the draws, with repetition."""
+        return replace(self, rows=self.rows[rows], deviates=self.deviates[rows])
+
+
+def rig_draws(
+    posterior: Posterior, at: UncertainConditions, *, count: int, seed: int = 0, own: TestedRig | None = None
+) -> RigDraws:
+    """Draws of a friction model for a rig that is none of those learned from, conditioned on its own tests.
+
+    Parameters
+    ----------
+    posterior : Posterior
+    at : UncertainConditions
+        Whose spreads are those of the rig.
+    count : int
+    seed : int
+    own : TestedRig, optional
 
     Returns
     -------
     RigDraws
-        4096 of them.
+        Of `count` draws without own tests, else of as many as are moved: from 256 to 2048.
     """
-    normals = standard_normals(_POOL, columns=2, seed=seed + 3)
-    rows = np.random.default_rng(seed).permutation(np.arange(_POOL) % len(posterior.hyperparameters))
-    hyper = posterior.hyperparameters[rows]
-    log_parameter = hyper[:, 0] + np.exp(hyper[:, 2]) * normals[:, 0]
-    log_factor = hyper[:, 1] + at.log_length_factor + at.length_spread * normals[:, 1]
-    equal = np.full(_POOL, -np.log(_POOL))
-    free = RigDraws(posterior, hyper, log_parameter, log_factor, equal, np.zeros(_POOL))
     if own is None:
-        return free
-    weighed = [_weighed(free, own, slice(start, start + _ROWS)) for start in range(0, _POOL, _ROWS)]
-    density, deviation = (np.concatenate(parts) for parts in zip(*weighed, strict=True))
-    return replace(free, log_weights=density - np.log(_POOL), deviation=deviation)
+        return _from_population(posterior, at, count=count, seed=seed)
+    moved = int(np.clip(_ENTRIES / own.friction_ratio.size**2, _LEAST_MOVED, _MOVED))
+    pool = replace(_from_population(posterior, at, count=_POOL * moved // _MOVED, seed=seed), own=own)
+    density = pool.log_density()
+    if _effective(density) * _MOVED >= _ENOUGH * moved:
+        rows = systematic_rows(density, moved, np.random.default_rng(seed + 11))
+        return replace(pool.taken(rows), log_evidence=float(logsumexp(density) - np.log(density.size)))
+    return _conditioned(pool.taken(np.arange(moved)), density[:moved], seed=seed)
 
 
-def discrepancies(hyper: Floats, one: Conditions, other: Conditions) -> Floats:
-    """Return the covariance of the discrepancy between two sets of conditions, for each row of hyperparameters."""
-    return discrepancy_covariance(squared_distances(one, other), log_deviation=hyper[:, 3], log_length=hyper[:, 4])
+def _from_population(posterior: Posterior, at: UncertainConditions, *, count: int, seed: int) -> RigDraws:
+    """Draws before any test of the rig."""
+    rows = np.random.default_rng(seed).permutation(np.arange(count) % len(posterior.hyperparameters))
+    return RigDraws(posterior, at, rows, standard_normals(count, columns=OWN_DEVIATES, seed=seed + 3))
 
 
-def covariance_of_tests(hyper: Floats, ratio: Floats, own: TestedRig) -> Floats:
-    """Return the covariance of measured ratios about those of the closure, for each row of hyperparameters."""
-    room = headroom(ratio)
-    correlated = discrepancies(hyper, own.at.conditions, own.at.conditions) * room[:, :, None] * room[:, None, :]
-    return np.asarray(correlated + np.diag(own.uncertainty**2))
+def _conditioned(draws: RigDraws, density: Floats, *, seed: int) -> RigDraws:
+    """Draws conditioned on the own tests by sequential Monte Carlo, with the density of these."""
+    rng = np.random.default_rng(seed + 11)
+    power, evidence = 0.0, 0.0
+    while power < 1.0:
+        step = _step(density, power)
+        weights = step * density
+        evidence += float(logsumexp(weights) - np.log(weights.size))
+        chosen = systematic_rows(weights, weights.size, rng)
+        draws, density, power = draws.taken(chosen), density[chosen], min(power + step, 1.0)
+        for _ in range(_MOVES if power < 1.0 else _LAST_MOVES):
+            draws, density = _moved(draws, density, power, rng)
+    return replace(draws, log_evidence=evidence)
 
 
-def _weighed(free: RigDraws, own: TestedRig, rows: slice) -> tuple[Floats, Floats]:
-    """Return the logarithm of the density of the tests under some draws, and their normalised squared deviation."""
-    ratio = free.means(own.at.conditions, rows)
-    residual, covariance = own.friction_ratio - ratio, covariance_of_tests(free.hyperparameters[rows], ratio, own)
-    deviation = np.einsum("pn,pnm,pm->p", residual, np.linalg.inv(covariance), residual)
-    return -0.5 * (deviation + np.linalg.slogdet(2 * np.pi * covariance)[1]), deviation
+def _step(density: Floats, power: float) -> float:
+    """Largest rise of the power of the likelihood that keeps the effective number of draws."""
+
+    def kept(step: float) -> float:
+        return _effective(step * density) / density.size
+
+    low, high = 0.0, 1.0 - power
+    if kept(high) >= _KEPT:
+        return high
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if kept(middle) >= _KEPT else (low, middle)
+    return max(low, 1e-6)
+
+
+def _moved(draws: RigDraws, density: Floats, power: float, rng: np.random.Generator) -> tuple[RigDraws, Floats]:
+    """Draws after a Metropolis step of the deviates, and one of the hyperparameters."""
+    count = density.size
+    spread = np.linalg.cholesky(np.cov(draws.deviates.T) + 1e-9 * np.eye(OWN_DEVIATES))
+    stride = _STRIDE * rng.choice([0.3, 1.0], size=(count, 1))
+    nearby = replace(draws, deviates=draws.deviates + stride * rng.standard_normal((count, OWN_DEVIATES)) @ spread.T)
+    prior = 0.5 * np.sum(draws.deviates**2 - nearby.deviates**2, axis=1)
+    draws, density = _accepted(draws, nearby, density, prior, power, rng)
+    other = replace(draws, rows=rng.integers(0, len(draws.posterior.hyperparameters), count))
+    return _accepted(draws, other, density, np.zeros(count), power, rng)
+
+
+def _accepted(
+    draws: RigDraws, tried: RigDraws, density: Floats, prior: Floats, power: float, rng: np.random.Generator
+) -> tuple[RigDraws, Floats]:
+    """Draws with those of a proposal that Metropolis's rule accepts."""
+    found = tried.log_density()
+    taken = np.log(rng.random(density.size)) < prior + power * (found - density)
+    rows = np.where(taken, tried.rows, draws.rows)
+    deviates = np.where(taken[:, None], tried.deviates, draws.deviates)
+    return replace(draws, rows=rows, deviates=deviates), np.where(taken, found, density)
+
+
+def _effective(log_weights: Floats) -> float:
+    """Effective number of draws by their weights."""
+    return float(np.exp(2 * logsumexp(log_weights) - logsumexp(2 * log_weights)))
+
+
+def systematic_rows(log_weights: Floats, count: int, rng: np.random.Generator) -> Integers:
+    """Rows drawn systematically by weight, in their order, shape (count,)."""
+    cumulative = np.cumsum(np.exp(log_weights - logsumexp(log_weights)))
+    rows = np.searchsorted(cumulative, (np.arange(count) + rng.random()) / count)
+    return np.minimum(rows, log_weights.size - 1)

@@ -12,7 +12,7 @@ from sonolube.checks import Floats
 from sonolube.contact import RoughContact
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import run_caveats
-from sonolube.measurement.run_selection import checked_ratios, setting, without_copies
+from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting
 from sonolube.rig import Rig, steady_vibration
 from sonolube.units import format_si
 
@@ -177,9 +177,7 @@ def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
     title = str(runs.attrs.get("title", "runs")).removesuffix(", in %")
     if runs.sizes["run"] > _MOST_RUNS:
         raise InvalidInput(f"{title}: {runs.sizes['run']} runs; at most {_MOST_RUNS} are fitted: average repeats")
-    checked_ratios(runs, title=title)
-    runs, copies = without_copies(runs)
-    ratio = checked_ratios(runs, title=title)
+    ratio, copies = checked_ratios(runs, title=title), copies_caveat(runs)
     inputs = _inputs(runs, rig)
     for name in ("vibration_amplitude", "vibration_velocity", "frequency", "sliding_speed", "normal_load"):
         if np.any(inputs[name] <= 0):

@@ -1,0 +1,165 @@
+"""Expected width of a predictive interval after a further measurement: one run, the contact stiffness, an input."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.prediction.closures import Conditions
+from sonolube.prediction.hierarchy import discrepancy_correlation
+from sonolube.prediction.inputs import RigInputs
+from sonolube.prediction.predictive import RigPrediction
+from sonolube.prediction.scores import central_interval
+
+KNOWN_WELL: Final = {"decay_length": 0.1, "vibration_amplitude": 0.02, "friction_coefficient": 0.03}
+"""Standard deviation of the logarithm of each uncertain input after a careful measurement."""
+
+_OUTCOMES: Final = 24  # of a measurement, over which the width is averaged
+_RUN: Final = 0.05  # standard uncertainty of the ratio of one run
+_FARTHER: Final = 2.0  # speed of the other point over that of the rig
+_STIFFNESS: Final = (0.3, 0.1)  # standard deviations of the logarithm of a measured contact stiffness
+_NARROWEST: Final = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Measure:
+    """A measurement that would narrow a prediction.
+
+    Parameters
+    ----------
+    label : str
+        In words.
+    share_left : float
+        Expected width of the 80 % interval of the friction ratio after it, over the width now. []
+    """
+
+    label: str
+    share_left: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class OwnLogarithms:
+    """Draws of what is not known of a rig, as logarithms, row by row those of the friction ratio.
+
+    Parameters
+    ----------
+    decay_length, vibration_amplitude : ndarray, shape (draws,)
+        Factors on the medians.
+    """
+
+    decay_length: Floats
+    vibration_amplitude: Floats
+
+
+def own_logarithms(found: RigPrediction, *, seed: int) -> OwnLogarithms:
+    """Draws of decay length and amplitude of a rig, split from those of their ratio on which friction depends.
+
+    Parameters
+    ----------
+    found : RigPrediction
+    seed : int
+
+    Returns
+    -------
+    OwnLogarithms
+    """
+    draws = found.draws
+    at, rows = draws.at, np.arange(found.count) % draws.rows.size
+    if at.decay_length_spread is None:
+        middle, scatter = draws.hyperparameters[rows, 1], np.exp(draws.hyperparameters[rows, 3])
+    else:
+        middle, scatter = np.zeros(found.count), np.full(found.count, at.decay_length_spread)
+    both = np.hypot(scatter, at.amplitude_spread)
+    deviate = draws.deviates[rows, 1]
+    fresh = np.random.default_rng(seed + 7).standard_normal(found.count)
+    amplitude = at.amplitude_spread / both * (-at.amplitude_spread * deviate + scatter * fresh)
+    return OwnLogarithms(decay_length=middle + both * deviate + amplitude, vibration_amplitude=amplitude)
+
+
+def expected_width(target: Floats, *, observed: Floats, noise: float) -> float:
+    """Expected width of the 80 % interval of a target after a measurement.
+
+    Parameters
+    ----------
+    target, observed : ndarray, shape (draws,)
+        Of one draw each: what is predicted, and what is measured.
+    noise : float
+        Standard deviation of the measurement.
+
+    Returns
+    -------
+    float
+
+    Notes
+    -----
+    Draws are weighed by the normal density of each of 24 evenly probable outcomes of the measurement.
+    """
+    order = np.argsort(target)
+    values, known = target[order], observed[order]
+    jitter = noise * np.random.default_rng(8).standard_normal(observed.size)
+    outcomes = np.quantile(observed + jitter, (np.arange(_OUTCOMES) + 0.5) / _OUTCOMES)
+    logs = -0.5 * ((outcomes[:, None] - known) / noise) ** 2
+    weights = np.exp(logs - logs.max(axis=1, keepdims=True))
+    cumulative = np.cumsum(weights, axis=1)
+    cumulative /= cumulative[:, -1:]
+    ends = [values[np.minimum([np.searchsorted(each, p) for each in cumulative], values.size - 1)] for p in (0.1, 0.9)]
+    return float(np.mean(ends[1] - ends[0]))
+
+
+def width(draws: Floats) -> float:
+    """Width of the 80 % interval, not below one part in a million."""
+    low, high = central_interval(draws, 0.8)
+    return max(float(high - low), _NARROWEST)
+
+
+def measures(found: RigPrediction, inputs: RigInputs, *, ratio: Floats, seed: int) -> tuple[Measure, ...]:
+    """Measurements that would narrow the prediction at the operating point, the one that helps most first.
+
+    Parameters
+    ----------
+    found : RigPrediction
+    inputs : RigInputs
+    ratio : ndarray, shape (draws,)
+        Friction ratio at the operating point.
+    seed : int
+
+    Returns
+    -------
+    tuple of Measure
+    """
+    near, far = _two_points(found, inputs)
+    logs = own_logarithms(found, seed=seed)
+    now = width(ratio)
+    made = [
+        Measure(label="one run at this point", share_left=_share(near, near, _RUN)),
+        Measure(label=f"one run at this point, for {_FARTHER:g} times the speed", share_left=_share(far, near, _RUN)),
+    ]
+    if not inputs.measured_length:
+        made += [
+            Measure(
+                label=f"contact stiffness within {100 * noise:.0f} %",
+                share_left=min(expected_width(ratio, observed=logs.decay_length, noise=noise) / now, 1.0),
+            )
+            for noise in _STIFFNESS
+        ]
+    return tuple(made)
+
+
+def _share(target: Floats, observed: Floats, noise: float) -> float:
+    """Expected width of the interval of a target over that now, at most 1."""
+    return min(expected_width(target, observed=observed, noise=noise) / width(target), 1.0)
+
+
+def _two_points(found: RigPrediction, inputs: RigInputs) -> tuple[Floats, Floats]:
+    """Draws of the ratio at the operating point and at a higher speed, the discrepancy correlated between both."""
+    speeds = inputs.sliding_speed * np.array([1.0, _FARTHER])
+    at: Conditions = inputs.at(sliding_speed=speeds).conditions
+    mean, deviation = found.draws.normals(at)
+    rows = np.arange(found.count) % len(mean)
+    length = found.draws.hyperparameters[:, 5]
+    correlation = discrepancy_correlation(at, at, log_length=length)[rows, 0, 1]
+    first, other = np.random.default_rng(9).standard_normal((2, found.count))
+    second = correlation * first + np.sqrt(1 - correlation**2) * other
+    near = mean[rows, 0] + deviation[rows, 0] * first
+    return np.maximum(near, 0.0), np.maximum(mean[rows, 1] + deviation[rows, 1] * second, 0.0)
