@@ -12,7 +12,7 @@ from pytest import approx
 from sonolube.common_units import COMMON_FACTORS
 from sonolube.errors import InvalidInput
 from sonolube.unit_grammar import canonical_unit
-from sonolube.units import convert, format_like, format_si, temperature_difference_to_si, to_si
+from sonolube.units import convert, format_like, format_quantity, format_si, temperature_difference_to_si, to_si
 
 
 @pytest.mark.parametrize(
@@ -92,6 +92,14 @@ def test_conversion_there_and_back_changes_nothing(value: float) -> None:
 )
 def test_numbers_are_written_as_people_write_them(value: float, unit: str, text: str) -> None:
     assert format_si(value, unit) == text
+
+
+def test_wear_rates_are_written_as_volumes_per_distance_and_other_quantities_with_prefixes() -> None:
+    assert format_quantity(2.566e-11, "wear_rate") == "0.0257 mm3/m"  # D Table 3.4
+    assert format_quantity(5e-15, "specific_wear_rate") == "5e-06 mm3/(N m)"
+    assert format_quantity(2.566e-11, "asperity_area") == "25.7 um2"
+    assert format_quantity(0.528, "wear_rate_ratio") == "0.528"
+    assert to_si("5e-06 mm3/(N m)", unit="m2/N", name="specific_wear_rate") == approx(5e-15)
 
 
 def test_a_rise_of_temperature_is_no_temperature() -> None:

@@ -20,7 +20,7 @@ COMMON_FACTORS: dict[str, dict[str, float]] = {
     "W": {"W": 1.0, "mW": 1e-3, "kW": 1e3},
     "K": {"K": 1.0},
     "1/s": {"1/s": 1.0, "1/min": 1 / 60},
-    "m2/N": {"m2/N": 1.0, "mW mm2/(N W)": 1e-9},
+    "m2/N": {"m2/N": 1.0, "mm3/(N m)": 1e-9, "mW mm2/(N W)": 1e-9},
     "m s/N": {"m s/N": 1.0, "mW mm2 s/(N W m)": 1e-9},
     "kg/m3": {"kg/m3": 1.0},
 }

@@ -10,6 +10,7 @@ from typing import Any
 from sonolube.common_units import CELSIUS_ORIGIN, COMMON_FACTORS
 from sonolube.errors import InvalidInput
 from sonolube.unit_grammar import canonical_unit
+from sonolube.vocabulary import quantities
 
 _ANGLES = ("radian", "degree", "revolution", "turn", "cycle")
 _MINIMUM_MM3 = 1e-14  # m3; smaller volumes are written in um3
@@ -157,6 +158,28 @@ def format_si(value: float, unit: str, *, digits: int = 3) -> str:
     scaled = float(f"{value / 10.0 ** (3 * power * step):.{digits}g}")
     number = f"{Decimal(repr(scaled)):f}" if 1e-5 <= abs(scaled) < 1e-4 else f"{scaled:.15g}"
     return f"{number} {prefix}{unit}"
+
+
+def format_quantity(value: float, name: str, *, digits: int = 3) -> str:
+    """Return the SI value of a quantity as text with the unit usual for it, such as "0.0257 mm3/m" for a wear rate.
+
+    Parameters
+    ----------
+    value : float
+        Value in SI.
+    name : str
+        Name of the quantity in the vocabulary; another name is that of a pure number.
+    digits : int
+        Number of significant digits.
+
+    Returns
+    -------
+    str
+    """
+    known = quantities().get(name)
+    if known is None or not known.text_unit:
+        return format_si(value, known.unit if known else "", digits=digits)
+    return f"{value / COMMON_FACTORS[known.unit][known.text_unit]:.{digits}g} {known.text_unit}"
 
 
 def format_like(values: Sequence[float], unit: str, *, digits: int = 3) -> list[str]:

@@ -28,12 +28,15 @@ class Quantity:
         SI unit; empty for pure numbers.
     meaning : str
         Technical term for the quantity, as written along an axis.
+    text_unit : str
+        Unit in text and figures where it is not the SI unit with a prefix, such as mm3/m of a wear rate; else empty.
     """
 
     name: str
     symbol: str
     unit: str
     meaning: str
+    text_unit: str = ""
 
     @property
     def axis_label(self) -> str:

@@ -1,11 +1,11 @@
-"""Axes of figures over quantities of the vocabulary: format_si units, and logarithmic scales of geometric grids."""
+"""Axes of figures over quantities of the vocabulary: units that suit the values, logarithmic scales."""
 
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.units import format_si
+from sonolube.units import format_quantity
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ _RATIO_TOLERANCE = 1e-6  # relative, within which ratios of neighbouring values 
 
 
 def scaled_label(name: str, values: Floats) -> tuple[float, str]:
-    """Factor from SI to an format_si unit that suits the values of a quantity, and the axis label in that unit.
+    """Factor from SI to a unit that suits the values of a quantity, and the axis label in that unit.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def scaled_label(name: str, values: Floats) -> tuple[float, str]:
     entry, largest = quantities()[name], float(np.nanmax(np.abs(values)))
     if not entry.unit or largest == 0:
         return 1.0, f"{entry.meaning} [{entry.unit}]" if entry.unit else entry.meaning
-    number, _, unit = format_si(largest, entry.unit, digits=9).partition(" ")
+    number, _, unit = format_quantity(largest, name, digits=9).partition(" ")
     if unit.startswith("u"):
         unit = unit.replace("u", "µ", 1)
     return 10.0 ** round(np.log10(float(number) / largest)), f"{entry.meaning} [{unit}]"

@@ -175,7 +175,10 @@ def _friction_coefficients(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> lis
     if not load:
         return []
     return [
-        (f"Coefficient of friction at {format_si(load, 'N')}, {sheet.title}", _divided(value, load, "").text)
+        (
+            f"Coefficient of friction at {format_si(load, 'N')}, {sheet.title}",
+            _divided(value, load, "friction_coefficient").text,
+        )
         for sheet in sheets
         for value in sheet.values
         if value.name in ("friction_force", "steady_friction_force")
@@ -188,17 +191,20 @@ def _specific_wear(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> list[tuple[
     if not load or not distance:
         return []
     return [
-        (f"Wear volume per distance and load, {sheet.title}", _divided(value, load * distance, "m2/N").text)
+        (
+            f"Wear volume per distance and load, {sheet.title}",
+            _divided(value, load * distance, "specific_wear_rate").text,
+        )
         for sheet in sheets
         for value in sheet.values
         if value.name == "ring_volume"
     ]
 
 
-def _divided(value: Value, divisor: float, unit: str) -> Value:
-    """Value and uncertainty over an exact divisor."""
+def _divided(value: Value, divisor: float, name: str) -> Value:
+    """Value and uncertainty over an exact divisor, as a quantity of the vocabulary."""
     error = None if value.uncertainty is None else value.uncertainty / divisor
-    return Value(value.name, value.label, value.value / divisor, unit, uncertainty=error)
+    return Value(name, value.label, value.value / divisor, quantities()[name].unit, uncertainty=error)
 
 
 def _require_known(path: Path, key: str, expected: Mapping[str, object], prefix: str) -> None:

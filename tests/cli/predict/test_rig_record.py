@@ -1,5 +1,6 @@
 """Commands that answer with one record of a rig: quantities of the vocabulary, in SI."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -43,6 +44,14 @@ def test_the_published_separation_of_18_um_is_one_command_away(sonolube: Program
     result = sonolube("contact", rigs / "poisson_al_steel.toml", "--load", "40N", "--json").answer
     assert result["separation"]["value"] == approx(18.11e-6, abs=0.005e-6)
     assert result["normal_load"] == {"value": 40.0, "unit": "N"}
+
+
+def test_wear_is_printed_as_the_dissertation_prints_it(sonolube: Program, rigs: Path) -> None:
+    # D Table 3.4: 2.566e-2 and 1.355e-2 mm3/m
+    text = sonolube("wear", rigs / "tribometer.toml", "--amplitude", "per-volt").out
+    assert re.search(r"Wear rate without vibration +0\.0257 mm3/m", text)
+    assert re.search(r"Wear volume per sliding distance +0\.0135 mm3/m", text)
+    assert "um2" not in text
 
 
 def test_friction_force_and_coefficient_belong_together(sonolube: Program, rigs: Path) -> None:

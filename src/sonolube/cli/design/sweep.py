@@ -37,8 +37,7 @@ from sonolube.errors import InvalidInput
 from sonolube.files import expect_files
 from sonolube.report import Drawing, Page
 from sonolube.rig import Rig, energy_balance, operating_caveats
-from sonolube.units import format_si
-from sonolube.vocabulary import unit_of
+from sonolube.units import format_quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -269,8 +268,8 @@ class SweepAnswer(Answer):
 def _as_text(name: str, value: Any) -> str:
     """Value of a swept key, or of an outcome, with its unit."""
     if isinstance(value, dict):
-        return format_si(value["value"], value["unit"])
-    return value if isinstance(value, str) else format_si(value, unit_of(name.rpartition(".")[2]))
+        return format_quantity(value["value"], name)
+    return value if isinstance(value, str) else format_quantity(value, name.rpartition(".")[2])
 
 
 def _plan(

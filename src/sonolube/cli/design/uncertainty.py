@@ -42,8 +42,8 @@ from sonolube.design.uncertainty_summary import (
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats, read_rig
-from sonolube.units import format_si
-from sonolube.vocabulary import quantity, unit_of
+from sonolube.units import format_quantity
+from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -266,14 +266,13 @@ class UncertaintyAnswer(Answer):
 
     def _statistics_rows(self) -> list[tuple[str, str]]:
         """Statistics with their intervals, or the band where it is narrowest and widest."""
-        unit = quantity(self._of).unit
         if self._swept:
-            return [(name, _place_text(place, unit)) for name, place in _places(self._band).items()]
+            return [(name, _place_text(place, self._of)) for name, place in _places(self._band).items()]
         found = self._statistics
         rows = {"mean": found.mean, "standard deviation": found.standard_deviation}
         for share, each in found.quantiles.items():
             rows["median" if share == 0.5 else f"{100 * share:.0f} % lie below"] = each
-        texts = [(name, _with_interval(each, unit)) for name, each in rows.items()]
+        texts = [(name, _with_interval(each, self._of)) for name, each in rows.items()]
         return [*texts, ("convergence", self._convergence())] if found.has_converged else texts
 
     def _convergence(self) -> str:
@@ -297,9 +296,8 @@ class UncertaintyAnswer(Answer):
 
     def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
         """Entries with their contributions, alone and with the others, and the deviation that would remain."""
-        unit = quantity(self._of).unit
         return [
-            (row.key, _percent(row.first), _percent(row.total), format_si(row.deviation_if_known, unit))
+            (row.key, _percent(row.first), _percent(row.total), format_quantity(row.deviation_if_known, self._of))
             for row in self._ranking
         ]
 
@@ -338,19 +336,19 @@ def _places(band: Band) -> dict[str, BandPlace]:
     }
 
 
-def _place_text(place: BandPlace, unit: str) -> str:
+def _place_text(place: BandPlace, name: str) -> str:
     """Median and interval of a band at a place, with the swept values there."""
-    low, median, high = (format_si(value, unit) for value in (place.lower, place.median, place.upper))
+    low, median, high = (format_quantity(value, name) for value in (place.lower, place.median, place.upper))
     at = [
-        value if isinstance(value, str) else format_si(value, unit_of(key.rpartition(".")[2]))
+        value if isinstance(value, str) else format_quantity(value, key.rpartition(".")[2])
         for key, value in place.at.items()
     ]
     return f"{median}, 90 % within {low} to {high}, at {', '.join(at)}"
 
 
-def _with_interval(each: IntervalEstimate, unit: str) -> str:
+def _with_interval(each: IntervalEstimate, name: str) -> str:
     """Estimate with its 95 % interval."""
-    value, low, high = (format_si(end, unit) for end in (each.value, each.lower, each.upper))
+    value, low, high = (format_quantity(end, name) for end in (each.value, each.lower, each.upper))
     return f"{value} ({low} to {high})"
 
 

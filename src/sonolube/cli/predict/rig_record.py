@@ -9,7 +9,7 @@ from sonolube.cli.predict.measured import Measurement
 from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.rig.result_quantities import result_quantities, result_texts
-from sonolube.units import format_si
+from sonolube.units import format_quantity, format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class RigRecord(Answer):
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
         known, values = quantities(), result_quantities(self.result)
         rows = [
-            (known[name].meaning, self._text(value, known[name].unit))
+            (known[name].meaning, self._text(name, value))
             for name, value in values.items()
             if not name.startswith("raw_")  # for JSON, as is what it is
         ]
@@ -78,9 +78,9 @@ class RigRecord(Answer):
         """Datasets of the record."""
         return self.datasets
 
-    def _text(self, value: float | None, unit: str) -> str:
+    def _text(self, name: str, value: float | None) -> str:
         """Quantity as text; a force that is nothing beside the load is said to be so."""
-        least = _LEAST_FORCE * self.rig.normal_load
+        least, unit = _LEAST_FORCE * self.rig.normal_load, quantities()[name].unit
         if unit == "N" and value is not None and 0 < abs(value) < least:
             return f"below {format_si(least, unit)}"
-        return "none" if value is None else format_si(value, unit)
+        return "none" if value is None else format_quantity(value, name)

@@ -9,8 +9,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ParamSpec
 
 from sonolube.errors import InvalidInput
-from sonolube.units import format_like, format_si
-from sonolube.vocabulary import quantities
+from sonolube.units import format_like, format_quantity, format_si
+from sonolube.vocabulary import quantities, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,7 +54,7 @@ class Value:
         """Value with the precision that its uncertainty allows, and the uncertainty or interval."""
         if not math.isfinite(self.value):
             return "not known"
-        rounded = format_si(self.value, self.unit, digits=self._digits)
+        rounded = self._rounded()
         number, _, unit = rounded.partition(" ")
         scale = 10.0 ** round(math.log10(self.value / float(number))) if float(number) else 1.0
         if self.uncertainty is not None:
@@ -74,6 +74,12 @@ class Value:
         if self.interval is not None:
             about["interval"] = list(self.interval)
         return about
+
+    def _rounded(self) -> str:
+        """Value with its digits; in the unit usual for it where it is a quantity of the vocabulary."""
+        if unit_of(self.name) == self.unit:
+            return format_quantity(self.value, self.name, digits=self._digits)
+        return format_si(self.value, self.unit, digits=self._digits)
 
     @property
     def _digits(self) -> int:
