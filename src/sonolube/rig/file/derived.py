@@ -23,6 +23,9 @@ ROUGHNESS: Final = "contact.roughness"
 TYPICAL: Final = "typical of the height"
 """Beginning of the assumption about summits that the file does not give."""
 
+FROM_HARDNESS: Final = "from the hardness"
+"""Beginning of the assumption about a yield strength that follows from a stated hardness, by Tabor's factor."""
+
 _BODIES: Final = ("softer", "harder")
 
 REPLACED: Final[Mapping[str, str]] = {
@@ -116,6 +119,6 @@ def _body(
     law = f"lognormal factor {exp(deviation_of_range(found.low, found.high)):.4g}"
     return (
         rest | {"yield_strength": f"{found.yield_strength!r} Pa"},
-        {key: f"from the hardness; {found.source}"},
+        {key: f"{FROM_HARDNESS}; {found.source}"},
         {key: law} if name == "softer" else {},  # the strength of the harder body enters no model
     )

@@ -1,0 +1,127 @@
+"""Limits of a prediction: rigs that it refuses, and conditions for which it says less."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from sonolube.prediction.bodies import named_bodies
+from sonolube.prediction.evidence import published_rigs
+from sonolube.rig import Rig
+from sonolube.units import format_si
+
+NORMAL_VIBRATION: Final = "The vibration is along the normal of the contact."
+"""Sentence of every prediction: all published tests that it learns from have this direction."""
+
+_SOFT_FAMILIES: Final = frozenset({"polymer", "rubber", "elastomer", "felt", "skin", "foam", "textile", "leather"})
+_SOFT_MODULUS: Final = 10e9  # effective, in Pa: below that of any pair of metals, glasses or ceramics
+_METALS: Final = frozenset(
+    {
+        *("aluminium", "brass", "bronze", "cast_iron", "copper", "magnesium", "nickel"),
+        *("stainless_steel", "steel", "titanium", "zinc"),
+    }
+)
+_LEAST_DRY_FRICTION: Final = 0.15  # coefficient of metals on metals in air
+_MARGIN: Final = 1.05  # beyond the ends of a range
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Applicability:
+    """What a prediction may say of a rig.
+
+    Parameters
+    ----------
+    refusal : str or None
+        One line with reason and remedy, where there is no prediction.
+    caveats : tuple of str
+        One line each.
+    any_ratio : bool
+        Whether friction may fall by anything from 0 to 100 %, for all that is known.
+    """
+
+    refusal: str | None
+    caveats: tuple[str, ...]
+    any_ratio: bool
+
+
+def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
+    """Direction, bodies, lubricant and frequency of a rig against what predictions are learned from.
+
+    Parameters
+    ----------
+    rig : Rig
+    lubricant : bool
+        Whether the contact is lubricated.
+
+    Returns
+    -------
+    Applicability
+
+    Notes
+    -----
+    Refused are a vibration with a part in the plane of contact, and soft bodies: polymers, rubber, felt, skin, foam,
+    or an effective modulus below 10 GPa where not both materials are named. A coefficient of friction below 0.15 of
+    metals, or of hard bodies without names, counts as that of a lubricated contact.
+    """
+    lubricated = _lubrication(rig, lubricant=lubricant)
+    return Applicability(
+        refusal=_in_plane(rig) or _soft(rig), caveats=(*lubricated, *_frequency(rig)), any_ratio=bool(lubricated)
+    )
+
+
+def _in_plane(rig: Rig) -> str | None:
+    """Refusal of a vibration that is not along the normal alone."""
+    fraction = getattr(rig.friction_model, "in_plane_fraction", 0.0)
+    if not fraction:
+        return None
+    return (
+        f"{rig.title}: a prediction is of vibration along the normal, but friction.in_plane_fraction is {fraction:g};"
+        " remove it, or use fit and compare, whose models take motion in the plane of contact"
+    )
+
+
+def _soft(rig: Rig) -> str | None:
+    """Refusal of soft bodies."""
+    bodies = named_bodies(rig)
+    soft = [body.title for body in bodies if body.family in _SOFT_FAMILIES]
+    modulus = rig.contact.pair.effective_modulus
+    if soft:
+        why = f"{' and '.join(soft)} {'is' if len(soft) == 1 else 'are'} soft"
+    elif len(bodies) < 2 and modulus < _SOFT_MODULUS:
+        why = f"an effective modulus of {format_si(modulus, 'Pa')} is that of a soft body"
+    else:
+        return None
+    return (
+        f"{rig.title}: {why}, and all published tests behind a prediction are of hard bodies; use sonolube friction,"
+        " or the soft layers of sonolube.friction (exponential_layer_ratio, linear_layer_ratio)"
+    )
+
+
+def _lubrication(rig: Rig, *, lubricant: bool) -> tuple[str, ...]:
+    """Caveat of a contact that is lubricated, or whose friction is that of a lubricated one."""
+    coefficient, hard = rig.friction_coefficient, all(body.family in _METALS for body in named_bodies(rig))
+    if lubricant:
+        why = "the contact is lubricated"
+    elif hard and coefficient < _LEAST_DRY_FRICTION:
+        why = (
+            f"a coefficient of friction of {coefficient:.3g} without vibration is below {_LEAST_DRY_FRICTION:g}, the"
+            " least of dry metals, so that the contact counts as lubricated"
+        )
+    else:
+        return ()
+    return (f"{why}: a dry prediction does not hold, and friction may fall by anything from 0 to 100 %",)
+
+
+def _frequency(rig: Rig) -> tuple[str, ...]:
+    """Caveat of a frequency beyond those of the published tests."""
+    if rig.drive is None:
+        return ()
+    tested = np.concatenate([each.at.conditions.frequency for each in published_rigs()])
+    low, high, own = float(tested.min()), float(tested.max()), rig.drive.frequency
+    if low / _MARGIN <= own <= high * _MARGIN:
+        return ()
+    return (
+        f"the frequency of {format_si(own, 'Hz')} is outside the {format_si(low, 'Hz')} to {format_si(high, 'Hz')} of"
+        " the published tests: it enters by one scaling alone, the sliding speed over the peak speed of the vibration,"
+        " v_r/(omega a)",
+    )
