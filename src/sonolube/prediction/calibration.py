@@ -10,9 +10,10 @@ from scipy.optimize import minimize_scalar
 from scipy.stats import binomtest
 
 from sonolube.checks import Floats
-from sonolube.prediction.closures import CLOSURES, Closure
-from sonolube.prediction.evidence import TestedRig, published_rigs
-from sonolube.prediction.posterior import posteriors_without, published_log_likelihoods
+from sonolube.prediction.closures import CLOSURES
+from sonolube.prediction.evidence import TestedRig, published_rigs, rigs_by_records
+from sonolube.prediction.hierarchy import Prior
+from sonolube.prediction.posterior import Population, published_population
 from sonolube.prediction.predictive import ratio_draws
 from sonolube.prediction.scores import (
     binomial_interval,
@@ -21,7 +22,21 @@ from sonolube.prediction.scores import (
     interval_score,
 )
 
+BLIND: Final = "decay length unknown"
+"""Name of the way that predicts: nothing enters that a user would not have before a test."""
+
+MEAN_RATIO: Final = "mean ratio with its scatter"
+"""Name of the simplest way: the ratios of all other tests."""
+
+BY_RECORDS: Final = "decay length by records"
+"""Name of the way with roughness as in the records, which no user has before a test."""
+
+SAME_TRIBOMETER: Final = (("A", "C", "D", "E", "F"), ("B",), ("G",), ("H",))
+"""Sets by the rig that they were measured on."""
+
+_RECORD_PRIOR: Final = Prior(length_factor=(1.0, 0.5), length_spread=(0.1, 1e-3))
 _DRAWS: Final = 4000
+_RESAMPLED: Final = 10_000  # sets, of the bootstrap
 _MEMORY_LENGTHS: Final = (1e-6, 2e-6)  # m, uniform: as examples/rigs/tribometer_uncertain.toml has it
 _ROUGHNESS_SPREAD: Final = 0.1  # likewise
 _STICK_SLIP: Final = CLOSURES[0]
@@ -79,11 +94,16 @@ class Calibration:
         return float(binomtest(self.covered(probability), len(self.predictions), probability).pvalue)
 
     @property
+    def scores(self) -> Floats:
+        """Continuous ranked probability score of each test. []"""
+        return np.array(
+            [continuous_ranked_probability_score(one.draws, one.friction_ratio) for one in self.predictions]
+        )
+
+    @property
     def crps(self) -> float:
         """Mean continuous ranked probability score. []"""
-        return float(
-            np.mean([continuous_ranked_probability_score(one.draws, one.friction_ratio) for one in self.predictions])
-        )
+        return float(np.mean(self.scores))
 
     @property
     def interval_score(self) -> float:
@@ -92,53 +112,125 @@ class Calibration:
 
     @property
     def median_width(self) -> float:
-        """Median width of the 80 % intervals. []"""
+        """Median width of the 80 % interval. []"""
         return float(np.median([np.subtract(*central_interval(one.draws, 0.8)[::-1]) for one in self.predictions]))
+
+    def gain_over(self, rival: "Calibration") -> tuple[float, float, float]:
+        """Fall of the mean CRPS against a rival, and its 95 % interval by bootstrap over sets.
+
+        Parameters
+        ----------
+        rival : Calibration
+            Of the same tests in the same order.
+
+        Returns
+        -------
+        gain, low, high : float
+            Positive where this way is better. []
+        """
+        falls = rival.scores - self.scores
+        names = [one.rig for one in self.predictions]
+        sets = sorted(set(names))
+        sums = np.array([sum(fall for fall, name in zip(falls, names, strict=True) if name == each) for each in sets])
+        counts = np.array([names.count(each) for each in sets])
+        chosen = np.random.default_rng(0).integers(0, len(sets), (_RESAMPLED, len(sets)))
+        low, high = np.quantile(sums[chosen].sum(axis=1) / counts[chosen].sum(axis=1), [0.025, 0.975])
+        return float(falls.mean()), float(low), float(high)
 
 
 @cache
 def calibrations() -> tuple[Calibration, ...]:
-    """Calibration of this room's prediction, and of the simpler ones, on the published rigs.
+    """Blind calibration of this room's prediction, of simpler ones, and of one by records, on the published rigs.
 
     Returns
     -------
     tuple of Calibration
-        The hierarchical model; the mean ratio of the other rigs with its
-        scatter; one model fitted to the other rigs with its leave-one-rig-out residual; the uncertainty of the inputs
-        alone.
+        The prediction as a user gets it, `BLIND`; the mean ratio of the other rigs with its scatter; what follows rests on
+        the roughness of the records: the same prediction, one model fitted to the other rigs with its leave-one-rig-out
+        residual, and the uncertainty of the inputs alone.
     """
-    rigs = published_rigs()
+    records = rigs_by_records()
     rivals: Mapping[str, Callable[[Sequence[TestedRig], TestedRig, np.random.Generator], Floats]] = {
-        "mean ratio with its scatter": _mean_ratio,
-        "one model with its unseen residual": _single_model,
-        "uncertainty of the inputs alone": _inputs_alone,
+        "one model by records, its residual": _single_model,
+        "uncertain inputs by records alone": _inputs_alone,
     }
     return (
-        hierarchical_calibration("hierarchical model", CLOSURES),
-        *(
-            Calibration(name=name, predictions=tuple(p for rig in rigs for p in _unseen(rig, _by(rival, rigs, rig))))
-            for name, rival in rivals.items()
-        ),
+        blind_calibration(),
+        mean_ratio_calibration(),
+        population_calibration(BY_RECORDS, Population.of(_STICK_SLIP, records, prior=_RECORD_PRIOR), records),
+        *(_rival_calibration(name, rival, records) for name, rival in rivals.items()),
     )
 
 
-def hierarchical_calibration(name: str, closures: tuple[Closure, ...]) -> Calibration:
-    """Every published rig left out in turn: hyperparameters and weights by the others alone.
+@cache
+def blind_calibration(groups: tuple[tuple[str, ...], ...] = ()) -> Calibration:
+    """Calibration of the prediction with nothing that a user would not have before a test.
+
+    Parameters
+    ----------
+    groups : tuple of tuple of str
+        Sets left out together, such as `SAME_TRIBOMETER`; each set alone where empty.
+
+    Returns
+    -------
+    Calibration
+    """
+    return population_calibration(BLIND, published_population(), published_rigs(), groups=groups)
+
+
+def mean_ratio_calibration(groups: tuple[tuple[str, ...], ...] = ()) -> Calibration:
+    """Calibration of the mean ratio of the other tests with its scatter; groups as in `blind_calibration`."""
+    return _rival_calibration(MEAN_RATIO, _mean_ratio, published_rigs(), groups=groups)
+
+
+def population_calibration(
+    name: str, population: Population, rigs: Sequence[TestedRig], *, groups: tuple[tuple[str, ...], ...] = ()
+) -> Calibration:
+    """Every rig left out in turn, with what was learned from the others alone.
 
     Parameters
     ----------
     name : str
-    closures : tuple of Closure
+    population : Population
+        Of these rigs.
+    rigs : sequence of TestedRig
+    groups : tuple of tuple of str
+        Names of rigs left out together; each alone where empty.
 
     Returns
     -------
     Calibration
     """
     predictions: list[UnseenPrediction] = []
-    for index, rig in enumerate(published_rigs()):
-        posteriors = posteriors_without(published_log_likelihoods(), left_out=(index,), closures=closures)
-        predictions += _unseen(rig, ratio_draws(posteriors, rig.at, count=_DRAWS).friction_ratio)
-    return Calibration(name=name, predictions=tuple(predictions))
+    for group in groups or tuple((rig.name,) for rig in rigs):
+        places = tuple(place for place, rig in enumerate(rigs) if rig.name in group)
+        posterior = population.posterior(without=places)
+        for place in places:
+            predictions += _unseen(rigs[place], ratio_draws(posterior, rigs[place].at, count=_DRAWS))
+    return _in_order(name, predictions, rigs)
+
+
+def _rival_calibration(
+    name: str,
+    rival: Callable[[Sequence[TestedRig], TestedRig, np.random.Generator], Floats],
+    rigs: Sequence[TestedRig],
+    *,
+    groups: tuple[tuple[str, ...], ...] = (),
+) -> Calibration:
+    """Calibration of a simpler way."""
+    predictions: list[UnseenPrediction] = []
+    for group in groups or tuple((rig.name,) for rig in rigs):
+        others = [rig for rig in rigs if rig.name not in group]
+        for rig in rigs:
+            if rig.name in group:
+                predictions += _unseen(rig, rival(others, rig, np.random.default_rng(5)))
+    return _in_order(name, predictions, rigs)
+
+
+def _in_order(name: str, predictions: Sequence[UnseenPrediction], rigs: Sequence[TestedRig]) -> Calibration:
+    """Calibration with its predictions in the order of the rigs."""
+    places = {rig.name: place for place, rig in enumerate(rigs)}
+    return Calibration(name=name, predictions=tuple(sorted(predictions, key=lambda one: places[one.rig])))
 
 
 def _unseen(rig: TestedRig, ratios: Floats) -> list[UnseenPrediction]:
@@ -148,15 +240,6 @@ def _unseen(rig: TestedRig, ratios: Floats) -> list[UnseenPrediction]:
         UnseenPrediction(rig=rig.name, friction_ratio=float(y), uncertainty=float(u), draws=draws)
         for y, u, draws in zip(rig.friction_ratio, rig.uncertainty, (ratios + noise).T, strict=True)
     ]
-
-
-def _by(
-    rival: Callable[[Sequence[TestedRig], TestedRig, np.random.Generator], Floats],
-    rigs: Sequence[TestedRig],
-    rig: TestedRig,
-) -> Floats:
-    """Ratios of a rig by a simpler prediction from the others."""
-    return rival([each for each in rigs if each is not rig], rig, np.random.default_rng(5))
 
 
 def _mean_ratio(others: Sequence[TestedRig], rig: TestedRig, rng: np.random.Generator) -> Floats:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.friction import SpringContact, load_balanced_approach, normal_oscillation_ratio, sine_stick_slip_ratio
 
 _UNIT_SPRINGS: Final = SpringContact(friction_coefficient=1.0, mindlin_ratio=1.0)
@@ -38,6 +38,11 @@ class Conditions:
     def scaled(self, *, decay_length: Floats) -> "Conditions":
         """Conditions with decay lengths times factors, which broadcast."""
         return replace(self, decay_length=decay_length * self.decay_length)
+
+    def taken(self, rows: Integers) -> "Conditions":
+        """Conditions of some tests."""
+        names = ("vibration_amplitude", "frequency", "sliding_speed", "decay_length")
+        return Conditions(**{name: getattr(self, name)[rows] for name in names})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,7 +1,6 @@
 """Prediction of a rig that follows changes of its operating point: friction, wear, heat and power with intervals."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -15,9 +14,9 @@ from sonolube.prediction.inputs import Input, RigInputs, rig_inputs
 from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import RigPrediction, rig_prediction
-from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, expected_width, measures, own_logarithms, width
+from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, OwnLogarithms, measures, own_logarithms, share_left
 from sonolube.prediction.scores import LEVELS
-from sonolube.prediction.statement import attributes, statement
+from sonolube.prediction.statement import prediction_attributes, statement, wear_sentence
 from sonolube.prediction.wear import vibration_weight
 from sonolube.prediction.wear_statement import pair_of
 from sonolube.rig import Rig
@@ -27,7 +26,8 @@ from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
 if TYPE_CHECKING:
     import xarray as xr
 
-_CURVE: Final = 33  # points of a curve
+_CURVE: Final = 33  # points of a curve, the operating point in the middle
+_FARTHEST: Final = 6.0  # point of a curve over the operating point
 _FEWEST, _MOST = 100, 200_000  # draws
 
 
@@ -68,7 +68,7 @@ class LivePrediction:
             raise InvalidInput(f"draws must lie between {_FEWEST} and {_MOST}, got {draws}")
         self._runs, self._materials, self._lubricant = runs, (pin, disc), lubricant
         self._draws, self._seed = draws, seed
-        self._known: dict[bytes, RigPrediction] = {}
+        self._kept: tuple[bytes, RigPrediction] | None = None
         self.first: LabelledArrays = self.at(rig)
 
     def at(self, rig: Rig) -> LabelledArrays:
@@ -93,13 +93,12 @@ class LivePrediction:
         """
         limits = applicability(rig, lubricant=self._lubricant)
         if limits.refusal:
-            raise InvalidInput(f"{rig.title}: {limits.refusal}")
+            raise InvalidInput(limits.refusal)
         inputs = rig_inputs(rig)
         own = None if self._runs is None else own_runs(self._runs, inputs, title=rig.title)
         if own is not None and own.friction is not None:
             inputs = inputs.with_input(own.friction)
-        heating = contact_heating(rig, *self._materials)
-        return self._arrays(rig, inputs, own, limits, heating)
+        return self._arrays(rig, inputs, own, limits, contact_heating(rig, *self._materials))
 
     def _arrays(
         self, rig: Rig, inputs: RigInputs, own: OwnRuns | None, limits: Applicability, heating: float | str
@@ -107,16 +106,17 @@ class LivePrediction:
         """Labelled arrays of all that is predicted."""
         found = self._prediction(inputs, own)
         amplitudes, speeds = _curve_points(inputs.amplitude.value), _curve_points(inputs.sliding_speed)
+        unknown = limits.any_ratio and own is None
         curves = {
-            "amplitude": self._ratios(found, limits, inputs, vibration_amplitude=amplitudes),
-            "speed": self._ratios(found, limits, inputs, sliding_speed=speeds),
+            "amplitude": self._ratios(found, inputs, unknown=unknown, vibration_amplitude=amplitudes),
+            "speed": self._ratios(found, inputs, unknown=unknown, sliding_speed=speeds),
         }
         ratio = curves["amplitude"][:, _CURVE // 2]
-        drawn = self._quantities(rig, inputs, own, ratio, heating)
+        intrinsic = self._intrinsic(inputs.friction)
+        drawn = _frictional(ratio, intrinsic, rig, heating) | self._wear(rig, found, own, ratio)
         uncertain = sorted(inputs.uncertain, key=lambda each: -each.spread)
-        better = () if limits.any_ratio else measures(found, inputs, ratio=ratio, seed=self._seed)
-        logs = own_logarithms(found, seed=self._seed)
-        shares = np.array([self._shares_left(each, logs, drawn) for each in uncertain])
+        logs = own_logarithms(found, intrinsic=intrinsic, seed=self._seed)
+        better = () if unknown else measures(found, inputs, ratio=ratio, seed=self._seed)
         variables = {
             **{name: LabelledArray(dims=("draw",), values=values, attrs=labels(name)) for name, values in drawn.items()},
             **{
@@ -126,8 +126,7 @@ class LivePrediction:
                 for name, each in curves.items()
             },
             **({} if own is None else _along("run", _measured(own, found))),
-            **_along("input", _described(uncertain)),
-            **_along("input", {"interval_share_left": shares[:, 0], "force_interval_share_left": shares[:, 1]}),
+            **_along("input", _described(uncertain) | _shares_left(uncertain, logs, drawn)),
             **_along("measure", _measures(better)),
         }
         coordinates = {
@@ -136,18 +135,21 @@ class LivePrediction:
             "curve_speed": speeds,
             "input": np.array([each.name for each in uncertain]),
         }
-        known = attributes(rig, inputs, own, found, limits)
         result = LabelledArrays(
             variables=variables,
             coordinates={
                 name: LabelledArray(dims=(name,), values=np.asarray(values)) for name, values in coordinates.items()
             },
-            attrs=known | {"heat": heating if isinstance(heating, str) else ""},
+            attrs=prediction_attributes(rig, inputs, own, found, limits)
+            | {
+                "heat": heating if isinstance(heating, str) else "",
+                "wear": wear_sentence(rig, drawn["wear_rate_ratio"]),
+            },
         )
         return result.assign_attrs(statement="\n".join(statement(result)))
 
     def _prediction(self, inputs: RigInputs, own: OwnRuns | None) -> RigPrediction:
-        """Distribution of the friction ratio, kept while the rig's spreads and runs stay as they are."""
+        """Distribution of the friction ratio, kept while the rig's spreads and its runs stay as they are."""
         at, tested = inputs.at(), None if own is None else own.tested
         parts = [np.array([np.nan if at.decay_length_spread is None else at.decay_length_spread, at.amplitude_spread])]
         if tested is not None:
@@ -155,63 +157,177 @@ class LivePrediction:
             parts += [seen.vibration_amplitude, seen.sliding_speed, seen.frequency, seen.decay_length]
             parts += [tested.friction_ratio, tested.uncertainty]
         key = np.concatenate(parts).tobytes()
-        if key not in self._known:
+        if self._kept is None or self._kept[0] != key:
             found = rig_prediction(learned().friction, at, count=self._draws, seed=self._seed, own=tested)
-            self._known = {key: found}
-        return self._known[key]
+            self._kept = key, found
+        return self._kept[1]
 
-    def _ratios(
-        self, found: RigPrediction, limits: Applicability, inputs: RigInputs, **along: Floats
-    ) -> Floats:
+    def _ratios(self, found: RigPrediction, inputs: RigInputs, *, unknown: bool, **along: Floats) -> Floats:
         """Draws of the friction ratio along a curve, shape (draws, points)."""
-        if limits.any_ratio:
-            points = next(iter(along.values())).size
-            return np.broadcast_to((np.arange(self._draws)[:, None] + 0.5) / self._draws, (self._draws, points))
-        return found.ratios(inputs.at(**along).conditions)
-
-    def _quantities(
-        self, rig: Rig, inputs: RigInputs, own: OwnRuns | None, ratio: Floats, heating: float | str
-    ) -> dict[str, Floats]:
-        """Draws of all quantities that follow from the friction ratio, and of wear."""
-        force = ratio * self._intrinsic(inputs.friction)
-        measured = None if own is None or not own.wear_rate_ratio.size else own.wear_rate_ratio
-        wear = learned().wear.wear_rate_ratios(
-            ratio.size,
-            measured=measured,
-            weight=vibration_weight(ratio, seed=self._seed),
-            pair=pair_of(rig),
-            seed=self._seed,
-        )
-        found = {
-            "friction_ratio": ratio,
-            "friction_reduction": 1 - ratio,
-            "friction_coefficient": force,
-            "friction_force": force * rig.normal_load,
-            "wear_rate_ratio": wear,
-            "wear_reduction": 1 - wear,
-        }
-        if not isinstance(heating, str):
-            found["mean_temperature_rise"] = heating * found["friction_force"] * rig.sliding_speed
-        return found
+        if not unknown:
+            return found.ratios(inputs.at(**along).conditions)
+        even = (np.random.default_rng(self._seed).permutation(self._draws) + 0.5) / self._draws
+        return np.broadcast_to(even[:, None], (self._draws, _CURVE))
 
     def _intrinsic(self, friction: Input) -> Floats:
         """Draws of the coefficient of friction without vibration."""
         normals = np.random.default_rng(self._seed + 1).standard_normal(self._draws)
         return np.asarray(friction.value * np.exp(friction.spread * normals))
 
-    def _shares_left(
-        self, uncertain: Input, logs: OwnLogarithms, drawn: Mapping[str, Floats]
-    ) -> tuple[float, float]:
-        """Shares of the 80 % intervals of friction ratio and force that are left if one input were known well."""
-        ratio, coefficient = drawn["friction_ratio"], drawn["friction_coefficient"]
-        noise = KNOWN_WELL[uncertain.name]
-        if uncertain.spread <= noise:
-            return 1.0, 1.0
-        if uncertain.name == "friction_coefficient":
-            known = np.log(coefficient / np.where(ratio > 0, ratio, np.nan)) if False else None
-        return 1.0, 1.0
+    def _wear(self, rig: Rig, found: RigPrediction, own: OwnRuns | None, ratio: Floats) -> dict[str, Floats]:
+        """Draws of the wear rate ratio and reduction."""
+        measured, weight = np.empty(0), np.ones(ratio.size)
+        if own is not None and own.wear_rate_ratio.size:
+            measured = own.wear_rate_ratio
+            tested = found.ratios(own.tested.at.conditions.taken(own.wear_runs))
+            weight = vibration_weight(friction_ratio=tested, seed=self._seed).mean(axis=1)
+        wear = learned().wear.wear_rate_ratios(
+            ratio.size,
+            measured=measured,
+            weight=vibration_weight(friction_ratio=ratio, seed=self._seed),
+            measured_weight=weight,
+            pair=pair_of(rig),
+            seed=self._seed,
+        )
+        return {"wear_rate_ratio": wear, "wear_reduction": 1 - wear}
+
+
+def predict(
+    rig: Rig,
+    *,
+    runs: "xr.Dataset | None" = None,
+    pin: str | None = None,
+    disc: str | None = None,
+    lubricant: bool = False,
+    draws: int = 4000,
+    seed: int = 0,
+) -> "xr.Dataset":
+    """What vibration along the normal does to friction and wear on a rig, with its uncertainty.
+
+    Parameters
+    ----------
+    rig : Rig
+    runs : xarray.Dataset, optional
+        Own measured runs over `run`, as `sonolube.measurement.read_runs` returns them.
+    pin, disc : str, optional
+        Materials of the catalogue, for the temperature rise of the contact; by default those of the rig.
+    lubricant : bool
+        Whether the contact is lubricated.
+    draws : int
+        Equally probable outcomes, 100 to 200,000.
+    seed : int
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `draw`: friction ratio, reduction, force and coefficient, wear rate ratio and reduction, and the mean
+        temperature rise of the contact where both materials are given. Over `level`: quantiles of the friction ratio
+        along `curve_amplitude` and `curve_speed`, with the operating point in their middle. Over `input`, the least
+        known first: spread of each uncertain input, and the shares of the 80 % intervals of friction ratio and friction
+        force that would be left if it were known well. Over `measure`: measurements that would narrow the interval, and
+        what each would leave of it. Attributes hold caveats, assumptions, and the statement in words.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig does not vibrate or slide or is none that can be predicted, the runs cannot be those of the rig, or
+        the number of draws is out of range.
+    MissingProperty, UnknownName
+        For a material without thermal properties.
+    """
+    return prediction_arrays(
+        rig, runs=runs, pin=pin, disc=disc, lubricant=lubricant, draws=draws, seed=seed
+    ).dataset()
+
+
+def prediction_arrays(
+    rig: Rig,
+    *,
+    runs: "xr.Dataset | None" = None,
+    pin: str | None = None,
+    disc: str | None = None,
+    lubricant: bool = False,
+    draws: int = 4000,
+    seed: int = 0,
+) -> LabelledArrays:
+    """Prediction of a rig as `predict` describes it, without xarray."""
+    return LivePrediction(rig, runs=runs, pin=pin, disc=disc, lubricant=lubricant, draws=draws, seed=seed).first
+
+
+def _frictional(ratio: Floats, intrinsic: Floats, rig: Rig, heating: float | str) -> dict[str, Floats]:
+    """Draws of all quantities that follow from the friction ratio."""
+    found = {
+        "friction_ratio": ratio,
+        "friction_reduction": 1 - ratio,
+        "friction_coefficient": ratio * intrinsic,
+        "friction_force": ratio * intrinsic * rig.normal_load,
+    }
+    if not isinstance(heating, str):
+        found["mean_temperature_rise"] = heating * found["friction_force"] * rig.sliding_speed
+    return found
+
+
+def _shares_left(
+    uncertain: Sequence[Input], logs: OwnLogarithms, drawn: Mapping[str, Floats]
+) -> dict[str, NDArray[Any]]:
+    """Shares of the 80 % intervals of friction ratio and force that are left if one input were known well."""
+    found = {}
+    for share, target in (
+        ("interval_share_left", drawn["friction_ratio"]),
+        ("force_interval_share_left", drawn["friction_coefficient"]),
+    ):
+        found[share] = np.array(
+            [
+                1.0
+                if each.spread <= KNOWN_WELL[each.name]
+                else share_left(target, observed=getattr(logs, each.name), noise=KNOWN_WELL[each.name])
+                for each in uncertain
+            ]
+        )
+    return found
+
+
+def _measured(own: OwnRuns, found: RigPrediction) -> dict[str, Floats]:
+    """Own runs as they entered the prediction, with what was predicted before them."""
+    tested = own.tested
+    assert found.check is not None
+    return {
+        "measured_friction_ratio": tested.friction_ratio,
+        "measured_uncertainty": tested.uncertainty,
+        "measured_vibration_amplitude": tested.at.conditions.vibration_amplitude,
+        "measured_sliding_speed": tested.at.conditions.sliding_speed,
+        "predicted_low": found.check.lows,
+        "predicted_high": found.check.highs,
+    }
+
+
+def _described(uncertain: Sequence[Input]) -> dict[str, NDArray[Any]]:
+    """Values and texts of uncertain inputs, by the names that they have in a prediction."""
+    return {
+        "input_value": np.array([each.value for each in uncertain]),
+        "input_spread": np.array([each.spread for each in uncertain]),
+        "input_label": np.array([each.label for each in uncertain]),
+        "input_text": np.array([each.text for each in uncertain]),
+        "reason": np.array([each.reason for each in uncertain]),
+        "remedy": np.array([each.remedy for each in uncertain]),
+    }
+
+
+def _measures(better: Sequence[Measure]) -> dict[str, NDArray[Any]]:
+    """Measurements that would narrow the interval, in words, and what each leaves of it."""
+    return {
+        "measure_label": np.array([each.label for each in better], dtype=str),
+        "measure_share_left": np.array([each.share_left for each in better]),
+    }
+
+
+def _along(name: str, values: Mapping[str, NDArray[Any]]) -> dict[str, LabelledArray]:
+    """Arrays over one axis."""
+    return {each: LabelledArray(dims=(name,), values=array) for each, array in values.items()}
 
 
 def _curve_points(value: float) -> Floats:
-    """Points of a curve about a value, which is the one in the middle, to a sixth and to six times it."""
-    return np.asarray(value * np.geomspace(1 / 6, 6.0, _CURVE))
+    """Points of a curve about a value, which is the middle one."""
+    points = value * np.geomspace(1 / _FARTHEST, _FARTHEST, _CURVE)
+    points[_CURVE // 2] = value
+    return np.asarray(points)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting
@@ -30,14 +30,17 @@ class OwnRuns:
         Friction ratios with their conditions.
     friction : Input or None
         Intrinsic coefficient of friction by the runs, where they have forces.
-    wear_rate_ratio : ndarray, shape (n,)
+    wear_rate_ratio : ndarray, shape (w,)
         Of runs that state wear; may be empty. []
+    wear_runs : ndarray of int, shape (w,)
+        Places of these runs.
     caveats : tuple of str
     """
 
     tested: TestedRig
     friction: Input | None
     wear_rate_ratio: Floats
+    wear_runs: Integers
     caveats: tuple[str, ...]
 
 
@@ -79,10 +82,13 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
     loads = setting(runs, "normal_load", inputs.normal_load)
     if np.any(np.abs(loads / inputs.normal_load - 1) > 0.5):
         caveats += ("some runs have a load far from the rig's; the friction model does not depend on the load",)
+    wear = _wear(runs)
+    stated = np.flatnonzero(np.isfinite(wear))
     return OwnRuns(
         tested=TestedRig(name=title, at=at, friction_ratio=ratio, uncertainty=uncertainty),
         friction=_intrinsic(runs, loads),
-        wear_rate_ratio=_wear(runs),
+        wear_rate_ratio=wear[stated],
+        wear_runs=stated,
         caveats=caveats,
     )
 
@@ -138,9 +144,8 @@ def _intrinsic(runs: "xr.Dataset", loads: Floats) -> Input | None:
 
 
 def _wear(runs: "xr.Dataset") -> Floats:
-    """Wear rate ratios of the runs that state wear."""
+    """Wear rate ratio of each run, NaN where it states none."""
     ratios = setting(runs, "wear_rate_ratio", 1 - setting(runs, "wear_reduction", np.nan))
-    ratios = ratios[np.isfinite(ratios)]
-    if not np.all(ratios > 0):
+    if np.any(ratios <= 0):
         raise InvalidInput("wear with vibration over wear without must be positive in every run")
     return ratios

@@ -40,24 +40,29 @@ class Measure:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class OwnLogarithms:
-    """Draws of what is not known of a rig, as logarithms, row by row those of the friction ratio.
+    """Draws of the uncertain inputs of a rig as logarithms, row by row those of the friction ratio.
 
     Parameters
     ----------
     decay_length, vibration_amplitude : ndarray, shape (draws,)
-        Factors on the medians.
+        Of factors on their medians.
+    friction_coefficient : ndarray, shape (draws,)
+        Of the coefficient without vibration.
     """
 
     decay_length: Floats
     vibration_amplitude: Floats
+    friction_coefficient: Floats
 
 
-def own_logarithms(found: RigPrediction, *, seed: int) -> OwnLogarithms:
+def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> OwnLogarithms:
     """Draws of decay length and amplitude of a rig, split from those of their ratio on which friction depends.
 
     Parameters
     ----------
     found : RigPrediction
+    intrinsic : ndarray, shape (draws,)
+        Coefficient of friction without vibration.
     seed : int
 
     Returns
@@ -74,7 +79,11 @@ def own_logarithms(found: RigPrediction, *, seed: int) -> OwnLogarithms:
     deviate = draws.deviates[rows, 1]
     fresh = np.random.default_rng(seed + 7).standard_normal(found.count)
     amplitude = at.amplitude_spread / both * (-at.amplitude_spread * deviate + scatter * fresh)
-    return OwnLogarithms(decay_length=middle + both * deviate + amplitude, vibration_amplitude=amplitude)
+    return OwnLogarithms(
+        decay_length=middle + both * deviate + amplitude,
+        vibration_amplitude=amplitude,
+        friction_coefficient=np.log(intrinsic),
+    )
 
 
 def expected_width(target: Floats, *, observed: Floats, noise: float) -> float:
@@ -113,6 +122,11 @@ def width(draws: Floats) -> float:
     return max(float(high - low), _NARROWEST)
 
 
+def share_left(target: Floats, *, observed: Floats, noise: float) -> float:
+    """Expected width of the 80 % interval of a target after a measurement over that now, at most 1."""
+    return min(expected_width(target, observed=observed, noise=noise) / width(target), 1.0)
+
+
 def measures(found: RigPrediction, inputs: RigInputs, *, ratio: Floats, seed: int) -> tuple[Measure, ...]:
     """Measurements that would narrow the prediction at the operating point, the one that helps most first.
 
@@ -129,26 +143,23 @@ def measures(found: RigPrediction, inputs: RigInputs, *, ratio: Floats, seed: in
     tuple of Measure
     """
     near, far = _two_points(found, inputs)
-    logs = own_logarithms(found, seed=seed)
-    now = width(ratio)
     made = [
-        Measure(label="one run at this point", share_left=_share(near, near, _RUN)),
-        Measure(label=f"one run at this point, for {_FARTHER:g} times the speed", share_left=_share(far, near, _RUN)),
+        Measure(label="one run at this point", share_left=share_left(near, observed=near, noise=_RUN)),
+        Measure(
+            label=f"one run at this point, for {_FARTHER:g} times the speed,",
+            share_left=share_left(far, observed=near, noise=_RUN),
+        ),
     ]
     if not inputs.measured_length:
+        length = own_logarithms(found, intrinsic=np.ones(found.count), seed=seed).decay_length
         made += [
             Measure(
                 label=f"contact stiffness within {100 * noise:.0f} %",
-                share_left=min(expected_width(ratio, observed=logs.decay_length, noise=noise) / now, 1.0),
+                share_left=share_left(ratio, observed=length, noise=noise),
             )
             for noise in _STIFFNESS
         ]
     return tuple(made)
-
-
-def _share(target: Floats, observed: Floats, noise: float) -> float:
-    """Expected width of the interval of a target over that now, at most 1."""
-    return min(expected_width(target, observed=observed, noise=noise) / width(target), 1.0)
 
 
 def _two_points(found: RigPrediction, inputs: RigInputs) -> tuple[Floats, Floats]:

@@ -41,16 +41,13 @@ def _conditions(rig: Rig, inputs: RigInputs) -> list[tuple[str, float, str, np.n
     """Label, value, unit and tested values of each condition."""
     tested = [each.at.conditions for each in published_rigs()]
     moduli = [test.contact.pair.effective_modulus for test in friction_tests()]
-    amplitude, length = inputs.amplitude.value, inputs.decay_length
     return [
-        ("vibration amplitude", amplitude, "m", np.concatenate([each.vibration_amplitude for each in tested])),
-        ("sliding speed", inputs.sliding_speed, "m/s", np.concatenate([each.sliding_speed for each in tested])),
-        ("frequency", inputs.frequency, "Hz", np.concatenate([each.frequency for each in tested])),
         (
-            "amplitude over decay length",
-            amplitude / length,
-            "",
-            np.concatenate([each.vibration_amplitude / each.decay_length for each in tested]),
+            "vibration amplitude",
+            inputs.amplitude.value,
+            "m",
+            np.concatenate([each.vibration_amplitude for each in tested]),
         ),
+        ("sliding speed", inputs.sliding_speed, "m/s", np.concatenate([each.sliding_speed for each in tested])),
         ("effective modulus", rig.contact.pair.effective_modulus, "Pa", np.array(moduli)),
     ]

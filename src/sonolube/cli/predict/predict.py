@@ -15,8 +15,9 @@ from sonolube.cli.predict.measured import Measurement, measured_on
 from sonolube.compilation import few_points
 from sonolube.measurement.measured_runs import runs_help
 from sonolube.prediction.figures import prediction_figure
-from sonolube.prediction.rig_prediction import interval, prediction_arrays
+from sonolube.prediction.live_prediction import prediction_arrays
 from sonolube.prediction.scores import PROBABILITIES
+from sonolube.prediction.statement import interval
 from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.rig.labelled_arrays import LabelledArrays
@@ -79,7 +80,7 @@ class PredictionAnswer(Answer):
         """Statement in words, a table of quantities with their intervals, and the inputs."""
         heads = ["", "median", *(f"{100 * probability:.0f} %" for probability in PROBABILITIES)]
         attributes = self.prediction.attrs
-        about = [f"  closures: {attributes['closures']}"]
+        about = []
         if "friction_ratio_by_the_rigs_model" in attributes:
             ratio = attributes["friction_ratio_by_the_rigs_model"]
             about.append(f"  friction ratio by {attributes['friction_model']} alone: {ratio:.3g}")
@@ -101,7 +102,7 @@ class PredictionAnswer(Answer):
             "inputs": self.prediction["input_text"].to_numpy().tolist(),
             "measured": [one.object() for one in self.measured],
             "interval_share_left": dict(zip(self._column("input"), self._column("interval_share_left"), strict=True)),
-            **{name: self.prediction.attrs.get(name) for name in ("closures", "runs", "actuator_power")},
+            **{name: self.prediction.attrs.get(name) for name in ("runs", "actuator_power")},
         }
 
     def caveats(self) -> Sequence[str]:

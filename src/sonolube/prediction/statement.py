@@ -1,0 +1,162 @@
+"""Prediction of a rig in words: its outcome, what to measure, what limits it, and its caveats."""
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability
+from sonolube.prediction.inputs import RigInputs
+from sonolube.prediction.own_runs import OwnRuns
+from sonolube.prediction.predictive import RigPrediction
+from sonolube.prediction.run_check import RunCheck
+from sonolube.prediction.scores import central_interval
+from sonolube.prediction.tested_range import extrapolation_caveats
+from sonolube.prediction.wear_statement import pair_of, wear_statement, worn_body
+from sonolube.rig import Rig
+from sonolube.rig.labelled_arrays import LabelledArrays
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_HOT: Final = 50.0  # K, mean rise of the contact from which metals soften or lubricants change
+_NONE: Final = 0.5  # percent of friction, below which a change is none
+
+
+def interval(prediction: "xr.Dataset | LabelledArrays", name: str, probability: float = 0.8) -> tuple[float, float]:
+    """Central predictive interval of a quantity.
+
+    Parameters
+    ----------
+    prediction : xarray.Dataset or LabelledArrays
+        By `predict`.
+    name : str
+        A variable over `draw`.
+    probability : float
+        Within the interval.
+
+    Returns
+    -------
+    low, high : float
+        In the unit of the quantity.
+    """
+    low, high = central_interval(prediction[name].to_numpy(), probability)
+    return float(low), float(high)
+
+
+def statement(prediction: "xr.Dataset | LabelledArrays") -> tuple[str, ...]:
+    """Prediction in sentences: what contradicts it, the outcome, wear, what to measure, and what limits it.
+
+    Parameters
+    ----------
+    prediction : xarray.Dataset or LabelledArrays
+
+    Returns
+    -------
+    tuple of str
+    """
+    sentences = (
+        prediction.attrs["contradiction"],
+        f"{_outcome(prediction)} {NORMAL_VIBRATION}",
+        prediction.attrs["wear"],
+        _advice(prediction),
+        _limits(prediction),
+    )
+    return tuple(sentence for sentence in sentences if sentence)
+
+
+def prediction_attributes(
+    rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RigPrediction, limits: Applicability
+) -> dict[str, object]:
+    """Title, caveats, assumptions and numbers without a distribution of a prediction."""
+    point = inputs.point
+    caveats = [*limits.caveats, *point.caveats, *extrapolation_caveats(rig, inputs)]
+    if own is not None:
+        caveats += [*_outlier_caveats(found.check, own), *own.caveats]
+    attributes: dict[str, object] = {
+        "result": "prediction",
+        "title": rig.title,
+        "caveats": "\n".join(caveats),
+        "assumptions": "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items()),
+        "contradiction": "" if own is None else _contradiction(found.check, own),
+        "friction_law": found.draws.posterior.closure.name,
+        "vibration_amplitude": inputs.amplitude.value,
+        "sliding_speed": inputs.sliding_speed,
+        "runs": 0 if own is None else own.tested.friction_ratio.size,
+    }
+    if point.actuator_power is not None:
+        attributes["actuator_power"] = point.actuator_power
+    if np.isfinite(point.friction_ratio):
+        attributes["friction_ratio_by_the_rigs_model"] = point.friction_ratio
+        attributes["friction_model"] = point.friction_model
+    return attributes
+
+
+def _outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
+    """Sentence on the change of friction."""
+    low, high = (100 * each for each in interval(prediction, "friction_reduction"))
+    if max(abs(low), abs(high)) < _NONE:
+        return "Friction does not change."
+    if high <= 0:
+        return f"Friction rises by {-high:.0f} to {-low:.0f} % (80 %)."
+    if low < -_NONE:
+        return f"Friction goes from {-low:.0f} % more to {high:.0f} % less (80 %)."
+    return f"Friction falls by {max(low, 0):.0f} to {high:.0f} % (80 %)."
+
+
+def _advice(prediction: "xr.Dataset | LabelledArrays") -> str:
+    """Sentence on the measurements that would narrow the interval."""
+    left = dict(
+        zip(
+            prediction["measure_label"].to_numpy().tolist(),
+            prediction["measure_share_left"].to_numpy().tolist(),
+            strict=True,
+        )
+    )
+    if not left:
+        return "Own runs, fitted by `sonolube fit`, tell what vibration does here."
+    texts = [f"{label} would leave {100 * share:.0f} % of the width" for label, share in left.items()]
+    return f"To know it better: {'; '.join(texts)}."
+
+
+def _limits(prediction: "xr.Dataset | LabelledArrays") -> str:
+    """Sentence on heat and power."""
+    parts = []
+    if "mean_temperature_rise" in prediction:
+        high = interval(prediction, "mean_temperature_rise")[1]
+        parts.append(f"Heat of friction {'limits' if high > _HOT else 'does not limit'}: at most {high:.2g} K (80 %)")
+    else:
+        parts.append(f"Heat is not computed: {prediction.attrs['heat']}")
+    power = prediction.attrs.get("actuator_power")
+    unknown = "power is not known: capacitance or voltage is missing"
+    parts.append(unknown if power is None else f"the amplifier supplies {power:.3g} W")
+    return "; ".join(parts) + "."
+
+
+def _contradiction(check: RunCheck | None, own: OwnRuns) -> str:
+    """Sentence on runs that contradict the prediction before them; empty where they do not."""
+    if check is None or not check.contradicted:
+        return ""
+    ratio = own.tested.friction_ratio
+    outside = np.maximum(check.lows - ratio, ratio - check.highs)
+    worst = int(np.argmax(outside))
+    return (
+        f"Your runs contradict every model (probability {check.probability:.1g}): ratio {ratio[worst]:.2f} where"
+        f" {check.lows[worst]:.2f} to {check.highs[worst]:.2f} (95 %) was predicted; what follows rests on the runs alone"
+        " and holds near their conditions. Check amplitude, load and zero of the force, or expect another mechanism."
+    )
+
+
+def _outlier_caveats(check: RunCheck | None, own: OwnRuns) -> list[str]:
+    """Sentence on each run that disagrees with the others."""
+    if check is None:
+        return []
+    return [
+        f"run {place + 1} disagrees with the others: ratio {own.tested.friction_ratio[place]:.2f} where they give"
+        f" {check.left_out[place]:.2f} (probability {check.outlier_probability[place]:.1g}); it counts less: repeat it"
+        for place in check.outliers
+    ]
+
+
+def wear_sentence(rig: Rig, wear_rate_ratio: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> str:
+    """Change of the wear rate in words, with the body that wears."""
+    return wear_statement(wear_rate_ratio, pair=pair_of(rig), worn_body=worn_body(rig))
