@@ -140,6 +140,7 @@ def test_own_tests_win_where_they_contradict_the_weight() -> None:
     ("arguments", "refusal", "message"),
     [
         ({"weight": 1.5}, InvalidInput, "must lie between 0 and 1, got 1.5"),
+        ({"weight": np.ones(3)}, InvalidInput, r"weight must be one number or one for each of 10 draws, got \(3,\)"),
         ({"measured": np.array([0.5, 0.0])}, InvalidInput, "wear_rate_ratio must be positive, got 0.0"),
         ({"pair": "titanium on titanum"}, UnknownName, "titanium on titanium"),
     ],

@@ -24,7 +24,7 @@ def rig_of(softer: str, harder: str) -> Rig:
 
 def lognormal(median: float, spread: float) -> Floats:
     """Draws of a wear rate ratio, evenly spread."""
-    return median * np.exp(spread * norm.ppf((np.arange(4000) + 0.5) / 4000))
+    return np.asarray(median * np.exp(spread * norm.ppf((np.arange(4000) + 0.5) / 4000)))
 
 
 @mark.parametrize(

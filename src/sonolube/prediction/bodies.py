@@ -83,14 +83,12 @@ def _body(name: str, *, strength: str | float | None = None, is_measured: bool =
         return None
     stated = to_si(strength, unit="Pa", name="yield_strength") if isinstance(strength, str) else strength
     own = known.properties.get("hardness")
-    if stated is not None and is_measured:
-        hardness, is_estimated = _TABOR_FACTOR * stated, False
-    elif own is not None:
-        hardness, is_estimated = own.value, False
-    else:
-        by_catalogue = known.properties.get("yield_strength")
-        strong = stated if stated is not None else None if by_catalogue is None else by_catalogue.value
-        hardness, is_estimated = None if strong is None else _TABOR_FACTOR * strong, True
+    if stated is None and "yield_strength" in known.properties:
+        stated = known.value("yield_strength")
+    hardness = own.value if own is not None and not is_measured else None
+    is_estimated = hardness is None and not is_measured
+    if hardness is None and stated is not None:
+        hardness = _TABOR_FACTOR * stated
     return NamedBody(
         name=known.name, title=known.title, family=known.family, hardness=hardness, is_estimated=is_estimated
     )

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
-from sonolube.errors import UnknownName
+from sonolube.errors import InvalidInput, UnknownName
 from sonolube.published import si_value
 
 WEAR_HYPERPARAMETERS: Final = ("wear_rate_ratio", "pair_spread", "test_spread")
@@ -225,7 +225,7 @@ class WearPosterior:
         Raises
         ------
         InvalidInput
-            If a weight is not within 0 to 1, or a measured ratio not positive.
+            If a weight is not within 0 to 1 or not one for each draw, or a measured ratio not positive.
         UnknownName
             If no published pair has the name.
 
@@ -237,9 +237,8 @@ class WearPosterior:
         it likewise. Where their mean is more than two standard deviations off, the rig is taken to depart from the
         population near its tests, by a normal deviation as large as that asks for.
         """
-        weights, tested_weights = (
-            np.broadcast_to(require_within(0.0, 1.0, weight=each), (count,)) for each in (weight, measured_weight)
-        )
+        weights = _per_draw(count, weight=weight)
+        tested_weights = _per_draw(count, measured_weight=measured_weight)
         rng = np.random.default_rng(seed)
         mean, between, within = self.hyperparameters[rng.integers(0, len(self.hyperparameters), count)].T
         shared, own = np.exp(2 * between), np.exp(2 * within)
@@ -257,6 +256,15 @@ class WearPosterior:
             centre = centre + gain * off
             variance = np.maximum(variance + departure - gain * covariance, 0.0)
         return np.asarray(np.exp(centre + np.sqrt(variance) * rng.standard_normal(count)))
+
+
+def _per_draw(count: int, **weight: ArrayLike) -> Floats:
+    """Weights of all draws, from one or from one for each."""
+    values = require_within(0.0, 1.0, **weight)
+    if values.shape not in ((), (1,), (count,)):
+        name = next(iter(weight))
+        raise InvalidInput(f"{name} must be one number or one for each of {count} draws, got {values.shape}")
+    return np.broadcast_to(values, (count,))
 
 
 def _of_pair(pair: WearPair, mean: Floats, shared: Floats, own: Floats) -> tuple[Floats, Floats]:
