@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS
+from sonolube.figure import COLOURS, MARKERS
 from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.scores import PROBABILITIES
 
@@ -101,17 +101,17 @@ def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
     """
     from matplotlib import pyplot as plt
 
-    figure, (coverage, scores) = plt.subplots(1, 2, figsize=(6.85, 3.2))
+    figure, (coverage, scores) = plt.subplots(1, 2, figsize=(6.85, 3.6))
     coverage.plot([0, 1], [0, 1], color="0.4", lw=0.8, ls=":")
     for index, one in enumerate(calibrations):
-        places = np.array(PROBABILITIES) + 0.012 * (index - 1.5)
+        places = np.array(PROBABILITIES) + 0.012 * (index - 2)
         shares = np.array([one.covered(each) for each in PROBABILITIES]) / len(one.predictions)
         ends = np.array([one.coverage_interval(each) for each in PROBABILITIES]).T
         coverage.errorbar(
             places,
             shares,
             np.abs(ends - shares),
-            fmt="os^D"[index],
+            fmt=MARKERS[index],
             color=COLOURS[index],
             ms=5,
             capsize=2,
@@ -127,9 +127,9 @@ def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
             scores.annotate(
                 f"{value:.3f}", (value, height), (3, 0), textcoords="offset points", va="center", fontsize=7
             )
-    scores.set(yticks=heights, xlabel="score (lower is better)", xlim=(0, 2.1))
+    scores.set(yticks=heights, xlabel="score (lower is better)", xlim=(0, 1.6))
     scores.set_yticklabels(
-        [one.name.replace(" with ", "\nwith ").replace(" of the ", "\nof the ") for one in calibrations]
+        [one.name.replace(" with ", "\nwith ").replace(" by ", "\nby ").replace(", its", ",\nits") for one in calibrations]
     )
     scores.legend(loc="upper right")
     figure.legend(*coverage.get_legend_handles_labels(), loc="outside upper center", ncols=2)

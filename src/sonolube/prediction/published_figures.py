@@ -9,13 +9,13 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
-from sonolube.prediction.calibration import calibrations
+from sonolube.prediction.calibration import blind_calibration, calibrations, mean_ratio_calibration
 from sonolube.prediction.closures import Conditions
 from sonolube.prediction.evidence import TestedRig, published_rigs
 from sonolube.prediction.figures import calibration_figure, draw_bands
-from sonolube.prediction.posterior import Posterior, posteriors_without, published_log_likelihoods
+from sonolube.prediction.posterior import Posterior, published_population
 from sonolube.prediction.predictive import ratio_draws
-from sonolube.prediction.scores import LEVELS, central_interval
+from sonolube.prediction.scores import LEVELS, PROBABILITIES, central_interval
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,7 +26,7 @@ _PANELS: Final = (
 )
 _POINTS: Final = 40
 _DRAWS: Final = 2000
-_MOST_SUBSETS: Final = 6  # of own runs for each predicted test
+_MAX_SUBSETS: Final = 6  # of own runs for each predicted test
 
 
 def published_prediction_figures() -> Iterator[ReportFigure]:
@@ -36,6 +36,12 @@ def published_prediction_figures() -> Iterator[ReportFigure]:
     -------
     iterator of ReportFigure
     """
+    yield ReportFigure(
+        name="prediction-blind",
+        title="Every published test predicted from the other rigs, with nothing that a user would not have",
+        caption=blind_caption(),
+        draw=blind_figure,
+    )
     yield ReportFigure(
         name="prediction-of-published-tests",
         title="Friction ratio predicted before any test on the rig",
@@ -47,7 +53,7 @@ def published_prediction_figures() -> Iterator[ReportFigure]:
         name="prediction-calibration",
         title="Calibration of predictions on rigs left out",
         caption="Left: share of the 17 published tests within the predictive intervals, with 95 % binomial intervals."
-        " Right: mean scores; lower is better.",
+        " Right: mean scores; lower is better. Ways by records use a roughness that no user has before a test.",
         draw=lambda: calibration_figure(calibrations()),
     )
     yield ReportFigure(
@@ -57,6 +63,44 @@ def published_prediction_figures() -> Iterator[ReportFigure]:
         " the share of tests within; subsets of one rig's tests are not independent of each other.",
         draw=runs_figure,
     )
+
+
+def blind_caption() -> str:
+    """Headline of the blind protocol: coverage, score and width beside those of the mean ratio."""
+    blind, mean = blind_calibration(), mean_ratio_calibration()
+    inside = [blind.covered(probability) for probability in PROBABILITIES]
+    gain, low, high = blind.gain_over(mean)
+    verdict = "" if low > 0 else ": not shown to be better than the mean of published tests"
+    return (
+        f"{inside[0]}, {inside[1]} and {inside[2]} of {len(blind.predictions)} tests lie within the 50, 80 and 95 % intervals."
+        f" CRPS {blind.crps:.3f}, that of the mean ratio {mean.crps:.3f}; difference {gain:.3f}, {low:.3f} to {high:.3f}"
+        f" (95 %, bootstrap over sets){verdict}. Median width of the 80 % interval {blind.median_width:.2f} (mean ratio"
+        f" {mean.median_width:.2f}). The form of the model was chosen after the errors were known."
+    )
+
+
+def blind_figure() -> "Figure":
+    """Draw every published test with its prediction from the other rigs, the decay length unknown."""
+    from matplotlib import pyplot as plt
+
+    predictions, mean = blind_calibration().predictions, mean_ratio_calibration().predictions
+    places = np.arange(len(predictions))
+    quantiles = np.quantile(np.stack([one.draws for one in predictions], axis=1), LEVELS, axis=0)
+    figure, axes = plt.subplots(figsize=(6.85, 3.2))
+    for row, opacity in enumerate((0.15, 0.25, 0.4)):
+        low, high, probability = quantiles[row], quantiles[-1 - row], PROBABILITIES[::-1][row]
+        label = f"{100 * probability:.0f} % interval"
+        axes.bar(places, high - low, bottom=low, width=0.62, color=COLOURS[0], alpha=opacity, lw=0, label=label)
+    axes.hlines(quantiles[len(PROBABILITIES)], places - 0.31, places + 0.31, color=COLOURS[0], label="median")
+    ends = np.array([central_interval(one.draws, 0.8) for one in mean]).T
+    axes.vlines(places + 0.4, *ends, color="0.45", lw=1.2, label="mean ratio of other tests, 80 %")
+    measured = np.array([(one.friction_ratio, one.uncertainty) for one in predictions]).T
+    axes.errorbar(places, *measured, fmt="o", color=COLOURS[1], ms=5, capsize=2, label="measured")
+    names = [one.rig for one in predictions]
+    labels = [f"{name}-{names[: place + 1].count(name)}" for place, name in enumerate(names)]
+    axes.set(xticks=places, xticklabels=labels, ylabel="friction ratio", xlabel="published test", ylim=(-0.1, 1.45))
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    return figure
 
 
 def unseen_figure() -> "Figure":
@@ -70,11 +114,11 @@ def unseen_figure() -> "Figure":
 
     figure, panels = plt.subplots(1, 2, figsize=(6.85, 3.3), sharey=True)
     for axes, (name, condition, scale, label, title) in zip(panels, _PANELS, strict=True):
-        rig, posteriors = _unseen(name)
+        rig, posterior = _unseen(name)
         places = getattr(rig.at.conditions, condition)
         curve = np.geomspace(0.6 * places.min(), 1.5 * places.max(), _POINTS)
         at = replace(rig.at, conditions=_along(rig.at.conditions, condition, curve))
-        ratios = ratio_draws(posteriors, at, count=_DRAWS).friction_ratio
+        ratios = ratio_draws(posterior, at, count=_DRAWS)
         draw_bands(axes, scale * curve, np.quantile(ratios, LEVELS, axis=0))
         style = {"fmt": "o", "color": COLOURS[1], "ms": 5, "capsize": 2}
         axes.errorbar(scale * places, rig.friction_ratio, rig.uncertainty, label="measured", **style)
@@ -108,23 +152,23 @@ def _widths_by_runs() -> list[tuple[int, float, float]]:
     """Number of own runs, median width and coverage of the 80 % interval, over rigs with so many tests."""
     found: dict[int, list[tuple[float, bool]]] = {}
     for rig in published_rigs():
-        _, posteriors = _unseen(rig.name)
+        _, posterior = _unseen(rig.name)
         tests = range(rig.friction_ratio.size)
         for test in tests:
             others = [each for each in tests if each != test]
             for count in range(len(others) + 1):
-                for known in list(combinations(others, count))[:_MOST_SUBSETS]:
-                    found.setdefault(count, []).append(_width(rig, posteriors, test, known))
+                for known in list(combinations(others, count))[:_MAX_SUBSETS]:
+                    found.setdefault(count, []).append(_width(rig, posterior, test, known))
     return [
         (count, float(np.median([width for width, _ in rows])), float(np.mean([inside for _, inside in rows])))
         for count, rows in sorted(found.items())
     ]
 
 
-def _width(rig: TestedRig, posteriors: tuple[Posterior, ...], test: int, known: tuple[int, ...]) -> tuple[float, bool]:
+def _width(rig: TestedRig, posterior: Posterior, test: int, known: tuple[int, ...]) -> tuple[float, bool]:
     """Width of the 80 % interval of one test by some others of its rig, and whether the measured ratio is within."""
     own = _some(rig, known) if known else None
-    ratios = ratio_draws(posteriors, _some(rig, (test,)).at, count=_DRAWS, own=own).friction_ratio[:, 0]
+    ratios = ratio_draws(posterior, _some(rig, (test,)).at, count=_DRAWS, own=own)[:, 0]
     noise = rig.uncertainty[test] * np.random.default_rng(4).standard_normal(ratios.size)
     low, high = central_interval(ratios + noise, 0.8)
     return float(high - low), bool(low <= rig.friction_ratio[test] <= high)
@@ -132,26 +176,20 @@ def _width(rig: TestedRig, posteriors: tuple[Posterior, ...], test: int, known: 
 
 def _some(rig: TestedRig, tests: tuple[int, ...]) -> TestedRig:
     """Rig with some of its tests."""
-    rows, at = list(tests), rig.at.conditions
-    conditions = Conditions(
-        vibration_amplitude=at.vibration_amplitude[rows],
-        frequency=at.frequency[rows],
-        sliding_speed=at.sliding_speed[rows],
-        decay_length=at.decay_length[rows],
-    )
+    rows = np.array(tests)
     return replace(
         rig,
-        at=replace(rig.at, conditions=conditions),
+        at=replace(rig.at, conditions=rig.at.conditions.taken(rows)),
         friction_ratio=rig.friction_ratio[rows],
         uncertainty=rig.uncertainty[rows],
     )
 
 
-def _unseen(name: str) -> tuple[TestedRig, tuple[Posterior, ...]]:
-    """A published rig, and the posteriors by all others."""
+def _unseen(name: str) -> tuple[TestedRig, Posterior]:
+    """A published rig, and the posterior by all others."""
     rigs = published_rigs()
-    index = [rig.name for rig in rigs].index(name)
-    return rigs[index], posteriors_without(published_log_likelihoods(), left_out=(index,))
+    place = [rig.name for rig in rigs].index(name)
+    return rigs[place], published_population().posterior(without=(place,))
 
 
 def _along(at: Conditions, condition: str, values: Floats) -> Conditions:
