@@ -23,7 +23,7 @@ from sonolube.dynamics.harmonic_balance.bessel import wright_omega
 from sonolube.friction import sine_stick_slip_ratio
 from sonolube.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.rig import read_rig, simulate
-from sonolube.rig.result_quantities import result_quantities
+from sonolube.rig.datasets import result_quantities
 from sonolube.threads import map_chunks
 
 RIGS = Path(__file__).parents[1] / "examples" / "rigs"

@@ -128,6 +128,7 @@ def test_an_amplitude_of_metres_is_refused() -> None:
 def test_what_nobody_measured_has_a_distribution_and_a_reason() -> None:
     rig = rig_of(KNOWN)
     assert set(rig.uncertainty) == {
+        "contact.decay_length",
         "contact.roughness.rms_height",
         "contact.roughness.summit_radius",
         "contact.roughness.summit_density",

@@ -110,10 +110,11 @@ def plasticity_index(contact: RoughContact) -> float:
     -----
     .. math:: \psi = \sqrt{R_q / w_c}
 
+    with R_q = lambda l where the contact has a decay length l of its own (`RoughContact.height_scale`).
+
     References
     ----------
     .. [1] W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987). doi:10.1115/1.3261348
     """
-    roughness = contact.roughness
-    w_c = critical_interference(contact.asperity, contact.pair, summit_radius=roughness.summit_radius)
-    return math.sqrt(roughness.rms_height / w_c)
+    w_c = critical_interference(contact.asperity, contact.pair, summit_radius=contact.roughness.summit_radius)
+    return math.sqrt(contact.height_scale / w_c)

@@ -1,7 +1,8 @@
 """Statistical contact of rough surfaces after Greenwood and Williamson: separation, real area and normal stiffness."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,17 +42,23 @@ class RoughContact:
         Exponential by default.
     asperity : AsperityLaw
         That of Chang, Etsion and Bogy by default.
+    decay_length : float or None
+        Length over which the normal force falls by a factor of e, where it is known otherwise than by the roughness,
+        such as from the stiffness of a worn contact; for exponential heights only. R_q/lambda where None. [m]
 
     Raises
     ------
     InvalidInput
-        If the area is not positive and finite.
+        If area or decay length is not positive and finite, or heights that are not exponential have a decay length.
 
     Notes
     -----
     The pair is replaced by one surface with the roughness of both against a smooth flat. Its asperities are spheres of
     one radius that do not interact, so the real area must stay far below the nominal one. Separations are measured from
     the mean of the summit heights. `contact_caveats` returns the reasons against applying the model to a contact.
+
+    With a `decay_length` l the heights are those of a surface whose rms height is lambda l (`height_scale`): load,
+    area and number of contacts fall by a factor of e over l. `roughness` stays what was measured, often before wear.
 
     See Also
     --------
@@ -69,9 +76,24 @@ class RoughContact:
     nominal_area: float
     heights: HeightDistribution = field(default_factory=ExponentialHeights)
     asperity: AsperityLaw = field(default_factory=ChangEtsionBogy)
+    decay_length: float | None = None
 
     def __post_init__(self) -> None:
         require_positive(nominal_area=self.nominal_area)
+        if self.decay_length is not None:
+            require_positive(decay_length=self.decay_length)
+            if not isinstance(self.heights, ExponentialHeights):
+                raise InvalidInput(
+                    f"decay_length is for exponential heights, got {self.heights.name} heights, whose decay length"
+                    " varies with the separation: leave it out or use exponential heights"
+                )
+
+    @property
+    def height_scale(self) -> float:
+        """Rms height of the height distribution: the measured one, or lambda l where the decay length is given. [m]"""
+        if self.decay_length is None or not isinstance(self.heights, ExponentialHeights):
+            return self.roughness.rms_height
+        return self.heights.decay * self.decay_length
 
 
 def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
@@ -111,7 +133,7 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
     integrals = _integrals(contact)
     lowest, highest = integrals.force.value(np.array([integrals.highest, integrals.lowest])).tolist()
     _require_range(contact, lowest, highest, "normal_load", "N", load)
-    return integrals.force.inverse(load) * contact.roughness.rms_height
+    return integrals.force.inverse(load) * contact.height_scale
 
 
 def separation_range(contact: RoughContact) -> tuple[float, float]:
@@ -126,7 +148,7 @@ def separation_range(contact: RoughContact) -> tuple[float, float]:
     tuple of float
         The largest is infinite for exponential heights.
     """
-    integrals, Rq = _integrals(contact), contact.roughness.rms_height
+    integrals, Rq = _integrals(contact), contact.height_scale
     return integrals.lowest * Rq, integrals.highest * Rq
 
 
@@ -259,7 +281,7 @@ def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     sonolube.contact.mindlin_tangential_stiffness : Tangential stiffness in proportion to this one.
     """
     integrals, h = integrals_at(contact, separation=separation)
-    return integrals.force.value(h) * integrals.force.decay_rate(h) / contact.roughness.rms_height
+    return integrals.force.value(h) * integrals.force.decay_rate(h) / contact.height_scale
 
 
 def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) -> Floats:
@@ -270,7 +292,7 @@ def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) 
     contact : RoughContact
     separation : array_like, any shape, optional
         Separation of the mean planes; required by every height distribution but the exponential one, whose decay
-        length is R_q/lambda at any separation. [m]
+        length is that of the contact, or R_q/lambda, at any separation. [m]
 
     Returns
     -------
@@ -294,17 +316,33 @@ def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) 
             raise InvalidInput(f"decay_length of {contact.heights.name} heights varies: give a separation")
         separation = 0.0
     integrals, h = integrals_at(contact, separation=separation)
-    return contact.roughness.rms_height / integrals.force.decay_rate(h)
+    if contact.decay_length is not None:
+        return np.full_like(h, contact.decay_length)
+    return contact.height_scale / integrals.force.decay_rate(h)
 
 
 @lru_cache(maxsize=512)
 def _integrals(contact: RoughContact) -> GreenwoodWilliamsonIntegrals:
     """Return the integrals over all asperities of a contact, computed once."""
-    return greenwood_williamson_integrals(**{part.name: getattr(contact, part.name) for part in fields(contact)})
+    return greenwood_williamson_integrals(**summit_population(contact))
+
+
+def summit_population(contact: RoughContact) -> dict[str, Any]:
+    """Arguments of the integrals over all asperities: those of the contact, its rms height that of the heights."""
+    roughness = contact.roughness
+    if contact.decay_length is not None:
+        roughness = replace(roughness, rms_height=contact.height_scale)
+    return {
+        "roughness": roughness,
+        "pair": contact.pair,
+        "nominal_area": contact.nominal_area,
+        "heights": contact.heights,
+        "asperity": contact.asperity,
+    }
 
 
 def integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:
-    """Return the integrals over all asperities of a contact, and the separations over R_q.
+    """Return the integrals over all asperities of a contact, and the separations over the rms height of its heights.
 
     Parameters
     ----------
@@ -327,7 +365,7 @@ def integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[Green
     """
     d = require_finite(separation=separation)
     _require_range(contact, *separation_range(contact), "separation", "m", d)
-    return _integrals(contact), d / contact.roughness.rms_height
+    return _integrals(contact), d / contact.height_scale
 
 
 def _require_range(contact: RoughContact, low: float, high: float, name: str, unit: str, values: Floats) -> None:

@@ -1,7 +1,7 @@
 """Validity range of the statistical contact model: caveats of a contact, and the range of exponential heights."""
 
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_finite
 from sonolube.contact.greenwood_williamson import TABLE_RANGE, log_normal_force_function
 from sonolube.contact.height_distribution import MINIMUM_ROUGHNESS_PARAMETER, ExponentialHeights, GaussianHeights
-from sonolube.contact.rough import RoughContact, contact_count, normal_force, real_contact_area
+from sonolube.contact.rough import RoughContact, contact_count, normal_force, real_contact_area, summit_population
 from sonolube.errors import InvalidInput
 
 TYPICAL_ROUGHNESS_PARAMETERS = (0.02, 0.1)
@@ -53,18 +53,19 @@ def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) ->
     -----
     The Gaussian summit heights have the standard deviation of `GaussianHeights.from_roughness_parameter`, which falls
     with the roughness parameter. The ratio of Gaussian to exponential load has one maximum over the separation. Where
-    that exceeds `factor`, the range is the one at larger separations.
+    that exceeds `factor`, the range is the one at larger separations. A decay length of the contact's own is left out:
+    the range is that of its roughness.
     """
     if not factor > 1:
         raise InvalidInput(f"factor must exceed 1, got {factor!r}")
-    roughness = contact.roughness
+    contact, roughness = replace(contact, decay_length=None), contact.roughness
     if roughness.roughness_parameter <= MINIMUM_ROUGHNESS_PARAMETER:
         return None
     heights = GaussianHeights.from_roughness_parameter(roughness_parameter=roughness.roughness_parameter)
     gaussian = replace(contact, heights=heights)
     is_exponential = isinstance(contact.heights, ExponentialHeights)
     exponential = contact if is_exponential else replace(contact, heights=ExponentialHeights())
-    log_force = log_normal_force_function(**{part.name: getattr(gaussian, part.name) for part in fields(gaussian)})
+    log_force = log_normal_force_function(**summit_population(gaussian))
 
     def log_ratio(h: Floats) -> Floats:
         load = normal_force(exponential, separation=h * roughness.rms_height)
@@ -157,8 +158,8 @@ def _separation_caveat(lowest: float) -> str:
 
 def _exponential_caveat(contact: RoughContact, lowest: float, highest: float) -> str:
     """Return the caveat against exponential heights outside their range, or an empty text."""
-    if not isinstance(contact.heights, ExponentialHeights):
-        return ""
+    if not isinstance(contact.heights, ExponentialHeights) or contact.decay_length is not None:
+        return ""  # a decay length that is known itself is no fit to the tail of Gaussian heights
     valid = exponential_validity_range(contact)
     if valid is None:
         return (

@@ -15,6 +15,7 @@ from sonolube import __version__
 from sonolube.checks import require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig import NUMBERS, Rig, read_rig, rig_from
+from sonolube.rig.file.entries import set_entry
 from sonolube.rig.file.uncertainty import number_keys
 
 OPERATING_CONDITIONS = {
@@ -86,11 +87,7 @@ class SweepPlan:
         """
         content = copy.deepcopy(self.content)
         for key, value in changes.items():
-            *tables, name = key.split(".")
-            table = content
-            for each in tables:
-                table = table.setdefault(each, {})
-            table[name] = _file_value(key, value)
+            set_entry(content, key, _file_value(key, value))
         return rig_from(content)
 
     def own_rig(self) -> Rig | None:

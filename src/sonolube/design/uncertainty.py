@@ -224,7 +224,8 @@ def _labelled(
     """Dataset over blocks, samples and swept keys, from the flat results."""
     import xarray as xr
 
-    names = plan.names
+    # an entry that the outcome is called like, such as the stiffness of the contact, by its whole key
+    names = {key: key.replace(".", "_") if name == outcome else name for key, name in plan.names.items()}
     sample_dims = ("block", "sample") if len(shape) - len(grid) == 2 else ("sample",)
     dims = (*sample_dims, *(names[key] for key in grid))
     variables = {

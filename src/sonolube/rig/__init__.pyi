@@ -62,7 +62,9 @@ from .parametric_study import (
 )
 from .record import (
     AMPLITUDE_SOURCES as AMPLITUDE_SOURCES,
+    DECAY_LENGTH_ORIGINS as DECAY_LENGTH_ORIGINS,
     AmplitudeSource as AmplitudeSource,
+    DecayLengthOrigin as DecayLengthOrigin,
     MeasuredUnder as MeasuredUnder,
     Rig as Rig,
 )
@@ -79,4 +81,9 @@ from .vibration import (
     SteadyVibration as SteadyVibration,
     gap_motion as gap_motion,
     steady_vibration as steady_vibration,
+)
+from .worn_contact import (
+    PUBLISHED_DECAY_LENGTH as PUBLISHED_DECAY_LENGTH,
+    DecayLengthPopulation as DecayLengthPopulation,
+    decay_length_caveat as decay_length_caveat,
 )

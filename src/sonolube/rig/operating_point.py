@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 
-from sonolube.contact import contact_caveats, cube_tangential_stiffness
+from sonolube.contact import cube_tangential_stiffness
 from sonolube.contact.rough import contact_count, normal_stiffness, real_contact_area
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import AmplitudeSource, Rig
+from sonolube.rig.worn_contact import resting_caveats
 from sonolube.wear import cube_wear_rate
 
 COMPUTED = "computed"
@@ -185,7 +186,7 @@ def contact_point(rig: Rig) -> ContactPoint:
         normal_stiffness=float(normal_stiffness(rig.contact, separation=gap)),
         tangential_stiffness=float(cube_tangential_stiffness(rig.contact, separation=gap)),
         mindlin_ratio=rig.contact.pair.mindlin_ratio,
-        caveats=contact_caveats(rig.contact, separation=gap),
+        caveats=resting_caveats(rig),
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, Final, Literal, Protocol, get_args
 from sonolube.actuator import PiezoStack
 from sonolube.actuator.drive import Drive
 from sonolube.checks import require_non_negative, require_positive
-from sonolube.contact import RoughContact
+from sonolube.contact import ExponentialHeights, RoughContact, decay_length
 from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
@@ -23,6 +23,20 @@ AmplitudeSource = Literal["measured", "computed", "waveguide", "per-volt"]
 
 AMPLITUDE_SOURCES: Final[tuple[AmplitudeSource, ...]] = get_args(AmplitudeSource)
 """Sources of an amplitude, the one taken first where a rig has several first."""
+
+DecayLengthOrigin = Literal["own_runs", "normal_stiffness", "worn_scan", "published_tests", "stated"]
+"""How the decay length of a contact is known, where it is known otherwise than by R_q/lambda."""
+
+DECAY_LENGTH_ORIGINS: Final[Mapping[DecayLengthOrigin, str]] = MappingProxyType(
+    {
+        "own_runs": "from own friction tests",
+        "normal_stiffness": "from the measured normal stiffness",
+        "worn_scan": "from a scan of the worn track",
+        "published_tests": "of worn contacts in published tests",
+        "stated": "as stated",
+    }
+)
+"""Origins of a decay length, each in words."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -106,6 +120,8 @@ class Rig:
         Model of friction under vibration, with its parameters.
     pin_material, disc_material : str or None
         Name in the catalogue of materials, where the rig states it.
+    decay_length_origin : {"own_runs", "normal_stiffness", "worn_scan", "published_tests", "stated"} or None
+        How the decay length of the contact is known; None where its file has none, so that it is R_q/lambda.
     assumptions : mapping of str to str
         Which entries no source gives, and what was assumed instead and why.
     uncertainty : mapping of str to Distribution
@@ -131,6 +147,7 @@ class Rig:
     friction_model: FrictionModel = field(default_factory=lambda: FRICTION_MODELS["asperity_stick_slip"]())
     pin_material: str | None = None
     disc_material: str | None = None
+    decay_length_origin: DecayLengthOrigin | None = None
     assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     uncertainty: Mapping[str, Distribution] = field(default_factory=lambda: MappingProxyType({}))
     _entries: RigEntries | None = field(init=False, default=None, compare=False)
@@ -144,6 +161,9 @@ class Rig:
                 require_non_negative(**{name: value})
         if self.amplitude_source is not None and self.amplitude_source not in AMPLITUDE_SOURCES:
             raise UnknownName.among(list(AMPLITUDE_SOURCES), kind="source of the amplitude", name=self.amplitude_source)
+        if self.decay_length_origin is not None and self.decay_length_origin not in DECAY_LENGTH_ORIGINS:
+            known = list(DECAY_LENGTH_ORIGINS)
+            raise UnknownName.among(known, kind="origin of the decay length", name=self.decay_length_origin)
         if self.capacitance is not None:
             require_positive(capacitance=self.capacitance)
         if not self.title.strip():
@@ -213,6 +233,7 @@ class Rig:
             ("friction model", self.friction_model.name),
             ("nominal area", format_si(self.contact.nominal_area, "m2")),
             ("roughness", f"Rq {format_si(roughness.rms_height, 'm')}"),
+            *self._decay_length_rows(),
             ("effective modulus", format_si(pair.effective_modulus, "Pa")),
             ("yield strength", format_si(pair.yield_strength, "Pa")),
             ("vibration amplitude", self._amplitude_text()),
@@ -232,6 +253,18 @@ class Rig:
         """Table for notebooks."""
         rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in self.table())
         return f"<table><caption>{escape(self.title)}</caption><tbody>{rows}</tbody></table>"
+
+    def _decay_length_rows(self) -> list[tuple[str, str]]:
+        """Decay length of the contact and where it is from; none for heights whose decay length varies."""
+        heights, own = self.contact.heights, self.contact.decay_length
+        if own is not None:
+            return [
+                ("decay length", f"{format_si(own, 'm')} {DECAY_LENGTH_ORIGINS[self.decay_length_origin or 'stated']}")
+            ]
+        if not isinstance(heights, ExponentialHeights):
+            return []
+        by_roughness = format_si(float(decay_length(self.contact)), "m")
+        return [("decay length", f"{by_roughness} by roughness, Rq/{heights.decay:g}")]
 
     def _amplitude_text(self) -> str:
         """Every source that the rig has for its amplitude."""

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from sonolube.contact import separation
-from sonolube.rig.datasets import labelled, labels
+from sonolube.rig.datasets import labelled, labels, result_quantities, result_texts
 from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
 from sonolube.rig.linear_response import FrequencyResponse
 from sonolube.rig.record import Rig
-from sonolube.rig.result_quantities import result_quantities, result_texts
 from sonolube.rig.simulation import Simulation
 from sonolube.rig.start_up_transient import StartUp
 from sonolube.rig.vibration import SteadyVibration

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.actuator import stack_caveats
-from sonolube.contact import GapMotion, contact_caveats, sinusoidal_motion
+from sonolube.contact import GapMotion, sinusoidal_motion
 from sonolube.errors import OutsideRange, SonolubeError
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
@@ -24,6 +24,7 @@ from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
+from sonolube.rig.worn_contact import resting_caveats
 from sonolube.units import format_si
 from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
@@ -153,7 +154,7 @@ def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
             ratio=_outside(refusal, chosen.sliding_speed),
             vibration=_stated_origin(used),
             actuator_power=_amplifier_power(chosen),
-            caveats=contact_caveats(chosen.contact, separation=rest_separation(chosen)),
+            caveats=resting_caveats(chosen),
             others=_models_that_hold(chosen),
         )
     return _friction_point(chosen, vibration, _origin(vibration), _caveats(chosen, used, vibration))
@@ -370,7 +371,7 @@ def _amplifier_power(rig: Rig) -> float | None:
 def _caveats(rig: Rig, used: ResolvedVibration, vibration: SteadyVibration) -> tuple[str, ...]:
     """Return the caveats of contact, amplitude, stack and gap."""
     return (
-        *contact_caveats(rig.contact, separation=rest_separation(rig)),
+        *resting_caveats(rig, vibration_amplitude=vibration.vibration_amplitude),
         *source_caveats(rig),
         *([] if used.driven is None else _stack_caveats(used.driven, vibration)),
     )

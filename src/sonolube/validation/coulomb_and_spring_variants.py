@@ -85,7 +85,7 @@ def _spring_flat(test: _Vibrated, approach: float | None = None, mindlin_ratio: 
 
 def _spring_flat_on_roughness(test: _Vibrated, slip_length: float, approach_ratio: float) -> Floats:
     """Return the friction ratio by springs of constant stiffness, their approach in proportion to R_q. []"""
-    at_rest = approach_ratio * test.contact.roughness.rms_height
+    at_rest = approach_ratio * test.contact.height_scale
     return _under_normal_oscillation(test, _PER_SLIP_LENGTH, at_rest, slip_length / at_rest)
 
 

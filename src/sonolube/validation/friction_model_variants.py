@@ -79,7 +79,7 @@ def _stick_slip_with_decay_constant(
 ) -> Floats:
     """Return the friction ratio by asperity stick-slip with a decay length of R_q over a fitted constant. []"""
     return friction.sine_stick_slip_ratio(
-        decay_length=test.contact.roughness.rms_height / decay_constant,
+        decay_length=test.contact.height_scale / decay_constant,
         vibration_amplitude=test.vibration_amplitude,
         frequency=test.frequency,
         sliding_speed=test.sliding_speed,

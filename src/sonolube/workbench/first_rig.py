@@ -21,6 +21,8 @@ def new_rig(
     pin_finish: str | None = None,
     disc_finish: str | None = None,
     friction_coefficient: float | None = None,
+    decay_length: str | None = None,
+    stiffness: str | None = None,
 ) -> Rig:
     """Return a rig from what is known before a test; what nobody measured has a distribution with its reason.
 
@@ -42,6 +44,11 @@ def new_rig(
         Of one surface.
     friction_coefficient : float, optional
         Coefficient of dry friction, where it was measured; else by the pair. []
+    decay_length : str, optional
+        Length over which the force of the worn contact falls by a factor of e, such as "1.5 um"; that of published
+        tests where both it and the stiffness are absent. [m]
+    stiffness : str, optional
+        Measured normal stiffness of the contact under the load, such as "1.5 MN/m", in place of the decay length.
 
     Returns
     -------
@@ -68,5 +75,7 @@ def new_rig(
         pin_surface=surface_of(pin_finish or finish),
         disc_surface=surface_of(disc_finish or finish),
         friction_coefficient=friction_coefficient,
+        decay_length=None if decay_length is None else reader("m", name="decay_length")(decay_length),
+        normal_stiffness=None if stiffness is None else reader("N/m", name="stiffness")(stiffness),
     )
     return rig_from(tomllib.loads(new_rig_text(known)))

@@ -8,7 +8,7 @@ from sonolube.cli.console.answer import Answer, aligned, si
 from sonolube.cli.predict.measured import Measurement
 from sonolube.report import Drawing
 from sonolube.rig import Rig
-from sonolube.rig.result_quantities import result_quantities, result_texts
+from sonolube.rig.datasets import result_quantities, result_texts
 from sonolube.units import format_quantity, format_si
 from sonolube.vocabulary import quantities
 

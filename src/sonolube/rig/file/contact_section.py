@@ -9,8 +9,11 @@ from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS, RoughContact
 from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair, identical_materials_mindlin_ratio
 from sonolube.errors import InvalidInput, MissingProperty
 from sonolube.materials import material, yield_strength_from_hardness
+from sonolube.rig.file.plausible import DECAY_LENGTHS
 from sonolube.rig.file.section import NameIn, Section
+from sonolube.rig.record import DecayLengthOrigin
 from sonolube.surfaces import Roughness, surface_finish
+from sonolube.units import format_si
 
 Text = Annotated[str, Field(min_length=1, max_length=1000)]
 
@@ -138,11 +141,17 @@ class PairSection(Section):
 
 
 class ContactSection(Section):
-    """The contact: its load, its bodies and their roughness."""
+    """The contact: its load, its bodies, their roughness, and its decay length where that is known itself."""
 
     normal_load: float
     nominal_area: float
     roughness: AnyRoughness
+    decay_length: float | None = None
+    decay_length_origin: DecayLengthOrigin | None = Field(
+        default=None, description='How decay_length is known; "stated" where absent, best known first in this list'
+    )
+    normal_stiffness: float | None = Field(default=None, description="in place of decay_length")
+    stiffness_load: float | None = None
     softer: BodySection | None = None
     harder: BodySection | None = None
     pair: PairSection | None = None
@@ -158,6 +167,7 @@ class ContactSection(Section):
         if self.softer is not None and self.harder is not None and self.softer.role == self.harder.role is not None:
             raise InvalidInput(f'softer.role and harder.role are both "{self.softer.role}"; give one of them')
         require_positive(normal_load=self.normal_load)
+        self._require_one_decay_length()
         if isinstance(self.roughness, RoughnessSection):
             self.contact(self.roughness)
 
@@ -169,7 +179,20 @@ class ContactSection(Section):
             nominal_area=self.nominal_area,
             heights=HEIGHT_DISTRIBUTIONS[self.height_distribution],
             asperity=ASPERITY_LAWS[self.asperity_law],
+            decay_length=self.own_decay_length(),
         )
+
+    def own_decay_length(self) -> float | None:
+        """Return the decay length of the file, by itself or by the normal stiffness; None without either. [m]"""
+        if self.normal_stiffness is None:
+            return self.decay_length
+        return (self.normal_load if self.stiffness_load is None else self.stiffness_load) / self.normal_stiffness
+
+    def origin_of_decay_length(self) -> DecayLengthOrigin | None:
+        """Return how the decay length is known; None where the file gives none."""
+        if self.normal_stiffness is not None:
+            return "normal_stiffness"
+        return None if self.decay_length is None else self.decay_length_origin or "stated"
 
     def material_of(self, role: str) -> str | None:
         """Return the material of the pin or the disc, where a body has that role and a material."""
@@ -177,6 +200,27 @@ class ContactSection(Section):
             if body is not None and other is not None and (body.role == role or other.role not in (None, role)):
                 return None if body.material is None else material(body.material).name
         return None
+
+    def _require_one_decay_length(self) -> None:
+        """Refuse two decay lengths, those that no contact has, and what belongs to one that is not there."""
+        for name in ("decay_length", "normal_stiffness", "stiffness_load"):
+            if (value := getattr(self, name)) is not None:
+                require_positive(**{name: value})
+        if self.decay_length is not None and self.normal_stiffness is not None:
+            raise InvalidInput("give either decay_length or normal_stiffness, got both")
+        if self.stiffness_load is not None and self.normal_stiffness is None:
+            raise InvalidInput("stiffness_load is the load of a measured normal_stiffness, which is missing")
+        if self.decay_length_origin is not None and self.decay_length is None:
+            raise InvalidInput(
+                "decay_length_origin says how decay_length is known, which is missing"
+                if self.normal_stiffness is None
+                else "decay_length_origin follows from normal_stiffness: leave it out"
+            )
+        length, (shortest, longest) = self.own_decay_length(), DECAY_LENGTHS
+        if length is not None and not shortest <= length <= longest:
+            given = "decay_length" if self.normal_stiffness is None else "load over normal_stiffness"
+            bounds = f"{format_si(shortest, 'm')} to {format_si(longest, 'm')}"
+            raise InvalidInput(f"{given} {format_si(length, 'm')} lies beyond any contact: expected {bounds}")
 
     def _pair(self) -> ContactPair:
         if self.pair is not None:

@@ -34,6 +34,12 @@ REPLACED: Final[Mapping[str, str]] = {
 }
 """Keys of what a file may state instead of a number, each with the key of the number."""
 
+ALTERNATIVES: Final[Mapping[str, tuple[str, ...]]] = {
+    "contact.decay_length": ("contact.normal_stiffness", "contact.stiffness_load", "contact.decay_length_origin"),
+    "contact.normal_stiffness": ("contact.decay_length", "contact.decay_length_origin"),
+}
+"""Keys of which a file has one, each with the entries whose place it takes where it is set."""
+
 DERIVED_SUMMITS: Final = (f"{ROUGHNESS}.summit_radius", f"{ROUGHNESS}.summit_density")
 """Keys that follow from the height where the file does not give them."""
 
@@ -52,7 +58,8 @@ def with_derived(content: Mapping[str, Any], file: RigFile) -> dict[str, Any]:
     -------
     dict
         Each derived number has an assumption with the relation and a distribution with its spread, unless the file
-        gives one; content that states all numbers is returned as it is.
+        gives one; content that states all numbers is returned as it is. A normal stiffness belongs to the load of the
+        file, so that the decay length stays the same under another one.
 
     Raises
     ------
@@ -71,8 +78,10 @@ def with_derived(content: Mapping[str, Any], file: RigFile) -> dict[str, Any]:
         if body is not None and body.hardness is not None:
             contact[name], more_reasons, more_laws = _body(contact[name], name, body.hardness)
             reasons, laws = {**reasons, **more_reasons}, {**laws, **more_laws}
+    if section.normal_stiffness is not None and section.stiffness_load is None:
+        contact["stiffness_load"] = contact["normal_load"]
     if not reasons:
-        return dict(content)
+        return {**content, "contact": contact}
     for key in file.uncertainty:
         if key in REPLACED:
             raise InvalidInput(f"uncertainty.{key}: give the distribution of {REPLACED[key]}, which follows from it")

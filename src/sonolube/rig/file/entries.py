@@ -8,7 +8,7 @@ from typing import Any
 
 from sonolube.errors import InvalidInput
 from sonolube.files import write_atomically
-from sonolube.rig.file.derived import DERIVED_SUMMITS, REPLACED, ROUGHNESS, TYPICAL
+from sonolube.rig.file.derived import ALTERNATIVES, DERIVED_SUMMITS, REPLACED, ROUGHNESS, TYPICAL
 from sonolube.rig.file.toml_file import prefixed
 from sonolube.rig.record import Rig
 
@@ -57,7 +57,8 @@ def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
     key : str
         Dotted, such as "drive.frequency".
     value : str or float
-        Where a number follows from it, such as the rms height from a finish, it takes the place of that number.
+        Where a number follows from it, such as the rms height from a finish, it takes the place of that number; a decay
+        length takes that of a normal stiffness, and the reverse.
 
     Raises
     ------
@@ -74,16 +75,25 @@ def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
             raise InvalidInput(f"{key}: {table} is not a table")
     if key.strip() in REPLACED:
         _forget(content, place, REPLACED[key.strip()])
+    if key.strip() in ALTERNATIVES:
+        for other in ALTERNATIVES[key.strip()]:
+            _remove(content, place, other)
+        content.get("assumptions", {}).pop(key.strip(), None)
     place[name] = value
 
 
 def _forget(content: dict[str, Any], place: dict[str, Any], number: str) -> None:
     """Remove a number, what else it could follow from, and what was derived with it, from a file."""
     table = number.rpartition(".")[0]
-    assumptions, uncertainty = content.get("assumptions", {}), content.get("uncertainty", {})
+    assumptions = content.get("assumptions", {})
     derived = [key for key in DERIVED_SUMMITS if str(assumptions.get(key, "")).startswith(TYPICAL)]
     siblings = [each for each in REPLACED if REPLACED[each] == number]
     for each in (number, *siblings, *(derived if table == ROUGHNESS else ())):
-        place.pop(each.rpartition(".")[2], None)
-        assumptions.pop(each, None)
-        uncertainty.pop(each, None)
+        _remove(content, place, each)
+
+
+def _remove(content: dict[str, Any], place: dict[str, Any], key: str) -> None:
+    """Remove an entry of a table of a file, with its assumption and its distribution."""
+    place.pop(key.rpartition(".")[2], None)
+    content.get("assumptions", {}).pop(key, None)
+    content.get("uncertainty", {}).pop(key, None)

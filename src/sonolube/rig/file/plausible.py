@@ -31,6 +31,9 @@ LIMITS: Mapping[str, tuple[float, float]] = MappingProxyType(
 )
 """Least and largest magnitude of what is not zero, by SI unit."""
 
+DECAY_LENGTHS = (1e-10, 1e-3)
+"""Shortest and longest decay length of a contact force. [m]"""
+
 _ANY_UNIT = (1e-30, 1e30)
 
 

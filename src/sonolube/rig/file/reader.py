@@ -14,7 +14,7 @@ from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.file.contact_section import RoughnessSection
-from sonolube.rig.file.derived import REPLACED, with_derived
+from sonolube.rig.file.derived import ALTERNATIVES, REPLACED, with_derived
 from sonolube.rig.file.entries import FileEntries, set_entry, with_entries
 from sonolube.rig.file.modes_file import read_modes
 from sonolube.rig.file.renamed import refuse_former_names
@@ -74,7 +74,8 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
     with prefixed(str(path)):
         content = read_toml(path, kind="a rig file")
         _refuse_repeated(changes)
-        stated = [change for change in changes if _key(change) in REPLACED]
+        # what another number follows from, such as a stiffness at the load of the file, before that load is replaced
+        stated = [change for change in changes if _key(change) in {*REPLACED, *ALTERNATIVES}]
         for change in stated:
             _apply(change, content)
         content = _with_numbers(content)
@@ -218,6 +219,7 @@ def _rig(file: RigFile) -> Rig:
         structure=structure,
         pin_material=file.contact.material_of("pin"),
         disc_material=file.contact.material_of("disc"),
+        decay_length_origin=file.contact.origin_of_decay_length(),
         assumptions=MappingProxyType(dict(file.assumptions)),
         uncertainty=distributions_of(file),
     )

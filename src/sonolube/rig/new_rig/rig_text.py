@@ -17,6 +17,7 @@ from sonolube.materials import Material, dry_friction, material, yield_strength_
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.reader import rig_from
 from sonolube.rig.file.stated_surface import deviation_of_range
+from sonolube.rig.new_rig.contact_compliance import compliance_entries
 from sonolube.rig.new_rig.known_surface import KnownSurface, lognormal_text, surfaces_in_contact
 from sonolube.rig.new_rig.pin_and_vibration import Entries, PinShape, Vibration, toml_text
 from sonolube.rig.record import Rig
@@ -28,6 +29,7 @@ _NO_METALS: Final = ("ceramic", "coating", "glass", "piezo_ceramic", "polymer")
 _POISSON_RATIO: Final = 0.33
 _POISSON_REASON: Final = "not in the catalogue; 0.33 assumed: 0.25 to 0.4 changes the effective modulus by 5 %"
 _MEASURED_FRICTION: Final = "normal 5 %"
+_HEIGHT: Final = "contact.roughness.rms_height"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,6 +51,11 @@ class KnownRig:
     pin_surface, disc_surface : KnownSurface
     friction_coefficient : float or None
         Measured without vibration; the range of the pair where None. []
+    decay_length : float or None
+        Length over which the contact force falls by a factor of e, where it is known; that of published tests where
+        both it and the stiffness are None. [m]
+    normal_stiffness : float or None
+        Measured normal stiffness of the contact under its load, in place of the decay length. [N/m]
     """
 
     pin: str
@@ -61,6 +68,8 @@ class KnownRig:
     pin_surface: KnownSurface
     disc_surface: KnownSurface
     friction_coefficient: float | None = None
+    decay_length: float | None = None
+    normal_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         require_positive(normal_load=self.normal_load, sliding_speed=self.sliding_speed, frequency=self.frequency)
@@ -135,10 +144,13 @@ def least_known(rig: Rig, *, count: int = 3) -> Sequence[LeastKnown]:
     Returns
     -------
     sequence of LeastKnown
-        The least known first; of entries that one measurement gives, the least known one.
+        The least known first; of entries that one measurement gives, the least known one. Without the rms height where
+        the rig has a decay length, since nothing uses it then.
     """
     entries: dict[str, LeastKnown] = {}
     for key, law in rig.uncertainty.items():
+        if key == _HEIGHT and rig.contact.decay_length is not None:
+            continue
         low, high = (float(each) for each in law.quantile((0.1587, 0.8413)))
         remedy = guidance()[name].obtain if (name := key.rpartition(".")[2]) in guidance() else "a measurement"
         one = LeastKnown(key=key, deviation=log(high / low) / 2, text=law.text, remedy=remedy)
@@ -158,9 +170,14 @@ def _contact(known: KnownRig) -> Entries:
     roughness, place = surface.roughness, "contact.roughness"
     roles = {"softer": "pin", "harder": "disc"} if softer is pin else {"softer": "disc", "harder": "pin"}
     assumed = {"softer": _assumed(softer), "harder": _assumed(harder)}
+    compliance = compliance_entries(decay_length=known.decay_length, normal_stiffness=known.normal_stiffness)
     return Entries(
         tables={
-            "contact": {"normal_load": toml_text(known.normal_load, "N"), "nominal_area": toml_text(area, "m2")},
+            "contact": {
+                "normal_load": toml_text(known.normal_load, "N"),
+                "nominal_area": toml_text(area, "m2"),
+                **compliance.tables["contact"],
+            },
             place: {
                 "rms_height": toml_text(roughness.rms_height, "m"),
                 "summit_radius": toml_text(roughness.summit_radius, "m"),
@@ -180,6 +197,7 @@ def _contact(known: KnownRig) -> Entries:
         },
         assumptions={
             "contact.nominal_area": known.shape.text,
+            **compliance.assumptions,
             f"{place}.rms_height": surface.height_reason,
             f"{place}.summit_radius": surface.summit_reason,
             f"{place}.summit_density": surface.summit_reason,
@@ -187,6 +205,7 @@ def _contact(known: KnownRig) -> Entries:
             **{f"contact.{body}.{key}": _POISSON_REASON for body, keys in assumed.items() for key in keys},
         },
         uncertainty={
+            **compliance.uncertainty,
             f"{place}.rms_height": lognormal_text(surface.height_deviation),
             f"{place}.summit_radius": lognormal_text(surface.radius_deviation),
             f"{place}.summit_density": lognormal_text(surface.density_deviation),

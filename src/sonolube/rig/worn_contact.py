@@ -1,0 +1,151 @@
+"""Decay length of worn contacts in published friction tests, and the caveat against one by roughness alone."""
+
+from dataclasses import dataclass, replace
+from math import exp, isfinite
+from typing import Final
+
+from sonolube.checks import require_positive, require_within
+from sonolube.contact import ExponentialHeights, contact_caveats, decay_length
+from sonolube.errors import SonolubeError
+from sonolube.rig.amplitude_source import resolved_vibration
+from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
+from sonolube.rig.linear_response import rest_separation
+from sonolube.rig.record import Rig
+
+CENTRAL_SHARE: Final = 0.8
+"""Share of published contacts whose range of decay lengths the caveat gives. []"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DecayLengthPopulation:
+    """Lognormal distribution of the decay length over worn contacts.
+
+    Parameters
+    ----------
+    median : float
+        Decay length that half of the contacts exceed, in m.
+    log_spread : float
+        Standard deviation of its logarithm, a pure number.
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive and finite.
+    """
+
+    median: float
+    log_spread: float
+
+    def __post_init__(self) -> None:
+        require_positive(median=self.median, log_spread=self.log_spread)
+
+    @property
+    def factor(self) -> float:
+        """Geometric standard deviation: 68 % lie between the median over it and the median times it. []"""
+        return exp(self.log_spread)
+
+    def central_range(self, *, share: float = CENTRAL_SHARE) -> tuple[float, float]:
+        """Return the central range that holds a share of the contacts, in m."""
+        from scipy.special import ndtri
+
+        require_within(0.0, 1.0, share=share)
+        width = exp(float(ndtri((1 + share) / 2)) * self.log_spread)
+        return self.median / width, self.median * width
+
+
+PUBLISHED_DECAY_LENGTH: Final = DecayLengthPopulation(median=1.5e-6, log_spread=0.7)
+"""Decay length of the worn contacts in the published friction tests.
+
+Learned with the friction models from the friction of those tests, not from their roughness: amplitude enters the models
+through its ratio to the decay length, and neither printed roughness nor load, hardness or size of the scar orders the
+lengths that the tests ask for."""
+
+
+def decay_length_caveat(rig: Rig, *, vibration_amplitude: float | None = None) -> str | None:
+    """Return the caveat against a decay length by roughness that worn contacts of published tests do not have.
+
+    Parameters
+    ----------
+    rig : Rig
+    vibration_amplitude : float, optional
+        Zero to peak, at which the friction of both decay lengths is compared; the stated one where absent. [m]
+
+    Returns
+    -------
+    str or None
+        With the friction ratio of a sine of that amplitude by the rig's own friction model, for its own decay length
+        and for the median of `PUBLISHED_DECAY_LENGTH`, where it has an amplitude; None where the rig states its decay
+        length, its heights are not exponential, or R_q/lambda lies within the central 80 % of that population.
+    """
+    heights, (low, high) = rig.contact.heights, PUBLISHED_DECAY_LENGTH.central_range()
+    if rig.contact.decay_length is not None or not isinstance(heights, ExponentialHeights):
+        return None
+    own = float(decay_length(rig.contact))
+    if low <= own <= high:
+        return None
+    return (
+        f"decay length by roughness R_q/{heights.decay:g} = {_micrometres(own)} um; worn contacts of published tests"
+        f" have {_micrometres(low)} to {_micrometres(high)} um ({100 * CENTRAL_SHARE:.0f} %); "
+        f"{_ratios_text(rig, vibration_amplitude)}give contact.decay_length or contact.normal_stiffness"
+    )
+
+
+def resting_caveats(rig: Rig, *, vibration_amplitude: float | None = None) -> tuple[str, ...]:
+    """Return the caveats of the contact of a rig under its load, that of its decay length included.
+
+    Parameters
+    ----------
+    rig : Rig
+    vibration_amplitude : float, optional
+        As of `decay_length_caveat`. [m]
+
+    Returns
+    -------
+    tuple of str
+
+    Raises
+    ------
+    OutsideRange
+        If the surfaces would be pressed through each other, so that no separation is left.
+    """
+    caveat = decay_length_caveat(rig, vibration_amplitude=vibration_amplitude)
+    return (*contact_caveats(rig.contact, separation=rest_separation(rig)), *(() if caveat is None else (caveat,)))
+
+
+def _ratios_text(rig: Rig, amplitude: float | None) -> str:
+    """Return the friction ratios by the decay length of the roughness and by that of published tests, in words."""
+    if amplitude is None:
+        amplitude = _stated_amplitude(rig)
+    if amplitude is None:
+        return ""
+    worn = replace(rig, contact=replace(rig.contact, decay_length=PUBLISHED_DECAY_LENGTH.median))
+    first, second = (_friction_ratio(one, amplitude) for one in (rig, worn))
+    if first is None and second is None:
+        return ""
+    texts = ["none by the model" if ratio is None else f"{ratio:.2f}" for ratio in (first, second)]
+    return f"friction ratio {texts[0]} with the first, {texts[1]} with their median; "
+
+
+def _stated_amplitude(rig: Rig) -> float | None:
+    """Return the amplitude that a rig states or measured, not one that has to be computed. [m]"""
+    try:
+        used = resolved_vibration(rig)
+    except SonolubeError:
+        return None
+    if used.sine_amplitude is None and used.source == "measured":
+        return rig.vibration_amplitude
+    return used.sine_amplitude
+
+
+def _friction_ratio(rig: Rig, amplitude: float) -> float | None:
+    """Return the friction ratio of a rig under a sine; None outside the range of its friction model."""
+    try:
+        motion = prescribed_sine(rig, vibration_amplitude=amplitude)
+        ratio = float(friction_ratios(rig, motion, sliding_speed=rig.sliding_speed).friction_ratio)
+    except SonolubeError:
+        return None
+    return ratio if isfinite(ratio) else None
+
+
+def _micrometres(length: float) -> str:
+    return f"{1e6 * length:.2g}"
