@@ -165,7 +165,7 @@ def rig_inputs(rig: Rig) -> RigInputs:
 
 def _measured_decay_length(rig: Rig) -> Input | None:
     """Decay length of the contact force as known on the rig, where the rig file has one of its own."""
-    length, origin = getattr(rig.contact,"decay_length",None), getattr(rig,"decay_length_origin",None) or "stated"
+    length, origin = rig.contact.decay_length, rig.decay_length_origin or "stated"
     if length is None or origin == "published_tests":
         return None
     spread, reason = _GIVEN_LENGTH, "given without a distribution"

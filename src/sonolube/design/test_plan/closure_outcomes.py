@@ -1,16 +1,17 @@
 """Outcomes of tests of a rig under each closure of the prediction, before or after own runs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+from scipy.special import logsumexp
 
 from sonolube.design.test_plan.information import ModelOutcomes
 from sonolube.prediction.closures import UncertainConditions
 from sonolube.prediction.evidence import TestedRig
-from sonolube.prediction.hierarchy import headroom, squared_distances
+from sonolube.prediction.hierarchy import discrepancy_correlation, discrepancy_deviation, squared_distances
 from sonolube.prediction.posterior import Posterior
-from sonolube.prediction.rig_draws import covariance_of_tests, discrepancies, rig_draws
+from sonolube.prediction.rig_draws import RigDraws, rig_draws
 
 DRAWS: Final = 512
 """Draws of the parameters of each closure."""
@@ -20,7 +21,6 @@ def closure_outcomes(
     posteriors: Sequence[Posterior],
     at: UncertainConditions,
     *,
-    weights: Mapping[str, float],
     own: TestedRig | None = None,
     seed: int = 0,
 ) -> list[ModelOutcomes]:
@@ -31,10 +31,9 @@ def closure_outcomes(
     posteriors : sequence of Posterior
     at : UncertainConditions
         Of the m candidates.
-    weights : mapping of str to float
-        Probability of each closure, after own runs.
     own : TestedRig, optional
-        Tests of the rig's own, which weigh the draws and on which the discrepancy is conditioned.
+        Tests of the rig's own, on which the draws and the discrepancy are conditioned; their density under each friction
+        model gives its probability. Equal probabilities without tests.
     seed : int
 
     Returns
@@ -46,30 +45,33 @@ def closure_outcomes(
     The model is that of `sonolube.prediction.hierarchy`: parameter and decay length of the rig drawn about those of the
     population, and a discrepancy correlated over amplitude and speed.
     """
-    return [_outcomes(posterior, at, weights[posterior.closure.name], own, seed) for posterior in posteriors]
+    drawn = [rig_draws(posterior, at, count=DRAWS, seed=seed, own=own) for posterior in posteriors]
+    evidence = np.array([each.log_evidence for each in drawn])
+    weights = np.exp(evidence - logsumexp(evidence))
+    return [_outcomes(each, at, weight=float(weight), seed=seed) for each, weight in zip(drawn, weights, strict=True)]
 
 
-def _outcomes(
-    posterior: Posterior, at: UncertainConditions, weight: float, own: TestedRig | None, seed: int
-) -> ModelOutcomes:
-    """Outcomes under one closure."""
-    pool, rng = rig_draws(posterior, at, seed=seed, own=own), np.random.default_rng(seed)
-    chosen = rng.permutation(pool.resampled(DRAWS, rng))
-    hyper, means = pool.hyperparameters[chosen], pool.means(at.conditions, chosen)
-    room, updates = headroom(means), None
+def _outcomes(drawn: RigDraws, at: UncertainConditions, *, weight: float, seed: int) -> ModelOutcomes:
+    """Outcomes under one friction model."""
+    chosen = np.random.default_rng(seed).permutation(drawn.rows.size)[:DRAWS]
+    draws = drawn.taken(chosen)
+    means, own, updates = draws.means(at.conditions), drawn.own, None
+    scale, log_length = draws.parameters.log_discrepancy, draws.hyperparameters[:, 5]
+    deviations = discrepancy_deviation(means, at.conditions, log_discrepancy=scale)
     if own is not None:
-        seen = pool.means(own.at.conditions, chosen)
-        across = discrepancies(hyper, at.conditions, own.at.conditions)
-        across = across * room[:, :, None] * headroom(seen)[:, None, :]
-        inverse = np.linalg.inv(np.linalg.cholesky(covariance_of_tests(hyper, seen, own)))
-        updates = across @ np.swapaxes(inverse, 1, 2)
+        tested = own.at.conditions
+        seen = draws.means(tested)
+        near = discrepancy_correlation(at.conditions, tested, log_length=log_length)
+        sides = discrepancy_deviation(seen, tested, log_discrepancy=scale)
+        inverse = np.linalg.inv(np.linalg.cholesky(draws.covariance(seen)))
+        updates = near * deviations[:, :, None] * sides[:, None, :] @ np.swapaxes(inverse, 1, 2)
         means = means + np.einsum("jmn,jn->jm", updates, np.einsum("jab,jb->ja", inverse, own.friction_ratio - seen))
     return ModelOutcomes(
-        name=posterior.closure.name,
+        name=draws.posterior.closure.name,
         weight=weight,
         means=means,
-        deviations=np.exp(hyper[:, 3, None]) * room,
+        deviations=deviations,
         squared_distances=squared_distances(at.conditions, at.conditions),
-        lengths=np.exp(hyper[:, 4]),
+        lengths=np.exp(log_length),
         updates=updates,
     )

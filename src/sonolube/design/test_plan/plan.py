@@ -19,7 +19,7 @@ from sonolube.prediction.closures import Conditions, UncertainConditions
 from sonolube.prediction.inputs import RigInputs, rig_inputs
 from sonolube.prediction.own_runs import own_runs
 from sonolube.prediction.posterior import learned
-from sonolube.prediction.predictive import ratio_draws
+from sonolube.prediction.predictive import rig_prediction
 from sonolube.prediction.scores import central_interval
 from sonolube.published import column_numbers
 from sonolube.rig import Rig
@@ -224,12 +224,13 @@ def plan_tests(
         raise InvalidInput(f"{points} points with {replicates} replicates; a plan has 1 to {MOST_RUNS} runs")
     candidates = candidate_tests(rig, inputs, factors, limits=limits, pin=pin, disc=disc)
     at, tested = _conditions(candidates, inputs), None if own is None else own.tested
-    found = ratio_draws(learned().friction, at, count=_DRAWS, seed=seed, own=tested)
-    chance = np.mean(1 - found.friction_ratio >= question.difference, axis=0)
+    found = rig_prediction(learned().friction, at, count=_DRAWS, seed=seed, own=tested)
+    ratios = found.ratios(at.conditions)
+    chance = np.mean(1 - ratios >= question.difference, axis=0)
     allowed = _allowed(candidates, points)
-    _require_effect(1 - np.median(found.friction_ratio, axis=0)[allowed], question.difference)
+    _require_effect(1 - np.median(ratios, axis=0)[allowed], question.difference)
     noise = np.full(at.conditions.sliding_speed.shape, deviation / np.sqrt(replicates))
-    models = closure_outcomes(learned().friction, at, weights=found.weights, own=tested, seed=seed)
+    models = closure_outcomes(learned().compared, at, own=tested, seed=seed)
     batch = best_batch(models, count=points, noise=noise, allowed=allowed, seed=seed)
     singles = [mutual_information(models, np.array([each]), noise=noise, seed=seed) for each in range(noise.size)]
     order = randomised_runs(points, replicates, blocking=procedure.blocking, specimens=comparison.specimens, seed=seed)
@@ -243,10 +244,10 @@ def plan_tests(
         candidates=candidates,
         information=np.array(singles),
         batch=batch,
-        interval=np.array(central_interval(found.friction_ratio, 0.8)),
-        median=np.median(found.friction_ratio, axis=0),
+        interval=np.array(central_interval(ratios, 0.8)),
+        median=np.median(ratios, axis=0),
         chance=chance,
-        weights=found.weights,
+        weights={each.name: each.weight for each in models},
         closure_medians={each.name: np.median(each.means, axis=0) for each in models},
         friction_coefficient=inputs.friction.value,
         runs=order,
@@ -254,7 +255,7 @@ def plan_tests(
         materials=None if pin is None or disc is None else (pin, disc),
         caveats=() if own is None else own.caveats,
     )
-    return replace(plan, caveats=(*_caveats(plan, inputs, explained=found.explained), *plan.caveats))
+    return replace(plan, caveats=(*_caveats(plan, inputs, contradicted=found.check is not None and found.check.contradicted), *plan.caveats))
 
 
 def _scatter(question: Question, runs: "xr.Dataset | None") -> Scatter:
@@ -275,7 +276,7 @@ def _conditions(candidates: Candidates, inputs: RigInputs) -> UncertainCondition
             sliding_speed=candidates.sliding_speed,
             decay_length=candidates.decay_length,
         ),
-        decay_length_spread=inputs.roughness.spread,
+        decay_length_spread=inputs.at().decay_length_spread,
         amplitude_spread=inputs.amplitude.spread,
     )
 
@@ -303,7 +304,7 @@ def _require_effect(reductions: Floats, difference: float) -> None:
         )
 
 
-def _caveats(plan: TestPlan, inputs: RigInputs, *, explained: bool) -> Iterator[str]:
+def _caveats(plan: TestPlan, inputs: RigInputs, *, contradicted: bool) -> Iterator[str]:
     """Reasons for caution about a plan."""
     if plan.scatter.caveat:
         yield plan.scatter.caveat
@@ -321,8 +322,8 @@ def _caveats(plan: TestPlan, inputs: RigInputs, *, explained: bool) -> Iterator[
             f"at point {_listed(doubtful)} a reduction of {100 * plan.question.difference:.0f} % is less likely than"
             " not; it is there to tell the closures apart"
         )
-    if not explained:
-        yield "no closure explains the measured runs; the information counts their uncertainty as stated"
+    if contradicted:
+        yield "the measured runs contradict every friction model; the plan tells models apart that are all in doubt"
     if np.unique(plan.candidates.normal_load).size > 1:
         yield "closures depend on the load by the separation only; to test the load itself, keep speed and amplitude"
 
