@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pytest import approx, raises
-from scipy.special import i0
+from scipy.special import ellipk, i0
 
 from sonolube.contact import decay_length
 from sonolube.errors import InvalidInput, UnknownName
@@ -107,8 +107,45 @@ def test_a_set_left_out_is_predicted_by_the_best_fit_to_the_others(published: tu
 
 def test_without_free_parameters_cross_validation_equals_the_fit(published: tuple[ComparedFit, ...]) -> None:
     for one in published:
-        if not one.parameters:
+        if not one.parameters and one.model.seen is None:
             assert all(prediction.fitted == prediction.cross_validated for prediction in one.predictions)
+
+
+def test_a_default_is_judged_by_refits_to_the_sets_that_it_was_taken_from() -> None:
+    # written out on the closed form: 1.5 um has seen A and C to G; each of these is predicted by the memory length of
+    # least squares over the others of them, by grid search, and B, which it has not seen, by 1.5 um itself
+    tests = friction_tests("ACDEFG")
+    tried = np.geomspace(0.5e-6, 5e-6, 2000)
+
+    def predicted(test: FrictionTest) -> np.ndarray:
+        return sine_stick_slip_ratio(
+            decay_length=test.contact.roughness.rms_height / 3,
+            vibration_amplitude=test.vibration_amplitude,
+            frequency=test.frequency,
+            sliding_speed=test.sliding_speed,
+            memory_length=np.append(tried, 1.5e-6),
+        )
+
+    squares = {test.label: (predicted(test)[:-1] - test.friction_ratio) ** 2 for test in tests}
+    expected = {test.label: float(predicted(test)[-1]) for test in friction_tests("B")}
+    for test in tests:
+        best = int(np.argmin(sum(squares[other.label] for other in tests if other.set_name != test.set_name)))
+        expected[test.label] = float(predicted(test)[best])
+    (default,) = compare_models(compared_models(["asperity-stick-slip"]))
+    unseen = {one.test.label: one.cross_validated for one in default.predictions if one.test.set_name in FITTED_SETS}
+    assert unseen == approx(expected, abs=2e-3)
+    assert default.assessment is not None
+    errors = [expected[test.label] - test.friction_ratio for test in friction_tests(FITTED_SETS)]
+    assert default.assessment.cross_validation_errors.rms == approx(np.sqrt(np.mean(np.square(errors))), abs=1e-3)
+    assert default.assessment.cross_validation_errors.rms > default.assessment.fit_errors.rms + 0.01
+
+
+def test_a_model_whose_default_has_seen_the_tests_ranks_by_its_refits_and_counts_its_constant() -> None:
+    default, fitted = "asperity-stick-slip", "asperity-stick-slip-fitted"
+    ranked = compare_models(compared_models([default, fitted, "kinematic", "asperity-stick-slip-mindlin"]))
+    assert [one.model.name for one in ranked] == [fitted, default, "kinematic", "asperity-stick-slip-mindlin"]
+    criteria = {one.model.name: one.assessment.information for one in ranked if one.assessment is not None}
+    assert [None if each is None else each.parameter_count for each in criteria.values()] == [1, 1, 0, 0]
 
 
 def test_every_test_has_a_prediction_or_a_reason(published: tuple[ComparedFit, ...]) -> None:
@@ -250,6 +287,19 @@ def test_the_error_on_a_single_set_is_no_uncertainty_of_a_rig(published: tuple[C
     assert coulomb.friction_ratio == approx(2 / pi * np.arcsin(zeta))
     assert coulomb.uncertainty is None
     assert list(predicted)[-1] != "coulomb-in-plane"  # those that do not apply come last
+
+
+def test_the_dataset_has_the_prediction_of_a_rig_by_each_model_under_its_own_name() -> None:
+    # kinematic is the mean of v/sqrt(v^2 + V^2 cos^2), a complete elliptic integral, by hand here
+    fits = compare_models(compared_models(["kinematic", "asperity-stick-slip", "asperity-stick-slip-mindlin"]))
+    rig = read_rig(ROOT / "examples/rigs/tribometer.toml")
+    table = comparison_dataset(fits, predict_rig(fits, vibrated_rig(rig)))
+    velocity = 2 * pi * 22e3 * steady_vibration(rig).vibration_amplitude
+    whole = np.hypot(20.3e-3, velocity)
+    expected = 2 / pi * 20.3e-3 / whole * ellipk((velocity / whole) ** 2)
+    assert float(table["rig_friction_ratio"].sel(model="kinematic")) == approx(expected, rel=1e-3)
+    held = table["rig_uncertainty"] - table["rms_cross_validated"]
+    assert held.to_numpy() == approx(0.0)
 
 
 def test_a_rig_that_does_not_vibrate_is_refused() -> None:

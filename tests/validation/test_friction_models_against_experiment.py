@@ -225,7 +225,8 @@ def test_in_plane_motion_of_the_power_map_is_not_worth_its_two_parameters() -> N
     assert normal is not None
     assert moving.parameter_count == normal.parameter_count + 2
     assert normal.aicc - 2 < moving.aicc < normal.aicc  # no more than a tie
-    unseen = [cross_validation_errors(NAMED[f"asperity-stick-slip{end}"], FITTED_SETS).rms for end in ("", "-in-plane")]
+    names = ("asperity-stick-slip-fitted", "asperity-stick-slip-in-plane")
+    unseen = [cross_validation_errors(NAMED[name], FITTED_SETS).rms for name in names]
     assert unseen[0] < unseen[1]
 
 

@@ -159,6 +159,33 @@ def test_three_conditions_decide_nothing_and_the_next_one_lies_where_models_diff
         assert one.condition.strength <= 2.5e-6 * beyond * (1 + 1e-9)
 
 
+def test_a_model_worse_than_the_mean_of_the_runs_is_not_said_to_be_decided() -> None:
+    # one ratio whatever speed and amplitude: the mean of the others errs by noise alone, cos(theta) by tenths
+    amplitude, speed = conditions()
+    ratios = 0.5 + 0.01 * np.random.default_rng(6).standard_normal(amplitude.size)
+    result = fit_runs(
+        runs(ratios, amplitude, speed), models=compared_models(["kinematic", "coulomb-longitudinal-fitted"])
+    )
+    mean_of_others = (ratios.sum() - ratios) / (ratios.size - 1)
+    assert result.rms_of_mean == approx(np.sqrt(np.mean((mean_of_others - ratios) ** 2)))
+    assert result.models[0].rms_unseen > 5 * result.rms_of_mean
+    assert not result.is_decided
+    assert "no model predicts better than the mean of the other conditions" in result.verdict
+    assert "decided" not in result.verdict.removeprefix("not decided")
+    alone = fit_runs(runs(ratios, amplitude, speed), models=compared_models(["kinematic"]))
+    assert alone.verdict.startswith("not decided: no model predicts better than the mean")
+
+
+def test_a_model_better_than_the_mean_and_than_every_other_is_decided() -> None:
+    amplitude, speed = conditions()
+    noise = 0.003 * np.random.default_rng(8).standard_normal(amplitude.size)
+    exact = across(speed, 2 * np.pi * FREQUENCY * amplitude)
+    models = compared_models(["kinematic", "coulomb-longitudinal-fitted"])
+    result = fit_runs(runs(exact + noise, amplitude, speed), models=models)
+    assert result.is_decided
+    assert result.verdict == "decided: kinematic predicts unseen conditions better than every other, by paired errors"
+
+
 def test_repeats_count_as_one_condition_with_the_error_of_their_mean() -> None:
     ratios = np.array([0.48, 0.50, 0.52, 0.7])
     table = run_conditions(runs(ratios, [1e-6, 1e-6, 1e-6, 5e-7], 0.05))

@@ -1,7 +1,9 @@
 """Assessment of model variants: error statistics, leave-one-set-out cross-validation and information criteria.
 
 Sets A and C to G are fitted without Table 4.2 (set B) and with it. The cross-validation error predicts each set by a
-fit to the others: it is the error to expect on a rig that was not fitted.
+fit to the others: it is the error to expect on a rig that was not fitted. A set that a fixed constant was taken from is
+predicted with that constant fitted to the others it was taken from, so that no error is of tests that a default has
+seen.
 """
 
 from collections.abc import Iterable
@@ -11,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from sonolube.validation.fitting import Fit, fit_variant, root_mean_square, select_tests
-from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.model_variant import ModelVariant, SeenSets
 from sonolube.validation.published_tests import MeasuredConditions, Tests
 
 SETS_WITHOUT_POWER_MAP: Final = "ACDEFG"
@@ -76,7 +78,7 @@ class Assessment:
     fit_errors : ErrorStatistics
         Errors of that fit.
     cross_validation_errors : ErrorStatistics
-        Errors with each set predicted by a fit to the others.
+        Errors with each set predicted by what has not seen it.
     information : InformationCriteria or None
         Criteria of the fit; None where a test is outside the range of the model.
     """
@@ -132,25 +134,42 @@ def error_statistics(predicted: Iterable[tuple[MeasuredConditions, float | None]
 
 
 def leave_one_set_out_fits(variant: ModelVariant, sets: str, *, tests: Tests | None = None) -> tuple[Fit, ...]:
-    """Return for each set, in order, the fit to all the others, which starts from the fit to all."""
+    """Return for each set, in order, the fit that has not seen it: to all the others, from the fit to all.
+
+    Where the set is one that a fixed constant was taken from, that constant is fitted to the rest of these sets.
+    """
     initial = fit_variant(variant, sets, tests=tests).values
-    return tuple(fit_variant(variant, sets.replace(one, ""), initial=initial, tests=tests) for one in sets)
+    return tuple(
+        _refit_without(variant.seen, one, tests)
+        if variant.seen is not None and one in variant.seen.sets
+        else fit_variant(variant, sets.replace(one, ""), initial=initial, tests=tests)
+        for one in sets
+    )
+
+
+def _refit_without(seen: SeenSets, one: str, tests: Tests | None) -> Fit:
+    """Return the model with its constant fitted to the sets that it was taken from, without one of them."""
+    others = seen.sets.replace(one, "")
+    return fit_variant(seen.refitted, others, tests=tests if select_tests(others, tests) else None)
 
 
 def cross_validation_errors(variant: ModelVariant, sets: str, *, tests: Tests | None = None) -> ErrorStatistics:
-    """Return the error statistics with each set predicted by a fit to the others."""
+    """Return the error statistics with each set predicted by a fit that has not seen it."""
     fits = zip(sets, leave_one_set_out_fits(variant, sets, tests=tests), strict=True)
     return error_statistics((test, fit.predict(test)) for one, fit in fits for test in select_tests(one, tests))
 
 
 def information_criteria(fit: Fit, tests: Tests) -> InformationCriteria | None:
-    """Return the information criteria of a fit on some tests; None where one is outside the range of the model."""
+    """Return the information criteria of a fit on some tests; None where one is outside the range of the model.
+
+    A fixed constant that was taken from published tests counts as a fitted parameter.
+    """
     errors = prediction_errors(fit, tests)
     if errors.out_of_range:
         return None
     sets = "".join(test.set_name for test in tests)
     fitted = sum(parameter.applies_to(sets) for parameter in fit.variant.parameters) if fit.sets else 0
-    return gaussian_criteria(errors.rms, count=len(tests), parameter_count=fitted)
+    return gaussian_criteria(errors.rms, count=len(tests), parameter_count=fitted + fit.variant.seen_constants)
 
 
 def gaussian_criteria(rms: float, *, count: int, parameter_count: int) -> InformationCriteria:

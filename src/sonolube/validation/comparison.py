@@ -2,7 +2,7 @@
 
 A variant is fitted to the friction ratios of all tests whose conditions have its required inputs; then each set of
 tests is left out in turn and predicted by a fit to the others. This cross-validation error, not that of the fit, is the
-uncertainty of a prediction on another rig.
+uncertainty of a prediction on another rig, and ranks the variants.
 """
 
 from collections.abc import Callable, Iterable
@@ -109,7 +109,7 @@ class Prediction:
     fitted : float or None
         Friction ratio by the fit to all sets; None where the variant does not apply.
     cross_validated : float or None
-        Friction ratio by the fit to the other sets.
+        Friction ratio by what has not seen the set: the fit to the other sets.
     reason : str or None
         Reason why the variant does not apply to the test, or why its ratio, here always that of the formula, is outside
         the range of the friction model.
@@ -234,12 +234,12 @@ def compare_models(
     Returns
     -------
     tuple of ComparedFit
-        In increasing order of the corrected Akaike criterion; after them those without one, in increasing order of
-        their cross-validation error.
+        Those that reach the most tests first; of these in increasing order of their cross-validation error.
 
     Notes
     -----
-    Information criteria are comparable on the same tests only, not between variants assessed on different sets.
+    Errors and information criteria are comparable on the same tests only, not between variants assessed on different
+    sets.
     """
     fits = []
     for done, model in enumerate(models, start=1):
@@ -349,8 +349,7 @@ def _rig_rank(one: RigPrediction) -> tuple[bool, float]:
     return one.friction_ratio is None, float("inf") if one.uncertainty is None else one.uncertainty
 
 
-def _rank(one: ComparedFit) -> tuple[bool, float]:
-    """Return the sort key of a fit: whether it has no corrected Akaike criterion, then criterion or error."""
-    if one.aicc is not None:
-        return False, one.aicc
-    return True, one.assessment.cross_validation_errors.rms if one.assessment else float("inf")
+def _rank(one: ComparedFit) -> tuple[int, float]:
+    """Return the sort key of a fit: the tests that it reaches, most first, then its cross-validation error."""
+    unseen = None if one.assessment is None else one.assessment.cross_validation_errors
+    return (0, float("inf")) if unseen is None else (-unseen.count, unseen.rms)

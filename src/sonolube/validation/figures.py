@@ -52,14 +52,14 @@ def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> Itera
         caption="Filled: by the fit to all sets A to G. Open: each set by a fit to the others, where "
         "that differs; set H by the fit to all. On the line both would agree; ratios outside the frame are drawn "
         "at its edge. k fitted parameters, rms errors of the fit and of the cross-validation (CV). The "
-        f"{_PANELS} models of the lowest corrected Akaike criterion.",
+        f"{_PANELS} models of the least error of the cross-validation.",
         draw=lambda: predicted_against_measured_figure(comparison_dataset(compared())),
     )
     yield ReportFigure(
         name="models-over-speed-and-amplitude",
         title="Models of friction under vibration over speed and amplitude",
         caption="Points and scatter: Tables 2.3 and 4.2. Lines: models fitted to all sets, of each family the one "
-        "of the lowest corrected Akaike criterion.",
+        "of the least error of the cross-validation.",
         draw=lambda: _over_speed_and_amplitude(_best_of_each_family(assessed())[:_CURVES]),
     )
 

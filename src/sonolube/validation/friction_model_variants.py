@@ -20,7 +20,7 @@ from sonolube.validation.free_parameters import (
     NOMINAL_AREA_FACTOR,
     per_rig,
 )
-from sonolube.validation.model_variant import NORMAL_VIBRATION, SINUSOIDAL_VIBRATION, ModelVariant
+from sonolube.validation.model_variant import NORMAL_VIBRATION, SINUSOIDAL_VIBRATION, ModelVariant, SeenSets
 from sonolube.validation.published_tests import FrictionTest
 
 
@@ -152,6 +152,13 @@ def _balanced(test: FrictionTest) -> GapMotion:
 _MEAN_GAP_CORRECTED: Final = "D 3.46 to 3.48, mean gap corrected"
 _KINEMATIC_SOURCE: Final = "D 3.46; Kumar and Hutchings 2004, across"
 _IN_PLANE_POWER_MAP: Final = per_rig(IN_PLANE_MOTION, "power map")
+_FITTED_STICK_SLIP: Final = ModelVariant(
+    "asperity-stick-slip-fitted",
+    "asperity stick-slip, memory length fitted",
+    _normal_stick_slip,
+    (MEMORY_LENGTH,),
+    takes_columns=True,
+)
 
 FRICTION_MODEL_VARIANTS: Final = (
     ModelVariant(
@@ -213,16 +220,11 @@ FRICTION_MODEL_VARIANTS: Final = (
     ),
     ModelVariant(
         "asperity-stick-slip",
-        "asperity stick-slip with the default memory length of 1.5 um, which was fitted to all sets but B",
+        "asperity stick-slip with the default memory length of 1.5 um, which has seen all sets but B",
         _default_stick_slip,
+        seen=SeenSets("ACDEFG", _FITTED_STICK_SLIP),
     ),
-    ModelVariant(
-        "asperity-stick-slip-fitted",
-        "asperity stick-slip, memory length fitted",
-        _normal_stick_slip,
-        (MEMORY_LENGTH,),
-        takes_columns=True,
-    ),
+    _FITTED_STICK_SLIP,
     ModelVariant(
         "asperity-stick-slip-decay-constant",
         "asperity stick-slip, memory length and decay constant of the heights fitted",

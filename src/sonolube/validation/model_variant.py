@@ -46,6 +46,22 @@ _FEWEST_TOGETHER: Final = 8  # conditions, from which arrays are worth their mak
 
 
 @dataclass(frozen=True, slots=True)
+class SeenSets:
+    """Published sets of tests that a constant of a model was taken from.
+
+    Parameters
+    ----------
+    sets : str
+        Their letters.
+    refitted : ModelVariant
+        The model with that constant fitted, which predicts each of these sets by the others.
+    """
+
+    sets: str
+    refitted: "ModelVariant"
+
+
+@dataclass(frozen=True, slots=True)
 class ModelVariant:
     """Model of friction under vibration with its free parameters.
 
@@ -67,6 +83,8 @@ class ModelVariant:
         Friction model of the program whose range of validity the variant has.
     takes_columns : bool
         Whether `ratio` takes `ConditionColumns` too, and then returns the ratios of all conditions.
+    seen : SeenSets, optional
+        Published tests that a fixed constant was taken from; none where absent.
     """
 
     name: str
@@ -77,6 +95,12 @@ class ModelVariant:
     source: str = "this program"
     friction_model: type[FrictionModel] | None = None
     takes_columns: bool = False
+    seen: SeenSets | None = None
+
+    @property
+    def seen_constants(self) -> int:
+        """Number of fixed constants that were taken from published tests."""
+        return 0 if self.seen is None else len(self.seen.refitted.parameters) - len(self.parameters)
 
     def inapplicability(self, conditions: Conditions) -> str | None:
         """Return the required inputs that the conditions lack, as a sentence; None if they lack none."""

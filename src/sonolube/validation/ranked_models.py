@@ -70,7 +70,7 @@ class RankedModel:
 
 
 def own_rig_variants(models: Iterable[ModelVariant]) -> tuple[ModelVariant, ...]:
-    """Return model variants whose parameters of single published rigs are those of one rig of a user's own.
+    """Return model variants whose parameters of single published rigs are those of one rig, whose runs none has seen.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def own_rig_variants(models: Iterable[ModelVariant]) -> tuple[ModelVariant, ...]
     distinct: dict[object, ModelVariant] = {}
     for model in models:
         parameters = {each.name: replace(each, applicable_sets="") for each in model.parameters}
-        own = replace(model, parameters=tuple(parameters.values()))
+        own = replace(model, parameters=tuple(parameters.values()), seen=None)
         distinct.setdefault((model.ratio, frozenset(parameters)), own)
     return tuple(distinct.values())
 

@@ -4,7 +4,7 @@ The repeats of a condition are averaged, and each condition is predicted by a fi
 models, paired by condition, say whether the runs tell them apart.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -57,27 +57,35 @@ class RunsFit:
 
     @property
     def is_decided(self) -> bool:
-        """Whether the runs tell the first model from every other."""
-        return bool(self.models) and not self.tied and len(self.table.conditions) >= _FEWEST_CONDITIONS
+        """Whether the runs tell the first model from every other, and it predicts better than their mean."""
+        return bool(self.models) and not list(self._doubts())
 
     @property
     def verdict(self) -> str:
         """Whether the ranking is decided, in a sentence."""
         if not self.models:
             return "no model applies to these runs"
+        best, doubts = self.models[0].name, list(self._doubts())
+        if doubts:
+            return f"not decided: {'; '.join(doubts)}"
+        if len(self.models) == 1:
+            return f"only {best} applies, and predicts unseen conditions better than the mean of the others"
+        return f"decided: {best} predicts unseen conditions better than every other, by paired errors"
+
+    def _doubts(self) -> Iterator[str]:
+        """Yield each reason for which the first model does not win."""
         best, count = self.models[0], len(self.table.conditions)
-        others = [one.name for one in self.tied]
         if count < _FEWEST_CONDITIONS:
-            text = f"not decided: {count} conditions are too few to rank models; {best.name} leads"
-        elif others:
-            text = f"not decided: {count} conditions do not tell {best.name} from {_listed(others)}"
-        elif len(self.models) == 1:
-            text = f"only {best.name} applies"
-        else:
-            text = f"decided: {best.name} predicts unseen conditions better than every other, by paired errors"
-        if best.rms_unseen >= self.rms_of_mean:
-            text += "; none predicts better than the mean of the other conditions"
-        return text
+            yield f"{count} conditions are too few to rank models; {best.name} leads"
+        elif self.tied:
+            yield f"{count} conditions do not tell {best.name} from {_listed([one.name for one in self.tied])}"
+        if best.reached < count:
+            yield f"no model reaches every condition; {best.name} reaches {best.reached} of {count}"
+        elif best.rms_unseen >= self.rms_of_mean:
+            yield (
+                f"no model predicts better than the mean of the other conditions; {best.name}, the best, errs by"
+                f" {best.rms_unseen:.3f}, the mean by {self.rms_of_mean:.3f}"
+            )
 
 
 def fit_runs(

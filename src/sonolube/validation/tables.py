@@ -51,6 +51,8 @@ def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPred
         return dimensions, np.array([*values], dtype=np.float64), {"units": "1", "long_name": long_name}
 
     rig_variables: dict[str, Any] = {}
+    of_model = {one.model.name: one for one in predictions}
+    predictions = tuple(of_model[one.model.name] for one in fits if one.model.name in of_model)
     if predictions:
         rig_variables = {
             "rig_friction_ratio": variable(
@@ -90,7 +92,7 @@ def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPred
             "rms_cross_validated": variable(
                 "model",
                 (one.assessment.cross_validation_errors.rms if one.assessment else None for one in fits),
-                "Root mean square error with each set predicted by a fit to the others",
+                "Root mean square error with each set predicted by a fit that has not seen it",
             ),
             "fitted_parameters": ("model", [len(one.parameters) for one in fits], {"long_name": "Fitted parameters"}),
             "aicc": variable("model", (one.aicc for one in fits), "Akaike criterion corrected for small samples"),

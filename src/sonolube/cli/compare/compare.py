@@ -102,8 +102,9 @@ class ComparisonAnswer(Answer):
         tests = self.fits[0].predictions
         width = max(len(one.model.name) for one in self.fits)
         return [
-            f"{len(self.fits)} models, {len(tests)} tests in sets {', '.join(DATA_SETS)}; errors of the friction ratio",
-            f"  {'model':<{width}}  sets      tests  k     rms  rms CV  median    AICc",
+            f"{len(self.fits)} models, {len(tests)} tests in sets {', '.join(DATA_SETS)}; errors of the friction ratio,"
+            " unseen: of each set by what has not seen it",
+            f"  {'model':<{width}}  sets      tests  k     rms  unseen  median    AICc",
             *[f"  {line}" for one in self.fits if one.assessment for line in _error_lines(one, width)],
             *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
             *[f"  not reached: {line}" for one in self.fits for line in _refusals(one)],
@@ -164,6 +165,8 @@ def _error_lines(one: ComparedFit, width: int) -> Iterator[str]:
     )
     for parameter in one.parameters:
         yield f"    {parameter_text(parameter)}"
+    if one.model.seen is not None:
+        yield f"    rms and AICc in sample: a default has seen sets {', '.join(one.model.seen.sets)}; unseen by refits"
 
 
 def _refusals(one: ComparedFit) -> Iterator[str]:
@@ -239,6 +242,7 @@ def _model_object(one: ComparedFit) -> dict[str, Any]:
         "source": one.model.source,
         "required_inputs": list(one.model.required_inputs),
         "sets": list(one.sets),
+        "seen_by_default": [] if one.model.seen is None else list(one.model.seen.sets),
         "errors": errors,
         "fitted": [_parameter_object(parameter) for parameter in one.parameters],
         "predictions": [_prediction_object(prediction) for prediction in one.predictions],

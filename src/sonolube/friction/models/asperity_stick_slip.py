@@ -78,7 +78,7 @@ class AsperityStickSlip(FrictionModel):
 
     name: ClassVar[str] = "asperity_stick_slip"
     citation: ClassVar[str] = (
-        "load-balanced exponential stick-slip; D_c = 1.5 um fitted to D Tables 2.3 and 4.2 and sections 2.4 and 2.5"
+        "load-balanced exponential stick-slip; D_c = 1.5 um fitted to D Table 2.3 and sections 2.4 and 2.5"
     )
 
     memory_length: float = parameter(EMPIRICAL_MEMORY_LENGTH, positive=True)
