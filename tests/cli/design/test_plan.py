@@ -2,6 +2,7 @@
 
 import csv
 import io
+import itertools
 import tomllib
 from collections import Counter
 from dataclasses import dataclass
@@ -100,7 +101,7 @@ def test_every_run_has_a_protocol_that_reads_back_and_lasts_as_planned(sonolube:
     for path, speed in zip(paths, speeds, strict=True):
         protocol = read_protocol(path)
         assert protocol_from(tomllib.loads(protocol_text(protocol))) == protocol
-        assert duration(protocol) == pytest.approx(0.5 + 2 * np.ceil(2 / speed + 10))
+        assert duration(protocol) == pytest.approx(0.5 + 3 * np.ceil(2 / speed) + 2 * 10)
         assert max(point.sliding_speed or 0.0 for point in flattened(protocol)) == pytest.approx(speed, rel=1e-5)
 
 
@@ -112,6 +113,32 @@ def test_the_protocols_drive_the_voltage_of_the_table(planned: Planned) -> None:
         highest = max(flattened(read_protocol(path)), key=lambda point: point.voltage_peak_to_peak)
         assert highest.voltage_peak_to_peak == pytest.approx(float(row["voltage_peak_to_peak [V]"]), rel=1e-5)
         assert highest.voltage_offset == pytest.approx(highest.voltage_peak_to_peak / 2)
+
+
+def test_the_plan_and_its_runs_begin_with_the_rigs_own_operating_point(planned: Planned) -> None:
+    # D Table 4.1 and 4.2: 5 N, 65.5 mm/s, 2.31 um at 25.9 V, none of the speeds asked for
+    first, run = planned.answer["points"][0], rows_of(planned.folder / "power_map-plan-runs.csv")[0]
+    for name, value in {"normal_load": 5, "sliding_speed": 65.5e-3, "vibration_amplitude": 2.31e-6}.items():
+        assert first[name]["value"] == pytest.approx(value, rel=1e-3)
+    assert (run["sliding_speed [mm/s]"], run["normal_load [N]"]) == ("65.5", "5")
+    assert planned.answer["points"][1]["sliding_speed"]["value"] != pytest.approx(65.5e-3, rel=1e-3)
+
+
+def test_a_drift_over_a_run_by_its_protocol_leaves_the_difference_of_the_states(planned: Planned) -> None:
+    path = sorted((planned.folder / "power_map-plan").glob("*.toml"))[0]
+    protocol = read_protocol(path)
+    windows: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
+    for point, end in itertools.pairwise(flattened(protocol)):
+        step = protocol.steps[int(point.step) - 1] if point.step else None
+        if step is not None and step.kind == "wait" and step.reason.endswith("measured"):
+            windows[point.voltage_peak_to_peak > 0].append((point.time, end.time))
+    middles, lengths = (
+        {on: np.array([pick(*window) for window in windows[on]]) for on in windows}
+        for pick in (lambda begin, end: (begin + end) / 2, lambda begin, end: end - begin)
+    )
+    assert lengths[True].sum() == pytest.approx(lengths[False].sum()) == pytest.approx(12.0)
+    mean_times = [np.average(middles[on], weights=lengths[on]) for on in windows]
+    assert mean_times[0] == pytest.approx(mean_times[1], abs=1e-9)
 
 
 def test_separate_runs_have_a_protocol_without_and_one_with_vibration(sonolube: Program, tmp_path: Path) -> None:
@@ -135,10 +162,11 @@ def test_the_same_seed_gives_the_same_order_and_another_seed_another(
 def test_points_beyond_the_amplifier_are_left_out_and_said(sonolube: Program, tmp_path: Path) -> None:
     # D Table 4.1: 2.31 um take 5.31 W
     answer = sonolube("plan", POWER_MAP, *FEW, "--amplifier-power", "5W", "--out", tmp_path, "--json").answer
-    assert {round(each["vibration_amplitude"]["value"], 8) for each in answer["left_out"]} == {2.3e-6}
+    assert {round(each["vibration_amplitude"]["value"], 8) for each in answer["left_out"]} == {2.3e-6, 2.31e-6}
     assert all("amplifier would supply 5.2" in each["reason"] for each in answer["left_out"])
     assert all(each["vibration_amplitude"]["value"] < 2e-6 for each in answer["points"])
-    assert any("4 of 12 points exceed a limit" in caveat for caveat in answer["caveats"])
+    assert any("5 of 13 points exceed a limit" in caveat for caveat in answer["caveats"])
+    assert any("the rig's own operating point is none of the plan" in caveat for caveat in answer["caveats"])
 
 
 def test_points_that_heat_the_contact_beyond_a_limit_are_left_out(sonolube: Program, tmp_path: Path) -> None:
@@ -177,7 +205,7 @@ def test_the_sheet_has_empty_cells_limits_and_what_a_report_states(sonolube: Pro
         (("--speed", "0,20mm/s"), "values must be above 0"),
         (("--speed", "20N"), "--speed 20 N is a force"),
         (("--vibration", "1um", "--voltage", "3V"), "--vibration and --voltage both set the amplitude"),
-        (("--points", "99"), "99 points to choose among 12"),
+        (("--points", "99"), "99 points to choose among 13"),
         (
             ("--amplifier-power", "1mW"),
             "points to choose among 0 that the rig can make; of the others: amplifier would",

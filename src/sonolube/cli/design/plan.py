@@ -76,7 +76,8 @@ def plan(
     power: Annotated[float, typer.Option(help="Probability to show it where it is there.")] = 0.9,
     significance: Annotated[float, typer.Option(help="Probability to show it where it is not.")] = 0.05,
     comparison: Annotated[
-        ComparisonName, typer.Option(help="Each run without and then with vibration, or on specimens of their own.")
+        ComparisonName,
+        typer.Option(help="Each run without, with and again without vibration, or states on specimens of their own."),
     ] = ComparisonName.PAIRED,
     scatter: Annotated[
         str | None,

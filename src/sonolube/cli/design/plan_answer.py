@@ -9,6 +9,7 @@ import numpy as np
 from sonolube.cli.console.answer import Answer, aligned, grid, si
 from sonolube.design.test_plan.figure import plan_figure
 from sonolube.design.test_plan.plan import TestPlan
+from sonolube.design.test_plan.run_order import RunState
 from sonolube.design.test_plan.run_protocols import run_protocols
 from sonolube.design.test_plan.run_table import run_table
 from sonolube.protocol import Protocol, protocol_text
@@ -30,10 +31,18 @@ _HEADS = (
     "information",
 )
 _TO_FILL = ("Friction without (N)", "Friction with (N)", "Measured amplitude", "Remarks")
-_RUN_HEADS = ("Load (N)", "Speed (mm/s)", "Voltage (V)", "Amplitude (um)", "Without (s)", "With (s)")
+_RUN_HEADS = ("Load (N)", "Speed (mm/s)", "Voltage (V)", "Amplitude (um)", "Vibration (s)")
+_ORDERS = {
+    1: "off, on, off in each run, the middle measured twice as long: a linear drift, such as running-in, leaves the"
+    " difference of the means as it is",
+    2: "the pair without vibration first in odd blocks, the one with vibration in even ones",
+}
+"""Order of the states, by the pairs of specimens of a run."""
+
 _CAPTION = (
     "Left: candidates over speed and amplitude, coloured by the information that the replicates at one of them are"
-    " expected to give about which closure holds; the points of the plan are numbered in the order of their gain."
+    " expected to give about which closure holds; the points of the plan are numbered, the rig's own first, the"
+    " others in the order of their gain."
     " Right: predicted friction ratio at these points with its interval of 80 %, and the median of each closure."
 )
 
@@ -91,7 +100,13 @@ class PlanAnswer(Answer):
                 if reason
             ],
             "runs": [
-                {"run": run.run, "block": run.block, "point": run.point + 1, "specimens": list(run.specimens)}
+                {
+                    "run": run.run,
+                    "block": run.block,
+                    "point": run.point + 1,
+                    "specimens": list(run.specimens),
+                    "vibrated": [list(part.vibrated) for part in run.parts],
+                }
                 for run in plan.runs
             ],
         }
@@ -164,8 +179,10 @@ class PlanAnswer(Answer):
             ),
             (
                 "blocks",
-                f"{plan.replicates}, each of every point once in random order; each is {plan.procedure.blocking.title}",
+                f"{plan.replicates}, each of every point once in random order, the first point first; each is"
+                f" {plan.procedure.blocking.title}",
             ),
+            ("order", _ORDERS[question.comparison.specimens]),
         ]
 
     def _entropy(self) -> float:
@@ -211,14 +228,14 @@ class PlanAnswer(Answer):
         rows = []
         for run in plan.runs:
             point = plan.candidate(run)
-            at, speed = plan.candidates, float(plan.candidates.sliding_speed[point])
+            at = plan.candidates
             voltage = at.voltage_peak_to_peak[point]
             settings = (
                 f"{at.normal_load[point]:.3g}",
-                f"{1e3 * speed:.3g}",
+                f"{1e3 * at.sliding_speed[point]:.3g}",
                 f"{voltage:.3g}" if np.isfinite(voltage) else "-",
                 f"{1e6 * at.vibration_amplitude[point]:.3g}",
-                *(f"{each:.0f}" for each in plan.procedure.times(speed)),
+                "; ".join(_states_text(plan.states(run, part)) for part in run.parts),
             )
             rows.append((f"{run.run}", f"{run.block}", ", ".join(run.specimens), *settings, *("" for _ in _TO_FILL)))
         return rows
@@ -257,6 +274,11 @@ class PlanAnswer(Answer):
             "pin": {"material": pin},
             "disc": {"material": disc},
         }
+
+
+def _states_text(states: Sequence[RunState]) -> str:
+    """Durations of the states of a run."""
+    return ", ".join(f"{'on' if state.vibrated else 'off'} {state.duration:.0f}" for state in states)
 
 
 def _hours(duration: float) -> str:

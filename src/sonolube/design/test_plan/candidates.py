@@ -17,6 +17,8 @@ from sonolube.units import format_si
 MOST_CANDIDATES: Final = 200
 """Number of candidates among which points are chosen."""
 
+_SAME: Final = 1e-5  # relative difference of settings that were rounded in text
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Factors:
@@ -90,10 +92,10 @@ class Candidates:
         NaN where it is not known. [W]
     mean_temperature_rise : ndarray
         Of the contact by friction without vibration, the greatest; NaN without materials. [K]
-    decay_length : ndarray
-        Over which the normal force falls by a factor of e. [m]
     refused : tuple of str
         Why the rig cannot make a test; empty where it can.
+    own : int
+        Index of the rig's own operating point.
     """
 
     normal_load: Floats
@@ -103,14 +105,14 @@ class Candidates:
     voltage_offset: Floats
     actuator_power: Floats
     mean_temperature_rise: Floats
-    decay_length: Floats
     refused: tuple[str, ...]
+    own: int
 
 
 def candidate_tests(
     rig: Rig, inputs: RigInputs, factors: Factors, *, limits: RigLimits, pin: str | None = None, disc: str | None = None
 ) -> Candidates:
-    """Candidate tests of a rig with drive, heat, and what exceeds the limits.
+    """Candidate tests of a rig with drive, heat, and what exceeds the limits; the rig's own operating point is one.
 
     Parameters
     ----------
@@ -136,13 +138,10 @@ def candidate_tests(
     MissingProperty, UnknownName
         For a material without thermal properties.
     """
-    loads, speeds, amplitudes = np.array(
-        list(product(factors.normal_load, factors.sliding_speed, factors.vibration_amplitude))
-    ).T
-    voltage, offset, power = _driven(rig, inputs, factors.vibration_amplitude)
-    place = np.searchsorted(np.sort(factors.vibration_amplitude), amplitudes)
-    order = np.argsort(factors.vibration_amplitude)[place]
-    lengths = {load: rig_inputs(replace(rig, normal_load=float(load))).decay_length for load in factors.normal_load}
+    points, own = _points(factors, (rig.normal_load, inputs.sliding_speed, inputs.amplitude.value))
+    loads, speeds, amplitudes = points.T
+    different, order = np.unique(amplitudes, return_inverse=True)
+    voltage, offset, power = _driven(rig, inputs, different)
     heat = inputs.friction.value * loads * speeds
     found = Candidates(
         normal_load=loads,
@@ -152,10 +151,17 @@ def candidate_tests(
         voltage_offset=offset[order],
         actuator_power=power[order],
         mean_temperature_rise=heat * _rise_per_watt(rig, speeds, pin, disc),
-        decay_length=np.array([lengths[load] for load in loads]),
         refused=(),
+        own=own,
     )
     return replace(found, refused=tuple("; ".join(reasons) for reasons in _exceeded(found, limits)))
+
+
+def _points(factors: Factors, own: tuple[float, float, float]) -> tuple[Floats, int]:
+    """Load, speed and amplitude of each point, shape (m, 3), and the index of the rig's own, the first if it is new."""
+    points = np.array(list(product(factors.normal_load, factors.sliding_speed, factors.vibration_amplitude)))
+    same = np.all(np.isclose(points, own, rtol=_SAME, atol=0), axis=1)
+    return (points, int(np.argmax(same))) if same.any() else (np.vstack([own, points]), 0)
 
 
 def _driven(rig: Rig, inputs: RigInputs, amplitudes: Floats) -> tuple[Floats, Floats, Floats]:

@@ -125,7 +125,7 @@ COMPARISONS: Final[Mapping[str, Comparison]] = MappingProxyType(
         for each in (
             Comparison(
                 name="paired",
-                title="paired t-test, each run without and then with vibration",
+                title="paired t-test, each run without, with and again without vibration",
                 degrees_of_freedom=lambda replicates: np.asarray(replicates) - 1.0,
                 deviation=lambda scatter: scatter.reduction,
                 specimens=1,

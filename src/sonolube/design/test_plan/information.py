@@ -175,7 +175,13 @@ class Batch:
 
 
 def best_batch(
-    models: Sequence[ModelOutcomes], *, count: int, noise: Floats, allowed: Integers, seed: int = 0
+    models: Sequence[ModelOutcomes],
+    *,
+    count: int,
+    noise: Floats,
+    allowed: Integers,
+    first: Sequence[int] = (),
+    seed: int = 0,
 ) -> Batch:
     """Batch of tests with the most expected information, by greedy choice and then by exchanges.
 
@@ -188,6 +194,8 @@ def best_batch(
         Standard deviation of the measured outcome of each candidate.
     allowed : ndarray of int
         Candidates to choose from, at least `count`.
+    first : sequence of int
+        Candidates that the batch begins with, whatever their information.
     seed : int
 
     Returns
@@ -214,13 +222,13 @@ def best_batch(
         return known[batch]
 
     candidates = [int(each) for each in allowed]
-    chosen: list[int] = []
-    for _ in range(count):
+    chosen, kept = list(first), len(first)
+    for _ in range(count - kept):
         chosen.append(_best_addition(information, chosen, candidates))
     for _ in range(_ROUNDS):
-        if not _exchanged(information, chosen, candidates):
+        if not _exchanged(information, chosen, candidates, kept=kept):
             break
-    rest, chosen = chosen, []
+    rest, chosen = chosen[kept:], chosen[:kept]
     while rest:  # exchanges leave another order than that of the gains
         chosen.append(_best_addition(information, chosen, rest))
         rest = [each for each in rest if each not in chosen]
@@ -233,10 +241,10 @@ def _best_addition(information: _Information, fixed: Sequence[int], candidates: 
     return rest[int(np.argmax([information([*fixed, each]) for each in rest]))]
 
 
-def _exchanged(information: _Information, chosen: list[int], candidates: Sequence[int]) -> bool:
-    """Exchange each test for the best candidate in its place; whether any was."""
+def _exchanged(information: _Information, chosen: list[int], candidates: Sequence[int], *, kept: int) -> bool:
+    """Exchange each test after those that are kept for the best candidate in its place; whether any was."""
     changed = False
-    for place in range(len(chosen)):
+    for place in range(kept, len(chosen)):
         fixed = chosen[:place] + chosen[place + 1 :]
         best = _best_addition(information, fixed, candidates)
         if information([*fixed, best]) > information(chosen) + _GAIN:

@@ -12,10 +12,9 @@ from sonolube.design.test_plan.candidates import NO_LIMITS, Candidates, Factors,
 from sonolube.design.test_plan.closure_outcomes import closure_outcomes
 from sonolube.design.test_plan.comparison import COMPARISONS, Comparison
 from sonolube.design.test_plan.information import Batch, best_batch, mutual_information
-from sonolube.design.test_plan.run_order import BLOCKINGS, Blocking, PlannedRun, randomised_runs
+from sonolube.design.test_plan.run_order import BLOCKINGS, Blocking, PlannedRun, RunPart, RunState, randomised_runs
 from sonolube.design.test_plan.scatter import Scatter, assumed_scatter, published_scatter, scatter_of_runs
 from sonolube.errors import InvalidInput
-from sonolube.prediction.closures import Conditions, UncertainConditions
 from sonolube.prediction.inputs import RigInputs, rig_inputs
 from sonolube.prediction.own_runs import own_runs
 from sonolube.prediction.posterior import learned
@@ -71,7 +70,8 @@ class Procedure:
     Parameters
     ----------
     intrinsic_distance, vibrated_distance : float
-        Sliding distances until friction is steady without and with vibration, in m.
+        Sliding distances until friction is steady without and with vibration, in m; the latter also after a switch of
+        the vibration.
     measuring_time : float
         Time in steady friction, without and with vibration, in s.
     blocking : Blocking
@@ -86,11 +86,19 @@ class Procedure:
         require_non_negative(intrinsic_distance=self.intrinsic_distance, vibrated_distance=self.vibrated_distance)
         require_positive(measuring_time=self.measuring_time)
 
-    def times(self, speed: float) -> tuple[float, float]:
-        """Durations without and with vibration at a sliding speed, in s, rounded up to whole ones."""
-        distances = self.intrinsic_distance, self.vibrated_distance
-        without, vibrated = (ceil(distance / speed + self.measuring_time) for distance in distances)
-        return float(without), float(vibrated)
+    def states(self, speed: float, vibrated: Sequence[bool]) -> tuple[RunState, ...]:
+        """States of a part of a run at a sliding speed, in m/s; each kind shares the measuring time evenly.
+
+        All states after the first settle equally long, so that those of `INTERLEAVED` have one mean time.
+        """
+        return tuple(
+            RunState(
+                vibrated=on,
+                settling=float(ceil((self.vibrated_distance if place or on else self.intrinsic_distance) / speed)),
+                measuring=self.measuring_time / list(vibrated).count(on),
+            )
+            for place, on in enumerate(vibrated)
+        )
 
 
 def published_distances() -> tuple[float, float]:
@@ -117,7 +125,7 @@ class TestPlan:
     information : ndarray, shape (m,)
         Expected information of the replicates at each candidate, in bits.
     batch : Batch
-        Points of the plan, as indices of candidates.
+        Points of the plan, as indices of candidates; the rig's own first, where the limits allow it.
     interval : ndarray, shape (2, m)
         Limits of the predicted friction ratio, 80 %.
     median : ndarray, shape (m,)
@@ -166,8 +174,12 @@ class TestPlan:
     @property
     def duration(self) -> float:
         """Time of all runs without mounting and cleaning. [s]"""
-        speeds = self.candidates.sliding_speed
-        return sum(sum(self.procedure.times(float(speeds[self.candidate(run)]))) for run in self.runs)
+        return sum(state.duration for run in self.runs for part in run.parts for state in self.states(run, part))
+
+    def states(self, run: PlannedRun, part: RunPart) -> tuple[RunState, ...]:
+        """States of a part of a run."""
+        speed = float(self.candidates.sliding_speed[self.candidate(run)])
+        return self.procedure.states(speed, part.vibrated)
 
 
 def plan_tests(
@@ -223,7 +235,8 @@ def plan_tests(
     if points < 1 or points * replicates > MOST_RUNS:
         raise InvalidInput(f"{points} points with {replicates} replicates; a plan has 1 to {MOST_RUNS} runs")
     candidates = candidate_tests(rig, inputs, factors, limits=limits, pin=pin, disc=disc)
-    at, tested = _conditions(candidates, inputs), None if own is None else own.tested
+    at = inputs.at(vibration_amplitude=candidates.vibration_amplitude, sliding_speed=candidates.sliding_speed)
+    tested = None if own is None else own.tested
     found = rig_prediction(learned().friction, at, count=_DRAWS, seed=seed, own=tested)
     ratios = found.ratios(at.conditions)
     chance = np.mean(1 - ratios >= question.difference, axis=0)
@@ -231,7 +244,8 @@ def plan_tests(
     _require_effect(1 - np.median(ratios, axis=0)[allowed], question.difference)
     noise = np.full(at.conditions.sliding_speed.shape, deviation / np.sqrt(replicates))
     models = closure_outcomes(learned().compared, at, own=tested, seed=seed)
-    batch = best_batch(models, count=points, noise=noise, allowed=allowed, seed=seed)
+    first = [candidates.own] if candidates.own in allowed else []
+    batch = best_batch(models, count=points, noise=noise, allowed=allowed, first=first, seed=seed)
     singles = [mutual_information(models, np.array([each]), noise=noise, seed=seed) for each in range(noise.size)]
     order = randomised_runs(points, replicates, blocking=procedure.blocking, specimens=comparison.specimens, seed=seed)
     plan = TestPlan(
@@ -264,21 +278,6 @@ def _scatter(question: Question, runs: "xr.Dataset | None") -> Scatter:
         return assumed_scatter(question.scatter)
     own = None if runs is None else scatter_of_runs(runs)
     return own or published_scatter()
-
-
-def _conditions(candidates: Candidates, inputs: RigInputs) -> UncertainConditions:
-    """Conditions of all candidates with the spread of the rig's inputs."""
-    amplitude = candidates.vibration_amplitude
-    return UncertainConditions(
-        conditions=Conditions(
-            vibration_amplitude=amplitude,
-            frequency=np.full(amplitude.shape, inputs.frequency),
-            sliding_speed=candidates.sliding_speed,
-            decay_length=candidates.decay_length,
-        ),
-        decay_length_spread=inputs.at().decay_length_spread,
-        amplitude_spread=inputs.amplitude.spread,
-    )
 
 
 def _allowed(candidates: Candidates, points: int) -> "np.ndarray[tuple[int], np.dtype[np.int64]]":
@@ -316,6 +315,8 @@ def _caveats(plan: TestPlan, inputs: RigInputs, *, contradicted: bool) -> Iterat
         yield f"{len(refused)} of {len(at.refused)} points exceed a limit and are left out, such as {first}: {reason}"
     if plan.candidates.vibration_amplitude.max() > inputs.amplitude.value * (1 + 1e-9):
         yield "some amplitudes are above that of the rig file; check that actuator and amplifier reach them"
+    if plan.candidates.refused[plan.candidates.own]:
+        yield f"the rig's own operating point is none of the plan: {plan.candidates.refused[plan.candidates.own]}"
     doubtful = [number for number, each in enumerate(plan.batch.points, 1) if plan.chance[each] < 0.5]
     if doubtful:
         yield (

@@ -1,4 +1,9 @@
-"""Order of runs: randomised complete blocks, every point once in each."""
+"""Order of runs: randomised complete blocks, every point once in each, and of the states within a run.
+
+Running-in shifts friction over a run. A run on one pair of bodies is without vibration, with it, and without again, so
+that both states have the same mean time: the difference of their means holds nothing of a drift that is linear in time
+or distance. Runs on pairs of their own begin with and without vibration in turn.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -39,6 +44,49 @@ BLOCKINGS: Final[Mapping[str, Blocking]] = MappingProxyType(
 """Kinds of blocks, by name."""
 
 
+INTERLEAVED: Final = (False, True, False)
+"""Whether the vibration is on, by the states of a run on one pair of bodies; the middle one lasts twice as long."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunState:
+    """Part of a run without or with vibration.
+
+    Parameters
+    ----------
+    vibrated : bool
+    settling : float
+        Time until friction is steady. [s]
+    measuring : float
+        Time in which friction is measured. [s]
+    """
+
+    vibrated: bool
+    settling: float
+    measuring: float
+
+    @property
+    def duration(self) -> float:
+        """Time of the part. [s]"""
+        return self.settling + self.measuring
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunPart:
+    """Part of a run on one pair of bodies.
+
+    Parameters
+    ----------
+    specimen : str
+        Pair of bodies.
+    vibrated : tuple of bool
+        Whether the vibration is on, in each of its states.
+    """
+
+    specimen: str
+    vibrated: tuple[bool, ...]
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlannedRun:
     """Run of a plan.
@@ -51,20 +99,25 @@ class PlannedRun:
         From 1.
     point : int
         Index of the point of the plan.
-    specimens : tuple of str
-        Pairs of bodies: the one run on, or those without and with vibration.
+    parts : tuple of RunPart
+        The one on one pair of bodies, or those without and with vibration in their order.
     """
 
     run: int
     block: int
     point: int
-    specimens: tuple[str, ...]
+    parts: tuple[RunPart, ...]
+
+    @property
+    def specimens(self) -> tuple[str, ...]:
+        """Pairs of bodies, in the order in which they are used."""
+        return tuple(part.specimen for part in self.parts)
 
 
 def randomised_runs(
     points: int, replicates: int, *, blocking: Blocking, specimens: int, seed: int
 ) -> tuple[PlannedRun, ...]:
-    """Runs of a plan in their order: each block has every point once, in random order.
+    """Runs of a plan in their order: the first point first, then each block has every point once, in random order.
 
     Parameters
     ----------
@@ -88,9 +141,25 @@ def randomised_runs(
     rng = np.random.default_rng(seed)
     runs: list[PlannedRun] = []
     for block in range(1, replicates + 1):
-        for point in rng.permutation(points):
+        order = [int(point) for point in rng.permutation(points)]
+        if block == 1:
+            order.sort(key=lambda point: point != 0)
+        for point in order:
             number = len(runs) + 1
             first = block if blocking.shares_specimens else number
-            names = tuple(f"{first}{letter}" for letter in ("", "ab")[specimens > 1]) or (f"{first}",)
-            runs.append(PlannedRun(run=number, block=block, point=int(point), specimens=names))
+            parts = _separate(first, reverse=block % 2 == 0) if specimens > 1 else _together(first)
+            runs.append(PlannedRun(run=number, block=block, point=point, parts=parts))
     return tuple(runs)
+
+
+def _together(number: int) -> tuple[RunPart, ...]:
+    """Both states on one pair of bodies."""
+    return (RunPart(specimen=f"{number}", vibrated=INTERLEAVED),)
+
+
+def _separate(number: int, *, reverse: bool) -> tuple[RunPart, ...]:
+    """Each state on a pair of bodies of its own."""
+    parts = tuple(
+        RunPart(specimen=f"{number}{letter}", vibrated=(vibrated,)) for letter, vibrated in (("a", False), ("b", True))
+    )
+    return parts[::-1] if reverse else parts

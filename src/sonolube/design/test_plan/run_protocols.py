@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from sonolube.design.test_plan.plan import TestPlan
-from sonolube.design.test_plan.run_order import PlannedRun
+from sonolube.design.test_plan.run_order import PlannedRun, RunPart, RunState
 from sonolube.design.test_plan.run_table import has_voltage
 from sonolube.protocol import Protocol, protocol_from
 from sonolube.protocol.quantity_text import exact_text
@@ -15,7 +15,6 @@ _SAMPLE_RATE: Final = "400 Hz"  # D Table 2.2
 _CHANNELS: Final = ("friction_force", "voltage", "current", "temperature", "gaussmeter")  # D Fig. 4.2
 _MARGIN: Final = 1.05  # of limits over what is planned
 _FORCE_MARGIN: Final = 3.0  # of the friction limit over the intrinsic friction
-_LETTERS: Final = {1: ("",), 2: ("-without", "-with")}
 
 
 def run_protocols(plan: TestPlan) -> dict[str, Protocol]:
@@ -32,41 +31,42 @@ def run_protocols(plan: TestPlan) -> dict[str, Protocol]:
     """
     count = len(plan.runs)
     return {
-        f"run-{run.run:0{len(str(count))}d}{letter}-of-{count}": _protocol(plan, run, specimen, letter)
+        f"run-{run.run:0{len(str(count))}d}{_suffix(part)}-of-{count}": _protocol(plan, run, part)
         for run in plan.runs
-        for specimen, letter in zip(run.specimens, _LETTERS[len(run.specimens)], strict=True)
+        for part in run.parts
     }
 
 
-def _protocol(plan: TestPlan, run: PlannedRun, specimen: str, letter: str) -> Protocol:
+def _suffix(part: RunPart) -> str:
+    """State of a part that has one only, for its name."""
+    return "" if len(part.vibrated) > 1 else "-with" if part.vibrated[0] else "-without"
+
+
+def _protocol(plan: TestPlan, run: PlannedRun, part: RunPart) -> Protocol:
     """Protocol of a run on one specimen."""
     index = plan.candidate(run)
     at = plan.candidates
     load, speed = float(at.normal_load[index]), float(at.sliding_speed[index])
-    states = [
-        each
-        for each, name in zip(plan.procedure.times(speed), ("-without", "-with"), strict=True)
-        if letter in ("", name)
-    ]
-    total = _REST + sum(states)
+    states = plan.states(run, part)
+    total = _REST + sum(state.duration for state in states)
     materials = (
         {} if plan.materials is None else dict(zip(("pin_material", "disc_material"), plan.materials, strict=True))
     )
     text = f"{format_si(load, 'N')}, {format_si(speed, 'm/s')}, {format_si(at.vibration_amplitude[index], 'm')}"
     return protocol_from(
         {
-            "title": f"Run {run.run}{letter.replace('-', ' ')}: {text}",
-            "source": "sonolube plan; preparation by D 2.3.2 and appendix A 2.4, form of the run by D 4.1.2",
+            "title": f"Run {run.run}{_suffix(part).replace('-', ' ')}: {text}",
+            "source": "sonolube plan; preparation by D 2.3.2 and appendix A 2.4, form of runs by D 4.1.2, interleaved",
             "limits": _limits(plan, total),
             "metadata": {
                 **materials,
                 "normal_load": exact_text(load, unit="N"),
-                "specimen": specimen,
+                "specimen": part.specimen,
                 "run": run.run,
                 "block": run.block,
             },
             "steps": [
-                *_preparation(plan, specimen, load),
+                *_preparation(plan, part.specimen, load),
                 {
                     "kind": "acquire",
                     "channels": list(_CHANNELS),
@@ -74,7 +74,8 @@ def _protocol(plan: TestPlan, run: PlannedRun, specimen: str, letter: str) -> Pr
                     "duration": exact_text(total, unit="s"),
                 },
                 {"kind": "wait", "duration": exact_text(_REST, unit="s"), "reason": "zero of the force"},
-                *_sliding(plan, index, letter),
+                {"kind": "motor_speed", "sliding_speed": exact_text(speed, unit="m/s")},
+                *(step for number, state in enumerate(states) for step in _state(plan, index, state, first=not number)),
             ],
         }
     )
@@ -103,18 +104,24 @@ def _preparation(plan: TestPlan, specimen: str, load: float) -> Iterator[dict[st
     yield {"kind": "prompt", "task": "load", "text": f"Apply {format_si(load, 'N')}; bring the pin into contact."}
 
 
-def _sliding(plan: TestPlan, index: int, letter: str) -> Iterator[dict[str, Any]]:
-    """Steps of sliding without vibration and then with it, or of one of both."""
-    speed = float(plan.candidates.sliding_speed[index])
-    without, vibrated = plan.procedure.times(speed)
-    yield {"kind": "motor_speed", "sliding_speed": exact_text(speed, unit="m/s")}
-    if letter != "-with":
-        reason = "friction without vibration, running-in first"
-        yield {"kind": "wait", "duration": exact_text(without, unit="s"), "reason": reason}
-    if letter != "-without":
+def _state(plan: TestPlan, index: int, state: RunState, *, first: bool) -> Iterator[dict[str, Any]]:
+    """Steps of one state of a run: switch, time to settle, time to measure."""
+    if state.vibrated:
         yield _vibration(plan, index)
-        reason = "friction with vibration, running-in first"
-        yield {"kind": "wait", "duration": exact_text(vibrated, unit="s"), "reason": reason}
+    elif not first:
+        yield _stillness(plan)
+    friction = f"friction {'with' if state.vibrated else 'without'} vibration"
+    if state.settling > 0:
+        reason = f"{friction} settles{', running-in' if first else ''}"
+        yield {"kind": "wait", "duration": exact_text(state.settling, unit="s"), "reason": reason}
+    yield {"kind": "wait", "duration": exact_text(state.measuring, unit="s"), "reason": f"{friction}, measured"}
+
+
+def _stillness(plan: TestPlan) -> dict[str, Any]:
+    """Step that switches the vibration off."""
+    if plan.rig.drive is None or not has_voltage(plan):
+        return {"kind": "prompt", "task": "other", "text": "Switch the vibration off."}
+    return {"kind": "drive", "voltage_peak_to_peak": "0 V"}
 
 
 def _vibration(plan: TestPlan, index: int) -> dict[str, Any]:

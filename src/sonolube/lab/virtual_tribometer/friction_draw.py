@@ -122,7 +122,7 @@ class FrictionDraw:
         inputs = replace(self._inputs, frequency=setting.frequency)  # the others are those of the rig at any drive
         at = inputs.at(vibration_amplitude=amplitude, sliding_speed=sliding_speed)
         draws = ratio_draws(learned().friction, at, count=_DRAWS, seed=self._seed)
-        ratio = float(draws.friction_ratio[self._row, 0])
+        ratio = float(draws[self._row, 0])
         return FrictionLevel(
             friction_force=ratio * without,
             friction_ratio=ratio,
