@@ -13,7 +13,7 @@ from sonolube.lab import DriveSetting, connect_devices
 from sonolube.lab.virtual_tribometer import virtual_tribometer
 from sonolube.measurement.friction.voltage_steps import friction_at_voltage_steps
 from sonolube.prediction.evidence import published_rigs
-from sonolube.prediction.posterior import posteriors_without, published_log_likelihoods
+from sonolube.prediction.posterior import published_population
 from sonolube.prediction.predictive import ratio_draws
 from sonolube.prediction.scores import central_interval
 from sonolube.published import si_value
@@ -86,8 +86,8 @@ def _share(title: str, measured: Floats, draws: Floats) -> Measure:
 def _reductions_unseen() -> Floats:
     """Draws of the reduction from a population that was learned without these tests."""
     index, rig = next((index, rig) for index, rig in enumerate(published_rigs()) if rig.name == "A")
-    posteriors = posteriors_without(published_log_likelihoods(), left_out=(index,))
-    return 1 - ratio_draws(posteriors, rig.at, count=1000).friction_ratio
+    posterior = published_population().posterior(without=(index,))
+    return np.asarray(1 - ratio_draws(posterior, rig.at, count=1000))
 
 
 STUDY = Study(

@@ -1,6 +1,6 @@
 from . import design as design, published as published
 from .measurement.measured_runs import read_runs as read_runs
-from .prediction.rig_prediction import predict as predict
+from .prediction.live_prediction import LivePrediction as LivePrediction, predict as predict
 from .rig.file.reader import read_rig as read_rig
 from .rig.record import Rig as Rig
 from .validation.runs_fit import fit_runs as fit_runs

@@ -25,5 +25,5 @@ def conditions(amplitudes: list[float], speeds: list[float]) -> Conditions:
 
 
 def measured_rig(ratios: list[float], at: Conditions, *, name: str = "rig") -> TestedRig:
-    known = UncertainConditions(conditions=at, decay_length_spread=0.1, amplitude_spread=0.1)
+    known = UncertainConditions(conditions=at, decay_length_spread=None, amplitude_spread=0.1)
     return TestedRig(name=name, at=known, friction_ratio=np.array(ratios), uncertainty=np.full(len(ratios), 0.05))

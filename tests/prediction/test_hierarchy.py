@@ -1,28 +1,49 @@
 """Hierarchical model: its likelihood against closed forms, its posterior against another sampler."""
 
 import json
+from dataclasses import replace
 from importlib.resources import files
 
 import numpy as np
 from pytest import approx, mark
-from scipy.stats import multivariate_normal
+from scipy.integrate import quad
+from scipy.stats import chi2, multivariate_normal
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 
 from sonolube.prediction.closures import CLOSURES, Closure, Conditions
-from sonolube.prediction.evidence import published_rigs
-from sonolube.prediction.hierarchy import RigLikelihood, squared_distances
+from sonolube.prediction.evidence import distance_from_tests, published_rigs
+from sonolube.prediction.hierarchy import RigLikelihood, discrepancy_deviation, squared_distances
 from sonolube.prediction.learning import sampled_hyperparameters
-from sonolube.prediction.posterior import evidence_fingerprint, learned, posteriors_without, published_log_likelihoods
-from sonolube.prediction.stacking import importance_weights, stacking_weights, unseen_log_densities
+from sonolube.prediction.posterior import Population, evidence_fingerprint, learned, published_population
+from sonolube.rig.worn_contact import PUBLISHED_DECAY_LENGTH
 
 
-def test_of_a_linear_closure_the_likelihood_is_that_of_a_normal_distribution() -> None:
+def test_of_a_linear_closure_the_likelihood_is_that_of_a_normal_discrepancy_with_students_scale() -> None:
     rig = measured_rig([0.3, 0.42, 0.5], conditions([1e-6, 2e-6, 2e-6], [0.02, 0.02, 0.06]))
     mu, tau, sigma, length = 0.38, 0.06, 0.1, 0.8
-    found = RigLikelihood.of(LINEAR, rig)(np.array([[mu, 0.0, np.log(tau), np.log(sigma), np.log(length)]]))
+    found = RigLikelihood.of(LINEAR, rig)(np.array([[mu, 0.0, np.log(tau), 0.0, np.log(sigma), np.log(length)]]))
     distances = squared_distances(rig.at.conditions, rig.at.conditions)
-    covariance = tau**2 + sigma**2 * np.exp(-distances / (2 * length**2)) + 0.05**2 * np.eye(3)
-    assert found[0] == approx(multivariate_normal([mu] * 3, covariance).logpdf(rig.friction_ratio), abs=0.02)
+
+    def density(chi_squared: float) -> float:
+        variance = sigma**2 * 4 / chi_squared  # s^2 = nu/chi^2 with nu = 4
+        covariance = tau**2 + variance * np.exp(-distances / (2 * length**2)) + 0.05**2 * np.eye(3)
+        return float(multivariate_normal([mu] * 3, covariance).pdf(rig.friction_ratio) * chi2(4).pdf(chi_squared))
+
+    assert found[0] == approx(np.log(quad(density, 0, 60, points=[0.5, 3])[0]), abs=0.03)
+
+
+def test_the_discrepancy_grows_with_the_distance_from_the_published_tests() -> None:
+    within, beyond = conditions([2e-6, 2e-6], [0.04, 0.04]), conditions([2e-6, 2e-6], [0.04, 10.0])
+    assert distance_from_tests(within) == approx([0, 0])
+    fastest = max(rig.at.conditions.sliding_speed.max() for rig in published_rigs())
+    assert distance_from_tests(beyond)[1] == approx(np.log(10.0 / fastest))
+    near, far = discrepancy_deviation(np.array([1.0, 1.0]), beyond, log_discrepancy=np.log(np.array(0.1)))
+    assert near == approx(0.025)
+    assert far == approx(0.1 * np.hypot(1, np.log(10.0 / fastest)))
+
+
+def test_towards_no_vibration_no_distance_counts() -> None:
+    assert distance_from_tests(conditions([1e-9], [0.04])) == approx([0.0])
 
 
 def test_conditions_an_e_fold_apart_in_amplitude_and_speed_have_a_squared_distance_of_two() -> None:
@@ -54,7 +75,7 @@ def test_closures_depend_on_amplitude_over_decay_length_alone(closure: Closure) 
 @mark.parametrize("closure", CLOSURES, ids=lambda closure: closure.name)
 def test_an_ensemble_sampler_finds_the_posterior_of_the_weighed_prior_draws(closure: Closure) -> None:
     draws = sampled_hyperparameters(closure, published_rigs(), steps=600)
-    (posterior,) = posteriors_without(published_log_likelihoods(), closures=(closure,))
+    posterior = Population.of(closure, published_rigs()).posterior()
     deviation = posterior.hyperparameters.std(axis=0)
     assert np.all(np.abs(draws.mean(axis=0) - posterior.hyperparameters.mean(axis=0)) < 0.35 * deviation)
     assert draws.std(axis=0) == approx(deviation, rel=0.4)
@@ -63,22 +84,20 @@ def test_an_ensemble_sampler_finds_the_posterior_of_the_weighed_prior_draws(clos
 def test_the_shipped_posterior_is_that_of_the_published_tests() -> None:
     content = json.loads(files("sonolube.prediction").joinpath("learned.json").read_text(encoding="utf-8"))
     assert content["evidence"] == evidence_fingerprint()
-    log_likelihoods = published_log_likelihoods()
-    densities = [unseen_log_densities(log_likelihoods[closure.name]) for closure in CLOSURES]
-    assert [one.weight for one in learned().friction] == approx(stacking_weights(np.array(densities)), abs=1e-3)
-    for one, other in zip(learned().friction, posteriors_without(log_likelihoods), strict=True):
-        scatter = other.hyperparameters.std(axis=0)
-        assert np.all(np.abs(one.hyperparameters.mean(axis=0) - other.hyperparameters.mean(axis=0)) < 0.2 * scatter)
-        assert one.hyperparameters.std(axis=0) == approx(scatter, rel=0.15)
+    one, other = learned().friction.hyperparameters, published_population().posterior().hyperparameters
+    assert np.all(np.abs(one.mean(axis=0) - other.mean(axis=0)) < 0.2 * other.std(axis=0))
+    assert one.std(axis=0) == approx(other.std(axis=0), rel=0.15)
 
 
-def test_stacking_prefers_the_closure_that_predicts_unseen_rigs_and_keeps_equal_ones_equal() -> None:
-    better = stacking_weights(np.array([[2.0, 1.5, 2.2, 1.9], [0.0, -0.5, 0.1, 0.2]]))
-    assert better[0] > 0.75
-    assert stacking_weights(np.zeros((2, 5))) == approx([0.5, 0.5], abs=0.01)
+def test_rig_files_take_the_decay_length_that_was_learned() -> None:
+    median, spread = learned().friction.decay_length()
+    assert PUBLISHED_DECAY_LENGTH.median == approx(median, rel=0.03)
+    assert PUBLISHED_DECAY_LENGTH.log_spread == approx(spread, rel=0.03)
 
 
-def test_weights_of_draws_are_those_of_the_likelihoods_of_the_rigs_that_count() -> None:
-    log_likelihoods = np.log(np.array([[1.0, 5.0], [3.0, 7.0]]))
-    assert importance_weights(log_likelihoods, left_out=(1,)) == approx([0.25, 0.75])
-    assert unseen_log_densities(log_likelihoods) == approx(np.log([(5 * 1 + 7 * 3) / 12, (1 * 5 + 3 * 7) / 4]))
+def test_leaving_rigs_out_weighs_draws_by_the_likelihoods_of_the_others() -> None:
+    logs = np.log(np.array([[1.0, 5.0], [3.0, 7.0]]))
+    two = Population(closure=LINEAR, draws=np.array([[0.0] * 6, [1.0] * 6]), log_likelihoods=np.tile(logs, (500, 1)))
+    two = replace(two, draws=np.tile(two.draws, (500, 1)))
+    assert two.posterior(without=(1,)).hyperparameters[:, 0].mean() == approx(0.75, abs=0.05)
+    assert two.posterior().hyperparameters[:, 0].mean() == approx(21 / 26, abs=0.05)

@@ -4,100 +4,162 @@ from dataclasses import replace
 
 import numpy as np
 from pytest import approx
-from scipy.stats import multivariate_normal, norm
+from scipy.stats import multivariate_normal
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 
+from sonolube.checks import Floats
 from sonolube.prediction.closures import UncertainConditions
-from sonolube.prediction.evidence import published_rigs
-from sonolube.prediction.hierarchy import log_normal_density, squared_distances
+from sonolube.prediction.evidence import TestedRig, published_rigs
+from sonolube.prediction.hierarchy import log_normal_density
 from sonolube.prediction.posterior import Posterior, learned
-from sonolube.prediction.predictive import RatioDraws, ratio_draws
+from sonolube.prediction.predictive import ratio_draws, rig_prediction
 
-MU, TAU, SIGMA, LENGTH = 0.4, 0.06, 0.08, 0.7
-KNOWN = Posterior(
-    closure=LINEAR,
-    weight=1.0,
-    hyperparameters=np.tile([MU, 0.0, np.log(TAU), np.log(SIGMA), np.log(LENGTH)], (1024, 1)),
-)
+MU, TAU, SIGMA, LENGTH = 0.4, 0.06, 2e-4, 0.7
+SHARP = np.tile([MU, 0.0, np.log(TAU), 0.0, np.log(SIGMA), np.log(LENGTH)], (1024, 1))
+KNOWN = Posterior(closure=LINEAR, hyperparameters=SHARP)
+"""With next to no discrepancy, the heavy tail of its scale does not count, and all is normal."""
 
 
-def uncertain(amplitudes: list[float], speeds: list[float]) -> UncertainConditions:
+def uncertain(amplitudes: list[float], speeds: list[float], *, length: float | None = None) -> UncertainConditions:
     return UncertainConditions(
-        conditions=conditions(amplitudes, speeds), decay_length_spread=0.1, amplitude_spread=0.05
+        conditions=conditions(amplitudes, speeds), decay_length_spread=length, amplitude_spread=0.05
     )
 
 
-def spread(draws: RatioDraws) -> float:
-    low, high = np.quantile(draws.friction_ratio[:, 0], [0.1, 0.9])
+def spread(ratio: Floats) -> float:
+    low, high = np.quantile(ratio[:, 0], [0.1, 0.9])
     return float(high - low)
 
 
-def test_without_own_tests_the_scatter_between_rigs_and_the_discrepancy_add_up() -> None:
-    draws = ratio_draws([KNOWN], uncertain([2e-6], [0.02]), count=4000).friction_ratio[:, 0]
-    assert draws.mean() == approx(MU, abs=0.005)
-    assert draws.std() == approx(np.hypot(TAU, SIGMA), rel=0.05)
+def runs(ratios: list[float], amplitudes: list[float], speeds: list[float], *, noise: float = 0.05) -> TestedRig:
+    own = measured_rig(ratios, conditions(amplitudes, speeds))
+    return replace(own, uncertainty=np.full(len(ratios), noise))
+
+
+def test_without_own_tests_the_scatter_between_rigs_and_a_heavy_tailed_discrepancy_add_up() -> None:
+    sigma = 0.05
+    wide = replace(KNOWN, hyperparameters=SHARP + np.array([0, 0, 0, 0, np.log(sigma / SIGMA), 0]))
+    draws = ratio_draws(wide, uncertain([2e-6], [0.02]), count=8000)[:, 0]
+    reference = np.random.default_rng(1)
+    student = sigma * reference.standard_t(4, 400_000) + TAU * reference.standard_normal(400_000)
+    for share in (0.025, 0.1, 0.5, 0.9, 0.975):
+        assert np.quantile(draws, share) == approx(MU + np.quantile(student, share), abs=0.01)
 
 
 def test_own_tests_update_a_linear_closure_as_a_normal_distribution_is_conditioned() -> None:
-    own = measured_rig([0.55, 0.5], conditions([1.5e-6, 2e-6], [0.02, 0.03]))
-    draws = ratio_draws([KNOWN], uncertain([2e-6], [0.02]), count=4000, own=own).friction_ratio[:, 0]
-    at = conditions([2e-6, 1.5e-6, 2e-6], [0.02, 0.02, 0.03])
-    covariance = TAU**2 + SIGMA**2 * np.exp(-squared_distances(at, at) / (2 * LENGTH**2))
-    covariance += np.diag([0.0, *own.uncertainty**2])
-    gain = covariance[0, 1:] @ np.linalg.inv(covariance[1:, 1:])
-    assert draws.mean() == approx(MU + gain @ (own.friction_ratio - MU), abs=0.005)
-    assert draws.std() == approx(np.sqrt(covariance[0, 0] - gain @ covariance[1:, 0]), rel=0.06)
+    own = runs([0.5, 0.45], [1.5e-6, 2e-6], [0.02, 0.03])
+    draws = ratio_draws(KNOWN, uncertain([2e-6], [0.02]), count=4000, own=own)[:, 0]
+    variance = 1 / (1 / TAU**2 + 2 / 0.05**2)
+    assert draws.mean() == approx(variance * (MU / TAU**2 + 0.95 / 0.05**2), abs=0.005)
+    assert draws.std() == approx(np.sqrt(variance), rel=0.06)
 
 
-def test_closures_are_weighed_anew_by_the_density_of_the_own_tests() -> None:
-    higher = KNOWN.hyperparameters + np.array([0.2, 0, 0, 0, 0])
-    other = replace(KNOWN, closure=replace(LINEAR, name="other"), hyperparameters=higher)
-    own = measured_rig([0.45], conditions([2e-6], [0.02]))
-    draws = ratio_draws(
-        [replace(KNOWN, weight=0.5), replace(other, weight=0.5)], uncertain([2e-6], [0.02]), count=1000, own=own
+def test_many_sharp_tests_are_conditioned_on_by_steps_as_by_one_formula() -> None:
+    ratios = [0.52, 0.5, 0.51, 0.49, 0.5, 0.515]
+    own = runs(ratios, [1e-6, 1.5e-6, 2e-6, 2.5e-6, 3e-6, 3.5e-6], [0.02] * 6, noise=0.01)
+    found = rig_prediction(KNOWN, uncertain([2e-6], [0.02]), count=4000, own=own)
+    weights = (own.uncertainty / found.draws.own.uncertainty) ** 2 if found.draws.own is not None else np.ones(6)
+    precision = weights / 0.01**2
+    variance = 1 / (1 / TAU**2 + precision.sum())
+    parameter = found.draws.parameters.log_parameter
+    assert parameter.mean() == approx(variance * (MU / TAU**2 + precision @ ratios), abs=0.002)
+    assert parameter.std() == approx(np.sqrt(variance), rel=0.15)
+
+
+def test_a_test_counts_near_its_conditions_and_less_the_farther_away() -> None:
+    own = runs([0.3], [2e-6], [0.02])
+    near, far, none = (
+        spread(ratio_draws(learned().friction, uncertain([2e-6], [speed]), count=4000, own=each))
+        for speed, each in ((0.02, own), (0.3, own), (0.3, None))
     )
-    density = [norm(middle, np.sqrt(TAU**2 + SIGMA**2 + 0.05**2)).pdf(0.45) for middle in (MU, MU + 0.2)]
-    assert draws.weights["linear"] == approx(density[0] / sum(density), abs=0.01)
+    assert near < 0.75 * far
+    assert far < none * 1.05
 
 
-def test_more_own_tests_narrow_the_interval_and_repeats_of_one_do_so_less_than_others() -> None:
+def test_more_own_tests_narrow_the_interval() -> None:
     at = uncertain([2.5e-6], [0.02])
     none = spread(ratio_draws(learned().friction, at, count=4000))
-    one = spread(ratio_draws(learned().friction, at, count=4000, own=measured_rig([0.4], conditions([2.5e-6], [0.08]))))
-    several = measured_rig([0.4, 0.35, 0.3], conditions([2.5e-6, 2e-6, 2.5e-6], [0.08, 0.02, 0.02]))
+    one = spread(ratio_draws(learned().friction, at, count=4000, own=runs([0.4], [2.5e-6], [0.08])))
+    several = runs([0.4, 0.35, 0.3], [2.5e-6, 2e-6, 2.5e-6], [0.08, 0.02, 0.02])
     assert none > one > spread(ratio_draws(learned().friction, at, count=4000, own=several))
+
+
+def test_a_measured_decay_length_narrows_the_interval_the_more_the_better_it_is_known() -> None:
+    widths = [
+        spread(ratio_draws(learned().friction, uncertain([2e-6], [0.03], length=length), count=4000))
+        for length in (None, 0.3, 0.05)
+    ]
+    assert widths == sorted(widths, reverse=True)
 
 
 def test_a_sharp_own_test_at_the_asked_conditions_is_believed() -> None:
     at = uncertain([2.5e-6], [0.02])
-    own = replace(measured_rig([0.5], at.conditions), uncertainty=np.array([0.005]))
-    draws = ratio_draws(learned().friction, at, count=2000, own=own).friction_ratio[:, 0]
+    draws = ratio_draws(learned().friction, at, count=2000, own=runs([0.5], [2.5e-6], [0.02], noise=0.005))[:, 0]
     assert np.quantile(draws, [0.05, 0.95]) == approx([0.5, 0.5], abs=0.015)
 
 
-def test_without_vibration_friction_is_unchanged_and_certain() -> None:
-    draws = ratio_draws(learned().friction, uncertain([1e-11], [0.02]), count=1000).friction_ratio
-    assert draws.min() > 0.999
+def test_repeats_narrow_the_interval_as_one_test_of_less_noise() -> None:
+    at = uncertain([2.5e-6], [0.02])
+    thrice = ratio_draws(learned().friction, at, count=4000, own=runs([0.5] * 3, [2.5e-6] * 3, [0.02] * 3))
+    once = ratio_draws(learned().friction, at, count=4000, own=runs([0.5], [2.5e-6], [0.02], noise=0.05 / 3**0.5))
+    assert np.quantile(thrice, [0.1, 0.5, 0.9]) == approx(np.quantile(once, [0.1, 0.5, 0.9]), abs=0.01)
 
 
-def test_beyond_the_critical_speed_friction_is_unchanged() -> None:
-    draws = ratio_draws(learned().friction, uncertain([0.2e-6], [3.0]), count=1000).friction_ratio
-    assert np.quantile(draws, 0.05) > 0.98
+def test_ratios_above_one_that_were_measured_are_believed_where_they_were_measured() -> None:
+    at = uncertain([2.5e-6], [0.02])
+    found = rig_prediction(learned().friction, at, count=2000, own=runs([1.2, 1.15], [2.5e-6, 2.5e-6], [0.02, 0.02]))
+    low, high = np.quantile(found.ratios(at.conditions)[:, 0], [0.1, 0.9])
+    assert 1.0 < low < 1.18 < high < 1.3
+    assert found.check is not None
+    assert found.check.contradicted
 
 
-def test_own_tests_that_rise_with_the_amplitude_are_explained_by_no_closure() -> None:
-    own = measured_rig([0.3, 0.7, 1.3], conditions([0.5e-6, 1.5e-6, 4e-6], [0.02, 0.02, 0.02]))
-    assert not ratio_draws(learned().friction, uncertain([2e-6], [0.02]), count=500, own=own).explained
+def test_without_vibration_friction_is_unchanged_within_the_least_discrepancy() -> None:
+    draws = ratio_draws(learned().friction, uncertain([1e-11], [0.02]), count=4000)
+    assert np.quantile(draws, [0.1, 0.5, 0.9]) == approx([1, 1, 1], abs=0.06)
 
 
-def test_published_tests_are_explained_as_own_tests() -> None:
+def test_beyond_the_critical_speed_friction_is_unchanged_but_less_certain_the_farther_from_all_tests() -> None:
+    slow, fast = (ratio_draws(learned().friction, uncertain([0.5e-6], [v]), count=4000) for v in (0.3, 100.0))
+    assert np.median(slow) == approx(1, abs=0.02)
+    assert np.median(fast) == approx(1, abs=0.02)
+    assert spread(fast) > 4 * spread(slow)
+
+
+def test_own_tests_that_rise_with_the_amplitude_contradict_the_prediction() -> None:
+    own = runs([0.3, 0.7, 1.3], [0.5e-6, 1.5e-6, 4e-6], [0.02, 0.02, 0.02])
+    check = rig_prediction(learned().friction, uncertain([2e-6], [0.02]), count=500, own=own).check
+    assert check is not None
+    assert check.contradicted
+
+
+def test_published_tests_contradict_no_prediction() -> None:
     for rig in published_rigs():
-        assert ratio_draws(learned().friction, rig.at, count=500, own=rig).explained
+        check = rig_prediction(learned().friction, rig.at, count=500, own=rig).check
+        assert check is not None
+        assert not check.contradicted
+
+
+def test_one_outlier_among_six_is_named_and_moves_an_unseen_median_little() -> None:
+    at = uncertain([2e-6], [0.04])
+    amplitudes, speeds = [1.5e-6, 2e-6, 2.5e-6, 2e-6, 1.5e-6, 2.5e-6], [0.03, 0.03, 0.03, 0.06, 0.06, 0.06]
+    ratios = [0.58, 0.47, 0.38, 0.57, 0.67, 0.48]
+    good, bad = (
+        rig_prediction(learned().friction, at, count=2000, own=runs(measured, amplitudes, speeds))
+        for measured in (ratios, [*ratios[:2], 0.95, *ratios[3:]])
+    )
+    assert good.check is not None
+    assert bad.check is not None
+    assert good.check.outliers == ()
+    assert bad.check.outliers == (2,)
+    medians = [float(np.median(each.ratios(at.conditions))) for each in (good, bad)]
+    assert abs(medians[0] - medians[1]) < 0.08
 
 
 def test_the_same_seed_gives_the_same_draws() -> None:
     at = uncertain([2e-6], [0.02])
-    one, other = (ratio_draws(learned().friction, at, count=300, seed=7).friction_ratio for _ in range(2))
+    own = runs([0.5, 0.4], [1e-6, 2e-6], [0.02, 0.02])
+    one, other = (ratio_draws(learned().friction, at, count=300, seed=7, own=own) for _ in range(2))
     assert np.array_equal(one, other)
 
 

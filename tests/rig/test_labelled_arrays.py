@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from sonolube.prediction.rig_prediction import prediction_arrays
+from sonolube.prediction.live_prediction import prediction_arrays
 from sonolube.rig import read_rig, simulate, write_netcdf
 from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
 from sonolube.rig.result_datasets import simulation_arrays

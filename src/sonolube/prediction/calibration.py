@@ -145,9 +145,9 @@ def calibrations() -> tuple[Calibration, ...]:
     Returns
     -------
     tuple of Calibration
-        The prediction as a user gets it, `BLIND`; the mean ratio of the other rigs with its scatter; what follows rests on
-        the roughness of the records: the same prediction, one model fitted to the other rigs with its leave-one-rig-out
-        residual, and the uncertainty of the inputs alone.
+        The prediction as a user gets it, `BLIND`; the mean ratio of the other rigs with its scatter; what follows rests
+        on the roughness of the records: the same prediction, one model fitted to the other rigs with its
+        leave-one-rig-out residual, and the uncertainty of the inputs alone.
     """
     records = rigs_by_records()
     rivals: Mapping[str, Callable[[Sequence[TestedRig], TestedRig, np.random.Generator], Floats]] = {

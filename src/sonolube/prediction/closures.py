@@ -81,11 +81,11 @@ class UncertainConditions:
         -------
         ndarray, shape of the broadcast arguments
         """
-        if self.decay_length_spread is None:
-            middle, spread = length_factor, np.hypot(np.exp(length_spread), self.amplitude_spread)
-        else:
-            middle, spread = np.zeros_like(length_factor), hypot(self.decay_length_spread, self.amplitude_spread)
-        return np.asarray(middle - log(self.amplitude_factor) + spread * deviates)
+        offset = -log(self.amplitude_factor)
+        if self.decay_length_spread is not None:
+            return np.asarray(offset + hypot(self.decay_length_spread, self.amplitude_spread) * deviates)
+        spread = np.hypot(np.exp(length_spread), self.amplitude_spread)
+        return np.asarray(offset + length_factor + spread * deviates)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -54,9 +54,9 @@ def published_rigs() -> tuple[TestedRig, ...]:
 
     Notes
     -----
-    No roughness enters: printed ones, worn or not, do not order the decay lengths that the tests ask for, and the 6 um of
-    most records is a guess by comparison standards. On the flextensional actuator of set H the amplitude at resonance
-    was not measured: it is the quasi-static stroke times 2, within a factor of 2 (one standard deviation).
+    No roughness enters: printed ones, worn or not, do not order the decay lengths that the tests ask for, and the 6 um
+    of most records is a guess by comparison standards. On the flextensional actuator of set H the amplitude at
+    resonance was not measured: it is the quasi-static stroke times 2, within a factor of 2 (one standard deviation).
     """
     return tuple(_rig(name, tuple(tests)) for name, tests in groupby(friction_tests(), lambda test: test.set_name))
 
@@ -84,7 +84,7 @@ def distance_from_tests(at: Conditions) -> Floats:
     logs, (low, high) = _logs(at), _tested_logs()
     below, above = low[:, None] - logs, logs - high[:, None]
     below[0] = 0.0
-    return np.linalg.norm(np.maximum(np.maximum(below, above), 0.0), axis=0)
+    return np.asarray(np.linalg.norm(np.maximum(np.maximum(below, above), 0.0), axis=0))
 
 
 def _logs(at: Conditions) -> Floats:
@@ -105,7 +105,9 @@ def rigs_by_records() -> tuple[TestedRig, ...]:
         at_rest = separation(test.contact, normal_load=test.normal_load)
         lengths.setdefault(test.set_name, []).append(float(decay_length(test.contact, separation=at_rest)))
     return tuple(
-        replace(rig, at=replace(rig.at, conditions=replace(rig.at.conditions, decay_length=np.array(lengths[rig.name]))))
+        replace(
+            rig, at=replace(rig.at, conditions=replace(rig.at.conditions, decay_length=np.array(lengths[rig.name])))
+        )
         for rig in published_rigs()
     )
 

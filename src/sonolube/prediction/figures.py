@@ -129,7 +129,10 @@ def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
             )
     scores.set(yticks=heights, xlabel="score (lower is better)", xlim=(0, 1.6))
     scores.set_yticklabels(
-        [one.name.replace(" with ", "\nwith ").replace(" by ", "\nby ").replace(", its", ",\nits") for one in calibrations]
+        [
+            one.name.replace(" with ", "\nwith ").replace(" by ", "\nby ").replace(", its", ",\nits")
+            for one in calibrations
+        ]
     )
     scores.legend(loc="upper right")
     figure.legend(*coverage.get_legend_handles_labels(), loc="outside upper center", ncols=2)

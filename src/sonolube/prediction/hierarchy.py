@@ -4,14 +4,15 @@ For one friction model f with the parameter theta, test i on rig r has the frict
 
     R_i = f(x_i; theta_r, l_r) + delta_r(x_i) + e_i,    e_i ~ N(0, u_i^2),
     ln theta_r ~ N(mu, tau^2),    ln (l/a)_r ~ N(ln (l_0/a) + kappa, tau_l^2 + s_a^2),
-    delta_r = s_r w(f) g_r,    g_r ~ Gaussian process, sigma^2 exp(-d^2 / (2 lambda^2)), d the distance in (ln a, ln v),
+    delta_r = s_r w(f) g_r,  g_r ~ Gaussian process, sigma^2 exp(-d^2 / (2 lambda^2)), d the distance in (ln a, ln v),
     s_r^2 = nu / chi^2_nu.
 
-The decay length l of a worn contact is a quantity of each rig: l_0 is a reference, exp(kappa) the factor on it common to
-all rigs, tau_l the scatter between rigs. Where l was measured it takes the place of l_0 exp(kappa), its error that of tau_l.
-The discrepancy delta is least without a reduction: w rises from 0.25 at f = 1 to 1 at f <= 0.8. Outside the range of the published
-tests it grows with the distance D from it, in logarithms: w is at least 0.25 + D/2, and sigma is larger by sqrt(1 + D^2). Its scale s_r
-is heavy-tailed, so that runs of a rig that no parameter explains widen the discrepancy instead of the noise.
+The decay length l of a worn contact is a quantity of each rig: l_0 is a reference, exp(kappa) the factor on it common
+to all rigs, tau_l the scatter between rigs. Where l was measured it takes the place of l_0 exp(kappa), its error that
+of tau_l. The discrepancy delta is least without a reduction: w rises from 0.25 at f = 1 to 1 at f <= 0.8. Outside the
+range of the published tests it grows with the distance D from it, in logarithms: w is at least 0.25 + D/2, and sigma is
+larger by sqrt(1 + D^2). Its scale s_r is heavy-tailed, so that runs of a rig that no parameter explains widen the
+discrepancy instead of the noise.
 """
 
 from dataclasses import dataclass
@@ -29,7 +30,7 @@ HYPERPARAMETERS: Final = (
     *("parameter", "length_factor", "parameter_spread", "length_spread"),
     *("discrepancy", "correlation_length"),
 )
-"""Their logarithms, in this order, are the columns of every array of hyperparameters: mu, kappa, tau, tau_l, sigma, lambda."""
+"""Their logarithms are the columns of every array of hyperparameters: mu, kappa, tau, tau_l, sigma, lambda."""
 
 OWN_DEVIATES: Final = 3
 """What one rig has of its own, as standard normal deviates: of ln theta, of ln l/a, of the scale of the discrepancy."""

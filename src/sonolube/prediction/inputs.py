@@ -71,7 +71,8 @@ class RigInputs:
     Parameters
     ----------
     decay_length, amplitude, friction : Input
-        Decay length of the contact force, vibration amplitude and intrinsic coefficient of friction: the uncertain ones.
+        Decay length of the contact force, vibration amplitude and intrinsic coefficient of friction: the uncertain
+        ones.
     measured_length : bool
         Whether the decay length is known on this rig; else it is that of the population.
     frequency : float

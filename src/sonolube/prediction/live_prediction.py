@@ -118,7 +118,9 @@ class LivePrediction:
         logs = own_logarithms(found, intrinsic=intrinsic, seed=self._seed)
         better = () if unknown else measures(found, inputs, ratio=ratio, seed=self._seed)
         variables = {
-            **{name: LabelledArray(dims=("draw",), values=values, attrs=labels(name)) for name, values in drawn.items()},
+            **{
+                name: LabelledArray(dims=("draw",), values=values, attrs=labels(name)) for name, values in drawn.items()
+            },
             **{
                 f"friction_ratio_over_{name}": LabelledArray(
                     dims=("level", f"curve_{name}"), values=np.quantile(each, LEVELS, axis=0)
@@ -235,9 +237,7 @@ def predict(
     MissingProperty, UnknownName
         For a material without thermal properties.
     """
-    return prediction_arrays(
-        rig, runs=runs, pin=pin, disc=disc, lubricant=lubricant, draws=draws, seed=seed
-    ).dataset()
+    return prediction_arrays(rig, runs=runs, pin=pin, disc=disc, lubricant=lubricant, draws=draws, seed=seed).dataset()
 
 
 def prediction_arrays(

@@ -75,8 +75,8 @@ def rig_prediction(
     Notes
     -----
     Draws from the population are conditioned on the own tests; the discrepancy follows from its conditional
-    distribution. Errors of four or more tests are Student's with 4 degrees of freedom, by weights of each test that follow
-    from its deviation from the others (expectation maximisation).
+    distribution. Errors of four or more tests are Student's with 4 degrees of freedom, by weights of each test that
+    follow from its deviation from the others (expectation maximisation).
 
     References
     ----------

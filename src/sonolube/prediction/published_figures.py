@@ -72,10 +72,11 @@ def blind_caption() -> str:
     gain, low, high = blind.gain_over(mean)
     verdict = "" if low > 0 else ": not shown to be better than the mean of published tests"
     return (
-        f"{inside[0]}, {inside[1]} and {inside[2]} of {len(blind.predictions)} tests lie within the 50, 80 and 95 % intervals."
-        f" CRPS {blind.crps:.3f}, that of the mean ratio {mean.crps:.3f}; difference {gain:.3f}, {low:.3f} to {high:.3f}"
-        f" (95 %, bootstrap over sets){verdict}. Median width of the 80 % interval {blind.median_width:.2f} (mean ratio"
-        f" {mean.median_width:.2f}). The form of the model was chosen after the errors were known."
+        f"{inside[0]}, {inside[1]} and {inside[2]} of {len(blind.predictions)} tests lie within the 50, 80 and 95 %"
+        f" intervals. CRPS {blind.crps:.3f}, that of the mean ratio {mean.crps:.3f}; difference {gain:.3f}, {low:.3f}"
+        f" to {high:.3f} (95 %, bootstrap over sets){verdict}. Median width of the 80 % interval"
+        f" {blind.median_width:.2f} (mean ratio {mean.median_width:.2f}). The form of the model was chosen after the"
+        " errors were known."
     )
 
 
@@ -94,8 +95,8 @@ def blind_figure() -> "Figure":
     axes.hlines(quantiles[len(PROBABILITIES)], places - 0.31, places + 0.31, color=COLOURS[0], label="median")
     ends = np.array([central_interval(one.draws, 0.8) for one in mean]).T
     axes.vlines(places + 0.4, *ends, color="0.45", lw=1.2, label="mean ratio of other tests, 80 %")
-    measured = np.array([(one.friction_ratio, one.uncertainty) for one in predictions]).T
-    axes.errorbar(places, *measured, fmt="o", color=COLOURS[1], ms=5, capsize=2, label="measured")
+    ratios, errors = np.array([(one.friction_ratio, one.uncertainty) for one in predictions]).T
+    axes.errorbar(places, ratios, errors, fmt="o", color=COLOURS[1], ms=5, capsize=2, label="measured")
     names = [one.rig for one in predictions]
     labels = [f"{name}-{names[: place + 1].count(name)}" for place, name in enumerate(names)]
     axes.set(xticks=places, xticklabels=labels, ylabel="friction ratio", xlabel="published test", ylim=(-0.1, 1.45))

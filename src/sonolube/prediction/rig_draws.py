@@ -1,8 +1,8 @@
 """Draws of what a rig has of its own under one friction model, from the population and conditioned on its own tests.
 
-Tests of a rig condition the draws by sequential Monte Carlo: the likelihood is raised step by step to its full power, and
-after each step the draws are resampled and moved by Metropolis steps. Deviates are standard normal before the tests, so that
-a step costs one evaluation of the likelihood.
+Tests of a rig weigh the draws. Where few of them would be left, sequential Monte Carlo conditions them: the likelihood
+is raised step by step to its full power, and after each step the draws are resampled and moved by Metropolis steps.
+Deviates are standard normal before the tests, so that a step costs one evaluation of the likelihood.
 
 References
 ----------

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.special import logsumexp, ndtr, stdtr
+from scipy.special import logsumexp, stdtr
 
 from sonolube.checks import Floats
 from sonolube.prediction.evidence import TestedRig
@@ -12,8 +12,10 @@ from sonolube.prediction.rig_draws import RigDraws
 
 _FREEDOM: Final = 4.0  # degrees of freedom of the errors of runs
 _FEWEST: Final = 4  # runs from which each is checked against the others
-_REPLICATES: Final = 256  # of runs drawn from the prediction
-_CONTRADICTION: Final = 0.02  # probability below which runs contradict the prediction
+_LARGEST: Final = 1.4  # ratio that anything else than the prediction may give
+_MIN_REPLICATES: Final = 200  # of runs drawn from the prediction
+_PRODUCTS: Final = 2e7  # of densities, to bound the time
+_CONTRADICTION: Final = 0.04  # probability below which runs contradict the prediction
 _OUTLIER: Final = 0.05  # probability, over all runs, below which one disagrees with the others
 
 
@@ -24,7 +26,7 @@ class RunCheck:
     Parameters
     ----------
     probability : float
-        Of runs as improbable as these or more, before any was made.
+        That runs as predicted speak as much against the prediction as these do.
     lows, highs : ndarray, shape (n,)
         95 % interval of each run as predicted before any.
     left_out : ndarray, shape (n,)
@@ -67,7 +69,7 @@ def student_weights(draws: RigDraws, own: TestedRig) -> Floats:
     """
     if own.friction_ratio.size < _FEWEST:
         return np.ones(own.friction_ratio.size)
-    middle, deviation = _left_out(replace(draws, own=own))
+    middle, deviation = _left_out(draws, own)
     z = (own.friction_ratio - middle) / deviation
     return np.asarray(np.minimum((_FREEDOM + 1) / (_FREEDOM + z**2), 1.0))
 
@@ -93,14 +95,13 @@ def checked_runs(before: RigDraws, after: RigDraws, own: TestedRig) -> RunCheck:
     factors = np.linalg.cholesky(seen.covariance(means))
     left_out, outlier = np.full(count, np.nan), np.ones(count)
     if count >= _FEWEST:
-        left_out, deviation = _left_out(after)
-        inflated = np.hypot(deviation, 0.0)
-        z = np.abs(own.friction_ratio - left_out) / inflated
+        left_out, deviation = _left_out(after, own)
+        z = np.abs(own.friction_ratio - left_out) / deviation
         outlier = np.asarray(2 * stdtr(count - 1, -z))
     drawn = means + np.einsum("pij,pj->pi", factors, np.random.default_rng(3).standard_normal(means.shape))
     lows, highs = np.quantile(drawn, [0.025, 0.975], axis=0)
     return RunCheck(
-        probability=_predictive_probability(means, factors, drawn, own.friction_ratio),
+        probability=_predictive_probability(means, np.asarray(factors), drawn, own),
         lows=np.maximum(lows, 0.0),
         highs=highs,
         left_out=left_out,
@@ -108,32 +109,43 @@ def checked_runs(before: RigDraws, after: RigDraws, own: TestedRig) -> RunCheck:
     )
 
 
-def _predictive_probability(means: Floats, factors: Floats, drawn: Floats, measured: Floats) -> float:
-    """Probability of outcomes as improbable as the measured ones: jointly, or one of them alone, whichever is less.
+def _predictive_probability(means: Floats, factors: Floats, drawn: Floats, own: TestedRig) -> float:
+    """Probability that runs drawn from the prediction speak as much or more for anything else as the measured ones do.
 
-    The density of all runs, and the least tail of one run, are each compared with those of runs drawn from the prediction.
+    By the ratio of two densities of all runs: that under anything else, and that under the prediction. Anything else is,
+    with equal weights, vibration without effect, one ratio whatever the conditions, or a ratio of its own for each run,
+    the last two even over 0 to 1.4.
     """
-    replicates = drawn[np.random.default_rng(4).permutation(len(drawn))[:_REPLICATES]]
-    outcomes = np.vstack([measured, replicates])
+    count = int(np.clip(_PRODUCTS / means.size / means.shape[1], _MIN_REPLICATES, len(drawn)))
+    replicates = drawn[np.random.default_rng(4).permutation(len(drawn))[:count]]
+    outcomes = np.vstack([own.friction_ratio, replicates])
     inverse = np.linalg.inv(factors)
-    logs = np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1)
+    logs = np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1) + 0.5 * means.shape[1] * np.log(2 * np.pi)
     shifted = np.einsum("pij,pj->pi", inverse, means)
-    joint = np.empty(len(outcomes))
-    for place, outcome in enumerate(outcomes):
-        scaled = inverse @ outcome - shifted
-        joint[place] = logsumexp(-0.5 * np.sum(scaled**2, axis=1) - logs)
-    deviations = np.sqrt(np.einsum("pij,pij->pi", factors, factors))
-    below = np.stack([ndtr((outcome - means) / deviations).mean(axis=0) for outcome in outcomes])
-    tail = np.minimum(below, 1 - below).min(axis=1)
-    ranks = [float(np.mean(each[1:] <= each[0])) for each in (joint, tail)]
-    return float(min(1.0, 2 * max(min(ranks), 0.5 / _REPLICATES)))
+    predicted = np.array(
+        [logsumexp(-0.5 * np.sum((inverse @ each - shifted) ** 2, axis=1) - logs) for each in outcomes]
+    ) - np.log(len(means))
+    ratio = _log_density_of_anything_else(outcomes, own.uncertainty) - predicted
+    return float(max(np.mean(ratio[1:] >= ratio[0]), 1 / count))
 
 
-def _left_out(draws: RigDraws) -> tuple[Floats, Floats]:
+def _log_density_of_anything_else(outcomes: Floats, noise: Floats) -> Floats:
+    """Logarithm of the density of runs without effect, of one ratio, or of any, shape (outcomes,)."""
+    constant = np.linspace(0.0, _LARGEST, 281)
+    z = (outcomes[:, None, :] - constant[:, None]) / noise
+    logs = np.sum(-0.5 * z**2 - np.log(noise * np.sqrt(2 * np.pi)), axis=2)
+    none = logs[:, np.searchsorted(constant, 1.0)]
+    one = logsumexp(logs, axis=1) - np.log(constant.size)
+    any_ratio = np.full(one.shape, -noise.size * np.log(_LARGEST))
+    return np.asarray(logsumexp([none, one, any_ratio], axis=0) - np.log(3))
+
+
+def _left_out(draws: RigDraws, own: TestedRig) -> tuple[Floats, Floats]:
     """Mean and standard deviation of each run by the others, over draws weighed without it.
 
     With the inverse Q of the covariance of all runs, run i deviates from its mean by the others by (Q r)_i/Q_ii, with
-    the variance 1/Q_ii; a draw counts by the inverse of the density that it gives the run.
+    the variance 1/Q_ii, of which the stated noise of the run takes the place of the one that it counts with; a draw
+    counts by the inverse of the density that it gives the run.
     """
     assert draws.own is not None
     measured = draws.own.friction_ratio
@@ -146,4 +158,4 @@ def _left_out(draws: RigDraws) -> tuple[Floats, Floats]:
     weights = np.exp(logs - logsumexp(logs, axis=0))
     middle = np.sum(weights * (measured - gap), axis=0)
     spread = np.sum(weights * (variance + (measured - gap - middle) ** 2), axis=0)
-    return middle, np.sqrt(spread)
+    return middle, np.sqrt(spread - draws.own.uncertainty**2 + own.uncertainty**2)

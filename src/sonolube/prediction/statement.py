@@ -141,8 +141,9 @@ def _contradiction(check: RunCheck | None, own: OwnRuns) -> str:
     worst = int(np.argmax(outside))
     return (
         f"Your runs contradict every model (probability {check.probability:.1g}): ratio {ratio[worst]:.2f} where"
-        f" {check.lows[worst]:.2f} to {check.highs[worst]:.2f} (95 %) was predicted; what follows rests on the runs alone"
-        " and holds near their conditions. Check amplitude, load and zero of the force, or expect another mechanism."
+        f" {check.lows[worst]:.2f} to {check.highs[worst]:.2f} (95 %) was predicted; what follows rests on the runs"
+        " alone and holds near their conditions. Check amplitude, load and zero of the force, or expect another"
+        " mechanism."
     )
 
 

@@ -32,18 +32,16 @@ def moments(model: ModelOutcomes) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("own", [None, OWN], ids=["before", "after own runs"])
 def test_the_outcomes_have_the_moments_of_the_prediction(own: TestedRig | None) -> None:
-    for posterior in learned().friction:
-        model = closure_outcomes([posterior], AT, weights={posterior.closure.name: 1.0}, own=own)[0]
+    for posterior in learned().compared:
+        model = closure_outcomes([posterior], AT, own=own)[0]
         mean, deviation = moments(model)
-        draws = ratio_draws([posterior], AT, count=4000, own=own).friction_ratio
+        draws = ratio_draws(posterior, AT, count=4000, own=own)
         assert mean == pytest.approx(draws.mean(axis=0), abs=0.02)
         assert deviation == pytest.approx(draws.std(axis=0), rel=0.15)
 
 
 def test_own_runs_narrow_the_outcomes_where_they_were_made() -> None:
-    posterior = learned().friction[0]
-    weights = {posterior.closure.name: 1.0}
-    before, after = (moments(closure_outcomes([posterior], AT, weights=weights, own=own)[0])[1] for own in (None, OWN))
+    before, after = (moments(closure_outcomes([learned().friction], AT, own=own)[0])[1] for own in (None, OWN))
     assert after[1] < 0.5 * before[1]
     assert np.all(after < before)
 
@@ -52,8 +50,7 @@ def test_own_runs_narrow_the_outcomes_where_they_were_made() -> None:
 def test_the_batch_of_the_power_map_rig_is_the_best_of_all_of_its_points(count: int) -> None:
     amplitude, speed = (each.ravel() for each in np.meshgrid([0.46e-6, 1.38e-6, 2.31e-6], [0.02, 0.045, 0.09, 0.2]))
     at = INPUTS.at(vibration_amplitude=amplitude, sliding_speed=speed)
-    weights = {posterior.closure.name: posterior.weight for posterior in learned().friction}
-    models = closure_outcomes(learned().friction, at, weights=weights)
+    models = closure_outcomes(learned().compared, at)
     noise = np.full(12, 0.03)
     every = {each: mutual_information(models, np.array(each), noise=noise) for each in combinations(range(12), count)}
     batch = best_batch(models, count=count, noise=noise, allowed=np.arange(12))

@@ -18,11 +18,7 @@ DRAWS: Final = 512
 
 
 def closure_outcomes(
-    posteriors: Sequence[Posterior],
-    at: UncertainConditions,
-    *,
-    own: TestedRig | None = None,
-    seed: int = 0,
+    posteriors: Sequence[Posterior], at: UncertainConditions, *, own: TestedRig | None = None, seed: int = 0
 ) -> list[ModelOutcomes]:
     """Outcomes of candidate tests of a rig under each closure.
 
@@ -32,8 +28,8 @@ def closure_outcomes(
     at : UncertainConditions
         Of the m candidates.
     own : TestedRig, optional
-        Tests of the rig's own, on which the draws and the discrepancy are conditioned; their density under each friction
-        model gives its probability. Equal probabilities without tests.
+        Tests of the rig's own, on which the draws and the discrepancy are conditioned; their density under each
+        friction model gives its probability. Equal probabilities without tests.
     seed : int
 
     Returns

@@ -269,7 +269,13 @@ def plan_tests(
         materials=None if pin is None or disc is None else (pin, disc),
         caveats=() if own is None else own.caveats,
     )
-    return replace(plan, caveats=(*_caveats(plan, inputs, contradicted=found.check is not None and found.check.contradicted), *plan.caveats))
+    return replace(
+        plan,
+        caveats=(
+            *_caveats(plan, inputs, contradicted=found.check is not None and found.check.contradicted),
+            *plan.caveats,
+        ),
+    )
 
 
 def _scatter(question: Question, runs: "xr.Dataset | None") -> Scatter:
