@@ -72,6 +72,7 @@ from .models.asperity_stick_slip_sine import (
     mindlin_memory_length as mindlin_memory_length,
     sine_stick_slip_ratio as sine_stick_slip_ratio,
 )
+from .models.asperity_stick_slip_table import tabulated_stick_slip_ratio as tabulated_stick_slip_ratio
 from .models.bristle_with_holder import BristleWithHolder as BristleWithHolder
 from .models.dong_2015 import (
     Dong2015FullPeriod as Dong2015FullPeriod,
@@ -109,6 +110,7 @@ from .oscillating_contact.spring_contact import (
     critical_speed as critical_speed,
     load_balanced_approach as load_balanced_approach,
 )
+from .oscillating_contact.spring_table import tabulated_spring_ratio as tabulated_spring_ratio
 from .oscillating_contact.static_friction import (
     longitudinal_static_ratio as longitudinal_static_ratio,
     normal_static_ratio as normal_static_ratio,

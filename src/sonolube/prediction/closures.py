@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
-from sonolube.friction import SpringContact, load_balanced_approach, normal_oscillation_ratio, sine_stick_slip_ratio
-
-_UNIT_SPRINGS: Final = SpringContact(friction_coefficient=1.0, mindlin_ratio=1.0)
+from sonolube.friction import tabulated_spring_ratio, tabulated_stick_slip_ratio
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -117,7 +115,7 @@ class Closure:
 
 def _stick_slip(log_length: ArrayLike, at: Conditions) -> Floats:
     """Friction ratio by stick-slip of asperities with exponential heights."""
-    return sine_stick_slip_ratio(
+    return tabulated_stick_slip_ratio(
         decay_length=at.decay_length,
         vibration_amplitude=at.vibration_amplitude,
         frequency=at.frequency,
@@ -128,14 +126,12 @@ def _stick_slip(log_length: ArrayLike, at: Conditions) -> Floats:
 
 def _spring(log_length: ArrayLike, at: Conditions) -> Floats:
     """Friction ratio by a flat spring whose approach at rest is the decay length, with a free slip length."""
-    slip_per_approach = np.exp(log_length) / at.decay_length
-    approach = load_balanced_approach(_UNIT_SPRINGS, approach=at.decay_length, normal_amplitude=at.vibration_amplitude)
-    return normal_oscillation_ratio(
-        _UNIT_SPRINGS,
-        approach=approach,
+    return tabulated_spring_ratio(
+        approach=at.decay_length,
         normal_amplitude=at.vibration_amplitude,
         frequency=at.frequency,
-        sliding_speed=at.sliding_speed / slip_per_approach,  # the speed enters over the slip length only
+        sliding_speed=at.sliding_speed,
+        slip_length=np.exp(log_length),
     )
 
 

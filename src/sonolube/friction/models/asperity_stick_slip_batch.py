@@ -1,8 +1,6 @@
 """Friction ratios of asperity stick-slip for many motions at once: a table for sines, quadrature for other motions."""
 
-from functools import cache
 from math import atan2, cos, exp, log, pi, sin, sqrt
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,29 +10,20 @@ from sonolube.compilation import kernel
 from sonolube.contact.gap_motion import GapMotionBatch
 from sonolube.errors import InvalidInput
 from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
+from sonolube.friction.models.asperity_stick_slip_table import LOG_BETA, sine_table
 from sonolube.friction.scaled_bessel import scaled_bessel_i0
+from sonolube.friction.uniform_spline import bicubic_value
 
 SINE_TOLERANCE = 8e-5
 """Largest error of a friction ratio by neglecting the higher harmonics of a vibration. []"""
 
 _FEW = 3000  # points for which plain Python takes less than compiling
-_LOG_BETA, _LOG_SPEED = (-6.0, 4.1), (-11.0, 0.0)  # ranges of the table of sines
-_ROWS, _COLUMNS = 300, 330
+_LOWEST, _HIGHEST = LOG_BETA
 _NODES = np.polynomial.legendre.leggauss(32)
 _MAXIMUM_BETA = 40.0  # amplitude over decay length up to which the quadrature is accurate
 _MAXIMUM_CUBIC_SUM = 0.5  # sum of k^3 |X_k| over |X_1| up to which a motion closes and opens once in a period
 _NEGLIGIBLE_HARMONIC = 1e-9  # in decay lengths
 _MINIMUM_SPEED = 1e-4  # sliding speed over that at which no element sticks, for the quadrature
-
-
-class _Table(NamedTuple):
-    """Friction ratios under load-balanced sines on a uniform grid of ln beta and ln v."""
-
-    ratio: Floats
-    beta_start: float
-    beta_step: float
-    speed_start: float
-    speed_step: float
 
 
 def batched_stick_slip_ratio(
@@ -79,8 +68,8 @@ def batched_stick_slip_ratio(
     The force of an element is the minimum, over the past, of its limit at that time plus the slide since. It changes by
     no more than the gap, so that higher harmonics of the sum e change the friction of a sine about the same mean by a
     factor between exp(-e/l) and exp(e/l). Where this is below the tolerance, a share of the friction without
-    vibration, they are neglected; from a tolerance of 8e-5 on the ratio is then interpolated in a table for sines by
-    cubics, to 3e-6, else it has the closed form of a sine.
+    vibration, they are neglected; from a tolerance of 8e-5 on the ratio is then interpolated in the table of
+    `tabulated_stick_slip_ratio`, to 2e-6, else it has the closed form of a sine.
 
     Otherwise the force is integrated exactly. With the height :math:`g = x + s \theta` of the gap above the slide,
     :math:`s = v_r/(2 \pi f D_c)` decay lengths per radian, an element that comes into contact in a valley of g sticks
@@ -111,7 +100,7 @@ def batched_stick_slip_ratio(
     load_ratio = scaled_bessel_i0(beta) * np.exp(beta - mean)
     slide = 1 / (2 * np.pi * f * memory)
     ratio = np.empty(v_r.shape)
-    table = _table() if tolerance >= SINE_TOLERANCE else _NO_TABLE
+    table = sine_table() if tolerance >= SINE_TOLERANCE else np.empty((0, 0))
     write_ratios = _write_ratios.for_points(v_r.size, at_first=_FEW)
     write_ratios(
         table,
@@ -142,26 +131,9 @@ def batched_stick_slip_ratio(
     return ratio
 
 
-_NO_TABLE = _Table(np.empty((0, 0)), 0.0, 1.0, 0.0, 1.0)
-
-
-@cache
-def _table() -> _Table:
-    """Return the table of friction ratios under load-balanced sines, computed once."""
-    beta, speed = np.linspace(*_LOG_BETA, _ROWS), np.linspace(*_LOG_SPEED, _COLUMNS)
-    ratio = sine_stick_slip_ratio(
-        decay_length=1.0,
-        vibration_amplitude=np.exp(beta)[:, np.newaxis],
-        frequency=1 / (2 * np.pi),
-        sliding_speed=np.exp(speed) * np.exp(beta)[:, np.newaxis],
-        memory_length=1.0,
-    )
-    return _Table(ratio, beta[0], beta[1] - beta[0], speed[0], speed[1] - speed[0])
-
-
 @kernel(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)
 def _write_ratios(
-    table: _Table,
+    table: Floats,
     tolerance: float,
     harmonics: Complexes,
     mean: Floats,
@@ -194,29 +166,17 @@ def _write_ratios(
 
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
-def _interpolated(table: _Table, beta: float, s: float) -> float:
+def _interpolated(table: Floats, beta: float, s: float) -> float:
     """Return the ratio under a sine by bicubic interpolation in the table, infinity outside of it."""
     if s >= beta:
         return 1.0
-    p, q = (log(beta) - table.beta_start) / table.beta_step, (log(s / beta) - table.speed_start) / table.speed_step
-    rows, columns = table.ratio.shape
-    if p < 0 or p > rows - 1 or q < 0:
+    if table.size == 0 or log(beta) > _HIGHEST:
         return np.inf
-    row, column = min(max(int(p) - 1, 0), rows - 4), min(max(int(q) - 1, 0), columns - 4)
-    a, b, c, d = _cubic_weights(p - row)
-    e, f, g, h = _cubic_weights(q - column)
-    total = 0.0
-    for k, weight in enumerate((a, b, c, d)):
-        line = table.ratio[row + k]
-        total += weight * (e * line[column] + f * line[column + 1] + g * line[column + 2] + h * line[column + 3])
-    return total
-
-
-@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
-def _cubic_weights(t: float) -> tuple[float, float, float, float]:
-    """Return the weights at t of the cubic Lagrange polynomial through values at 0, 1, 2 and 3."""
-    a, b, c, d = t, t - 1, t - 2, t - 3
-    return -b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6
+    rows, columns = table.shape
+    v = s / beta
+    row = (max(log(beta), _LOWEST) - _LOWEST) * ((rows - 3) / (_HIGHEST - _LOWEST))
+    deficit = bicubic_value(table, row, sqrt(sqrt(v)) * (columns - 3)) * beta / (1 + beta) * (1 - v) ** 2
+    return min(max(1 - deficit, 0.0), 1.0)
 
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
