@@ -127,6 +127,8 @@ MODES = {
             "--scan": "FOLDER/plate.asc",
             "--pin-scan": "FOLDER/plate.asc",
             "--friction": "0.3",
+            "--decay-length": "2um",
+            "--stiffness": "1.5MN/m",
         },
         ("--force",),
     ),

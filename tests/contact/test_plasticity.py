@@ -35,3 +35,9 @@ def test_the_plasticity_index_is_the_hand_computed_one() -> None:
 
 def test_the_plasticity_index_of_bodies_that_never_yield_is_zero() -> None:
     assert plasticity_index(replace(CONTACT, asperity=ASPERITY_LAWS["elastic"])) == 0
+
+
+def test_the_plasticity_index_follows_the_heights_of_the_contact_not_the_roughness_before_wear() -> None:
+    # 3 l = 800 nm, four times the rms height of 200 nm: sqrt(800/42.326)
+    contact = replace(CONTACT, asperity=ASPERITY_LAWS["chang_etsion_bogy"], decay_length=0.8e-6 / 3)
+    assert plasticity_index(contact) == approx(2 * 2.17378, rel=1e-4, abs=0)

@@ -257,3 +257,65 @@ def test_a_separation_beyond_the_table_of_gaussian_heights_is_refused_with_its_r
 def test_a_separation_at_which_exponential_heights_overflow_is_refused() -> None:
     with raises(OutsideRange, match=r"separation must lie between -4e-05 and inf m for exponential heights"):
         normal_force(CONTACT, separation=-1.0)
+
+
+WORN = replace(CONTACT, decay_length=1.5e-6)  # of a surface whose rms height was 0.2 um before wear
+
+
+@mark.parametrize("d", [-0.3e-6, 1e-6, 9e-6])
+def test_with_a_decay_length_of_its_own_the_summits_are_the_exponential_population_of_that_length(d: float) -> None:
+    # phi = c exp(-z/l) over heights z, per lambda l: the tail of D 3.2 on a length of its own
+    length, density = 1.5e-6, 17 * FINE.summit_density * 1e-4
+    w_c = critical_interference(WORN.asperity, STEEL, summit_radius=FINE.summit_radius)
+
+    def over_all_summits(law: Callable[..., Floats]) -> float:
+        def integrand(w: float) -> float:
+            one = float(law(WORN.asperity, STEEL, summit_radius=FINE.summit_radius, interference=w))
+            return one * math.exp(-(d + w) / length) / (3 * length)
+
+        edges = [0.0, *sorted({w_c, 0.1 * length, length, 4 * length, 12 * length, 40 * length})]
+        return density * sum(float(quad(integrand, a, b, epsabs=0, epsrel=1e-11)[0]) for a, b in pairwise(edges))
+
+    assert normal_force(WORN, separation=d) == approx(over_all_summits(asperity_force), rel=1e-8, abs=0)
+    assert real_contact_area(WORN, separation=d) == approx(over_all_summits(asperity_area), rel=1e-8, abs=0)
+    assert contact_count(WORN, separation=d) == approx(density * math.exp(-d / length) / 3, rel=1e-9, abs=0)
+
+
+@mark.parametrize("load", [0.1, 5.0, 80.0])
+def test_load_over_the_slope_of_its_curve_is_the_decay_length_at_any_load(load: float) -> None:
+    d, step = float(separation(WORN, normal_load=load)), 1e-10
+    below, above = (float(normal_force(WORN, separation=d + sign * step)) for sign in (-1, 1))
+    slope = (below - above) / (2 * step)
+    assert load / slope == approx(1.5e-6, rel=1e-6)
+    assert float(normal_stiffness(WORN, separation=d)) == approx(slope, rel=1e-6)
+    assert float(decay_length(WORN)) == 1.5e-6
+    assert float(separation(WORN, normal_load=math.e * load)) == approx(d - 1.5e-6, rel=1e-9)
+
+
+@mark.parametrize("name", list(ASPERITY_LAWS))
+def test_a_decay_length_of_a_third_of_the_rms_height_changes_nothing(name: str) -> None:
+    measured = replace(CONTACT, asperity=ASPERITY_LAWS[name])
+    stated = replace(measured, decay_length=FINE.rms_height / 3)
+    d = np.linspace(0.1e-6, 1e-6, 7)
+    for quantity in (normal_force, real_contact_area, contact_count, normal_stiffness, elastic_area, plastic_area):
+        assert quantity(stated, separation=d) == approx(quantity(measured, separation=d), rel=1e-12, abs=0)
+    assert separation(stated, normal_load=3.0) == approx(separation(measured, normal_load=3.0), rel=1e-12)
+
+
+def test_the_roughness_of_a_contact_stays_what_was_measured() -> None:
+    assert WORN.roughness == FINE
+    assert WORN.height_scale == approx(4.5e-6)
+    assert CONTACT.height_scale == FINE.rms_height
+
+
+def test_contacts_of_two_decay_lengths_are_two_contacts() -> None:
+    assert WORN != CONTACT
+    assert len({WORN, CONTACT, replace(CONTACT, decay_length=1.5e-6)}) == 2
+    assert float(normal_force(WORN, separation=3e-6)) > 10 * float(normal_force(CONTACT, separation=3e-6))
+
+
+def test_a_decay_length_of_heights_that_have_none_is_refused() -> None:
+    with raises(InvalidInput, match="decay_length is for exponential heights, got gaussian heights"):
+        replace(CONTACT, heights=GaussianHeights(), decay_length=1e-6)
+    with raises(InvalidInput, match="decay_length must be positive"):
+        replace(CONTACT, decay_length=0.0)

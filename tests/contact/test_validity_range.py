@@ -140,3 +140,10 @@ def test_a_steeper_exponential_distribution_has_its_own_validity_range() -> None
     assert valid is not None
     assert typical is not None
     assert valid[0] > typical[0]
+
+
+def test_a_decay_length_that_is_known_itself_is_no_fit_to_gaussian_heights() -> None:
+    smooth = replace(TYPICAL, decay_length=0.05e-6)
+    far = separation(smooth, normal_load=1e-6)
+    assert [each for each in contact_caveats(smooth, separation=far) if "gaussian" in each] == []
+    assert exponential_validity_range(smooth) == exponential_validity_range(TYPICAL)

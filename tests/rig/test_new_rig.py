@@ -12,7 +12,7 @@ from pytest import approx, raises
 from sonolube.actuator import catalogue_actuator
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
-from sonolube.rig import Rig, friction_point, rig_from
+from sonolube.rig import PUBLISHED_DECAY_LENGTH, Rig, friction_point, rig_from
 from sonolube.rig.new_rig.known_surface import finished_surface, scanned_surface, surfaces_in_contact
 from sonolube.rig.new_rig.pin_and_vibration import DrivenActuator, FlatPin, RoundPin, StatedAmplitude
 from sonolube.rig.new_rig.rig_text import KnownRig, least_known, new_rig_text
@@ -137,6 +137,35 @@ def test_what_nobody_measured_has_a_distribution_and_a_reason() -> None:
         "vibration.vibration_amplitude",
     }
     assert set(rig.uncertainty) <= set(rig.assumptions)
+
+
+def test_the_decay_length_of_a_new_rig_is_that_of_worn_contacts_whatever_its_finish() -> None:
+    for finish in ("N4", "N8"):
+        rig = rig_of(replace(KNOWN, disc_surface=finished_surface(finish)))
+        assert rig.contact.decay_length == approx(PUBLISHED_DECAY_LENGTH.median, rel=1e-3)
+        assert rig.decay_length_origin == "published_tests"
+        low, high = rig.uncertainty["contact.decay_length"].quantile((0.1, 0.9))
+        assert (low, high) == approx(PUBLISHED_DECAY_LENGTH.central_range(share=0.8), rel=2e-3)
+        assert "roughness before wear does not tell it" in rig.assumptions["contact.decay_length"]
+        assert rig.contact.roughness.rms_height != approx(3 * PUBLISHED_DECAY_LENGTH.median, rel=0.1)
+
+
+def test_a_measured_stiffness_or_a_stated_length_takes_the_place_of_that_of_published_tests() -> None:
+    stiff = rig_of(replace(KNOWN, normal_stiffness=2.5e6))  # 5 N over 2.5 MN/m
+    assert (stiff.contact.decay_length, stiff.decay_length_origin) == (approx(2e-6), "normal_stiffness")
+    stated = rig_of(replace(KNOWN, decay_length=0.7e-6))
+    assert (stated.contact.decay_length, stated.decay_length_origin) == (approx(0.7e-6), "stated")
+    for rig, key in ((stiff, "contact.normal_stiffness"), (stated, "contact.decay_length")):
+        assert key in rig.uncertainty
+        assert key in rig.assumptions
+    with raises(InvalidInput, match="give either decay_length or normal_stiffness, got both"):
+        rig_of(replace(KNOWN, normal_stiffness=2.5e6, decay_length=0.7e-6))
+
+
+def test_roughness_is_not_called_least_known_where_nothing_follows_from_it() -> None:
+    listed = least_known(rig_of(KNOWN), count=10)
+    assert "contact.roughness.rms_height" not in [one.key for one in listed]
+    assert "contact.decay_length" in [one.key for one in listed]
 
 
 def test_the_inputs_known_least_come_first_and_each_measurement_once() -> None:

@@ -88,9 +88,10 @@ def new(
         str | None,
         typer.Option(metavar="NUMBER", help="Coefficient of dry friction, where it was measured; else by the pair."),
     ] = None,
-    decay_length: Annotated[
+    decaying_over: Annotated[
         str | None,
         typer.Option(
+            "--decay-length",
             metavar="LENGTH",
             help="Length over which the force of the worn contact falls by a factor of e, where it is known; else that "
             "of published tests.",
@@ -115,7 +116,7 @@ def new(
         raise InvalidInput(f"{out}: exists; name another file, or give --force to replace it")
     _refuse_two({"--pin-finish": pin_finish, "--pin-scan": pin_scan})
     _refuse_two({"--disc-finish": disc_finish, "--scan": scan})
-    _refuse_two({"--decay-length": decay_length, "--stiffness": stiffness})
+    _refuse_two({"--decay-length": decaying_over, "--stiffness": stiffness})
     driven = _driven(amplitude, actuator, voltage)
     given = {_PIN: pin, _DISC: disc, _LOAD: load, _SPEED: speed, _FREQUENCY: at, _AMPLITUDE: driven}
     asks = _asks(given)
@@ -131,7 +132,7 @@ def new(
         pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, surface_of, asks=asks),
         disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, surface_of, asks=asks),
         friction_coefficient=_friction_coefficient(friction, pin=materials[0], disc=materials[1]),
-        decay_length=None if decay_length is None else reader("m", name="--decay-length")(decay_length),
+        decay_length=None if decaying_over is None else reader("m", name="--decay-length")(decaying_over),
         normal_stiffness=None if stiffness is None else reader("N/m", name="--stiffness")(stiffness),
     )
     text = new_rig_text(known)

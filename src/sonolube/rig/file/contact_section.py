@@ -148,7 +148,7 @@ class ContactSection(Section):
     roughness: AnyRoughness
     decay_length: float | None = None
     decay_length_origin: DecayLengthOrigin | None = Field(
-        default=None, description='How decay_length is known; "stated" where absent, best known first in this list'
+        default=None, description='How decay_length is known; "stated" where absent'
     )
     normal_stiffness: float | None = Field(default=None, description="in place of decay_length")
     stiffness_load: float | None = None
