@@ -152,9 +152,11 @@ def test_the_decay_length_of_a_new_rig_is_that_of_worn_contacts_whatever_its_fin
 
 def test_a_measured_stiffness_or_a_stated_length_takes_the_place_of_that_of_published_tests() -> None:
     stiff = rig_of(replace(KNOWN, normal_stiffness=2.5e6))  # 5 N over 2.5 MN/m
-    assert (stiff.contact.decay_length, stiff.decay_length_origin) == (approx(2e-6), "normal_stiffness")
+    assert stiff.contact.decay_length == approx(2e-6)
+    assert stiff.decay_length_origin == "normal_stiffness"
     stated = rig_of(replace(KNOWN, decay_length=0.7e-6))
-    assert (stated.contact.decay_length, stated.decay_length_origin) == (approx(0.7e-6), "stated")
+    assert stated.contact.decay_length == approx(0.7e-6)
+    assert stated.decay_length_origin == "stated"
     for rig, key in ((stiff, "contact.normal_stiffness"), (stated, "contact.decay_length")):
         assert key in rig.uncertainty
         assert key in rig.assumptions

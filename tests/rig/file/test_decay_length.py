@@ -102,10 +102,12 @@ def test_a_rig_with_a_stiffness_is_written_and_read_again(tmp_path: Path) -> Non
 
 def test_a_typed_length_takes_the_place_of_a_stiffness_and_the_reverse(tmp_path: Path) -> None:
     typed = read_rig(file_of(tmp_path, STIFF), changes=["contact.decay_length=0.7um"])
-    assert (typed.contact.decay_length, typed.decay_length_origin) == (approx(0.7e-6), "stated")
+    assert typed.contact.decay_length == approx(0.7e-6)
+    assert typed.decay_length_origin == "stated"
     path = file_of(tmp_path, WORN, '"contact.decay_length" = "lognormal factor 2"')
     typed = read_rig(path, changes=["contact.normal_load=12N", "contact.normal_stiffness=1.5MN/m"])
-    assert (typed.contact.decay_length, typed.decay_length_origin) == (approx(4e-6), "normal_stiffness")  # at 6 N
+    assert typed.contact.decay_length == approx(4e-6)  # at 6 N
+    assert typed.decay_length_origin == "normal_stiffness"
     assert typed.uncertainty == {}
 
 
