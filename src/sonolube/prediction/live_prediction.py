@@ -145,7 +145,7 @@ class LivePrediction:
             attrs=prediction_attributes(rig, inputs, own, found, limits)
             | {
                 "heat": heating if isinstance(heating, str) else "",
-                "wear": wear_sentence(rig, drawn["wear_rate_ratio"]),
+                "wear": wear_sentence(rig, drawn["wear_rate_ratio"], contradicted=_contradicted(found)),
             },
         )
         return result.assign_attrs(statement="\n".join(statement(result)))
@@ -178,16 +178,19 @@ class LivePrediction:
 
     def _wear(self, rig: Rig, found: RigPrediction, own: OwnRuns | None, ratio: Floats) -> dict[str, Floats]:
         """Draws of the wear rate ratio and reduction."""
-        measured, weight = np.empty(0), np.ones(ratio.size)
+        measured, tested_weight = np.empty(0), np.ones(ratio.size)
+        weight = vibration_weight(friction_ratio=ratio, seed=self._seed)
+        if _contradicted(found):  # of which friction does not tell
+            weight = np.random.default_rng(self._seed + 2).random(ratio.size)
         if own is not None and own.wear_rate_ratio.size:
             measured = own.wear_rate_ratio
             tested = found.ratios(own.tested.at.conditions.taken(own.wear_runs))
-            weight = vibration_weight(friction_ratio=tested, seed=self._seed).mean(axis=1)
+            tested_weight = vibration_weight(friction_ratio=tested, seed=self._seed).mean(axis=1)
         wear = learned().wear.wear_rate_ratios(
             ratio.size,
             measured=measured,
-            weight=vibration_weight(friction_ratio=ratio, seed=self._seed),
-            measured_weight=weight,
+            weight=weight,
+            measured_weight=tested_weight,
             pair=pair_of(rig),
             seed=self._seed,
         )
@@ -324,6 +327,11 @@ def _measures(better: Sequence[Measure]) -> dict[str, NDArray[Any]]:
 def _along(name: str, values: Mapping[str, NDArray[Any]]) -> dict[str, LabelledArray]:
     """Arrays over one axis."""
     return {each: LabelledArray(dims=(name,), values=array) for each, array in values.items()}
+
+
+def _contradicted(found: RigPrediction) -> bool:
+    """Whether own runs contradict the prediction before them."""
+    return found.check is not None and found.check.contradicted
 
 
 def _curve_points(value: float) -> Floats:

@@ -146,7 +146,7 @@ def measures(found: RigPrediction, inputs: RigInputs, *, ratio: Floats, seed: in
     made = [
         Measure(label="one run at this point", share_left=share_left(near, observed=near, noise=_RUN)),
         Measure(
-            label=f"one run at this point, for {_FARTHER:g} times the speed,",
+            label=f"one run at this point, for the ratio at {_FARTHER:g} times the speed",
             share_left=share_left(far, observed=near, noise=_RUN),
         ),
     ]

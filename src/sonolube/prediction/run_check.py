@@ -119,14 +119,24 @@ def _predictive_probability(means: Floats, factors: Floats, drawn: Floats, own: 
     count = int(np.clip(_PRODUCTS / means.size / means.shape[1], _MIN_REPLICATES, len(drawn)))
     replicates = drawn[np.random.default_rng(4).permutation(len(drawn))[:count]]
     outcomes = np.vstack([own.friction_ratio, replicates])
-    inverse = np.linalg.inv(factors)
-    logs = np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1) + 0.5 * means.shape[1] * np.log(2 * np.pi)
-    shifted = np.einsum("pij,pj->pi", inverse, means)
-    predicted = np.array(
-        [logsumexp(-0.5 * np.sum((inverse @ each - shifted) ** 2, axis=1) - logs) for each in outcomes]
-    ) - np.log(len(means))
+    predicted = _mixture_log_density(outcomes, means, factors)
     ratio = _log_density_of_anything_else(outcomes, own.uncertainty) - predicted
     return float(max(np.mean(ratio[1:] >= ratio[0]), 1 / count))
+
+
+def _mixture_log_density(outcomes: Floats, means: Floats, factors: Floats) -> Floats:
+    """Logarithm of the mean density of outcomes under normal distributions, shape (outcomes,).
+
+    Each logarithm is a polynomial of second degree in the outcomes, so that all are one product of matrices.
+    """
+    inverse = np.linalg.inv(factors)
+    precision = np.swapaxes(inverse, 1, 2) @ inverse
+    linear = np.einsum("pij,pj->pi", precision, means)
+    logs = np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1) + 0.5 * means.shape[1] * np.log(2 * np.pi)
+    constant = -0.5 * np.einsum("pi,pi->p", linear, means) - logs
+    squares = (outcomes[:, :, None] * outcomes[:, None, :]).reshape(len(outcomes), -1)
+    each = -0.5 * squares @ precision.reshape(len(means), -1).T + outcomes @ linear.T + constant
+    return np.asarray(logsumexp(each, axis=1) - np.log(len(means)))
 
 
 def _log_density_of_anything_else(outcomes: Floats, noise: Floats) -> Floats:

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability
 from sonolube.prediction.inputs import RigInputs
 from sonolube.prediction.own_runs import OwnRuns
@@ -78,6 +79,7 @@ def prediction_attributes(
         "caveats": "\n".join(caveats),
         "assumptions": "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items()),
         "contradiction": "" if own is None else _contradiction(found.check, own),
+        "unknown": int(limits.any_ratio and own is None),
         "friction_law": found.draws.posterior.closure.name,
         "vibration_amplitude": inputs.amplitude.value,
         "sliding_speed": inputs.sliding_speed,
@@ -93,6 +95,8 @@ def prediction_attributes(
 
 def _outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
     """Sentence on the change of friction."""
+    if prediction.attrs["unknown"]:
+        return "Friction falls by anything from 0 to 100 %: a dry prediction does not hold."
     low, high = (100 * each for each in interval(prediction, "friction_reduction"))
     if max(abs(low), abs(high)) < _NONE:
         return "Friction does not change."
@@ -104,18 +108,12 @@ def _outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
 
 
 def _advice(prediction: "xr.Dataset | LabelledArrays") -> str:
-    """Sentence on the measurements that would narrow the interval."""
-    left = dict(
-        zip(
-            prediction["measure_label"].to_numpy().tolist(),
-            prediction["measure_share_left"].to_numpy().tolist(),
-            strict=True,
-        )
-    )
-    if not left:
+    """Sentence on the measurement that would narrow the interval most."""
+    labels, left = (prediction[name].to_numpy() for name in ("measure_label", "measure_share_left"))
+    if not labels.size:
         return "Own runs, fitted by `sonolube fit`, tell what vibration does here."
-    texts = [f"{label} would leave {100 * share:.0f} % of the width" for label, share in left.items()]
-    return f"To know it better: {'; '.join(texts)}."
+    one, other = 100 * left[0], 100 * left[1]
+    return f"One run at this point would leave {one:.0f} % of the width here, {other:.0f} % at twice the speed."
 
 
 def _limits(prediction: "xr.Dataset | LabelledArrays") -> str:
@@ -158,6 +156,10 @@ def _outlier_caveats(check: RunCheck | None, own: OwnRuns) -> list[str]:
     ]
 
 
-def wear_sentence(rig: Rig, wear_rate_ratio: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> str:
+def wear_sentence(rig: Rig, wear_rate_ratio: Floats, *, contradicted: bool) -> str:
     """Change of the wear rate in words, with the body that wears."""
+    if contradicted:
+        return (
+            "What vibration does to wear is not known where the runs contradict the prediction of friction: measure it."
+        )
     return wear_statement(wear_rate_ratio, pair=pair_of(rig), worn_body=worn_body(rig))

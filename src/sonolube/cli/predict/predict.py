@@ -24,15 +24,10 @@ from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
-_INPUT_HEADS = [
-    "  least known inputs",
-    "value",
-    "to know it better",
-    "left of the intervals of ratio and force",
-    "known from",
-]
+_INPUT_HEADS = ["  least known inputs", "value", "known well, it leaves of ratio and force", "known from"]
+_MEASURE_HEADS = ["  what would narrow it", "leaves of the interval"]
 _INPUT_COLUMNS = (
-    *("input", "input_label", "input_value", "input_spread", "remedy", "reason"),
+    *("input", "input_label", "input_value", "input_spread", "reason"),
     *("interval_share_left", "force_interval_share_left"),
 )
 _PERCENT = ("friction_reduction", "wear_reduction")
@@ -50,6 +45,9 @@ def predict(
     ] = None,
     load: Load = None,
     amplitude: Amplitude = None,
+    lubricant: Annotated[
+        bool, typer.Option("--lubricant", help="The contact is lubricated: a dry prediction does not hold.")
+    ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of the draws.")] = 0,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("{rig}-prediction.*")] = OUT,
@@ -61,7 +59,7 @@ def predict(
     """
     known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     own = None if runs is None else measured_runs(runs)
-    result = prediction_arrays(known, runs=own, pin=pin, disc=disc, seed=seed)
+    result = prediction_arrays(known, runs=own, pin=pin, disc=disc, lubricant=lubricant, seed=seed)
     measured = measured_on(known, vibration_amplitude=result.attrs["vibration_amplitude"])
     answer = PredictionAnswer(rig=known, prediction=result, measured=measured, name=f"{rig.stem}-prediction")
     deliver(answer, folder=out, as_json=json)
@@ -88,6 +86,7 @@ class PredictionAnswer(Answer):
             f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}",
             *attributes["statement"].split("\n"),
             *grid([heads, *map(self._row, self._names())]),
+            *grid([_MEASURE_HEADS, *self._measure_rows()]),
             *grid([_INPUT_HEADS, *map(self._input_row, range(self.prediction.sizes["input"]))]),
             *about,
             *(f"  measured {one.label}: {one.text}" for one in self.measured),
@@ -100,6 +99,9 @@ class PredictionAnswer(Answer):
             "statement": self.prediction.attrs["statement"].split("\n"),
             **{name: self._object(name) for name in self._names()},
             "inputs": self.prediction["input_text"].to_numpy().tolist(),
+            "share_left_by_measurement": dict(
+                zip(self._column("measure_label"), self._column("measure_share_left"), strict=True)
+            ),
             "measured": [one.object() for one in self.measured],
             "interval_share_left": dict(zip(self._column("input"), self._column("interval_share_left"), strict=True)),
             **{name: self.prediction.attrs.get(name) for name in ("runs", "actuator_power")},
@@ -123,12 +125,17 @@ class PredictionAnswer(Answer):
         return values
 
     def _input_row(self, place: int) -> list[str]:
-        """Uncertain input with its spread, how to know it better, and what of the intervals would be left."""
+        """Uncertain input with its spread, what of the intervals is left if it is known well, and its origin."""
         one = {name: self._column(name)[place] for name in _INPUT_COLUMNS}
         left = [f"{100 * one[name]:.0f} %" for name in ("interval_share_left", "force_interval_share_left")]
         value = format_si(one["input_value"], quantity(one["input"]).unit)
         known = f"{value} within {100 * one['input_spread']:.0f} %"
-        return [f"  {one['input_label']}", known, one["remedy"], " and ".join(left), one["reason"]]
+        return [f"  {one['input_label']}", known, " and ".join(left), one["reason"]]
+
+    def _measure_rows(self) -> list[list[str]]:
+        """Measurements that would narrow the interval, and what each leaves of it."""
+        pairs = zip(self._column("measure_label"), self._column("measure_share_left"), strict=True)
+        return [[f"  {label}", f"{100 * share:.0f} %"] for label, share in pairs]
 
     def _names(self) -> list[str]:
         """Predicted quantities in their order."""
