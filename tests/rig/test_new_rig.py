@@ -174,6 +174,19 @@ def test_the_inputs_known_least_come_first_and_each_measurement_once() -> None:
     rig = rig_of(KNOWN)
     listed = least_known(rig)
     assert [one.deviation for one in listed] == sorted((one.deviation for one in listed), reverse=True)
+    # friction hangs on the decay length R_q/3, the amplitude and the coefficient without vibration, and on no more
+    names = [one.key.rpartition(".")[2] for one in listed]
+    assert set(names) == {"friction_coefficient", "vibration_amplitude", "rms_height"}
+    assert len({one.remedy for one in listed}) == 3
+
+
+def test_entries_that_change_no_friction_are_not_said_to_be_known_least() -> None:
+    # the least known of all is the radius of the summits, which an exponential contact does not feel
+    rig = rig_of(KNOWN)
     factor = typical_summits(rms_height=GROUND.roughness.rms_height).radius_factor  # holds 95 of 100
-    assert listed[0].deviation == approx(log(factor) / 2, rel=0.01)
-    assert len({one.remedy for one in listed}) == len(listed) == 3
+    low, high = rig.uncertainty["contact.roughness.summit_radius"].quantile((0.1587, 0.8413))
+    assert log(high / low) / 2 == approx(log(factor) / 2, rel=0.01)
+    sharp = rig.replace("contact.roughness.summit_radius", f"{low} m")
+    assert friction_point(sharp).friction_force == approx(friction_point(rig).friction_force, rel=1e-9)
+    assert "contact.roughness.summit_radius" not in {one.key for one in least_known(rig, count=9)}
+    assert len(rig.uncertainty) > len(least_known(rig, count=9)) == 3

@@ -1,7 +1,7 @@
 """Summaries of a propagated uncertainty: band over swept keys, ranking of entries by Sobol indices, contact loss."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 BAND = (0.05, 0.5, 0.95)
 """Probabilities of the quantiles that bound and halve a band."""
+
+_SHARES = ("first_order", "total_order", "first_order_interval", "total_order_interval")
+_LEAST_SHARE = 0.005  # of the variance, which is printed as 0 %
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,12 +66,15 @@ class RankedEntry:
         First-order and total Sobol index with their 95 % intervals.
     deviation_if_known : float
         Standard deviation of the outcome that would remain were the entry known, SI.
+    matters : bool
+        Whether the outcome depends on the entry beyond doubt: the interval of the total index is above zero.
     """
 
     key: str
     first: IntervalEstimate
     total: IntervalEstimate
     deviation_if_known: float
+    matters: bool
 
 
 def outcome_indices(propagated: "xr.Dataset") -> SobolIndices:
@@ -82,12 +88,14 @@ def outcome_indices(propagated: "xr.Dataset") -> SobolIndices:
     Returns
     -------
     SobolIndices
+        Estimates and intervals cut off at 0 and 1, between which all indices lie.
     """
-    return sobol_indices(propagated[propagated.attrs["outcome"]].values, seed=propagated.attrs["seed"])
+    found = sobol_indices(propagated[propagated.attrs["outcome"]].values, seed=propagated.attrs["seed"])
+    return replace(found, **{name: np.clip(getattr(found, name), 0.0, 1.0) for name in _SHARES})
 
 
 def ranked_entries(propagated: "xr.Dataset") -> list[RankedEntry]:
-    r"""Uncertain entries by falling first-order Sobol index.
+    r"""Uncertain entries by falling first-order Sobol index, then by falling total index.
 
     Parameters
     ----------
@@ -109,7 +117,8 @@ def ranked_entries(propagated: "xr.Dataset") -> list[RankedEntry]:
             key=key,
             first=IntervalEstimate(value=first, lower=first_ends[0], upper=first_ends[1]),
             total=IntervalEstimate(value=total, lower=total_ends[0], upper=total_ends[1]),
-            deviation_if_known=indices.standard_deviation * float(np.sqrt(np.clip(1 - first, 0, 1))),
+            deviation_if_known=indices.standard_deviation * float(np.sqrt(1 - first)),
+            matters=total_ends[0] > _LEAST_SHARE,
         )
         for key, first, first_ends, total, total_ends in zip(
             propagated.attrs["uncertain"],
@@ -120,7 +129,7 @@ def ranked_entries(propagated: "xr.Dataset") -> list[RankedEntry]:
             strict=True,
         )
     ]
-    return sorted(rows, key=lambda row: -row.first.value)
+    return sorted(rows, key=lambda row: (-row.first.value, -row.total.value))
 
 
 def contact_loss_probability(propagated: "xr.Dataset") -> float | None:

@@ -142,7 +142,7 @@ def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
         If there is no such model.
     """
     rest_separation(rig)
-    chosen = rig if model is None else replace(rig, friction_model=_model_of(rig, model))
+    chosen = rig if model is None else replace(rig, friction_model=friction_model_named(rig, model))
     used = resolved_vibration(chosen)
     try:
         vibration = steady_vibration(chosen)
@@ -221,6 +221,13 @@ def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction
         vibration=_origin(vibration),
         caveats=_caveats(rig, used, vibration),
     )
+
+
+def friction_model_named(rig: Rig, name: str) -> FrictionModel:
+    """Return the friction model of a name, with those parameters of the rig's model that it has too."""
+    model = FRICTION_MODELS.named(name)
+    shared = {each.name for each in model.parameters()} & {each.name for each in rig.friction_model.parameters()}
+    return model(**{key: getattr(rig.friction_model, key) for key in shared})
 
 
 def operating_caveats(rig: Rig) -> tuple[str, ...]:
@@ -315,7 +322,7 @@ def _models_that_hold(rig: Rig, vibration: SteadyVibration | None = None) -> str
     for name in FRICTION_MODELS:
         if name == rig.friction_model.name:
             continue
-        other = replace(rig, friction_model=_model_of(rig, name))
+        other = replace(rig, friction_model=friction_model_named(rig, name))
         try:
             same = vibration is not None and not vibration.prescribed
             motions = vibration.motions if vibration is not None and same else steady_vibration(other).motions
@@ -335,13 +342,6 @@ def _range_text(holding: list[tuple[float, str]], of: str) -> str:
     if first == last:
         return f"of the {of} models {first} holds: ratio {low:.3g}"
     return f"the {of} models that hold give ratios from {low:.3g} ({first}) to {high:.3g} ({last})"
-
-
-def _model_of(rig: Rig, name: str) -> FrictionModel:
-    """Return the friction model of a name, with those parameters of the rig's model that it has too."""
-    model = FRICTION_MODELS.named(name)
-    shared = {each.name for each in model.parameters()} & {each.name for each in rig.friction_model.parameters()}
-    return model(**{key: getattr(rig.friction_model, key) for key in shared})
 
 
 def _outside(refusal: OutsideRange, sliding_speed: ArrayLike) -> CheckedRatio:

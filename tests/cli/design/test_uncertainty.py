@@ -1,5 +1,6 @@
 """Command `uncertainty`: statistics, ranking, bands, identified structures and refusals."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -55,6 +56,20 @@ def test_the_lines_name_what_is_uncertain_and_the_remedy(tmp_path: Path, sonolub
     assert "not converged" in run.out
     assert "take more --samples" in run.out
     assert "contact.roughness.rms_height     lognormal, 6 um within a factor of 2" in run.out
+
+
+def test_shares_stay_within_the_variance_and_only_entries_that_matter_are_advised(
+    tmp_path: Path, sonolube: Program, uncertain: Path
+) -> None:
+    run = sonolube("uncertainty", uncertain, *FEW, "--sobol", "--out", tmp_path)
+    advised, idle = run.out.split("which to measure better")[1].split("without effect: ")
+    assert "contact.roughness.summit_radius" in idle.splitlines()[0]  # an exponential contact does not feel it
+    assert "contact.roughness.summit_radius" not in advised
+    assert "contact.roughness.rms_height" in advised
+    assert all(float(share) <= 100 for share in re.findall(r"to (\d+)\)", advised))
+    assert re.search(r"left out +the error of the model: \+-0\.1\d in the ratio", run.out)
+    other = sonolube("uncertainty", uncertain, *FEW, "--of", "vibration_amplitude", "--out", tmp_path)
+    assert "error of the model" not in other.out
 
 
 def test_a_band_is_given_where_it_is_narrowest_and_widest(tmp_path: Path, sonolube: Program, uncertain: Path) -> None:

@@ -91,3 +91,29 @@ def test_heat_and_regime_answer_with_the_figure_they_wrote(tmp_path: Path, sonol
     assert regime["best"] == "ultrasonic"
     assert regime["wear"]["kind"] == "abrasive"
     assert sorted(map(Path, [*heat["files"], *regime["files"]])) == sorted(tmp_path.iterdir())
+
+
+def test_friction_says_what_it_leaves_out_as_compare_has_it(sonolube: Program, rigs: Path, tmp_path: Path) -> None:
+    rig = rigs / "tribometer.toml"
+    error = sonolube("friction", rig, "--json").answer["model_error"]
+    models = sonolube("compare", "--model", "asperity-stick-slip", "--json", "--out", tmp_path).answer["models"]
+    assert error == {"rms": approx(models[0]["errors"]["rms_cross_validated"]), "tests": 15}
+    assert f"the error of the model: +-{error['rms']:.2g} in the ratio on 15" in sonolube("friction", rig).out
+    other = sonolube("friction", rig, "--set", "friction.memory_length=1um")
+    assert "which with these parameters is not known" in other.out
+
+
+def test_an_amplitude_beyond_all_tests_is_said_before_the_table(sonolube: Program, rigs: Path) -> None:
+    # R_q 0.84 um: the decay length is 0.28 um, and 2.5 um are 9 of them; the welder's 11.5 um on 6 um are 5.7
+    rough = ("--set", "contact.roughness.rms_height=0.84um")
+    run = sonolube("friction", rigs / "tribometer.toml", *rough)
+    assert run.code == 0, run.err
+    title, caveat, *table = run.out.splitlines()
+    assert "3 N" in title
+    assert caveat.startswith("  caveat: the amplitude is 8.9")
+    assert "5.7" in caveat
+    assert not any("decay lengths" in line for line in table)
+    said = sonolube("friction", rigs / "tribometer.toml", *rough, "--json").answer["caveats"]
+    assert "decay lengths" in said[0]
+    within = sonolube("friction", rigs / "tribometer.toml", "--json").answer["caveats"]
+    assert not any("decay lengths" in each for each in within)

@@ -50,6 +50,10 @@ class Answer(Protocol):
         """Reasons for which the result may not hold, a line each."""
         return ()
 
+    def leading_caveats(self) -> Sequence[str]:
+        """Caveats that stand above the result, below its first line, because they question all of it."""
+        return ()
+
     def assumptions(self) -> Mapping[str, str]:
         """Values for which there is no source, by what was assumed, each with its reason: those of the rig file."""
         return {} if self.rig is None else self.rig.assumptions
@@ -90,7 +94,7 @@ def deliver(
     written = _write(answer, folder, context)
     if as_json:
         _print(json.dumps(_json_object(answer, written), indent=2, allow_nan=False))
-    elif lines := [*answer.lines(), *_closing_lines(answer), *_file_lines(written, folder)]:
+    elif lines := [*_opening_lines(answer), *_closing_lines(answer), *_file_lines(written, folder)]:
         _print(printable("\n".join(lines)))
 
 
@@ -145,7 +149,7 @@ def _write(answer: Answer, folder: Path, context: typer.Context | None) -> list[
         if page is not None and context is not None:
             page = replace(page, settings=(*page.settings, *_options(context)))
         notes = [
-            *(f"Caveat: {caveat}." for caveat in answer.caveats()),
+            *(f"Caveat: {caveat}." for caveat in _every_caveat(answer)),
             *(f"Assumed {key}: {reason}." for key, reason in answer.assumptions().items()),
         ]
         with progress("drawing") as advance:
@@ -162,7 +166,7 @@ def _with_notes(content: "Content", answer: Answer) -> "Content":
     if isinstance(content, str | bytes | Path):
         return content
     assumed = "\n".join(f"{key}: {reason}" for key, reason in answer.assumptions().items())
-    return content.assign_attrs(caveats="\n".join(answer.caveats()), assumptions=assumed)
+    return content.assign_attrs(caveats="\n".join(_every_caveat(answer)), assumptions=assumed)
 
 
 def _written(path: Path, content: "Content") -> Path:
@@ -192,8 +196,19 @@ def _json_object(answer: Answer, written: Sequence[Path]) -> dict[str, Any]:
     """Object of an answer with its caveats, assumptions and files."""
     if answer.is_lookup:
         return answer.object()
-    closing = {"caveats": list(answer.caveats()), "assumptions": dict(answer.assumptions())}
+    closing = {"caveats": _every_caveat(answer), "assumptions": dict(answer.assumptions())}
     return answer.object() | closing | {"files": [str(path) for path in written]}
+
+
+def _every_caveat(answer: Answer) -> list[str]:
+    """Caveats of an answer, those first that stand above the result."""
+    return [*answer.leading_caveats(), *answer.caveats()]
+
+
+def _opening_lines(answer: Answer) -> list[str]:
+    """Lines of an answer with the leading caveats below the first."""
+    lines = answer.lines()
+    return [*lines[:1], *(f"  caveat: {caveat}" for caveat in answer.leading_caveats()), *lines[1:]]
 
 
 def _closing_lines(answer: Answer) -> list[str]:

@@ -11,6 +11,7 @@ import typer
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver
+from sonolube.cli.console.model_error import ERROR_LABEL, error_object, error_of, error_text
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, refuse_replaced, with_amplitude
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
@@ -39,17 +40,21 @@ from sonolube.design.uncertainty_summary import (
     outcome_indices,
     ranked_entries,
 )
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.rig import Rig, operating_caveats, read_rig
+from sonolube.rig import Rig, operating_caveats, read_rig, steady_vibration
 from sonolube.units import format_quantity
+from sonolube.validation.tested_amplitudes import large_amplitude_caveats
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from sonolube.validation.model_error import ModelError
+
 
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
+_OF_THE_MODEL = ("friction_ratio", "friction_reduction")  # outcomes that have the error of the friction model
 _BAND_CAPTION = "Median of the samples and their intervals over the keys that were swept."
 _SOBOL_CAPTION = "Contribution of each uncertain entry to the variance, with intervals of 95 %."
 
@@ -138,7 +143,7 @@ class UncertaintyAnswer(Answer):
         """Statistics or band, statuses, uncertain entries, and their ranking."""
         return [
             f"{self.rig.title}, {self.result[self._of].size} points: {_lower(self._of)}",
-            *aligned([*amplitude_rows(self.rig), *self._statistics_rows()]),
+            *aligned([*amplitude_rows(self.rig), *self._statistics_rows(), *self._error_rows()]),
             *(f"  without result: {count}: {reason}" for reason, count in self.failures().items()),
             *self._status_lines(),
             "  uncertain",
@@ -179,6 +184,8 @@ class UncertaintyAnswer(Answer):
                 "relative_error": found.relative_error,
                 "converged": found.has_converged,
             }
+        if self._of in _OF_THE_MODEL:
+            content |= error_object(self._error)
         if self._ranked:
             content["sobol"] = [asdict(row) for row in self._ranking]
         return content
@@ -191,6 +198,16 @@ class UncertaintyAnswer(Answer):
         if self.structure is not None and not self.structure.posterior.has_converged:
             caveats.append(agreement(self.structure))
         return [*caveats, *operating_caveats(self.rig)]
+
+    def leading_caveats(self) -> Sequence[str]:
+        """An amplitude beyond that of all published tests, where friction is the outcome."""
+        if self._of not in _OF_THE_MODEL:
+            return ()
+        try:
+            amplitude = steady_vibration(self.rig).vibration_amplitude
+            return large_amplitude_caveats(self.rig, vibration_amplitude=amplitude)
+        except SonolubeError:  # at the values of the file, which need not be those of the samples
+            return ()
 
     def figures(self) -> Mapping[str, Drawing]:
         """Histogram or band of the outcome, and the ranking of the entries."""
@@ -221,7 +238,9 @@ class UncertaintyAnswer(Answer):
             facts=[
                 ("points", f"{self.result[self._of].size}"),
                 *self._statistics_rows(),
+                *self._error_rows(),
                 *([("contact lost", f"for part of the time in {lost:.1%} of the points")] if lost else []),
+                *([("without effect", ", ".join(idle))] if (idle := self._without_effect()) else []),
             ],
             tables=[
                 *([entries] if entries.rows else []),
@@ -275,6 +294,15 @@ class UncertaintyAnswer(Answer):
         texts = [(name, _with_interval(each, self._of)) for name, each in rows.items()]
         return [*texts, ("convergence", self._convergence())] if found.has_converged else texts
 
+    @cached_property
+    def _error(self) -> "ModelError | None":
+        """Error of the rig's friction model, which is in no sample."""
+        return error_of(self.rig.friction_model)
+
+    def _error_rows(self) -> list[tuple[str, str]]:
+        """What the samples leave out of the friction ratio."""
+        return [(ERROR_LABEL, error_text(self._error))] if self._of in _OF_THE_MODEL else []
+
     def _convergence(self) -> str:
         """Width of the intervals of the statistics over the deviation of the samples."""
         found = self._statistics
@@ -295,18 +323,24 @@ class UncertaintyAnswer(Answer):
         return ranked_entries(self.result) if self._ranked else []
 
     def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
-        """Entries with their contributions, alone and with the others, and the deviation that would remain."""
+        """Entries that matter with their contributions, alone and with others, and the deviation that would remain."""
         return [
             (row.key, _percent(row.first), _percent(row.total), format_quantity(row.deviation_if_known, self._of))
             for row in self._ranking
+            if row.matters
         ]
+
+    def _without_effect(self) -> list[str]:
+        """Entries that the outcome was not seen to depend on: to know them better changes nothing."""
+        return [row.key for row in self._ranking if not row.matters]
 
     def _ranking_lines(self) -> list[str]:
         """Ranking as lines of text."""
         rows = self._ranking_rows()
         head = "  which to measure better: share of the variance alone, with the others; deviation were it known"
         lines = [f"    {key:<34} {alone:<20} {whole:<20} {deviation}" for key, alone, whole, deviation in rows]
-        return [head, *lines] if rows else []
+        idle = self._without_effect()
+        return [*([head, *lines] if rows else []), *([f"    without effect: {', '.join(idle)}"] if idle else [])]
 
     def _ranking_tables(self) -> list[PageTable]:
         """Ranking as a table of the page."""
@@ -353,8 +387,8 @@ def _with_interval(each: IntervalEstimate, name: str) -> str:
 
 
 def _percent(share: IntervalEstimate) -> str:
-    """Fraction in percent with its interval, negative estimates cut at zero."""
-    value, low, high = (100 * max(end, 0.0) for end in (share.value, share.lower, share.upper))
+    """Fraction in percent with its interval."""
+    value, low, high = (100 * end for end in (share.value, share.lower, share.upper))
     return f"{value:5.1f} % ({low:.0f} to {high:.0f})"
 
 

@@ -34,6 +34,12 @@ class RigRecord(Answer):
         stands for a value outside the range of a model, null in JSON.
     measured : sequence of Measurement
         What was measured on the rig under the same conditions.
+    leading : sequence of str
+        Caveats that stand above the result.
+    rows : sequence of tuple of str
+        Further names and texts.
+    entries : mapping of str to object
+        Further entries for JSON.
     drawings : mapping of str to Drawing
     datasets : mapping of str to xarray.Dataset or LabelledArrays
     """
@@ -41,6 +47,9 @@ class RigRecord(Answer):
     rig: Rig
     result: Any
     measured: Sequence[Measurement] = ()
+    leading: Sequence[str] = ()
+    rows: Sequence[tuple[str, str]] = ()
+    entries: Mapping[str, Any] = field(default_factory=dict)
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
     datasets: "Mapping[str, xr.Dataset | LabelledArrays]" = field(default_factory=dict)
 
@@ -58,17 +67,22 @@ class RigRecord(Answer):
             if name not in _UNPRINTED
         ]
         rows += [(f"measured {one.label}", one.text) for one in self.measured]
-        return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", *aligned(rows)]
+        return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", *aligned([*rows, *self.rows])]
 
     def object(self) -> dict[str, Any]:
         """Title of the rig, text and quantities."""
         content = {"rig": self.rig.title, **result_texts(self.result), **si(result_quantities(self.result))}
+        content |= self.entries
         return content | {"measured": [one.object() for one in self.measured]} if self.measured else content
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the record."""
         caveats: Sequence[str] = self.result.caveats
         return caveats
+
+    def leading_caveats(self) -> Sequence[str]:
+        """Caveats that question the whole record."""
+        return self.leading
 
     def figures(self) -> Mapping[str, Drawing]:
         """Figures of the record."""

@@ -7,20 +7,22 @@ import json
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import log
+from math import isclose, log
 from typing import Final
 
 from sonolube.checks import require_positive
 from sonolube.contact import ElasticBody, contact_pair
-from sonolube.errors import MissingProperty
+from sonolube.errors import MissingProperty, SonolubeError
 from sonolube.materials import Material, dry_friction, material, yield_strength_from_hardness
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.reader import rig_from
 from sonolube.rig.file.stated_surface import deviation_of_range
 from sonolube.rig.new_rig.contact_compliance import compliance_entries
+from sonolube.rig.file.uncertainty import number_keys
 from sonolube.rig.new_rig.known_surface import KnownSurface, lognormal_text, surfaces_in_contact
 from sonolube.rig.new_rig.pin_and_vibration import Entries, PinShape, Vibration, toml_text
 from sonolube.rig.record import Rig
+from sonolube.rig.simulation import friction_point
 from sonolube.vocabulary import quantity
 
 _HEAD: Final = "# Written by sonolube new. Replace what you measure, and remove its line from [uncertainty]."
@@ -29,7 +31,7 @@ _NO_METALS: Final = ("ceramic", "coating", "glass", "piezo_ceramic", "polymer")
 _POISSON_RATIO: Final = 0.33
 _POISSON_REASON: Final = "not in the catalogue; 0.33 assumed: 0.25 to 0.4 changes the effective modulus by 5 %"
 _MEASURED_FRICTION: Final = "normal 5 %"
-_HEIGHT: Final = "contact.roughness.rms_height"
+_SAME_FORCE: Final = 1e-6  # relative difference of forces below which an entry changes nothing
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -144,19 +146,29 @@ def least_known(rig: Rig, *, count: int = 3) -> Sequence[LeastKnown]:
     Returns
     -------
     sequence of LeastKnown
-        The least known first; of entries that one measurement gives, the least known one. Without the rms height where
-        the rig has a decay length, since nothing uses it then.
+        Those that friction depends on, the least known first; of entries that one measurement gives, the least known
+        one.
     """
     entries: dict[str, LeastKnown] = {}
     for key, law in rig.uncertainty.items():
-        if key == _HEIGHT and rig.contact.decay_length is not None:
-            continue
         low, high = (float(each) for each in law.quantile((0.1587, 0.8413)))
+        if not _moves_friction(rig, key, low, high):
+            continue
         remedy = guidance()[name].obtain if (name := key.rpartition(".")[2]) in guidance() else "a measurement"
         one = LeastKnown(key=key, deviation=log(high / low) / 2, text=law.text, remedy=remedy)
         if remedy not in entries or entries[remedy].deviation < one.deviation:
             entries[remedy] = one
     return sorted(entries.values(), key=lambda one: -one.deviation)[:count]
+
+
+def _moves_friction(rig: Rig, key: str, low: float, high: float) -> bool:
+    """Return whether friction under vibration differs between two values of an entry, or is not known at one."""
+    unit = number_keys()[key].unit
+    try:
+        forces = [friction_point(rig.replace(key, f"{value:.9g} {unit}")).friction_force for value in (low, high)]
+    except SonolubeError:
+        return True
+    return not isclose(*forces, rel_tol=_SAME_FORCE)
 
 
 def _contact(known: KnownRig) -> Entries:

@@ -1,0 +1,41 @@
+"""Error of a rig's friction model on unseen published tests."""
+
+import numpy as np
+from pytest import approx
+from scipy.special import ellipk
+
+from sonolube.friction import AsperityStickSlip, Kinematic
+from sonolube.friction.models import FRICTION_MODELS
+from sonolube.validation.comparison import compare_models, compared_models
+from sonolube.validation.model_error import unseen_error
+from sonolube.validation.published_tests import friction_tests
+
+
+def test_a_model_without_constants_from_tests_errs_as_its_closed_form_does() -> None:
+    # mean of v / sqrt(v^2 + V^2 cos^2), a complete elliptic integral
+    errors = []
+    for test in friction_tests("ABCDEFG"):
+        peak = 2 * np.pi * test.frequency * test.vibration_amplitude
+        whole = np.hypot(test.sliding_speed, peak)
+        errors.append(2 / np.pi * test.sliding_speed / whole * ellipk((peak / whole) ** 2) - test.friction_ratio)
+    found = unseen_error(Kinematic())
+    assert found is not None
+    assert found.rms == approx(np.sqrt(np.mean(np.square(errors))), rel=1e-3)
+    assert found.tests == len(errors) == 15
+
+
+def test_the_error_of_the_default_model_is_the_one_that_compare_ranks_by() -> None:
+    found = unseen_error(AsperityStickSlip())
+    (compared,) = compare_models(compared_models(["asperity-stick-slip"]))
+    assert found is not None
+    assert compared.assessment is not None
+    assert found.rms == compared.assessment.cross_validation_errors.rms
+    assert found.rms > compared.assessment.fit_errors.rms
+
+
+def test_every_friction_model_has_an_error_at_its_defaults_and_none_at_other_parameters() -> None:
+    for model in FRICTION_MODELS.values():
+        found = unseen_error(model())
+        assert found is not None
+        assert found.rms > 0
+    assert unseen_error(AsperityStickSlip(memory_length=1e-6)) is None
