@@ -12,7 +12,9 @@ from typing import Final
 
 import numpy as np
 
+from sonolube.friction import FrictionModel
 from sonolube.validation.fitting import Fit, fit_variant, root_mean_square, select_tests
+from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
 from sonolube.validation.model_variant import ModelVariant, SeenSets
 from sonolube.validation.published_tests import MeasuredConditions, Tests
 
@@ -157,6 +159,24 @@ def cross_validation_errors(variant: ModelVariant, sets: str, *, tests: Tests | 
     """Return the error statistics with each set predicted by a fit that has not seen it."""
     fits = zip(sets, leave_one_set_out_fits(variant, sets, tests=tests), strict=True)
     return error_statistics((test, fit.predict(test)) for one, fit in fits for test in select_tests(one, tests))
+
+
+def unseen_error(model: FrictionModel) -> ErrorStatistics | None:
+    """Return the error statistics of a friction model on published tests that it has not seen, as `compare` has them.
+
+    Parameters
+    ----------
+    model : FrictionModel
+
+    Returns
+    -------
+    ErrorStatistics or None
+        None for parameters other than the defaults, of which no error is known.
+    """
+    if model != type(model)():
+        return None
+    variants = {variant.name: variant for variant in FRICTION_MODEL_VARIANTS}
+    return cross_validation_errors(variants[model.name.replace("_", "-")], FITTED_SETS)
 
 
 def information_criteria(fit: Fit, tests: Tests) -> InformationCriteria | None:

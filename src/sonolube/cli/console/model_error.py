@@ -3,27 +3,19 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sonolube.friction import FrictionModel
-    from sonolube.validation.model_error import ModelError
+    from sonolube.validation.assessment import ErrorStatistics
 
 ERROR_LABEL = "left out"
 """Name of the row that states the error."""
 
 
-def error_of(model: "FrictionModel") -> "ModelError | None":
-    """Error of a friction model on published tests that it has not seen; None where none is known."""
-    from sonolube.validation.model_error import unseen_error
-
-    return unseen_error(model)
-
-
-def error_text(error: "ModelError | None") -> str:
+def error_text(error: "ErrorStatistics | None") -> str:
     """Error of the model in a sentence."""
     if error is None:
         return "the error of the model, which with these parameters is not known"
-    return f"the error of the model: +-{error.rms:.2g} in the ratio on {error.tests} published tests, each unseen"
+    return f"the error of the model: +-{error.rms:.2g} in the ratio on {error.count} published tests, each unseen"
 
 
-def error_object(error: "ModelError | None") -> dict[str, Any]:
+def error_object(error: "ErrorStatistics | None") -> dict[str, Any]:
     """Error of the model for JSON."""
-    return {"model_error": None if error is None else {"rms": error.rms, "tests": error.tests}}
+    return {"model_error": None if error is None else {"rms": error.rms, "tests": error.count}}

@@ -11,7 +11,7 @@ import typer
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver
-from sonolube.cli.console.model_error import ERROR_LABEL, error_object, error_of, error_text
+from sonolube.cli.console.model_error import ERROR_LABEL, error_object, error_text
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, refuse_replaced, with_amplitude
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
@@ -41,16 +41,15 @@ from sonolube.design.uncertainty_summary import (
     ranked_entries,
 )
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats, read_rig, steady_vibration
 from sonolube.units import format_quantity
-from sonolube.validation.tested_amplitudes import large_amplitude_caveats
+from sonolube.validation.assessment import ErrorStatistics, unseen_error
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from sonolube.validation.model_error import ModelError
 
 
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
@@ -295,9 +294,9 @@ class UncertaintyAnswer(Answer):
         return [*texts, ("convergence", self._convergence())] if found.has_converged else texts
 
     @cached_property
-    def _error(self) -> "ModelError | None":
+    def _error(self) -> ErrorStatistics | None:
         """Error of the rig's friction model, which is in no sample."""
-        return error_of(self.rig.friction_model)
+        return unseen_error(self.rig.friction_model)
 
     def _error_rows(self) -> list[tuple[str, str]]:
         """What the samples leave out of the friction ratio."""

@@ -5,15 +5,16 @@ from typing import Annotated
 import typer
 
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.model_error import ERROR_LABEL, error_object, error_of, error_text
+from sonolube.cli.console.model_error import ERROR_LABEL, error_object, error_text
 from sonolube.cli.console.options import Amplitude, Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.measured import measured_on
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.compilation import few_points
 from sonolube.friction import FRICTION_MODELS, FrictionModel
+from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.rig import friction_point
 from sonolube.rig.simulation import friction_model_named
-from sonolube.validation.tested_amplitudes import large_amplitude_caveats
+from sonolube.validation.assessment import unseen_error
 
 
 def _described(model: type[FrictionModel]) -> str:
@@ -41,7 +42,7 @@ def friction(
     known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     result = friction_point(known, model=model)
     measured = measured_on(known, vibration_amplitude=result.vibration_amplitude)
-    error = error_of(known.friction_model if model is None else friction_model_named(known, model))
+    error = unseen_error(known.friction_model if model is None else friction_model_named(known, model))
     answer = RigRecord(
         rig=known,
         result=result,

@@ -56,9 +56,9 @@ class RunState:
     ----------
     vibrated : bool
     settling : float
-        Time until friction is steady. [s]
+        Time until friction is steady, in s.
     measuring : float
-        Time in which friction is measured. [s]
+        Time in which friction is measured, in s.
     """
 
     vibrated: bool
@@ -67,7 +67,7 @@ class RunState:
 
     @property
     def duration(self) -> float:
-        """Time of the part. [s]"""
+        """Duration of the part, in s."""
         return self.settling + self.measuring
 
 

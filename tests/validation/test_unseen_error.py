@@ -6,8 +6,8 @@ from scipy.special import ellipk
 
 from sonolube.friction import AsperityStickSlip, Kinematic
 from sonolube.friction.models import FRICTION_MODELS
+from sonolube.validation.assessment import unseen_error
 from sonolube.validation.comparison import compare_models, compared_models
-from sonolube.validation.model_error import unseen_error
 from sonolube.validation.published_tests import friction_tests
 
 
@@ -21,7 +21,7 @@ def test_a_model_without_constants_from_tests_errs_as_its_closed_form_does() -> 
     found = unseen_error(Kinematic())
     assert found is not None
     assert found.rms == approx(np.sqrt(np.mean(np.square(errors))), rel=1e-3)
-    assert found.tests == len(errors) == 15
+    assert found.count == len(errors) == 15
 
 
 def test_the_error_of_the_default_model_is_the_one_that_compare_ranks_by() -> None:

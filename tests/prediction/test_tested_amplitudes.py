@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from pytest import approx
 
+from sonolube.prediction.tested_amplitudes import amplitude_ratios_of_tests, large_amplitude_caveats
 from sonolube.rig import read_rig
-from sonolube.validation.tested_amplitudes import amplitude_ratios_of_tests, large_amplitude_caveats
 
 RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 
