@@ -1,0 +1,1 @@
+"""Normal contact stiffness from the shift of a resonance between free and pressed."""
