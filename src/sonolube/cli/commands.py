@@ -78,6 +78,7 @@ COMMANDS = (
     Command(_MEASURE, "measure groove", "measure.groove:groove"),
     Command(_MEASURE, "measure impedance", "measure.impedance:impedance"),
     Command(_MEASURE, "measure vibration", "measure.vibration:vibration"),
+    Command(_MEASURE, "measure stiffness", "measure.stiffness:stiffness"),
     Command(_COMPARE, "compare", "compare.compare:compare"),
     Command(_COMPARE, "fit", "compare.fit:fit"),
     Command(_COMPARE, "identify rig", "compare.identify:identify_rig"),

@@ -1,15 +1,17 @@
-"""Measurement of one file: friction recordings, surfaces, wear grooves, impedance spectra and vibrometer recordings."""
+"""Measurement of files: friction, surfaces, wear grooves, impedance, vibration and the stiffness of a contact."""
 
 from pathlib import Path
 
+from sonolube.report.measured.contact_stiffness import StiffnessSettings, contact_stiffness_sheet
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
 from sonolube.report.measured.groove import groove_sheet
 from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.surface import SurfaceSettings, spacings, surface_sheet
 from sonolube.report.measured.vibration import VibrationSettings, vibration_sheet
+from sonolube.rig import Rig
 
-__all__ = ["friction", "groove", "impedance", "surface", "vibration"]
+__all__ = ["friction", "groove", "impedance", "stiffness", "surface", "vibration"]
 
 
 def __dir__() -> list[str]:
@@ -141,6 +143,59 @@ def vibration(path: str | Path, *, frequency: float) -> Sheet:
         If the file cannot be read or holds no vibration.
     """
     return vibration_sheet(Path(path), settings=VibrationSettings(frequency=frequency))
+
+
+def stiffness(
+    free: str | Path,
+    pressed: str | Path,
+    *,
+    rig: Rig,
+    again: str | Path | None = None,
+    mode_near: float | None = None,
+    modal_mass: float | None = None,
+    large: str | Path | None = None,
+    vibration_amplitude: float | None = None,
+) -> Sheet:
+    """Normal stiffness of a contact and its decay length, by the shift of a resonance from free to pressed.
+
+    Parameters
+    ----------
+    free : str or Path
+        Spectrum with the contact lifted: impedance, or vibration over frequency.
+    pressed : str or Path
+        Under the load of the rig.
+    rig : Rig
+        For its load and its structure.
+    again : str or Path, optional
+        Lifted again, after the pressed one; the drift then is part of the interval.
+    mode_near : float, optional
+        Frequency of the free resonance to take, in Hz; zero for a mode that floats, the strongest where absent.
+    modal_mass : float, optional
+        Of the mode at the contact, in kg, instead of the rig's structure.
+    large : str or Path, optional
+        Under the load at large drive, of constant amplitude.
+    vibration_amplitude : float, optional
+        That amplitude at the contact, zero to peak. [m]
+
+    Returns
+    -------
+    Sheet
+        The same values as `sonolube measure stiffness` prints.
+
+    Raises
+    ------
+    InvalidInput
+        If a file cannot be read or shows no resonance, or the rig has no structure and no modal mass is given.
+    """
+    settings = StiffnessSettings(
+        normal_load=rig.normal_load,
+        structure=None if modal_mass is not None else rig.structure,
+        modal_mass=modal_mass,
+        mode_near=mode_near,
+        vibration_amplitude=vibration_amplitude,
+    )
+    second, loud = (None if path is None else Path(path) for path in (again, large))
+    return contact_stiffness_sheet(Path(free), Path(pressed), settings=settings, again=second, large=loud)[0]
 
 
 def _lateral(spacing: str | None, length_unit: str | None) -> SurfaceSettings:

@@ -98,8 +98,8 @@ def measured_contact_stiffness(
         raise InvalidInput(f"free must hold one or two spectra, got {len(free)}")
     if structure is None and modal_mass is None:
         raise InvalidInput(
-            "modal_mass is missing and the rig has no structure; give the modal mass at the contact, or the tables stack"
-            " and structure"
+            "modal_mass is missing and there is no structure; give the modal mass at the contact, or a rig with the"
+            " tables stack and structure"
         )
     floats = mode_near == 0
     if floats and (structure is None or modal_mass is not None):

@@ -80,7 +80,9 @@ def decay_length_from_ratio(stiffness_ratio: float, *, vibration_amplitude: floa
         )
 
     def apart(log_beta: float) -> float:
-        return float(equivalent_stiffness_ratio(vibration_amplitude=np.exp(log_beta), decay_length=1.0)) - stiffness_ratio
+        return (
+            float(equivalent_stiffness_ratio(vibration_amplitude=np.exp(log_beta), decay_length=1.0)) - stiffness_ratio
+        )
 
     return amplitude / float(np.exp(brentq(apart, np.log(1e-5), np.log(_LARGEST), xtol=1e-12)))
 

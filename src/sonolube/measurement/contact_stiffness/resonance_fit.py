@@ -13,6 +13,7 @@ from sonolube.measurement.statistics.autocorrelation import statistical_ineffici
 _MOST_MODES = 5
 _TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
 _LOWEST_QUALITY, _HIGHEST_QUALITY = 0.6, 1e7  # of a resonance
+_BEYOND = 1.6  # frequency over the end of the sweep of a mode that still shows in it
 _MOST_CANDIDATES = 3  # fitted for the next mode
 _LARGEST_ERROR = 0.3  # standard error of the logarithm of a frequency or quality factor
 _ROUNDING = 1e-12  # residuals below which fits do not differ
@@ -115,10 +116,11 @@ def fit_resonances(spectrum: ResonanceSpectrum, *, modes: int | None = None) -> 
         H(f) = \sum_k \frac{a_k + c_k f}{D_k} + b_0 + b_1 f + \frac{b_2}{f} + \frac{b_3}{f^2} + \frac{b_4}{f^3} ,
         \qquad D_k = f_k^2 - f^2 + i f f_k/Q_k .
 
-    Without phase the squared magnitude is fitted, a rational function of :math:`f^2` with the same poles: :math:`|D_k|^2`
-    takes the place of :math:`D_k` and :math:`f^2` that of f. The coefficients are linear and are eliminated; candidates
+    Without phase the squared magnitude is fitted, a rational function of :math:`f^2` with the same poles:
+    :math:`|D_k|^2` takes the place of :math:`D_k`. The coefficients are linear and are eliminated; candidates
     for the next mode are poles of rational approximations of the residual. The covariance is that of White, which needs
-    no equal variance of the noise, times the correlation of the residuals.
+    no equal variance of the noise, times the correlation of the residuals; times its square from 3 points on, where the
+    residuals are errors of the model, coherent over a resonance.
 
     References
     ----------
@@ -131,10 +133,14 @@ def fit_resonances(spectrum: ResonanceSpectrum, *, modes: int | None = None) -> 
         found = problem.with_one_more_mode(chosen)
         if found is None:
             break
-        if chosen is not None and modes is None and not (found.criterion < chosen.criterion and found.is_determined):
+        if (
+            chosen is not None
+            and modes is None
+            and not (found.criterion < chosen.criterion and problem.is_determined(found))
+        ):
             break
         chosen = found
-    if chosen is None:
+    if chosen is None or not problem.inside(chosen):
         f = spectrum.frequency
         raise InvalidInput(
             f"{spectrum.file_name or 'spectrum'}: no resonance found among {f.size} points from {f[0]:.6g} to"
@@ -157,11 +163,6 @@ class _Solution:
         """Bayesian information criterion, all but the shape of the modes alike."""
         n, count = self.residuals.size, 3 * self.shape.size
         return n * float(np.log(max(np.mean(self.residuals**2), _ROUNDING**2))) + count * float(np.log(n))
-
-    @property
-    def is_determined(self) -> bool:
-        """Whether every frequency and quality factor is determined within a factor."""
-        return bool(np.all(np.diag(self.covariance) < _LARGEST_ERROR**2))
 
 
 class _Problem:
@@ -238,8 +239,19 @@ class _Problem:
         return found
 
     def is_within(self, f_r: float, quality: float) -> bool:
-        """Whether a mode resonates within the sweep."""
-        return bool(self.f[0] < f_r < self.f[-1] and _LOWEST_QUALITY < quality < _HIGHEST_QUALITY)
+        """Whether a mode resonates within the sweep or near its ends."""
+        near = self.f[0] / _BEYOND < f_r < self.f[-1] * _BEYOND
+        return bool(near and _LOWEST_QUALITY < quality < _HIGHEST_QUALITY)
+
+    def inside(self, solution: _Solution) -> list[int]:
+        """Modes that resonate within the sweep, in order of frequency."""
+        f_r = np.exp(solution.shape[::2])
+        return [int(k) for k in np.argsort(f_r) if self.f[0] < f_r[k] < self.f[-1]]
+
+    def is_determined(self, solution: _Solution) -> bool:
+        """Whether frequency and quality factor of every mode within the sweep are determined within a factor."""
+        variance = np.diag(solution.covariance).reshape(-1, 2)
+        return bool(np.all(variance[self.inside(solution)] < _LARGEST_ERROR**2))
 
     def solved(self, start: Floats) -> _Solution | None:
         """Local least-squares solution, or None where a mode leaves the spectrum."""
@@ -266,7 +278,8 @@ class _Problem:
         correlation = max(statistical_inefficiency(row) if np.ptp(row) > _ROUNDING else 1.0 for row in series)
         linear = rows * (shape.size + _BACKGROUND)
         freedom = max(1.0, residuals.size / correlation - shape.size - linear)
-        covariance = (inverse * residuals**2) @ inverse.T * residuals.size / freedom
+        coherent = correlation if correlation > _CORRELATED else 1.0
+        covariance = (inverse * residuals**2) @ inverse.T * (residuals.size / freedom * coherent)
         return _Solution(shape, residuals, covariance, correlation)
 
     def result(self, solution: _Solution) -> ResonanceFit:
@@ -286,11 +299,15 @@ class _Problem:
                 quality_factor=float(pairs[k, 1]),
                 height=float(heights[k]) / largest,
             )
-            for k in np.argsort(pairs[:, 0])
+            for k in self.inside(solution)
         ]
-        caveats = () if solution.correlation <= _CORRELATED else (
-            f"residuals of the fit are correlated over {solution.correlation:.0f} points, which widens the intervals:"
-            " the sweep shows more than the fitted modes; sweep less far",
+        caveats = (
+            ()
+            if solution.correlation <= _CORRELATED
+            else (
+                f"residuals of the fit are correlated over {solution.correlation:.0f} points, which widens the"
+                " intervals: the sweep shows more than the fitted modes; sweep less far",
+            )
         )
         return ResonanceFit(
             spectrum=self.spectrum,

@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -77,8 +77,6 @@ class ResonanceSpectrum:
 
     def between(self, lowest: float, highest: float) -> "ResonanceSpectrum":
         """Part of the spectrum between two frequencies; the whole where fewer than 12 points lie between them."""
-        from dataclasses import replace
-
         inside = (self.frequency >= lowest) & (self.frequency <= highest)
         if inside.sum() < _FEWEST_POINTS:
             return self
@@ -190,8 +188,6 @@ def _of_impedance(path: Path, sweep: str | None) -> ResonanceSpectrum:
 
 def _named(found: ResonanceSpectrum, path: Path, digest: str, caveats: tuple[str, ...]) -> ResonanceSpectrum:
     """Spectrum with its origin."""
-    from dataclasses import replace
-
     return replace(found, file_name=path.name, sha256=digest, caveats=caveats)
 
 

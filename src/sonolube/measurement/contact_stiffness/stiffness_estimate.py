@@ -1,7 +1,7 @@
 """Normal stiffness and decay length of a contact from resonances measured free, pressed and under large vibration."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,10 +49,10 @@ class ContactStiffness:
         Without contact, at the time of the pressed spectrum, in Hz; zero for a mode that floats.
     pressed_frequency : float
         Under the load, in Hz.
-    frequency_shift : float
-        Their difference, in Hz.
-    shift_uncertainty : float
-        Its standard uncertainty by noise and drift, in Hz.
+    free_uncertainty : float
+        Standard uncertainty of the free frequency by noise and drift, in Hz.
+    pressed_uncertainty : float
+        Standard uncertainty of the pressed frequency by noise, in Hz.
     drift : float or None
         Difference of the second from the first free spectrum, in Hz; None where there is one only.
     mode : int
@@ -75,8 +75,8 @@ class ContactStiffness:
 
     free_frequency: float
     pressed_frequency: float
-    frequency_shift: float
-    shift_uncertainty: float
+    free_uncertainty: float
+    pressed_uncertainty: float
     drift: float | None
     mode: int
     normal_stiffness: LogEstimate | None = None
@@ -86,6 +86,25 @@ class ContactStiffness:
     stiffness_ratio: float | None = None
     not_found: tuple[str, ...] = ()
     caveats: tuple[str, ...] = ()
+
+    @property
+    def frequency_shift(self) -> float:
+        """Pressed less free frequency, in Hz."""
+        return self.pressed_frequency - self.free_frequency
+
+    @property
+    def shift_uncertainty(self) -> float:
+        """Standard uncertainty of the shift, in Hz."""
+        return float(np.hypot(self.free_uncertainty, self.pressed_uncertainty))
+
+    @property
+    def best_stiffness(self) -> LogEstimate | None:
+        """Stiffness by all that was measured: by the combined decay length where there is one. [N/m]"""
+        if self.normal_stiffness is None or self.decay_length is None or self.decay_length_combined is None:
+            return self.normal_stiffness
+        load = self.normal_stiffness.median * self.decay_length.median
+        both = self.decay_length_combined
+        return LogEstimate(median=load / both.median, log_deviation=both.log_deviation)
 
 
 def single_mode(*, modal_mass: float, frequency: float) -> Structure:
@@ -165,8 +184,8 @@ def contact_stiffness(
 
     Notes
     -----
-    The free frequency during the pressed sweep is the mean of both free ones. A drift d that does not turn back leaves it
-    anywhere between them, so that with the uncertainties u of the fits
+    The free frequency during the pressed sweep is the mean of both free ones. A drift d that does not turn back leaves
+    it anywhere between them, so that with the uncertainties u of the fits
 
     .. math:: u_0^2 = \tfrac14(u_1^2 + u_2^2) + d^2/12 .
 
@@ -190,37 +209,32 @@ def contact_stiffness(
     found = ContactStiffness(
         free_frequency=f_0,
         pressed_frequency=pressed.frequency,
-        frequency_shift=shift,
-        shift_uncertainty=u_shift,
+        free_uncertainty=u_0,
+        pressed_uncertainty=pressed.frequency_uncertainty,
         drift=drift,
         mode=mode,
         caveats=tuple(caveats),
     )
     tuned = _Tuned(structure, mode)
     if shift < _RESOLVED * u_shift:
-        return _with(found, not_found=(_unresolved(tuned, f_0, pressed.half_width, shift, u_shift, load),))
+        return replace(found, not_found=(_unresolved(tuned, f_0, pressed.half_width, shift, u_shift, load),))
     k, slopes = tuned.stiffness(f_0, pressed.frequency), tuned.slopes(f_0, pressed.frequency, u_0, pressed)
     parts = np.array([slopes[0] * u_0, slopes[1] * pressed.frequency_uncertainty, 0.0, modal_mass_deviation, 0.0])
     stiffness = LogEstimate(median=k, log_deviation=float(np.linalg.norm(parts)))
     length = LogEstimate(median=load / k, log_deviation=stiffness.log_deviation)
-    found = _with(found, normal_stiffness=stiffness, decay_length=length)
+    found = replace(found, normal_stiffness=stiffness, decay_length=length)
     if large is None or vibration_amplitude is None:
         return found
     return _with_ratio(found, tuned, (u_0, parts), large, float(vibration_amplitude), amplitude_deviation)
-
-
-def _with(found: ContactStiffness, **changes: object) -> ContactStiffness:
-    """Record with some fields replaced."""
-    from dataclasses import replace
-
-    return replace(found, **changes)  # type: ignore[arg-type]
 
 
 def _free_frequency(free: Sequence[Resonance]) -> tuple[float, float, float | None]:
     """Free frequency during the pressed sweep, its standard uncertainty, and the drift."""
     if not free:
         return 0.0, 0.0, None
-    frequencies, errors = (np.array([getattr(one, key) for one in free]) for key in ("frequency", "frequency_uncertainty"))
+    frequencies, errors = (
+        np.array([getattr(one, key) for one in free]) for key in ("frequency", "frequency_uncertainty")
+    )
     if len(free) == 1:
         return float(frequencies[0]), float(errors[0]), None
     drift = float(frequencies[1] - frequencies[0])
@@ -235,7 +249,9 @@ def _mode(structure: Structure, free_frequency: float) -> tuple[int, list[str]]:
     if free_frequency == 0:
         floating = np.flatnonzero(natural.rigid & moving)
         if not floating.size:
-            raise InvalidInput("free must hold a resonance: the structure has no rigid-body mode that moves its contact")
+            raise InvalidInput(
+                "free must hold a resonance: the structure has no rigid-body mode that moves its contact"
+            )
         return int(floating[-1]), [
             "a mode that floats has no free frequency: the stiffness rests on the masses of the structure alone"
         ]
@@ -243,8 +259,8 @@ def _mode(structure: Structure, free_frequency: float) -> tuple[int, list[str]]:
     mode = int(np.argmin(apart))
     if apart[mode] > _FAR * free_frequency:
         return mode, [
-            f"the free resonance at {free_frequency:.6g} Hz is {apart[mode] / free_frequency:.0%} off the nearest mode of"
-            f" the structure, {natural.natural_frequency[mode]:.6g} Hz: its modal mass may be another"
+            f"the free resonance at {free_frequency:.6g} Hz is {apart[mode] / free_frequency:.0%} off the nearest mode"
+            f" of the structure, {natural.natural_frequency[mode]:.6g} Hz: its modal mass may be another"
         ]
     return mode, []
 
@@ -258,13 +274,13 @@ class _Tuned:
 
     def at(self, free_frequency: float) -> Structure:
         """Structure with this free frequency."""
-        from dataclasses import replace
-
         scaled = self.structure
         for _ in range(4 if free_frequency else 0):
             own = float(contact_resonances(scaled, normal_stiffness=0.0)[self.mode])
             if own == 0:
-                raise OutsideRange(f"mode {self.mode} of the structure is overdamped without contact; take another mode")
+                raise OutsideRange(
+                    f"mode {self.mode} of the structure is overdamped without contact; take another mode"
+                )
             scaled = replace(scaled, stiffness_matrix=scaled.stiffness_matrix * (free_frequency / own) ** 2)
         return scaled
 
@@ -321,10 +337,10 @@ def _with_ratio(
     f_0 = found.free_frequency
     if large.frequency - f_0 < _RESOLVED * np.hypot(u_0, large.frequency_uncertainty):
         reason = (
-            f"decay length by the ratio of shifts: the shift of {large.frequency - f_0:.3g} Hz at the large vibration is"
-            " below three standard uncertainties"
+            f"decay length by the ratio of shifts: the shift of {large.frequency - f_0:.3g} Hz at the large vibration"
+            " is below three standard uncertainties"
         )
-        return _with(found, not_found=(*found.not_found, reason))
+        return replace(found, not_found=(*found.not_found, reason))
     slopes = tuned.slopes(f_0, large.frequency, u_0, large)
     k_large = tuned.stiffness(f_0, large.frequency)
     ratio = k_large / found.normal_stiffness.median
@@ -332,13 +348,13 @@ def _with_ratio(
     of_large = np.array([slopes[0] * u_0, 0.0, slopes[1] * large.frequency_uncertainty, parts[3], 0.0])
     of_ratio = of_large - parts
     spread = float(np.linalg.norm(of_ratio))
-    found = _with(found, stiffness_ratio=ratio)
+    found = replace(found, stiffness_ratio=ratio)
     if not ratio < float(np.exp(-_RESOLVED * spread)):
         reason = (
             f"decay length by the ratio of shifts: the ratio of {ratio:.3g} is not resolved from 1 (its logarithm is"
             f" uncertain by {spread:.2g}); take a larger vibration"
         )
-        return _with(found, not_found=(*found.not_found, reason))
+        return replace(found, not_found=(*found.not_found, reason))
     length = decay_length_from_ratio(ratio, vibration_amplitude=amplitude)
     slope = log_ratio_slope(vibration_amplitude=amplitude, decay_length=length)
     by_ratio = of_ratio / -slope + np.array([0.0, 0.0, 0.0, 0.0, amplitude_deviation])
@@ -349,15 +365,13 @@ def _with_ratio(
     second = LogEstimate(median=length, log_deviation=float(np.linalg.norm(by_ratio)))
     share = float(errors[0] @ (errors[0] - errors[1])) / apart**2  # of the second in the best combination
     weights = np.array([1 - share, share])
-    both = LogEstimate(
-        median=float(np.exp(weights @ estimates)), log_deviation=float(np.linalg.norm(weights @ errors))
-    )
+    both = LogEstimate(median=float(np.exp(weights @ estimates)), log_deviation=float(np.linalg.norm(weights @ errors)))
     difference = abs(float(estimates[1] - estimates[0])) / apart
     if difference > _CONTRADICTION:
         caveat = (
             f"both decay lengths contradict each other: {found.decay_length.median * 1e6:.3g} um by the stiffness and"
-            f" {length * 1e6:.3g} um by the ratio of shifts differ by {difference:.1f} standard uncertainties; the load,"
-            " the modal mass, the amplitude at the contact or the exponential law is not as stated"
+            f" {length * 1e6:.3g} um by the ratio of shifts differ by {difference:.1f} standard uncertainties; the"
+            " load, the modal mass, the amplitude at the contact or the exponential law is not as stated"
         )
-        return _with(found, decay_length_by_ratio=second, caveats=(*found.caveats, caveat))
-    return _with(found, decay_length_by_ratio=second, decay_length_combined=both)
+        return replace(found, decay_length_by_ratio=second, caveats=(*found.caveats, caveat))
+    return replace(found, decay_length_by_ratio=second, decay_length_combined=both)

@@ -1,0 +1,193 @@
+"""Resonances of a rig whose shift between free and pressed would tell the stiffness of its contact."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.dynamics import modes, with_contact_spring
+from sonolube.errors import InvalidInput
+from sonolube.rig import Rig
+from sonolube.units import format_si
+
+_RESOLVED = 3.0  # shift over its standard uncertainty
+_STEP = 0.01  # of central differences, in the logarithm of the stiffness
+_WIDEST = 0.5  # damping ratio from which on no peak shows
+_LISTED = 6  # probes named in a sentence
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Probe:
+    """Resonance of a rig as a probe of its contact's stiffness, at several decay lengths.
+
+    Parameters
+    ----------
+    mode : int
+        Number of the mode in order of frequency, from 0.
+    name : str
+        As printed.
+    modal_mass : float
+        At the free contact, in kg; infinite for a mode that does not move it.
+    free_frequency : float
+        Without contact, in Hz; zero for a rigid-body mode.
+    decay_length : ndarray, shape (n,)
+        Load over stiffness of the contact. [m]
+    pressed_frequency : ndarray, shape (n,)
+        Undamped, with a spring of that stiffness at the contact, in Hz.
+    half_width : ndarray, shape (n,)
+        Half width of the pressed resonance at half power, in Hz.
+    shift_uncertainty : ndarray, shape (n,)
+        Standard uncertainty of the shift if each frequency is resolved to a fraction of its half width, in Hz.
+    resolvable : ndarray of bool, shape (n,)
+        Whether the shift is at least three times its uncertainty, and the resonance narrow enough to show.
+    log_stiffness_deviation : ndarray, shape (n,)
+        Expected standard deviation of the logarithm of the stiffness; infinite where the shift is not resolvable.
+    """
+
+    mode: int
+    name: str
+    modal_mass: float
+    free_frequency: float
+    decay_length: Floats
+    pressed_frequency: Floats
+    half_width: Floats
+    shift_uncertainty: Floats
+    resolvable: NDArray[np.bool_]
+    log_stiffness_deviation: Floats
+
+    @property
+    def shift(self) -> Floats:
+        """Pressed less free frequency, in Hz, shape (n,)."""
+        return self.pressed_frequency - self.free_frequency
+
+
+def stiffness_probes(
+    rig: Rig, *, decay_length: ArrayLike, resolution: float = 1 / 50, modal_mass_deviation: float = 0.1
+) -> tuple[Probe, ...]:
+    r"""Resonances of a rig whose shift between free and pressed tells the stiffness of its contact.
+
+    Parameters
+    ----------
+    rig : Rig
+    decay_length : array_like, shape (n,)
+        Decay lengths of the contact's force to compare; the stiffness is load over decay length. [m]
+    resolution : float
+        Standard uncertainty of a measured resonance frequency over its half width.
+    modal_mass_deviation : float
+        Standard deviation of the logarithm of the modal mass at the contact, by which the structure may err.
+
+    Returns
+    -------
+    tuple of Probe
+        One a mode that moves the contact, in order of frequency; none for a rig without structure.
+
+    Raises
+    ------
+    InvalidInput
+        If a decay length or the resolution is not positive.
+
+    See Also
+    --------
+    probe_sentences : the same in words.
+    sonolube.measurement.contact_stiffness.stiffness_estimate.contact_stiffness : the stiffness from measured shifts.
+
+    Notes
+    -----
+    With resolution r, half widths :math:`h = \zeta f` and the slope by central differences,
+
+    .. math::
+
+        u_s^2 = r^2 (h_0^2 + h_1^2), \qquad
+        u^2(\ln k_n) = \left(\frac{u_s}{df/d\ln k_n}\right)^2 + u^2(\ln m) ,
+
+    and a shift is resolvable from :math:`3 u_s` on. A rigid-body mode has no width of its own when free.
+    """
+    lengths = np.atleast_1d(require_positive(decay_length=decay_length))
+    r = float(require_positive(resolution=resolution))
+    require_non_negative(modal_mass_deviation=modal_mass_deviation)
+    if lengths.ndim != 1:
+        raise InvalidInput(f"decay_length must be a number or a list, got shape {lengths.shape}")
+    if rig.structure is None:
+        return ()
+    free = modes(rig.structure)
+    stiffness = rig.normal_load / lengths
+    at, upper, lower = (
+        [modes(with_contact_spring(rig.structure, normal_stiffness=float(k))) for k in stiffness * factor]
+        for factor in (1.0, np.exp(_STEP), np.exp(-_STEP))
+    )
+    found = []
+    participation = np.abs(rig.structure.contact_vector @ free.shapes)
+    for mode in np.flatnonzero(participation > 1e-6 * participation.max()):
+        pressed = np.array([one.natural_frequency[mode] for one in at])
+        damping = np.array([one.damping_ratio[mode] for one in at])
+        rise = np.array(
+            [
+                above.natural_frequency[mode] - below.natural_frequency[mode]
+                for above, below in zip(upper, lower, strict=True)
+            ]
+        )
+        f_0 = float(free.natural_frequency[mode])
+        shift_uncertainty = r * np.hypot(damping * pressed, float(free.damping_ratio[mode]) * f_0)
+        resolvable = (pressed - f_0 >= _RESOLVED * shift_uncertainty) & (damping < _WIDEST) & (rise > 0)
+        slope = np.where(resolvable, rise / (2 * _STEP), 1.0)
+        deviation = np.where(resolvable, np.hypot(shift_uncertainty / slope, modal_mass_deviation), np.inf)
+        found.append(
+            Probe(
+                mode=int(mode),
+                name="floating mode" if free.rigid[mode] else f"mode at {format_si(f_0, 'Hz', digits=4)}",
+                modal_mass=float(participation[mode] ** -2),
+                free_frequency=f_0,
+                decay_length=lengths,
+                pressed_frequency=pressed,
+                half_width=damping * pressed,
+                shift_uncertainty=shift_uncertainty,
+                resolvable=resolvable,
+                log_stiffness_deviation=deviation,
+            )
+        )
+    return tuple(found)
+
+
+def probe_sentences(probes: Sequence[Probe]) -> tuple[str, ...]:
+    """Which resonances of a rig can tell the stiffness of its contact, one sentence each.
+
+    Parameters
+    ----------
+    probes : sequence of Probe
+        Of `stiffness_probes`.
+
+    Returns
+    -------
+    tuple of str
+        The probe of least uncertainty first; one sentence where no probe is known.
+    """
+    if not probes:
+        return ("no structure is known, so no resonance can be named whose shift tells the stiffness of the contact",)
+    ranked = sorted(probes, key=lambda one: (float(np.mean(~one.resolvable)), float(one.log_stiffness_deviation.min())))
+    return tuple(_sentence(probe) for probe in ranked[:_LISTED])
+
+
+def _sentence(probe: Probe) -> str:
+    """Frequencies of a probe at its decay lengths, and whether their shift can be told."""
+    places = " and ".join(
+        f"{format_si(float(f), 'Hz', digits=4 if probe.free_frequency < 1e4 else 6)} at"
+        f" l = {format_si(float(length), 'm', digits=2)}"
+        for f, length in zip(probe.pressed_frequency, probe.decay_length, strict=True)
+    )
+    if probe.resolvable.any():
+        good = probe.log_stiffness_deviation[probe.resolvable]
+        within = f"{100 * float(good.min()):.0f}" + (
+            f" to {100 * float(good.max()):.0f}" if np.ptp(good) > 0.005 else ""
+        )
+        limit = "" if probe.resolvable.all() else ", at the stiffer contacts only"
+        return f"{probe.name}: pressed {places}; its shift gives k_n within {within} %{limit}"
+    shift, width = float(probe.shift.max()), 2 * float(probe.half_width.max())
+    if width >= 2 * _WIDEST * float(probe.pressed_frequency.max()):
+        return f"{probe.name}: pressed {places}; too damped to show a peak"
+    share = f"a {width / shift:.0f}th" if shift > 0 else "nothing"
+    return (
+        f"{probe.name}: shifts by {format_si(shift, 'Hz', digits=2)} at most, {share} of its"
+        f" width of {format_si(width, 'Hz', digits=2)}: not resolvable"
+    )
