@@ -30,8 +30,10 @@ from sonolube.materials import (
     DryFriction,
     Material,
     SourcedValue,
+    dry_friction_classes,
     dry_friction_pairs,
     material,
+    material_classes,
     material_families,
     material_names,
 )
@@ -96,8 +98,8 @@ def errata_of_d() -> str:
 
 
 def materials_with_sources() -> str:
-    """Materials with their properties and sources, as sections by family."""
-    every = [material(name) for name in material_names()]
+    """Materials and classes with their properties and sources, as sections by family."""
+    every = [material(name) for name in (*material_names(), *material_classes())]
     return "\n\n".join(
         "\n\n".join([f"## {_words(family)}", *(_material(each) for each in every if each.family == family)])
         for family in material_families()
@@ -111,6 +113,12 @@ def dry_friction_by_pair() -> str:
         for each in dry_friction_pairs()
     ]
     return _grid(["", "on", "Coefficient", "Source"], rows)
+
+
+def dry_friction_by_class() -> str:
+    """Ranges of the coefficient of dry friction by class of pairs, the first that fits being taken."""
+    known = [each.friction for each in dry_friction_classes()]
+    return _grid(["Class of pairs", "Coefficient", "Source"], [[each.pair_class, _range(each), _source(each)] for each in known])
 
 
 def surface_finishes() -> str:
@@ -229,6 +237,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
         errata_of_d,
         materials_with_sources,
         dry_friction_by_pair,
+        dry_friction_by_class,
         surface_finishes,
         vocabulary,
         glossary,

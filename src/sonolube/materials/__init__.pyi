@@ -1,8 +1,6 @@
 from .catalogue import (
-    Material as Material,
-    SourcedText as SourcedText,
-    SourcedValue as SourcedValue,
     material as material,
+    material_classes as material_classes,
     material_families as material_families,
     material_names as material_names,
 )
@@ -14,6 +12,7 @@ from .pair_friction import (
     DryFriction as DryFriction,
     FrictionPair as FrictionPair,
     dry_friction as dry_friction,
+    dry_friction_classes as dry_friction_classes,
     dry_friction_pairs as dry_friction_pairs,
 )
 from .piezoelectric import (
@@ -24,3 +23,4 @@ from .piezoelectric import (
     piezo_ceramic_from_stress_charge as piezo_ceramic_from_stress_charge,
     piezo_ceramic_names as piezo_ceramic_names,
 )
+from .records import Material as Material, SourcedText as SourcedText, SourcedValue as SourcedValue

@@ -2,143 +2,24 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 from typing import Any
 
-from sonolube.errors import MissingProperty, UnknownName
-from sonolube.materials.property_file import read_property_file
-from sonolube.vocabulary import quantity
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SourcedValue:
-    """A numerical property with its unit and source.
-
-    Parameters
-    ----------
-    value : float
-        Value, in `unit`.
-    unit : str
-        Its SI unit; empty for dimensionless numbers.
-    source : str
-        Table, data sheet, handbook or paper.
-    condition : str
-        Temper, temperature or kind of test for which it holds; empty where the source does not state any.
-    note : str
-        Further remarks, such as a source that disagrees.
-    """
-
-    value: float
-    unit: str
-    source: str
-    condition: str = ""
-    note: str = ""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SourcedText:
-    """A property in words with its source.
-
-    Parameters
-    ----------
-    text : str
-        The statement.
-    source : str
-        Table, data sheet, handbook or paper.
-    note : str
-        Further remarks.
-    """
-
-    text: str
-    source: str
-    note: str = ""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Material:
-    """A material with its scalar properties.
-
-    Parameters
-    ----------
-    name : str
-        Its identifier in rig files and results, such as "m50".
-    title : str
-        Its name in prose.
-    family : str
-        Its kind, such as "steel", "brass", "ceramic" or "polymer": materials of one family rub alike.
-    properties : mapping of str to SourcedValue
-        Its scalar properties, by their vocabulary names.
-    crystal_structure : SourcedText or None
-        Its crystal structure, where a source states it.
-    aliases : tuple of str
-        Further names by which it is found.
-    """
-
-    name: str
-    title: str
-    family: str
-    properties: Mapping[str, SourcedValue]
-    crystal_structure: SourcedText | None = None
-    aliases: tuple[str, ...] = ()
-
-    def property(self, property_name: str) -> SourcedValue:
-        """Return a property with its unit and source.
-
-        Parameters
-        ----------
-        property_name : str
-            Its name in the vocabulary, such as "youngs_modulus".
-
-        Returns
-        -------
-        SourcedValue
-
-        Raises
-        ------
-        MissingProperty
-            If the catalogue has no source for it.
-        UnknownName
-            If the vocabulary has no such property.
-        """
-        try:
-            return self.properties[property_name]
-        except KeyError:
-            quantity_name = quantity(property_name).name
-            raise MissingProperty(
-                f"{self.name} has no {quantity_name}: no source is known; give it in the rig file"
-            ) from None
-
-    def value(self, property_name: str) -> float:
-        """Return the numerical value of a property, in SI.
-
-        Parameters
-        ----------
-        property_name : str
-            Its name in the vocabulary, such as "youngs_modulus".
-
-        Returns
-        -------
-        float
-
-        Raises
-        ------
-        MissingProperty
-            If the catalogue has no source for it.
-        UnknownName
-            If the vocabulary has no such property.
-        """
-        return self.property(property_name).value
+from sonolube.errors import UnknownName
+from sonolube.materials.classes import classes_of
+from sonolube.materials.property_file import cited, read_property_file
+from sonolube.materials.records import Material, SourcedText, SourcedValue
 
 
 def material(name: str) -> Material:
-    """Return a material of the catalogue by its name or alias.
+    """Return a material of the catalogue, or a class of materials, by its name or alias.
 
     Parameters
     ----------
     name : str
-        Such as "stainless_steel_316" or its alias "ss316"; case, spaces and punctuation do not matter ("AISI 316").
+        Such as "stainless_steel_316" or its alias "ss316", or the class "steel"; case, spaces and punctuation do not
+        matter ("AISI 316").
 
     Returns
     -------
@@ -150,20 +31,25 @@ def material(name: str) -> Material:
         If the catalogue has no such material, with the closest name.
     """
     try:
-        return _materials()[_names_by_key()[_key(name)]]
+        return _known()[_names_by_key()[_key(name)]]
     except KeyError:
-        names = (each for known in _materials().values() for each in (known.name, *known.aliases))
+        names = (each for known in _known().values() for each in (known.name, *known.aliases))
         raise UnknownName.among(names, kind="material", name=name) from None
 
 
 def material_names() -> tuple[str, ...]:
-    """Return the names of all materials, including piezoelectric ceramics, in alphabetical order."""
+    """Return the names of all materials, including piezoelectric ceramics, in alphabetical order; without classes."""
     return tuple(sorted(_materials()))
 
 
+def material_classes() -> tuple[str, ...]:
+    """Return the names of the classes of materials, such as "steel" or "rubber", in alphabetical order."""
+    return tuple(sorted(_classes()))
+
+
 def material_families() -> tuple[str, ...]:
-    """Return the families of all materials, in alphabetical order."""
-    return tuple(sorted({each.family for each in _materials().values()}))
+    """Return the families of all materials and classes, in alphabetical order."""
+    return tuple(sorted({each.family for each in _known().values()}))
 
 
 _FILES = ("engineering.toml", "piezo.toml")
@@ -177,9 +63,21 @@ def _materials() -> Mapping[str, Material]:
 
 
 @cache
+def _classes() -> Mapping[str, Material]:
+    """Return all classes of materials by name."""
+    return classes_of(_materials())
+
+
+@cache
+def _known() -> Mapping[str, Material]:
+    """Return all materials and classes by name."""
+    return {**_materials(), **_classes()}
+
+
+@cache
 def _names_by_key() -> Mapping[str, str]:
-    """Return the names of the materials by the keys of their names and aliases."""
-    return {_key(each): known.name for known in _materials().values() for each in (known.name, *known.aliases)}
+    """Return the names of the materials and classes by the keys of their names and aliases."""
+    return {_key(each): known.name for known in _known().values() for each in (known.name, *known.aliases)}
 
 
 def _key(name: str) -> str:
@@ -195,13 +93,8 @@ def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -
         title=entry["title"],
         family=entry["family"],
         properties=MappingProxyType(
-            {key: SourcedValue(**_cited(value, sources)) for key, value in entry["properties"].items()}
+            {key: SourcedValue(**cited(value, sources)) for key, value in entry["properties"].items()}
         ),
-        crystal_structure=SourcedText(**_cited(structure, sources)) if structure else None,
+        crystal_structure=SourcedText(**cited(structure, sources)) if structure else None,
         aliases=tuple(entry.get("aliases", ())),
     )
-
-
-def _cited(entry: Mapping[str, Any], sources: Mapping[str, str]) -> dict[str, Any]:
-    """Return an entry with the key of its source replaced by the citation."""
-    return {**entry, "source": sources[entry["source"]]}

@@ -1,14 +1,14 @@
 """Ranges of the coefficient of dry friction by pair of materials, each with its source."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from sonolube.errors import MissingProperty
-from sonolube.materials.catalogue import Material, material
+from sonolube.materials.catalogue import material
+from sonolube.materials.records import Material
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -25,6 +25,8 @@ class DryFriction:
         Surfaces, loads and speeds for which it holds; empty where the source does not state any.
     note : str
         Further remarks, such as how the range was widened.
+    pair_class : str
+        Class of pairs that the range is of, such as "metal on ceramic"; empty for the range of a pair.
     """
 
     low: float
@@ -32,6 +34,7 @@ class DryFriction:
     source: str
     condition: str = ""
     note: str = ""
+    pair_class: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,10 +47,13 @@ class FrictionPair:
         Names of materials or families on each side.
     friction : DryFriction
         Friction between any of the one side and any of the other.
+    alike : bool
+        Whether it holds for two materials of one family only.
     """
 
     sides: tuple[frozenset[str], frozenset[str]]
     friction: DryFriction
+    alike: bool = False
 
 
 def dry_friction(first: str, second: str) -> DryFriction:
@@ -62,48 +68,79 @@ def dry_friction(first: str, second: str) -> DryFriction:
     -------
     DryFriction
         Of the two materials where a source has them, else of one material and the family of the other, else of both
-        families.
+        families, else of their class of pairs, such as metal on ceramic.
 
     Raises
     ------
     UnknownName
         If the catalogue has no such material.
-    MissingProperty
-        If no source is known for the pair.
     """
     one, other = material(first), material(second)
     known = [(_specificity(pair, one, other), pair) for pair in dry_friction_pairs()]
     specificity, best = max(known, key=lambda each: each[0])
-    if not specificity:
-        raise MissingProperty(
-            f"no dry friction is known of {one.name} on {other.name}: measure it without vibration, and give it in the "
-            "rig file"
-        )
-    return best.friction
+    if specificity:
+        return best.friction
+    return next(pair.friction for pair in dry_friction_classes() if _specificity(pair, one, other))
 
 
 @cache
 def dry_friction_pairs() -> tuple[FrictionPair, ...]:
-    """Return all entries of the table of dry friction."""
-    content = tomllib.loads(files("sonolube.materials").joinpath("dry_friction.toml").read_text(encoding="utf-8"))
-    return tuple(_pair(entry, content["sources"]) for entry in content["pair"])
+    """Return all entries of the table of dry friction that name materials or families."""
+    content = _content()
+    return tuple(_pair(entry, entry["first"], entry["second"], content["sources"]) for entry in content["pair"])
 
 
-def _pair(entry: Mapping[str, Any], sources: Mapping[str, str]) -> FrictionPair:
+@cache
+def dry_friction_classes() -> tuple[FrictionPair, ...]:
+    """Return the entries for classes of pairs, such as metal on ceramic, of which the first that fits holds."""
+    content = _content()
+    kinds: Mapping[str, Sequence[str]] = content["kinds"]
+    kinds = {**kinds, "any": [family for families in kinds.values() for family in families]}
+    return tuple(
+        _pair(
+            {**entry, "pair_class": _class_title(entry)},
+            kinds[entry["first"]],
+            kinds[entry["second"]],
+            content["sources"],
+        )
+        for entry in content["class"]
+    )
+
+
+@cache
+def _content() -> Mapping[str, Any]:
+    """Return the content of the file of dry friction."""
+    return tomllib.loads(files("sonolube.materials").joinpath("dry_friction.toml").read_text(encoding="utf-8"))
+
+
+def _class_title(entry: Mapping[str, Any]) -> str:
+    """Return the class of pairs of an entry in words."""
+    second = "one of its own family" if entry.get("alike") else {"any": "any material"}.get(entry["second"])
+    return f"{entry['first']} on {second or entry['second']}"
+
+
+def _pair(
+    entry: Mapping[str, Any], first: Sequence[str], second: Sequence[str], sources: Mapping[str, str]
+) -> FrictionPair:
     """Return one entry of the table with its sources spelt out."""
-    numbers = {key: value for key, value in entry.items() if key not in ("first", "second", "source")}
-    cited = "; ".join(sources[key] for key in entry["source"])
+    numbers = {key: value for key, value in entry.items() if key not in ("first", "second", "source", "alike")}
     return FrictionPair(
-        sides=(frozenset(entry["first"]), frozenset(entry["second"])), friction=DryFriction(source=cited, **numbers)
+        sides=(frozenset(first), frozenset(second)),
+        friction=DryFriction(source="; ".join(sources[key] for key in entry["source"]), **numbers),
+        alike=entry.get("alike", False),
     )
 
 
 def _specificity(pair: FrictionPair, one: Material, other: Material) -> int:
     """Return 0 where an entry is not of two materials, else more the more of both it names."""
+    if pair.alike and one.family != other.family:
+        return 0
     left, right = pair.sides
     return max(_match(left, one) * _match(right, other), _match(left, other) * _match(right, one))
 
 
 def _match(side: frozenset[str], body: Material) -> int:
     """Return 2 where a side names a material, 1 where it names its family, 0 where neither."""
-    return 2 if body.name in side else int(body.family in side)
+    if body.name in side and body.name != body.family:
+        return 2
+    return int(body.family in side)

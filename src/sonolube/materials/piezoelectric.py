@@ -21,8 +21,9 @@ import numpy as np
 
 from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
-from sonolube.materials.catalogue import Material, material as catalogue_material
+from sonolube.materials.catalogue import material as catalogue_material
 from sonolube.materials.property_file import read_property_file
+from sonolube.materials.records import Material
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12
 """Permittivity of the vacuum, CODATA 2018. [F/m]"""

@@ -110,11 +110,11 @@ def checked_runs(before: RigDraws, after: RigDraws, own: TestedRig) -> RunCheck:
 
 
 def _predictive_probability(means: Floats, factors: Floats, drawn: Floats, own: TestedRig) -> float:
-    """Probability that runs drawn from the prediction speak as much or more for anything else as the measured ones do.
+    """Probability that runs drawn from the prediction speak as much for anything else as the measured ones do.
 
-    By the ratio of two densities of all runs: that under anything else, and that under the prediction. Anything else is,
-    with equal weights, vibration without effect, one ratio whatever the conditions, or a ratio of its own for each run,
-    the last two even over 0 to 1.4.
+    By the ratio of two densities of all runs: that under anything else, and that under the prediction. Anything else
+    is, with equal weights, vibration without effect, one ratio whatever the conditions, or a ratio of its own for each
+    run, the last two even over 0 to 1.4.
     """
     count = int(np.clip(_PRODUCTS / means.size / means.shape[1], _MIN_REPLICATES, len(drawn)))
     replicates = drawn[np.random.default_rng(4).permutation(len(drawn))[:count]]

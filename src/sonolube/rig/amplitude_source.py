@@ -183,7 +183,8 @@ def _measured(rig: Rig) -> ResolvedVibration:
         for value, unit in ((under.voltage_peak_to_peak, "V"), (under.frequency, "Hz"))
         if value is not None
     ]
-    text = f"measured, {format_si(rig.vibration_amplitude, 'm')}" + (f" at {', '.join(stated)}" if stated else "")
+    origin = "stated" if rig.has_stated_amplitude else "measured"
+    text = f"{origin}, {format_si(rig.vibration_amplitude, 'm')}" + (f" at {', '.join(stated)}" if stated else "")
     if rig.structure is None:
         at, volts = under.voltage_peak_to_peak, None if rig.drive is None else rig.drive.voltage_peak_to_peak
         per_volt = rig.vibration_amplitude / at if at and volts is not None else None

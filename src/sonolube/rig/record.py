@@ -18,6 +18,9 @@ from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.distribution import Distribution
 from sonolube.units import format_si
 
+STATED = "as stated"
+"""Beginning of the assumption about an amplitude that was stated before a test, not measured."""
+
 AmplitudeSource = Literal["measured", "computed", "waveguide", "per-volt"]
 """Where the amplitude of a vibration comes from."""
 
@@ -204,7 +207,7 @@ class Rig:
         Returns
         -------
         Path
-            Of the file, whose comments are not kept.
+            Of the file; its comments are kept of a rig by `new_rig` only.
 
         Raises
         ------
@@ -254,6 +257,12 @@ class Rig:
         rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in self.table())
         return f"<table><caption>{escape(self.title)}</caption><tbody>{rows}</tbody></table>"
 
+    @property
+    def has_stated_amplitude(self) -> bool:
+        """Whether the amplitude was stated before a test, and its uncertainty still stands in the file."""
+        key = "vibration.vibration_amplitude"
+        return key in self.uncertainty and self.assumptions.get(key, "").startswith(STATED)
+
     def _decay_length_rows(self) -> list[tuple[str, str]]:
         """Decay length of the contact and where it is from; none for heights whose decay length varies."""
         heights, own = self.contact.heights, self.contact.decay_length
@@ -268,8 +277,9 @@ class Rig:
 
     def _amplitude_text(self) -> str:
         """Every source that the rig has for its amplitude."""
+        origin = "stated" if self.has_stated_amplitude else "measured"
         sources = [
-            None if self.vibration_amplitude is None else f"{format_si(self.vibration_amplitude, 'm')} measured",
+            None if self.vibration_amplitude is None else f"{format_si(self.vibration_amplitude, 'm')} {origin}",
             None if self.structure is None else "computed from stack and structure",
             None if self.amplitude_per_volt is None else f"{format_si(self.amplitude_per_volt, 'm/V')}",
             None

@@ -1,11 +1,9 @@
 """New rig from what is known before a test, as `sonolube new` writes it."""
 
-import tomllib
-
 from sonolube.materials import material
-from sonolube.rig import Rig, rig_from
-from sonolube.rig.new_rig.rig_text import KnownRig, new_rig_text
-from sonolube.rig.new_rig.stated_text import pin_shape, reader, surface_of, vibration_of
+from sonolube.rig import Rig
+from sonolube.rig.new_rig.rig_text import KnownRig, rig_of_known
+from sonolube.rig.new_rig.stated_text import pin_shape, reader, speed_of, surface_of, vibration_of
 
 
 def new_rig(
@@ -23,32 +21,36 @@ def new_rig(
     friction_coefficient: float | None = None,
     decay_length: str | None = None,
     stiffness: str | None = None,
+    track_radius: str | None = None,
+    track_diameter: str | None = None,
 ) -> Rig:
     """Return a rig from what is known before a test; what nobody measured has a distribution with its reason.
 
     Parameters
     ----------
     pin, disc : str
-        Materials of the catalogue, such as "brass" or "304".
+        Materials of the catalogue, such as "304" or "100Cr6", or classes of them, such as "steel" or "Messing".
     load, speed : str
-        With units, such as "5 N" and "0.2 m/s".
+        With units, such as "5 N" and "0.2 m/s"; a speed in rpm with the track.
     frequency : str
         With its unit, such as "20 kHz". [Hz]
     amplitude : str
         Zero to peak, such as "3 um"; or an actuator of the catalogue with its voltage, such as "sa050510 50V".
     shape : str
-        End of the pin, such as "flat 3mm" by its diameter or "ball 5mm" by its radius.
+        End of the pin, such as "flat 3mm" by its diameter, "ball 5mm" by its radius or "ball diameter 10mm".
     finish : str
-        Of both surfaces, such as "ground N6", or the file of a scan.
+        Of both surfaces, such as "ground N6", "Ra 0.4um" or "Rz 3.2um", or the file of a scan.
     pin_finish, disc_finish : str, optional
         Of one surface.
     friction_coefficient : float, optional
-        Coefficient of dry friction, where it was measured; else by the pair. []
+        Coefficient of dry friction, where it was measured; else by the pair or its class. []
     decay_length : str, optional
         Length over which the force of the worn contact falls by a factor of e, such as "1.5 um"; that of published
         tests where both it and the stiffness are absent. [m]
     stiffness : str, optional
         Measured normal stiffness of the contact under the load, such as "1.5 MN/m", in place of the decay length.
+    track_radius, track_diameter : str, optional
+        Of the track on the disc, one of them for a speed in rpm, such as "15 mm". [m]
 
     Returns
     -------
@@ -60,16 +62,25 @@ def new_rig(
     InvalidInput
         If a text cannot be read or a value is impossible.
     MissingProperty
-        If the catalogue lacks a property of a material, or no dry friction is known of the pair.
+        If the catalogue has no modulus of a material, or neither hardness nor strength, and none of its class.
     UnknownName
         If there is no such material, actuator or finish.
     """
+    sliding = speed_of(
+        speed,
+        track_radius=track_radius,
+        track_diameter=track_diameter,
+        name="speed",
+        radius_name="track_radius",
+        diameter_name="track_diameter",
+    )
     known = KnownRig(
         pin=material(pin).name,
         disc=material(disc).name,
         shape=pin_shape(shape, name="shape"),
         normal_load=reader("N", name="load")(load),
-        sliding_speed=reader("m/s", name="speed")(speed),
+        sliding_speed=sliding.value,
+        speed_reason=sliding.reason,
         frequency=reader("Hz", name="frequency")(frequency),
         vibration=vibration_of(amplitude, name="amplitude"),
         pin_surface=surface_of(pin_finish or finish),
@@ -78,4 +89,4 @@ def new_rig(
         decay_length=None if decay_length is None else reader("m", name="decay_length")(decay_length),
         normal_stiffness=None if stiffness is None else reader("N/m", name="stiffness")(stiffness),
     )
-    return rig_from(tomllib.loads(new_rig_text(known)))
+    return rig_of_known(known)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from math import exp
 from typing import Annotated, Any
 
 import typer
@@ -9,7 +10,7 @@ import typer
 from sonolube.cli.console.answer import aligned, deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
-from sonolube.materials import Material, SourcedValue, material, material_families, material_names
+from sonolube.materials import Material, SourcedValue, material, material_classes, material_families, material_names
 from sonolube.units import format_si
 
 _HEADS = ("name", "Young's modulus", "hardness", "yield strength", "title")
@@ -19,12 +20,12 @@ _QUANTITIES = ("youngs_modulus", "hardness", "yield_strength")
 def materials(
     name: Annotated[str | None, typer.Argument(help="One material; all of them by default.")] = None, json: Json = False
 ) -> None:
-    """Materials and piezo ceramics, each property with its source.
+    """Materials, piezo ceramics and classes of materials, each property with its source.
 
     Example: sonolube materials aluminium_2024
     """
     if name is None:
-        every = [material(each) for each in material_names()]
+        every = [material(each) for each in (*material_names(), *material_classes())]
         deliver(Listing(text=_by_family(every), content={each.name: _object(each) for each in every}), as_json=json)
     else:
         shown = material(name)
@@ -32,7 +33,7 @@ def materials(
 
 
 def _by_family(every: Sequence[Material]) -> list[str]:
-    """Rows of the list under headings of the families, alphabetically."""
+    """Rows of the list under headings of the families, alphabetically, classes last in their family."""
     columns = grid([_HEADS, *map(_row, every)])
     rows = dict(zip((each.name for each in every), columns[1:], strict=True))
     lines = [columns[0]]
@@ -59,7 +60,8 @@ def _lines(shown: Material) -> list[str]:
 
 def _property(known: SourcedValue) -> str:
     """Value of a property with its source, condition and note."""
-    remarks = (remark for remark in (known.source, known.condition, known.note) if remark)
+    spread = f"within a factor of {exp(known.deviation):.3g}" if known.deviation else ""
+    remarks = (remark for remark in (spread, known.source, known.condition, known.note) if remark)
     return f"{format_si(known.value, known.unit, digits=4):<14}  {'; '.join(remarks)}"
 
 
@@ -68,6 +70,7 @@ def _object(shown: Material) -> dict[str, Any]:
     return {
         "title": shown.title,
         "family": shown.family,
+        "is_class": shown.is_class,
         "aliases": list(shown.aliases),
         "properties": {key: asdict(known) for key, known in shown.properties.items()},
         "crystal_structure": asdict(shown.crystal_structure) if shown.crystal_structure else None,

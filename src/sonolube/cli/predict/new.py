@@ -13,23 +13,34 @@ from sonolube.cli.console.answer import Answer, deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.questions import Question, ask, is_terminal
-from sonolube.errors import InvalidInput, MissingProperty
-from sonolube.materials import dry_friction, material
+from sonolube.errors import InvalidInput
+from sonolube.materials import material
 from sonolube.rig import Rig, rig_from
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text
-from sonolube.rig.new_rig.stated_text import pin_shape, reader, surface_of, vibration_of
+from sonolube.rig.new_rig.stated_text import (
+    StatedSpeed,
+    pin_shape,
+    reader,
+    rotation_of,
+    speed_of,
+    surface_of,
+    vibration_of,
+)
 
 Value = TypeVar("Value")
 
-_PIN = Question(option="--pin", text="Material of the pin, such as aluminium_2024", default="stainless_steel_304")
-_DISC = Question(option="--disc", text="Material of the disc, such as m50", default="stainless_steel_304")
+_PIN = Question(
+    option="--pin", text="Material of the pin, such as aluminium_2024 or steel", default="stainless_steel_304"
+)
+_DISC = Question(option="--disc", text="Material of the disc, such as m50 or steel", default="stainless_steel_304")
 _SHAPE = Question(
     option="--shape",
-    text="End of the pin: flat with its diameter or ball with its radius, such as 'ball 5mm'",
+    text="End of the pin: flat with its diameter or ball, such as 'ball radius 5mm' or 'ball diameter 10mm'",
     default="flat 3mm",
 )
 _LOAD = Question(option="--load", text="Normal load, such as 5N", default="5N")
-_SPEED = Question(option="--speed", text="Sliding speed, such as 0.2m/s", default="0.1m/s")
+_SPEED = Question(option="--speed", text="Sliding speed, such as 0.2m/s or '100 rpm'", default="0.1m/s")
+_TRACK = Question(option="--track-radius", text="Radius of the track, such as 15mm", default="20mm")
 _FREQUENCY = Question(option="--frequency", text="Frequency of the vibration, such as 22kHz", default="20kHz")
 _AMPLITUDE = Question(
     option="--amplitude",
@@ -38,30 +49,40 @@ _AMPLITUDE = Question(
 )
 _PIN_FINISH = Question(
     option="--pin-finish",
-    text="Finish of the pin, such as turned, N7 or 'ground N6', or the file of a scan",
+    text="Finish of the pin, such as turned, N7, 'ground N6' or 'Ra 0.4um', or the file of a scan",
     default="ground",
 )
 _DISC_FINISH = Question(
     option="--disc-finish",
-    text="Finish of the disc, such as turned, N7 or 'ground N6', or the file of a scan",
+    text="Finish of the disc, such as turned, N7, 'ground N6' or 'Ra 0.4um', or the file of a scan",
     default="ground",
-)
-
-_FRICTION = Question(
-    option="--friction", text="Coefficient of friction without vibration, of which nothing is known here", default="0.4"
 )
 
 
 def new(
     out: Annotated[Path, typer.Argument(metavar="[OUT.toml]", help="File to write."), OutputFile()] = Path("rig.toml"),
-    pin: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the pin.")] = None,
-    disc: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the disc.")] = None,
+    pin: Annotated[
+        str | None, typer.Option(metavar="MATERIAL", help="Material of the pin, or its class: 100Cr6, 304, steel.")
+    ] = None,
+    disc: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the disc, or its class.")] = None,
     shape: Annotated[
         str | None,
-        typer.Option(metavar="SHAPE", help="End of the pin: 'flat DIAMETER' or 'ball RADIUS'; 'flat 3mm' by default."),
+        typer.Option(
+            metavar="SHAPE",
+            help="End of the pin: 'flat 3mm' (its diameter, default), 'ball 5mm' (its radius), 'ball radius 5mm',"
+            " 'ball diameter 10mm'.",
+        ),
     ] = None,
     load: Annotated[str | None, typer.Option(metavar="FORCE", help="Normal load.")] = None,
-    speed: Annotated[str | None, typer.Option(metavar="SPEED", help="Sliding speed.")] = None,
+    speed: Annotated[
+        str | None, typer.Option(metavar="SPEED", help="Sliding speed: 0.2m/s, or '100 rpm' with the track.")
+    ] = None,
+    track_radius: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Radius of the track on the disc, for a speed in rpm.")
+    ] = None,
+    track_diameter: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Its diameter, in place of the radius.")
+    ] = None,
     at: Annotated[
         str | None, typer.Option("--frequency", metavar="FREQUENCY", help="Frequency of the vibration.")
     ] = None,
@@ -76,7 +97,11 @@ def new(
     ] = None,
     finish: Annotated[
         str | None,
-        typer.Option(metavar="FINISH", help="Finish of pin and disc, such as 'ground N6'; 'ground' by default."),
+        typer.Option(
+            metavar="FINISH",
+            help="Finish of pin and disc: 'ground' (default), N6, 'ground N6', 'Ra 0.4' (in um), 0.4um (as Ra),"
+            " 'Rz 3.2um'.",
+        ),
     ] = None,
     pin_finish: Annotated[str | None, typer.Option(metavar="FINISH", help="Finish of the pin.")] = None,
     disc_finish: Annotated[str | None, typer.Option(metavar="FINISH", help="Finish of the disc.")] = None,
@@ -86,7 +111,9 @@ def new(
     ] = None,
     friction: Annotated[
         str | None,
-        typer.Option(metavar="NUMBER", help="Coefficient of dry friction, where it was measured; else by the pair."),
+        typer.Option(
+            metavar="NUMBER", help="Coefficient of dry friction, where it was measured; else the range of the pair."
+        ),
     ] = None,
     decaying_over: Annotated[
         str | None,
@@ -121,17 +148,21 @@ def new(
     given = {_PIN: pin, _DISC: disc, _LOAD: load, _SPEED: speed, _FREQUENCY: at, _AMPLITUDE: driven}
     asks = _asks(given)
     materials = _value(_PIN, pin, _material, asks=asks), _value(_DISC, disc, _material, asks=asks)
+    stated_shape = _value(_SHAPE, shape, pin_shape, asks=asks)
+    normal_load = _value(_LOAD, load, reader("N", name="--load"), asks=asks)
+    sliding = _sliding_speed(speed, track_radius, track_diameter, asks=asks)
     known = KnownRig(
         pin=materials[0],
         disc=materials[1],
-        shape=_value(_SHAPE, shape, pin_shape, asks=asks),
-        normal_load=_value(_LOAD, load, reader("N", name="--load"), asks=asks),
-        sliding_speed=_value(_SPEED, speed, reader("m/s", name="--speed"), asks=asks),
+        shape=stated_shape,
+        normal_load=normal_load,
+        sliding_speed=sliding.value,
+        speed_reason=sliding.reason,
         frequency=_value(_FREQUENCY, at, reader("Hz", name="--frequency"), asks=asks),
         vibration=_value(_AMPLITUDE, driven, vibration_of, asks=asks),
         pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, surface_of, asks=asks),
         disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, surface_of, asks=asks),
-        friction_coefficient=_friction_coefficient(friction, pin=materials[0], disc=materials[1]),
+        friction_coefficient=None if friction is None else reader("", name="--friction")(friction),
         decay_length=None if decaying_over is None else reader("m", name="--decay-length")(decaying_over),
         normal_stiffness=None if stiffness is None else reader("N/m", name="--stiffness")(stiffness),
     )
@@ -208,19 +239,24 @@ def _material(text: str) -> str:
     return material(text).name
 
 
-def _friction_coefficient(text: str | None, *, pin: str, disc: str) -> float | None:
-    """Coefficient of dry friction that is given, or asked for where none is known of the pair; else None."""
-    read = reader("", name="--friction")
-    if text is not None:
-        return read(text)
-    try:
-        dry_friction(pin, disc)
-    except MissingProperty as refusal:
-        if is_terminal():
-            return ask(_FRICTION, read)
-        reason = str(refusal).partition(":")[0]
-        raise InvalidInput(f"{reason}; measure it without vibration, and give --friction") from None
-    return None
+def _sliding_speed(
+    text: str | None, track_radius: str | None, track_diameter: str | None, *, asks: bool
+) -> StatedSpeed:
+    """Sliding speed of the options or answers; a rotational speed without a track has its radius asked for too."""
+    is_open = track_radius is None and track_diameter is None and is_terminal()
+    if text is None and asks:
+        text = ask(_SPEED, lambda answer: _readable_speed(answer, track_radius, track_diameter))
+    stated = _SPEED.default if text is None else text
+    if is_open and rotation_of(stated) is not None:
+        return ask(_TRACK, lambda radius: speed_of(stated, track_radius=radius))
+    return speed_of(stated, track_radius=track_radius, track_diameter=track_diameter)
+
+
+def _readable_speed(text: str, track_radius: str | None, track_diameter: str | None) -> str:
+    """Return an answer that is a speed; a rotational one may wait for its track."""
+    if rotation_of(text) is None or track_radius or track_diameter:
+        speed_of(text, track_radius=track_radius, track_diameter=track_diameter)
+    return text
 
 
 def _text(path: Path | None) -> str | None:

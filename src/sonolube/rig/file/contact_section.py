@@ -11,8 +11,9 @@ from sonolube.errors import InvalidInput, MissingProperty
 from sonolube.materials import material, yield_strength_from_hardness
 from sonolube.rig.file.plausible import DECAY_LENGTHS
 from sonolube.rig.file.section import NameIn, Section
+from sonolube.rig.file.stated_surface import height_of_finish
 from sonolube.rig.record import DecayLengthOrigin
-from sonolube.surfaces import Roughness, surface_finish
+from sonolube.surfaces import Roughness
 from sonolube.units import format_si
 
 Text = Annotated[str, Field(min_length=1, max_length=1000)]
@@ -44,8 +45,8 @@ class StatedRoughnessSection(Section):
     maximum_height: float | None = None
     finish: Text | None = Field(
         default=None,
-        description="Process, ISO grade or both, of the rougher surface",
-        examples=["ground", "N6", "ground N6"],
+        description="Process, ISO grade or both, or Ra or Rz with its number, of the rougher surface",
+        examples=["ground", "N6", "ground N6", "Ra 0.4um", "Rz 3.2um"],
     )
     summit_radius: float | None = None
     summit_density: float | None = None
@@ -60,7 +61,7 @@ class StatedRoughnessSection(Section):
             if (value := getattr(self, name)) is not None:
                 require_positive(**{name: value})
         if self.finish is not None:
-            surface_finish(self.finish)
+            height_of_finish(self.finish)
 
 
 def _roughness_kind(table: Any) -> str:

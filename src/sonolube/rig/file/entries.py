@@ -23,10 +23,13 @@ class FileEntries:
         Entries as they are written; a file of modes is read in its place.
     rig_from : callable
         Reader of such a content.
+    text : str
+        File with its comments, where it is kept; empty otherwise.
     """
 
     content: Mapping[str, Any]
     rig_from: Callable[[Mapping[str, Any]], Rig]
+    text: str = ""
 
     def replaced(self, key: str, value: str | float) -> Rig:
         """Return the rig of the file with one entry replaced."""
@@ -39,7 +42,7 @@ class FileEntries:
         """Write the file with its entries."""
         import tomli_w
 
-        return write_atomically(Path(path), tomli_w.dumps(self.content))
+        return write_atomically(Path(path), self.text or tomli_w.dumps(self.content))
 
 
 def with_entries(rig: Rig, entries: FileEntries) -> Rig:

@@ -1,15 +1,34 @@
 """Root mean square height of a surface whose Ra, Rz or finish is stated, with the spread of the relation."""
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from math import exp, hypot, log
+from typing import Final
 
+from sonolube.errors import InvalidInput, UnknownName
 from sonolube.surfaces import (
     RmsHeightEstimate,
+    SurfaceFinish,
     rms_height_from_maximum_height,
     rms_height_from_roughness_average,
     surface_finish,
 )
-from sonolube.units import format_si
+from sonolube.units import format_si, to_si
+
+FINISH_FORMS: Final = (
+    "write a process, an ISO grade, both, Ra or Rz: 'ground', 'lapped', 'turned', 'N6', 'ground N6', 'Ra 0.4um',"
+    " 'Rz 3.2um'"
+)
+"""Forms of a finish that are read, for refusals."""
+
+_NUMBER: Final = re.compile(
+    r"(?:(?!(?:ra|rz|rq|sa|sq|rms)\b)(?P<process>[a-z][a-z _-]*?)[ ,]+)?(?P<parameter>ra|rz|rq|sa|sq|rms)?[ ]*[=:]?[ ]*"
+    r"(?P<number>(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e-?\d+)?)[ ]*(?P<unit>[a-zµμ\"]*)",
+    re.IGNORECASE,
+)
+_THOUSANDS: Final = re.compile(r"[1-9]\d{0,2},\d{3}")
+_FINISHES: Final = (1e-10, 2e-4)  # m
+_RMS_BETWEEN_PLACES: Final = (1 / 1.2, 1.2)  # two standard deviations of 10 %
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,12 +88,13 @@ def height_from_maximum_height(*, maximum_height: float) -> StatedHeight:
 
 
 def height_of_finish(text: str) -> StatedHeight:
-    """Return the root mean square height of a surface by its process, its ISO grade or both.
+    """Return the root mean square height of a surface by its process, its ISO grade or both, or by Ra, Rz or Rq.
 
     Parameters
     ----------
     text : str
-        Such as "ground N6".
+        Such as "ground N6", "Ra 0.4", "Rz 3.2um" or "0.4um", which is read as Ra; a number alone behind Ra, Rz or Rq is
+        in micrometres. A process may stand before a number, which then gives the roughness: "ground Ra 0.4".
 
     Returns
     -------
@@ -84,12 +104,63 @@ def height_of_finish(text: str) -> StatedHeight:
     ------
     UnknownName
         If the finish is unknown.
+    InvalidInput
+        If the text has none of these forms, or its number lies beyond any finish.
     """
-    finish = surface_finish(text)
+    number = _NUMBER.fullmatch(text.strip())
+    if number is not None:
+        return _height_of_number(text.strip(), **number.groupdict(default=""))
+    finish = _finish(text)
     low, high = finish.roughness_average_low, finish.roughness_average_high
     found = rms_height_from_roughness_average(arithmetic_mean_height=finish.arithmetic_mean_height)
     stated = f"{finish.title}, Ra {format_si(low, 'm')} to {format_si(high, 'm')} by {finish.source}"
     return _stated(found, stated, deviation=deviation_of_range(low, high))
+
+
+def _finish(text: str) -> SurfaceFinish:
+    """Return a process, a grade or both; refuse others with the forms that are read."""
+    try:
+        return surface_finish(text)
+    except (InvalidInput, UnknownName) as refusal:
+        raise type(refusal)(f"{str(refusal).partition('; known:')[0]}; {FINISH_FORMS}") from None
+
+
+def is_roughness(text: str) -> bool:
+    """Whether a finish is stated as a number, such as "Ra 0.4" or "0.4um"."""
+    return _NUMBER.fullmatch(text.strip()) is not None
+
+
+def _height_of_number(text: str, *, process: str, parameter: str, number: str, unit: str) -> StatedHeight:
+    """Return the height by Ra, Rz or Rq, with what was assumed in reading it."""
+    if process:
+        _finish(process)
+    if _THOUSANDS.fullmatch(number):
+        raise InvalidInput(f"surface finish {text!r} may mean two numbers; write it without a comma")
+    assumed = "" if parameter else "read as Ra"
+    if not unit:
+        if not parameter:
+            raise InvalidInput(f"surface finish {text!r} has neither a unit nor Ra, Rz or Rq; {FINISH_FORMS}")
+        unit, assumed = "um", "um assumed"
+    height = to_si(f"{number.replace(',', '.')} {unit}", unit="m", name="surface finish")
+    low, high = _FINISHES
+    if not low <= height <= high:
+        raise InvalidInput(
+            f"surface finish {text!r} lies beyond any finish: expected {format_si(low, 'm')} to {format_si(high, 'm')}"
+        )
+    said = f"stated as {text!r}" + f", {assumed}" * bool(assumed)
+    if parameter.lower() in ("rq", "sq", "rms"):
+        deviation = deviation_of_range(*_RMS_BETWEEN_PLACES)
+        return StatedHeight(
+            rms_height=height, factor=exp(deviation), reason=f"Rq {format_si(height, 'm')}, {said}; 10 % between places"
+        )
+    named = (
+        height_from_maximum_height(maximum_height=height)
+        if parameter.lower() == "rz"
+        else height_from_roughness_average(roughness_average=height)
+    )
+    relation = named.reason.partition("; ")[2]
+    letter = "Rz" if parameter.lower() == "rz" else "Ra"
+    return replace(named, reason=f"from {letter} {format_si(height, 'm')}, {said}; {relation}")
 
 
 def _stated(found: RmsHeightEstimate, stated: str, *, deviation: float = 0.0) -> StatedHeight:

@@ -43,12 +43,12 @@ class KnownSurface:
 
 
 def finished_surface(finish: str) -> KnownSurface:
-    """Return a surface by its process, its ISO grade or both.
+    """Return a surface by its process, its ISO grade or both, or by Ra, Rz or Rq.
 
     Parameters
     ----------
     finish : str
-        Such as "ground N6".
+        Such as "ground N6", "Ra 0.4" or "Rz 3.2um".
 
     Returns
     -------
@@ -58,6 +58,8 @@ def finished_surface(finish: str) -> KnownSurface:
     ------
     UnknownName
         If the finish is unknown.
+    InvalidInput
+        If the text has no form of a finish.
     """
     height = height_of_finish(finish)
     summits = typical_summits(rms_height=height.rms_height)

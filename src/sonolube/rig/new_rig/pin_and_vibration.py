@@ -10,6 +10,7 @@ from sonolube.actuator import CatalogueActuator
 from sonolube.checks import require_positive
 from sonolube.contact import SphereOnFlat, hertz_contact_radius
 from sonolube.errors import InvalidInput
+from sonolube.rig.record import STATED
 from sonolube.units import format_si
 
 _STATED_AMPLITUDE: Final = 0.15
@@ -88,7 +89,8 @@ class RoundPin:
     @property
     def text(self) -> str:
         """The shape in words."""
-        return f"Hertzian circle of a tip radius of {format_si(self.tip_radius, 'm')} before wear, which enlarges it"
+        radius, diameter = format_si(self.tip_radius, "m"), format_si(2 * self.tip_radius, "m")
+        return f"ball of {diameter} in diameter, tip radius {radius}: Hertzian circle before wear, which enlarges it"
 
     def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
         """Return the area of the Hertzian circle. [m2]"""
@@ -145,7 +147,7 @@ class StatedAmplitude:
                 "drive": {"frequency": toml_text(frequency, "Hz")},
                 "vibration": {"vibration_amplitude": toml_text(self.vibration_amplitude, "m")},
             },
-            assumptions={key: "as stated, taken as not measured under this load: 15 %"},
+            assumptions={key: f"{STATED}, taken as not measured under this load: 15 %"},
             uncertainty={key: f"lognormal {100 * _STATED_AMPLITUDE:g} %"},
         )
 

@@ -11,14 +11,15 @@ from math import isclose, log
 from typing import Final
 
 from sonolube.checks import require_positive
-from sonolube.contact import ElasticBody, contact_pair
-from sonolube.errors import MissingProperty, SonolubeError
-from sonolube.materials import Material, dry_friction, material, yield_strength_from_hardness
+from sonolube.contact import contact_pair
+from sonolube.errors import SonolubeError
+from sonolube.materials import dry_friction, material
+from sonolube.rig.file.entries import FileEntries, with_entries
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.reader import rig_from
-from sonolube.rig.file.stated_surface import deviation_of_range
-from sonolube.rig.new_rig.contact_compliance import compliance_entries
 from sonolube.rig.file.uncertainty import number_keys
+from sonolube.rig.new_rig.contact_compliance import compliance_entries
+from sonolube.rig.new_rig.known_body import KnownBody
 from sonolube.rig.new_rig.known_surface import KnownSurface, lognormal_text, surfaces_in_contact
 from sonolube.rig.new_rig.pin_and_vibration import Entries, PinShape, Vibration, toml_text
 from sonolube.rig.record import Rig
@@ -26,10 +27,6 @@ from sonolube.rig.simulation import friction_point
 from sonolube.vocabulary import quantity
 
 _HEAD: Final = "# Written by sonolube new. Replace what you measure, and remove its line from [uncertainty]."
-_CATALOGUE_STRENGTH: Final = 0.15
-_NO_METALS: Final = ("ceramic", "coating", "glass", "piezo_ceramic", "polymer")
-_POISSON_RATIO: Final = 0.33
-_POISSON_REASON: Final = "not in the catalogue; 0.33 assumed: 0.25 to 0.4 changes the effective modulus by 5 %"
 _MEASURED_FRICTION: Final = "normal 5 %"
 _SAME_FORCE: Final = 1e-6  # relative difference of forces below which an entry changes nothing
 
@@ -41,7 +38,7 @@ class KnownRig:
     Parameters
     ----------
     pin, disc : str
-        Materials of the catalogue.
+        Materials or classes of materials of the catalogue.
     shape : PinShape
     normal_load : float
         Force pressing the bodies together. [N]
@@ -52,12 +49,14 @@ class KnownRig:
     vibration : Vibration
     pin_surface, disc_surface : KnownSurface
     friction_coefficient : float or None
-        Measured without vibration; the range of the pair where None. []
+        Measured without vibration; the range of the pair, or of its class of pairs, where None. []
     decay_length : float or None
         Length over which the contact force falls by a factor of e, where it is known; that of published tests where
         both it and the stiffness are None. [m]
     normal_stiffness : float or None
         Measured normal stiffness of the contact under its load, in place of the decay length. [N/m]
+    speed_reason : str
+        How the sliding speed follows from a rotational speed; empty for a speed that is stated.
     """
 
     pin: str
@@ -72,6 +71,7 @@ class KnownRig:
     friction_coefficient: float | None = None
     decay_length: float | None = None
     normal_stiffness: float | None = None
+    speed_reason: str = ""
 
     def __post_init__(self) -> None:
         require_positive(normal_load=self.normal_load, sliding_speed=self.sliding_speed, frequency=self.frequency)
@@ -118,7 +118,7 @@ def new_rig_text(known: KnownRig) -> str:
     InvalidInput
         If a value is impossible.
     MissingProperty
-        If the catalogue lacks a property of a material, or no dry friction is known of the pair.
+        If the catalogue has no modulus of a material, or neither hardness nor strength, and none of its class.
     """
     parts = [_contact(known), _friction(known), known.vibration.entries(known.frequency)]
     pin, disc = material(known.pin), material(known.disc)
@@ -132,6 +132,13 @@ def new_rig_text(known: KnownRig) -> str:
     text = "\n".join([_HEAD, *(_table(name, entries) for name, entries in tables.items())])
     rig_from(tomllib.loads(text))
     return text
+
+
+def rig_of_known(known: KnownRig) -> Rig:
+    """Return the rig of what is known, which writes the file of `new_rig_text` with its comments."""
+    text = new_rig_text(known)
+    content = tomllib.loads(text)
+    return with_entries(rig_from(content), FileEntries(content, rig_from, text=text))
 
 
 def least_known(rig: Rig, *, count: int = 3) -> Sequence[LeastKnown]:
@@ -173,15 +180,16 @@ def _moves_friction(rig: Rig, key: str, low: float, high: float) -> bool:
 
 def _contact(known: KnownRig) -> Entries:
     """Return the tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
-    pin, disc = material(known.pin), material(known.disc)
-    softer, harder = (disc, pin) if _hardness(disc) < _hardness(pin) else (pin, disc)
-    strength, deviation, strength_reason = _yield_strength(softer)
-    pair = contact_pair(softer=_body(softer), harder=_body(harder), yield_strength=strength)
+    pin, disc = KnownBody.of(known.pin), KnownBody.of(known.disc)
+    softer, harder = (disc, pin) if disc.hardness < pin.hardness else (pin, disc)
+    strength = softer.yield_strength
+    pair = contact_pair(softer=softer.elastic, harder=harder.elastic, yield_strength=strength.value)
     area = known.shape.nominal_area(effective_modulus=pair.effective_modulus, normal_load=known.normal_load)
     surface = surfaces_in_contact(known.pin_surface, known.disc_surface)
     roughness, place = surface.roughness, "contact.roughness"
-    roles = {"softer": "pin", "harder": "disc"} if softer is pin else {"softer": "disc", "harder": "pin"}
-    assumed = {"softer": _assumed(softer), "harder": _assumed(harder)}
+    softer_role, harder_role = ("pin", "disc") if softer is pin else ("disc", "pin")
+    softer_entries = softer.entries("contact.softer", role=softer_role)
+    harder_entries = harder.entries("contact.harder", role=harder_role)
     compliance = compliance_entries(decay_length=known.decay_length, normal_stiffness=known.normal_stiffness)
     return Entries(
         tables={
@@ -196,16 +204,10 @@ def _contact(known: KnownRig) -> Entries:
                 "summit_density": toml_text(roughness.summit_density, "1/m2"),
             },
             "contact.softer": {
-                "material": json.dumps(softer.name),
-                "role": json.dumps(roles["softer"]),
-                "yield_strength": toml_text(strength, "Pa"),
-                **assumed["softer"],
+                **softer_entries.tables["contact.softer"],
+                "yield_strength": toml_text(strength.value, "Pa"),
             },
-            "contact.harder": {
-                "material": json.dumps(harder.name),
-                "role": json.dumps(roles["harder"]),
-                **assumed["harder"],
-            },
+            **harder_entries.tables,
         },
         assumptions={
             "contact.nominal_area": known.shape.text,
@@ -213,15 +215,18 @@ def _contact(known: KnownRig) -> Entries:
             f"{place}.rms_height": surface.height_reason,
             f"{place}.summit_radius": surface.summit_reason,
             f"{place}.summit_density": surface.summit_reason,
-            "contact.softer.yield_strength": strength_reason,
-            **{f"contact.{body}.{key}": _POISSON_REASON for body, keys in assumed.items() for key in keys},
+            "contact.softer.yield_strength": strength.reason,
+            **softer_entries.assumptions,
+            **harder_entries.assumptions,
         },
         uncertainty={
             **compliance.uncertainty,
             f"{place}.rms_height": lognormal_text(surface.height_deviation),
             f"{place}.summit_radius": lognormal_text(surface.radius_deviation),
             f"{place}.summit_density": lognormal_text(surface.density_deviation),
-            "contact.softer.yield_strength": lognormal_text(deviation),
+            "contact.softer.yield_strength": lognormal_text(strength.deviation),
+            **softer_entries.uncertainty,
+            **harder_entries.uncertainty,
         },
     )
 
@@ -234,46 +239,13 @@ def _friction(known: KnownRig) -> Entries:
     else:
         pair = dry_friction(known.pin, known.disc)
         value, law = (pair.low + pair.high) / 2, f"uniform {pair.low:g} to {pair.high:g}"
-        reason = "; ".join(part for part in ("range of the pair", pair.source, pair.condition, pair.note) if part)
+        what = f"range of the class of pair, {pair.pair_class}" if pair.pair_class else "range of the pair"
+        reason = "; ".join(part for part in (what, pair.source, pair.condition, pair.note) if part)
     return Entries(
         tables={"friction": {"friction_coefficient": f"{value:.4g}"}, "sliding": sliding},
-        assumptions={key: reason},
+        assumptions={key: reason} | ({"sliding.sliding_speed": known.speed_reason} if known.speed_reason else {}),
         uncertainty={key: law},
     )
-
-
-def _hardness(body: Material) -> float:
-    """Return the hardness of a material, or three times its yield strength where the catalogue lacks it. [Pa]"""
-    try:
-        return body.value("hardness")
-    except MissingProperty:
-        return 3 * body.value("yield_strength")
-
-
-def _yield_strength(body: Material) -> tuple[float, float, str]:
-    """Return the yield strength of a material in Pa, the standard deviation of its logarithm, and where it is from.
-
-    Tabor's relation holds for metals; of others the catalogue's strength comes first.
-    """
-    has_strength = "yield_strength" in body.properties
-    if "hardness" not in body.properties or (body.family in _NO_METALS and has_strength):
-        found = body.property("yield_strength")
-        return found.value, _CATALOGUE_STRENGTH, f"of the catalogue, {found.source}; 15 % between batches assumed"
-    hardness = body.value("hardness")
-    estimate = yield_strength_from_hardness(hardness=hardness)
-    beyond = "; beyond the metals that the relation is of" if body.family in _NO_METALS else ""
-    reason = f"from {hardness / 9.80665e6:.0f} HV of the catalogue; {estimate.source}; {estimate.reason}{beyond}"
-    return estimate.yield_strength, deviation_of_range(estimate.low, estimate.high), reason
-
-
-def _assumed(body: Material) -> dict[str, str]:
-    """Return properties that the catalogue lacks and that are assumed, as TOML: Poisson's ratio."""
-    return {} if "poisson_ratio" in body.properties else {"poisson_ratio": f"{_POISSON_RATIO:g}"}
-
-
-def _body(body: Material) -> ElasticBody:
-    ratio = body.value("poisson_ratio") if "poisson_ratio" in body.properties else _POISSON_RATIO
-    return ElasticBody(youngs_modulus=body.value("youngs_modulus"), poisson_ratio=ratio)
 
 
 def _quoted(parts: Sequence[Mapping[str, str]]) -> dict[str, str]:

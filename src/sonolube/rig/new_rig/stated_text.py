@@ -1,11 +1,16 @@
 """Readers of what a user states of a new rig: quantities, shape of the pin, vibration and surfaces."""
 
+import re
 from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi
 from pathlib import Path
+from typing import Final
 
 from sonolube.actuator import catalogue_actuator
 from sonolube.errors import InvalidInput
-from sonolube.rig.file.plausible import plausible_si
+from sonolube.rig.file.plausible import plausible_si, require_plausible
+from sonolube.rig.file.stated_surface import is_roughness
 from sonolube.rig.new_rig.known_surface import KnownSurface, finished_surface, scanned_surface
 from sonolube.rig.new_rig.pin_and_vibration import (
     DrivenActuator,
@@ -15,6 +20,38 @@ from sonolube.rig.new_rig.pin_and_vibration import (
     StatedAmplitude,
     Vibration,
 )
+from sonolube.units import format_si, to_si
+
+SHAPE_FORMS: Final = (
+    "'flat' with its diameter or 'ball' with its radius: 'flat 3mm', 'ball 5mm', 'ball radius 5mm',"
+    " 'ball diameter 10mm'"
+)
+"""Forms of the end of a pin that are read, for refusals."""
+
+_TURNS: Final = re.compile(r"(?<![a-zA-Z])(?:revs?|U)(?=\s*/)")
+_BALLS: Final = ("ball", "sphere", "crown")
+_RADII: Final = ("radius", "r")
+_SHAPE: Final = re.compile(
+    r"(?P<kind>ball|sphere|crown|flat|pin|cylinder)[ :=]+"
+    r"(?:(?P<measure>radius|diameter|dia|r|d|ø|⌀)[ .:=]*)?(?P<size>[-+.\d].*)",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StatedSpeed:
+    """Sliding speed as it was stated.
+
+    Parameters
+    ----------
+    value : float
+        In m/s.
+    reason : str
+        How it follows from a rotational speed; empty where it was stated itself.
+    """
+
+    value: float
+    reason: str = ""
 
 
 def reader(unit: str, *, name: str) -> Callable[[str], float]:
@@ -43,18 +80,96 @@ def reader(unit: str, *, name: str) -> Callable[[str], float]:
 
 
 def pin_shape(text: str, *, name: str = "--shape") -> PinShape:
-    """Shape of the end of a pin, such as "flat 3mm" by its diameter or "ball 5mm" by its radius.
+    """Shape of the end of a pin, such as "flat 3mm" by its diameter, "ball 5mm" by its radius or "ball diameter 6mm".
 
     Raises
     ------
     InvalidInput
         If the text is no such shape.
     """
-    kind, _, size = text.strip().partition(" ")
-    if kind not in ("flat", "ball") or not size:
-        raise InvalidInput(f"{name} {text!r} must be 'flat' with its diameter or 'ball' with its radius")
-    length = reader("m", name=name)(size)
-    return FlatPin(diameter=length) if kind == "flat" else RoundPin(tip_radius=length)
+    found = _SHAPE.fullmatch(" ".join(text.split()))
+    if found is None:
+        raise InvalidInput(f"{name} {text!r} must be {SHAPE_FORMS}")
+    is_ball = found["kind"].lower() in _BALLS
+    is_radius = is_ball if found["measure"] is None else found["measure"].lower() in _RADII
+    length = reader("m", name=name)(found["size"])
+    if is_ball:
+        return RoundPin(tip_radius=length if is_radius else length / 2)
+    return FlatPin(diameter=2 * length if is_radius else length)
+
+
+def speed_of(
+    text: str,
+    *,
+    track_radius: str | None = None,
+    track_diameter: str | None = None,
+    name: str = "--speed",
+    radius_name: str = "--track-radius",
+    diameter_name: str = "--track-diameter",
+) -> StatedSpeed:
+    r"""Sliding speed as stated, such as "0.2m/s", or by the rotation of the disc, such as "100 rpm", and the track.
+
+    Parameters
+    ----------
+    text : str
+        Speed or rotational speed, with its unit.
+    track_radius, track_diameter : str or None
+        Of the circle on which the pin slides; for a rotational speed one of them.
+    name, radius_name, diameter_name : str
+        How a refusal calls them.
+
+    Returns
+    -------
+    StatedSpeed
+
+    Raises
+    ------
+    InvalidInput
+        If a text cannot be read, or a rotational speed and a track do not come together.
+
+    Notes
+    -----
+    .. math:: v = 2 \pi r n
+    """
+    turns = rotation_of(text)
+    given = {radius_name: track_radius, diameter_name: track_diameter}
+    stated = {key: value for key, value in given.items() if value is not None}
+    if len(stated) > 1:
+        raise InvalidInput(f"give either {' or '.join(stated)}, got both")
+    if turns is None:
+        speed = reader("m/s", name=name)(text)
+        if stated:
+            raise InvalidInput(f"{next(iter(stated))} belongs to a speed in rpm; {name} {text} needs none")
+        return StatedSpeed(value=speed)
+    if not turns > 0:
+        raise InvalidInput(f"{name} {text} must be positive")
+    if not stated:
+        raise InvalidInput(
+            f"{name} {text} is a rotational speed: give {radius_name} or {diameter_name} too, or the sliding speed,"
+            " such as 0.2m/s"
+        )
+    ((key, size),) = stated.items()
+    length = reader("m", name=key)(size)
+    radius = length if key == radius_name else length / 2
+    value = require_plausible(2 * pi * radius * turns, unit="m/s", text=f"{name} {text} at a radius of {size}")
+    return StatedSpeed(
+        value=value,
+        reason=f"2 pi r n, with {60 * turns:.6g} rpm and a track of {format_si(radius, 'm', digits=4)} in radius",
+    )
+
+
+def rotation_of(text: str) -> float | None:
+    """Turns per second of a rotational speed, such as "100 rpm"; None for a text of another kind."""
+    try:
+        to_si(text, unit="m/s", name="speed")
+    except InvalidInput:
+        pass
+    else:
+        return None
+    try:
+        return to_si(_TURNS.sub("turn", text), unit="1/s", name="speed")
+    except InvalidInput:
+        return None
 
 
 def vibration_of(text: str, *, name: str = "--amplitude") -> Vibration:
@@ -75,13 +190,13 @@ def vibration_of(text: str, *, name: str = "--amplitude") -> Vibration:
 
 
 def surface_of(text: str) -> KnownSurface:
-    """Surface by its finish, such as "ground N6", or by the file of a scan.
+    """Surface by its finish, such as "ground N6" or "Ra 0.4", or by the file of a scan.
 
     Raises
     ------
     InvalidInput
-        If the file cannot be read.
+        If the file cannot be read, or the text has no form of a finish.
     UnknownName
         If there is no such finish.
     """
-    return scanned_surface(text) if Path(text).suffix else finished_surface(text)
+    return scanned_surface(text) if Path(text).suffix and not is_roughness(text) else finished_surface(text)
