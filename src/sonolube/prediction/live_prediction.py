@@ -13,7 +13,7 @@ from sonolube.prediction.contact_heating import contact_heating
 from sonolube.prediction.inputs import Input, RigInputs, rig_inputs
 from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
-from sonolube.prediction.predictive import RigPrediction, rig_prediction
+from sonolube.prediction.predictive import DRAWS, RigPrediction, rig_prediction
 from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, OwnLogarithms, measures, own_logarithms, share_left
 from sonolube.prediction.scores import LEVELS
 from sonolube.prediction.statement import prediction_attributes, statement, wear_sentence
@@ -61,7 +61,7 @@ class LivePrediction:
         pin: str | None = None,
         disc: str | None = None,
         lubricant: bool = False,
-        draws: int = 4000,
+        draws: int = DRAWS,
         seed: int = 0,
     ) -> None:
         if not _FEWEST <= draws <= _MOST:
@@ -204,7 +204,7 @@ def predict(
     pin: str | None = None,
     disc: str | None = None,
     lubricant: bool = False,
-    draws: int = 4000,
+    draws: int = DRAWS,
     seed: int = 0,
 ) -> "xr.Dataset":
     """What vibration along the normal does to friction and wear on a rig, with its uncertainty.
@@ -250,7 +250,7 @@ def prediction_arrays(
     pin: str | None = None,
     disc: str | None = None,
     lubricant: bool = False,
-    draws: int = 4000,
+    draws: int = DRAWS,
     seed: int = 0,
 ) -> LabelledArrays:
     """Prediction of a rig as `predict` describes it, without xarray."""

@@ -13,7 +13,11 @@ from sonolube.prediction.posterior import Posterior
 from sonolube.prediction.rig_draws import RigDraws, rig_draws
 from sonolube.prediction.run_check import RunCheck, checked_runs, student_weights
 
-_ROUNDS: Final = 3  # of weighing runs that disagree with the others
+DRAWS: Final = 4000
+"""Equally probable outcomes of a prediction, where no other number is asked for."""
+
+_BEFORE: Final = 4096  # draws of the population, against which runs are checked
+_ROUNDS: Final = 4  # of weighing runs that disagree with the others
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -75,7 +79,7 @@ def rig_prediction(
     Notes
     -----
     Draws from the population are conditioned on the own tests; the discrepancy follows from its conditional
-    distribution. Errors of four or more tests are Student's with 4 degrees of freedom, by weights of each test that
+    distribution. Errors of four or more tests are Student's with 2 degrees of freedom, by weights of each test that
     follow from its deviation from the others (expectation maximisation).
 
     References
@@ -85,14 +89,14 @@ def rig_prediction(
     draws = rig_draws(posterior, at, count=count, seed=seed, own=own)
     if own is None:
         return RigPrediction(draws=draws, check=None, count=count)
+    before = rig_draws(posterior, at, count=_BEFORE, seed=seed)
     for _ in range(_ROUNDS):
-        weights = student_weights(draws, own)
+        weights = student_weights(before, draws, own)
         uncertainty = own.uncertainty / np.sqrt(weights)
         assert draws.own is not None
         if np.allclose(uncertainty, draws.own.uncertainty, rtol=0.1):
             break
         draws = rig_draws(posterior, at, count=count, seed=seed, own=replace(own, uncertainty=uncertainty))
-    before = rig_draws(posterior, at, count=1024, seed=seed)
     return RigPrediction(draws=draws, check=checked_runs(before, draws, own), count=count)
 
 

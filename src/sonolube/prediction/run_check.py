@@ -8,10 +8,13 @@ from scipy.special import logsumexp, stdtr
 
 from sonolube.checks import Floats
 from sonolube.prediction.evidence import TestedRig
+from sonolube.prediction.hierarchy import log_normal_density
 from sonolube.prediction.rig_draws import RigDraws
 
-_FREEDOM: Final = 4.0  # degrees of freedom of the errors of runs
+_FREEDOM: Final = 2.0  # degrees of freedom of the errors of runs
 _FEWEST: Final = 4  # runs from which each is checked against the others
+_FEW_RUNS: Final = 12  # up to which draws from the population do for that
+_COMPARED: Final = 1024  # draws of the prediction that runs are compared with
 _LARGEST: Final = 1.4  # ratio that anything else than the prediction may give
 _MIN_REPLICATES: Final = 200  # of runs drawn from the prediction
 _PRODUCTS: Final = 2e7  # of densities, to bound the time
@@ -53,25 +56,27 @@ class RunCheck:
         return tuple(int(place) for place in np.flatnonzero(self.outlier_probability < limit))
 
 
-def student_weights(draws: RigDraws, own: TestedRig) -> Floats:
+def student_weights(before: RigDraws, after: RigDraws, own: TestedRig) -> Floats:
     """Weights (nu+1)/(nu+z^2) of the runs under Student's errors; 1 for fewer than four runs.
 
     Parameters
     ----------
-    draws : RigDraws
-        Conditioned on the runs.
+    before, after : RigDraws
+        Of the population, and conditioned on the runs.
     own : TestedRig
         The runs with their stated uncertainty.
 
     Returns
     -------
     ndarray, shape (n,)
+        z^2 is what the squared deviation of a run from the others exceeds their prediction by, over its squared noise.
     """
     if own.friction_ratio.size < _FEWEST:
         return np.ones(own.friction_ratio.size)
-    middle, deviation = _left_out(draws, own)
-    z = (own.friction_ratio - middle) / deviation
-    return np.asarray(np.minimum((_FREEDOM + 1) / (_FREEDOM + z**2), 1.0))
+    middle, deviation = _left_out(before, after, own)
+    noise = own.uncertainty**2
+    z_squared = np.maximum((own.friction_ratio - middle) ** 2 - (deviation**2 - noise), 0.0) / noise
+    return np.asarray(np.minimum((_FREEDOM + 1) / (_FREEDOM + z_squared), 1.0))
 
 
 def checked_runs(before: RigDraws, after: RigDraws, own: TestedRig) -> RunCheck:
@@ -90,12 +95,12 @@ def checked_runs(before: RigDraws, after: RigDraws, own: TestedRig) -> RunCheck:
     RunCheck
     """
     count = own.friction_ratio.size
-    seen = replace(before, own=own)
+    seen = replace(before.taken(np.arange(min(before.rows.size, _COMPARED))), own=own)
     means = seen.means(own.at.conditions)
     factors = np.linalg.cholesky(seen.covariance(means))
     left_out, outlier = np.full(count, np.nan), np.ones(count)
     if count >= _FEWEST:
-        left_out, deviation = _left_out(after, own)
+        left_out, deviation = _left_out(before, after, own)
         z = np.abs(own.friction_ratio - left_out) / deviation
         outlier = np.asarray(2 * stdtr(count - 1, -z))
     drawn = means + np.einsum("pij,pj->pi", factors, np.random.default_rng(3).standard_normal(means.shape))
@@ -150,22 +155,29 @@ def _log_density_of_anything_else(outcomes: Floats, noise: Floats) -> Floats:
     return np.asarray(logsumexp([none, one, any_ratio], axis=0) - np.log(3))
 
 
-def _left_out(draws: RigDraws, own: TestedRig) -> tuple[Floats, Floats]:
+def _left_out(before: RigDraws, after: RigDraws, own: TestedRig) -> tuple[Floats, Floats]:
     """Mean and standard deviation of each run by the others, over draws weighed without it.
 
     With the inverse Q of the covariance of all runs, run i deviates from its mean by the others by (Q r)_i/Q_ii, with
     the variance 1/Q_ii, of which the stated noise of the run takes the place of the one that it counts with; a draw
-    counts by the inverse of the density that it gives the run.
+    counts by the inverse of the density that it gives the run. Draws are those before the runs, weighed by all of them;
+    of many runs, for which few of these would count, those after.
     """
-    assert draws.own is not None
-    measured = draws.own.friction_ratio
-    seen = draws.means(draws.own.at.conditions)
-    precision = np.linalg.inv(draws.covariance(seen))
+    assert after.own is not None
+    measured = own.friction_ratio
+    few = measured.size <= _FEW_RUNS
+    draws = replace(before, own=after.own) if few else after
+    seen = draws.means(own.at.conditions)
+    covariance = draws.covariance(seen)
+    precision = np.linalg.inv(covariance)
     variance = 1 / np.diagonal(precision, axis1=1, axis2=2)
     gap = np.einsum("pij,pj->pi", precision, measured - seen) * variance
     logs = 0.5 * gap**2 / variance + 0.5 * np.log(variance)
-    logs = np.minimum(logs, np.quantile(logs, 0.98, axis=0))  # truncated importance weights
+    if few:
+        logs += log_normal_density(measured - seen, covariance)[:, None]
+    else:
+        logs = np.minimum(logs, np.quantile(logs, 0.98, axis=0))  # truncated importance weights
     weights = np.exp(logs - logsumexp(logs, axis=0))
     middle = np.sum(weights * (measured - gap), axis=0)
     spread = np.sum(weights * (variance + (measured - gap - middle) ** 2), axis=0)
-    return middle, np.sqrt(spread - draws.own.uncertainty**2 + own.uncertainty**2)
+    return middle, np.sqrt(spread - after.own.uncertainty**2 + own.uncertainty**2)

@@ -11,7 +11,7 @@ import typer
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver
-from sonolube.cli.console.model_error import ERROR_LABEL, error_object, error_text
+from sonolube.cli.console.beyond_the_model import BeyondTheModel, Interval, beyond_the_model
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, refuse_replaced, with_amplitude
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
@@ -45,7 +45,6 @@ from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats, read_rig, steady_vibration
 from sonolube.units import format_quantity
-from sonolube.validation.assessment import ErrorStatistics, unseen_error
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -93,6 +92,7 @@ def uncertainty(
         typer.Option(metavar="FOLDER", help="Keep finished parts here, so that an interrupted run goes on."),
         OutputFolder("sweep.nc sweep.json"),
     ] = None,
+    interval: Interval = True,
     out: Annotated[Out, OutputFolder("uncertainty.html {rig}-uncertainty-*.*")] = OUT,
     json: Json = False,
 ) -> None:
@@ -123,7 +123,7 @@ def uncertainty(
             workers=workers,
             advance=lambda done, total: advance("points", done, total),
         )
-    answer = UncertaintyAnswer(rig=known, rig_file=rig, result=result, structure=structure)
+    answer = UncertaintyAnswer(rig=known, rig_file=rig, result=result, structure=structure, interval=interval)
     if result[of].isnull().all():
         raise InvalidInput(f"no sample has a result: {next(iter(answer.failures()))}")
     deliver(answer, folder=out, as_json=json, context=context)
@@ -137,6 +137,7 @@ class UncertaintyAnswer(Answer):
     rig_file: Path
     result: "xr.Dataset"
     structure: IdentifiedStructure | None
+    interval: bool = True
 
     def lines(self) -> list[str]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
@@ -184,7 +185,7 @@ class UncertaintyAnswer(Answer):
                 "converged": found.has_converged,
             }
         if self._of in _OF_THE_MODEL:
-            content |= error_object(self._error)
+            content |= self._beyond.object()
         if self._ranked:
             content["sobol"] = [asdict(row) for row in self._ranking]
         return content
@@ -294,13 +295,13 @@ class UncertaintyAnswer(Answer):
         return [*texts, ("convergence", self._convergence())] if found.has_converged else texts
 
     @cached_property
-    def _error(self) -> ErrorStatistics | None:
-        """Error of the rig's friction model, which is in no sample."""
-        return unseen_error(self.rig.friction_model)
+    def _beyond(self) -> BeyondTheModel:
+        """What the samples leave out of the friction ratio."""
+        return beyond_the_model(self.rig, self.rig.friction_model, interval=self.interval)
 
     def _error_rows(self) -> list[tuple[str, str]]:
-        """What the samples leave out of the friction ratio."""
-        return [(ERROR_LABEL, error_text(self._error))] if self._of in _OF_THE_MODEL else []
+        """The same as names and texts."""
+        return self._beyond.rows() if self._of in _OF_THE_MODEL else []
 
     def _convergence(self) -> str:
         """Width of the intervals of the statistics over the deviation of the samples."""

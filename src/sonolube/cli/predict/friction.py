@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.model_error import ERROR_LABEL, error_object, error_text
+from sonolube.cli.console.beyond_the_model import Interval, beyond_the_model
 from sonolube.cli.console.options import Amplitude, Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.measured import measured_on
 from sonolube.cli.predict.rig_record import RigRecord
@@ -14,7 +14,6 @@ from sonolube.friction import FRICTION_MODELS, FrictionModel
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.rig import friction_point
 from sonolube.rig.simulation import friction_model_named
-from sonolube.validation.assessment import unseen_error
 
 
 def _described(model: type[FrictionModel]) -> str:
@@ -33,6 +32,7 @@ def friction(
     model: Annotated[str | None, typer.Option(metavar="NAME", help=_MODEL_HELP)] = None,
     amplitude: Amplitude = None,
     changes: Changes = None,
+    interval: Interval = True,
     json: Json = False,
 ) -> None:
     """Friction of the rig with and without vibration.
@@ -42,13 +42,14 @@ def friction(
     known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     result = friction_point(known, model=model)
     measured = measured_on(known, vibration_amplitude=result.vibration_amplitude)
-    error = unseen_error(known.friction_model if model is None else friction_model_named(known, model))
+    by = known.friction_model if model is None else friction_model_named(known, model)
+    beyond = beyond_the_model(known, by, interval=interval)
     answer = RigRecord(
         rig=known,
         result=result,
         measured=measured,
         leading=large_amplitude_caveats(known, vibration_amplitude=result.vibration_amplitude),
-        rows=[(ERROR_LABEL, error_text(error))],
-        entries=error_object(error),
+        rows=beyond.rows(),
+        entries=beyond.object(),
     )
     deliver(answer, as_json=json)

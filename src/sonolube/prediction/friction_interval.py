@@ -1,0 +1,60 @@
+"""Predictive interval of the friction ratio of a rig alone, to stand beside what a friction model computes."""
+
+from dataclasses import dataclass
+
+from sonolube.errors import SonolubeError
+from sonolube.prediction.applicability import applicability
+from sonolube.prediction.inputs import rig_inputs
+from sonolube.prediction.posterior import learned
+from sonolube.prediction.predictive import DRAWS, ratio_draws
+from sonolube.prediction.scores import central_interval
+from sonolube.rig import Rig
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionInterval:
+    """Central 80 % interval of the friction ratio, with the error of the model, as `predict` gives it.
+
+    Parameters
+    ----------
+    low, high : float or None
+        Ends; None where there is no prediction. []
+    reason : str
+        Why there is none.
+    """
+
+    low: float | None = None
+    high: float | None = None
+    reason: str = ""
+
+    @property
+    def text(self) -> str:
+        """Interval in words, or why there is none."""
+        if self.low is None or self.high is None:
+            return f"not predicted: {self.reason}"
+        return f"{self.low:.2g} to {self.high:.2g} (80 %, `sonolube predict`)"
+
+
+def friction_interval(rig: Rig) -> FrictionInterval:
+    """Interval of the friction ratio of a rig at its operating point, without own runs.
+
+    Parameters
+    ----------
+    rig : Rig
+
+    Returns
+    -------
+    FrictionInterval
+        Equal to that of `predict`.
+    """
+    try:
+        limits = applicability(rig)
+        if limits.refusal:
+            return FrictionInterval(reason=limits.refusal)
+        if limits.any_ratio:
+            return FrictionInterval(reason=limits.caveats[0])
+        at = rig_inputs(rig).at()
+    except SonolubeError as refusal:
+        return FrictionInterval(reason=str(refusal))
+    low, high = central_interval(ratio_draws(learned().friction, at, count=DRAWS)[:, 0], 0.8)
+    return FrictionInterval(low=float(low), high=float(high))
