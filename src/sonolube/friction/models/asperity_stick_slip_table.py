@@ -20,6 +20,8 @@ from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_L
 from sonolube.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.friction.uniform_spline import in_chunks, spline_coefficients, spline_values
 
+__all__ = ["tabulated_stick_slip_ratio"]  # the rest serves this package only
+
 LOG_BETA = (float(np.log(1e-4)), float(np.log(1e6)))
 """Range of the table. Below it the reduction is proportional to beta, to 1e-8."""
 
