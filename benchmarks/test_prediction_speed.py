@@ -25,7 +25,7 @@ def conditions() -> Conditions:
 
 
 def log_lengths() -> Floats:
-    return np.log(1.5e-6) + np.random.default_rng(1).normal(0.0, 0.5, (DRAWS, 1))
+    return np.asarray(np.log(1.5e-6) + np.random.default_rng(1).normal(0.0, 0.5, (DRAWS, 1)))
 
 
 def stick_slip(logs: Floats, at: Conditions) -> Floats:

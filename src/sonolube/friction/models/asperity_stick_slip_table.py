@@ -25,9 +25,9 @@ __all__ = ["tabulated_stick_slip_ratio"]  # the rest serves this package only
 LOG_BETA = (float(np.log(1e-4)), float(np.log(1e6)))
 """Range of the table. Below it the reduction is proportional to beta, to 1e-8."""
 
-ROWS, COLUMNS = 241, 193
-_NODES = np.polynomial.legendre.leggauss(48)
-_BAND = 20  # rows that share the nodes of the quadrature
+ROWS, COLUMNS = 225, 177
+_NODES = np.polynomial.legendre.leggauss(40)
+_BAND = 12  # rows that share the nodes of the quadrature
 _NEGLIGIBLE = 45.0  # exponent beyond which the load of elements is negligible
 _LAST_SPEED = 1 - 1e-6  # in place of 1, where the tabulated function is a limit
 
@@ -144,7 +144,7 @@ def _motion(h: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
 def _bisected(beyond: Callable[[Floats], Any], end: Floats) -> Floats:
     """Phases between 0 and `end` from which on a condition holds, or `end`."""
     low, high = np.zeros_like(end), end
-    for _ in range(40):
+    for _ in range(32):
         middle = (low + high) / 2
         found = beyond(middle)
         low, high = np.where(found, low, middle), np.where(found, middle, high)

@@ -30,7 +30,7 @@ from sonolube.friction.uniform_spline import in_chunks, spline_coefficients, spl
 _HIGHEST = 1e6  # amplitude over approach at rest in the last row
 _LOG_ROWS = (float(np.log(np.pi)), float(np.log(_HIGHEST)))
 _LAST_ROOT = float((1 - 1 / np.pi) ** 0.25)
-_LOW_ROWS, _HIGH_ROWS, _COLUMNS = 161, 161, 97
+_LOW_ROWS, _HIGH_ROWS, _COLUMNS = 129, 113, 81
 _SPEEDS = 257
 _UNIT = SpringContact(friction_coefficient=1.0, mindlin_ratio=1.0)
 
@@ -160,9 +160,14 @@ def _touching_phases(beta: Floats) -> Floats:
 def _reductions(psi: Floats, v: Floats) -> Floats:
     """Reductions of friction of springs that stick from their contact on."""
     psi, v = np.broadcast_arrays(psi, v)
-    low, high = np.maximum(psi - np.pi / 2, 0.0), psi
-    for _ in range(34):
-        h = (low + high) / 2
-        longer = np.sin(h) * np.sin(psi - h) < v * h
-        low, high = np.where(longer, low, h), np.where(longer, h, high)
+    low, high = np.maximum(psi - np.pi / 2, 1e-12), psi
+    h = (low + high) / 2
+    for step in range(16):
+        excess = np.sin(h) * np.sin(psi - h) / h - v
+        if step < 12:  # bisection, then Newton's method
+            low, high = np.where(excess < 0, low, h), np.where(excess < 0, h, high)
+            h = (low + high) / 2
+        else:
+            slope = (np.sin(psi - 2 * h) - np.sin(h) * np.sin(psi - h) / h) / h
+            h = np.clip(h - excess / np.minimum(slope, -1e-300), low, high)
     return np.cos(psi - h) * (np.sin(h) - h * np.cos(h)) / (np.sin(psi) - psi * np.cos(psi))
