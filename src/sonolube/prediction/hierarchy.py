@@ -16,11 +16,13 @@ discrepancy instead of the noise.
 """
 
 from dataclasses import dataclass
+from functools import cache
+from math import erfc, sqrt
+from statistics import NormalDist
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import chdtri, logsumexp, ndtr, ndtri
 
 from sonolube.checks import Floats, Integers
 from sonolube.prediction.closures import Closure, Conditions, UncertainConditions
@@ -38,8 +40,7 @@ OWN_DEVIATES: Final = 3
 _FULL_DISCREPANCY: Final = 0.2  # reduction from which the discrepancy is as large as it becomes
 _LEAST_DISCREPANCY: Final = 0.25  # share of it without a reduction
 _PER_DISTANCE: Final = 0.5  # rise of that share with the distance from the published tests
-_FREEDOM: Final = 4.0  # degrees of freedom nu of the scale of the discrepancy
-_FARTHEST: Final = 6.0  # deviates of that scale
+_FARTHEST: Final = 7.0  # deviates of the scale of the discrepancy, whose degrees of freedom nu are 4
 _NODES: Final = 64  # of the integral over what one rig has of its own
 _PARAMETERS: Final = np.linspace(-5.0, 5.0, 81)  # of ln theta from its prior median, where f is tabulated
 _LENGTHS: Final = np.linspace(-5.0, 5.0, 81)  # of the logarithm of the factor on the decay length, likewise
@@ -104,7 +105,11 @@ def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
         root = (1 + root) ** (1 / (columns + 1))
     steps = root ** -np.arange(1.0, columns + 1)
     shift = np.random.default_rng(seed).random(columns)
-    return np.asarray(ndtri((shift + np.arange(1, count + 1)[:, None] * steps) % 1.0))
+    shares = (shift + np.arange(1, count + 1)[:, None] * steps) % 1.0
+    quantile = (
+        NormalDist().inv_cdf
+    )  # of the standard library, since importing scipy.special takes as long as predicting
+    return np.array([quantile(share) for share in shares.ravel().tolist()]).reshape(shares.shape)
 
 
 def log_hyperprior(closure: Closure, hyperparameters: Floats, prior: Prior = POPULATION_PRIOR) -> Floats:
@@ -156,8 +161,23 @@ def own_parameters(hyperparameters: Floats, deviates: Floats, at: UncertainCondi
 
 def log_discrepancy_scale(deviates: Floats) -> Floats:
     """Logarithm of the scale s = sqrt(nu/chi^2_nu) of the discrepancy of a rig, rising with its normal deviate."""
-    chi_squared = chdtri(_FREEDOM, ndtr(np.minimum(deviates, _FARTHEST)))
-    return np.asarray(0.5 * np.log(_FREEDOM / chi_squared))
+    return np.interp(deviates, *_scale_table())
+
+
+@cache
+def _scale_table() -> tuple[Floats, Floats]:
+    """Deviates, and the logarithm of the scale with 4 degrees of freedom at each.
+
+    With t = chi^2/2 the scale is sqrt(2/t), and the share above it is that of deviates below: exp(-t) (1 + t) = Phi(z).
+    """
+    deviates = np.linspace(-_FARTHEST, _FARTHEST, 2801)
+    shares = np.array([0.5 * erfc(-z / sqrt(2)) for z in deviates.tolist()])
+    low, high = np.full(shares.shape, 1e-12), np.full(shares.shape, 60.0)
+    for _ in range(60):
+        middle = np.sqrt(low * high)
+        above = np.exp(-middle) * (1 + middle) > shares
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return deviates, 0.5 * np.log(2 / low)
 
 
 def squared_distances(one: Conditions, other: Conditions) -> Floats:
@@ -228,7 +248,7 @@ class RigLikelihood:
         covariance = covariance_of_tests(
             ratio, self.rig, log_discrepancy=own.log_discrepancy, log_length=hyperparameters[:, None, 5]
         )
-        return np.asarray(logsumexp(log_normal_density(residual, covariance), axis=1) - np.log(_NODES))
+        return np.asarray(np.logaddexp.reduce(log_normal_density(residual, covariance), axis=1) - np.log(_NODES))
 
     def _ratios(self, own: OwnParameters) -> Floats:
         """Friction ratios, shape (h, j, n), bilinear in the table."""

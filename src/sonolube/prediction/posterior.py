@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from scipy.special import logsumexp
 
 from sonolube.checks import Floats
 from sonolube.files import write_atomically
@@ -141,7 +140,7 @@ class Population:
         Posterior
         """
         total = np.delete(self.log_likelihoods, without, axis=1).sum(axis=1)
-        share = np.exp(total - logsumexp(total))
+        share = np.exp(total - np.logaddexp.reduce(total))
         rows = np.random.default_rng(0).choice(share.size, size=share.size, p=share)
         return Posterior(closure=self.closure, hyperparameters=self.draws[rows])
 

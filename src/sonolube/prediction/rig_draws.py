@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.special import logsumexp
 
 from sonolube.checks import Floats, Integers
 from sonolube.prediction.closures import Conditions, UncertainConditions
@@ -145,7 +144,7 @@ def rig_draws(
     density = pool.log_density()
     if _effective(density) * _MOVED >= _ENOUGH * moved:
         rows = systematic_rows(density, moved, np.random.default_rng(seed + 11))
-        return replace(pool.taken(rows), log_evidence=float(logsumexp(density) - np.log(density.size)))
+        return replace(pool.taken(rows), log_evidence=float(np.logaddexp.reduce(density) - np.log(density.size)))
     return _conditioned(pool.taken(np.arange(moved)), density[:moved], seed=seed)
 
 
@@ -162,7 +161,7 @@ def _conditioned(draws: RigDraws, density: Floats, *, seed: int) -> RigDraws:
     while power < 1.0:
         step = _step(density, power)
         weights = step * density
-        evidence += float(logsumexp(weights) - np.log(weights.size))
+        evidence += float(np.logaddexp.reduce(weights) - np.log(weights.size))
         chosen = systematic_rows(weights, weights.size, rng)
         draws, density, power = draws.taken(chosen), density[chosen], min(power + step, 1.0)
         for _ in range(_MOVES if power < 1.0 else _LAST_MOVES):
@@ -210,11 +209,11 @@ def _accepted(
 
 def _effective(log_weights: Floats) -> float:
     """Effective number of draws by their weights."""
-    return float(np.exp(2 * logsumexp(log_weights) - logsumexp(2 * log_weights)))
+    return float(np.exp(2 * np.logaddexp.reduce(log_weights) - np.logaddexp.reduce(2 * log_weights)))
 
 
 def systematic_rows(log_weights: Floats, count: int, rng: np.random.Generator) -> Integers:
     """Rows drawn systematically by weight, in their order, shape (count,)."""
-    cumulative = np.cumsum(np.exp(log_weights - logsumexp(log_weights)))
+    cumulative = np.cumsum(np.exp(log_weights - np.logaddexp.reduce(log_weights)))
     rows = np.searchsorted(cumulative, (np.arange(count) + rng.random()) / count)
     return np.minimum(rows, log_weights.size - 1)

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.special import logsumexp, stdtr
 
 from sonolube.checks import Floats
 from sonolube.prediction.evidence import TestedRig
@@ -102,6 +101,8 @@ def checked_runs(before: RigDraws, after: RigDraws, own: TestedRig) -> RunCheck:
     if count >= _FEWEST:
         left_out, deviation = _left_out(before, after, own)
         z = np.abs(own.friction_ratio - left_out) / deviation
+        from scipy.special import stdtr
+
         outlier = np.asarray(2 * stdtr(count - 1, -z))
     drawn = means + np.einsum("pij,pj->pi", factors, np.random.default_rng(3).standard_normal(means.shape))
     lows, highs = np.quantile(drawn, [0.025, 0.975], axis=0)
@@ -141,7 +142,7 @@ def _mixture_log_density(outcomes: Floats, means: Floats, factors: Floats) -> Fl
     constant = -0.5 * np.einsum("pi,pi->p", linear, means) - logs
     squares = (outcomes[:, :, None] * outcomes[:, None, :]).reshape(len(outcomes), -1)
     each = -0.5 * squares @ precision.reshape(len(means), -1).T + outcomes @ linear.T + constant
-    return np.asarray(logsumexp(each, axis=1) - np.log(len(means)))
+    return np.asarray(np.logaddexp.reduce(each, axis=1) - np.log(len(means)))
 
 
 def _log_density_of_anything_else(outcomes: Floats, noise: Floats) -> Floats:
@@ -150,9 +151,9 @@ def _log_density_of_anything_else(outcomes: Floats, noise: Floats) -> Floats:
     z = (outcomes[:, None, :] - constant[:, None]) / noise
     logs = np.sum(-0.5 * z**2 - np.log(noise * np.sqrt(2 * np.pi)), axis=2)
     none = logs[:, np.searchsorted(constant, 1.0)]
-    one = logsumexp(logs, axis=1) - np.log(constant.size)
+    one = np.logaddexp.reduce(logs, axis=1) - np.log(constant.size)
     any_ratio = np.full(one.shape, -noise.size * np.log(_LARGEST))
-    return np.asarray(logsumexp([none, one, any_ratio], axis=0) - np.log(3))
+    return np.asarray(np.logaddexp.reduce([none, one, any_ratio], axis=0) - np.log(3))
 
 
 def _left_out(before: RigDraws, after: RigDraws, own: TestedRig) -> tuple[Floats, Floats]:
@@ -177,7 +178,7 @@ def _left_out(before: RigDraws, after: RigDraws, own: TestedRig) -> tuple[Floats
         logs += log_normal_density(measured - seen, covariance)[:, None]
     else:
         logs = np.minimum(logs, np.quantile(logs, 0.98, axis=0))  # truncated importance weights
-    weights = np.exp(logs - logsumexp(logs, axis=0))
+    weights = np.exp(logs - np.logaddexp.reduce(logs, axis=0))
     middle = np.sum(weights * (measured - gap), axis=0)
     spread = np.sum(weights * (variance + (measured - gap - middle) ** 2), axis=0)
     return middle, np.sqrt(spread - after.own.uncertainty**2 + own.uncertainty**2)
