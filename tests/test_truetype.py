@@ -4,8 +4,8 @@ import io
 from pathlib import Path
 
 import pytest
-from fontTools.pens.recordingPen import DecomposingRecordingPen  # type: ignore[import-untyped]
-from fontTools.ttLib import TTFont  # type: ignore[import-untyped]
+from fontTools.pens.recordingPen import DecomposingRecordingPen
+from fontTools.ttLib import TTFont
 from matplotlib import font_manager
 from matplotlib.figure import Figure
 from matplotlib.ft2font import FT2Font, LoadFlags
@@ -25,7 +25,7 @@ def numbers_of(text: str) -> dict[str, int]:
 def drawn(font: TTFont, number: int) -> list[object]:
     pen = DecomposingRecordingPen(font.getGlyphSet())
     font.getGlyphSet()[font.getGlyphName(number)].draw(pen)
-    return list(pen.value)
+    return pen.value
 
 
 def test_glyphs_of_a_reduced_font_are_those_of_the_font_also_where_they_are_composed_of_others() -> None:
@@ -48,7 +48,7 @@ def test_freetype_draws_a_reduced_font_as_it_draws_the_font(tmp_path: Path) -> N
     for path, glyph in ((FONT, number), (tmp_path / "reduced.ttf", numbers[number])):
         font = FT2Font(str(path))
         font.set_size(40, 100)
-        found = font.load_glyph(glyph, flags=LoadFlags.NO_HINTING)  # type: ignore[arg-type]
+        found = font.load_glyph(glyph, flags=LoadFlags.NO_HINTING)
         pictures.append((found.width, found.height, found.horiAdvance, font.get_path()[0].tolist()))
     assert pictures[0] == pictures[1]
 

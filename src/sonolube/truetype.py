@@ -116,5 +116,4 @@ def _file(tables: dict[str, bytes]) -> bytes:
 def _sum(table: bytes) -> int:
     """Check sum: the sum of the numbers of four bytes."""
     padded = table + bytes(-len(table) % 4)
-    total: int = sum(struct.unpack(f">{len(padded) // 4}I", padded))
-    return total % 2**32
+    return sum(struct.unpack(f">{len(padded) // 4}I", padded)) % 2**32
