@@ -49,7 +49,7 @@ def prepare_matplotlib() -> None:
 
     Where the user's folders cannot be written, matplotlib would search for all fonts in each run, and say so; it keeps
     their list among temporary files instead. It leaves out of docstrings the lists of properties, whose collection is a
-    fifth of its import, and loads the names of glyphs, which serve TeX, when they are used.
+    fifth of its import.
     """
     if "MPLCONFIGDIR" not in os.environ and not all(map(_is_writable, _matplotlib_folders())):
         from sonolube.compilation import private_folder
@@ -58,11 +58,7 @@ def prepare_matplotlib() -> None:
             os.environ["MPLCONFIGDIR"] = folder
     import matplotlib.artist
 
-    from sonolube.figure import deferred
-
     matplotlib.artist.kwdoc = lambda artist: ""
-    with deferred("fontTools.agl"):
-        import matplotlib.dviread
 
 
 def _matplotlib_folders() -> list[Path]:
