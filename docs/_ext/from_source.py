@@ -118,7 +118,9 @@ def dry_friction_by_pair() -> str:
 def dry_friction_by_class() -> str:
     """Ranges of the coefficient of dry friction by class of pairs, the first that fits being taken."""
     known = [each.friction for each in dry_friction_classes()]
-    return _grid(["Class of pairs", "Coefficient", "Source"], [[each.pair_class, _range(each), _source(each)] for each in known])
+    return _grid(
+        ["Class of pairs", "Coefficient", "Source"], [[each.pair_class, _range(each), _source(each)] for each in known]
+    )
 
 
 def surface_finishes() -> str:

@@ -132,6 +132,16 @@ MODES = {
         },
         ("--force",),
     ),
+    "new on a track of a radius": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--amplitude", "3um", "--speed", "100 rpm", "--track-radius", "20mm"),
+        {"--track-radius": "15mm"},
+    ),
+    "new on a track of a diameter": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--amplitude", "3um", "--speed", "100 rpm", "--track-diameter", "50mm"),
+        {"--track-diameter": "30mm"},
+    ),
     "new with an actuator": Mode(
         "new",
         ("OUT/rig.toml", *KNOWN, "--actuator", "sa050510", "--voltage", "40V"),

@@ -3,8 +3,15 @@
 import pytest
 from pytest import raises
 
-from sonolube.errors import MissingProperty, UnknownName
-from sonolube.materials import dry_friction, dry_friction_pairs, material_families, material_names
+from sonolube.errors import UnknownName
+from sonolube.materials import (
+    dry_friction,
+    dry_friction_classes,
+    dry_friction_pairs,
+    material_classes,
+    material_families,
+    material_names,
+)
 from sonolube.published import si_value
 
 
@@ -56,8 +63,46 @@ def test_no_pair_stands_twice_with_the_same_right_to_answer() -> None:
             assert not (one.sides[0] & other.sides[1] and one.sides[1] & other.sides[0])
 
 
-def test_an_unknown_pair_is_refused_by_name_and_a_misspelt_material_with_a_near_one() -> None:
-    with raises(MissingProperty, match=r"no dry friction is known of zirconia on brass_c36000: measure it"):
-        dry_friction("zirconia", "brass")
+def test_a_misspelt_material_is_refused_with_a_near_one() -> None:
     with raises(UnknownName, match=r"did you mean brass\?"):
         dry_friction("bras", "304")
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "pair_class"),
+    [
+        ("zirconia", "c36000", "ceramic on metal"),
+        ("ss304", "alumina", "ceramic on metal"),
+        ("alumina", "zirconia", "ceramic on ceramic"),
+        ("titanium", "ti64", "metal on one of its own family"),
+        ("titanium", "brass", "metal on metal"),
+        ("ptfe", "silicon_carbide", "polymer on any material"),
+        ("pom", "peek", "polymer on any material"),
+        ("dlc", "304", "carbon film on any material"),
+        ("rubber", "glass", "rubber on any material"),
+        ("felt", "304", "felt on any material"),
+        ("skin", "rubber", "skin on any material"),
+        ("steel", "brass", ""),
+    ],
+)
+def test_a_pair_that_no_source_names_has_the_range_of_its_class(first: str, second: str, pair_class: str) -> None:
+    assert dry_friction(first, second).pair_class == pair_class
+    assert dry_friction(second, first) == dry_friction(first, second)
+
+
+def test_no_pair_of_materials_or_classes_is_without_friction() -> None:
+    names = (*material_names(), *material_classes())
+    assert all(dry_friction(one, other).low > 0 for one in names for other in names)
+
+
+def test_the_range_of_a_class_of_pairs_is_wide_and_holds_the_middles_of_its_pairs() -> None:
+    metals = {"aluminium", "brass", "bronze", "cast_iron", "copper", "steel", "stainless_steel", "titanium"}
+    pairs = [pair for pair in dry_friction_pairs() if pair.sides[0] <= metals and pair.sides[1] <= metals]
+    unlike = [pair.friction for pair in pairs if not pair.sides[0] & pair.sides[1]]
+    found = dry_friction("titanium", "brass")
+    assert len(unlike) >= 8
+    assert all(found.low <= (each.low + each.high) / 2 <= found.high for each in unlike)
+    for each in dry_friction_classes():
+        assert each.friction.high / each.friction.low > 2.5
+        assert each.friction.source
+        assert each.friction.note

@@ -12,10 +12,11 @@ from pytest import approx, raises
 from sonolube.actuator import catalogue_actuator
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
-from sonolube.rig import PUBLISHED_DECAY_LENGTH, Rig, friction_point, rig_from
+from sonolube.rig import PUBLISHED_DECAY_LENGTH, Rig, friction_point, resolved_vibration, rig_from
 from sonolube.rig.new_rig.known_surface import finished_surface, scanned_surface, surfaces_in_contact
 from sonolube.rig.new_rig.pin_and_vibration import DrivenActuator, FlatPin, RoundPin, StatedAmplitude
 from sonolube.rig.new_rig.rig_text import KnownRig, least_known, new_rig_text
+from sonolube.rig.new_rig.stated_text import pin_shape, speed_of, surface_of
 from sonolube.surfaces import typical_summits
 
 GROUND = finished_surface("ground N6")
@@ -190,3 +191,121 @@ def test_entries_that_change_no_friction_are_not_said_to_be_known_least() -> Non
     assert friction_point(sharp).friction_force == approx(friction_point(rig).friction_force, rel=1e-9)
     assert "contact.roughness.summit_radius" not in {one.key for one in least_known(rig, count=9)}
     assert len(rig.uncertainty) > len(least_known(rig, count=9)) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "radius"),
+    [
+        ("ball 3mm", 3e-3),
+        ("ball radius 3mm", 3e-3),
+        ("ball r 3mm", 3e-3),
+        ("ball diameter 6mm", 3e-3),
+        ("Ball d6mm", 3e-3),
+        ("sphere diameter: 6 mm", 3e-3),
+        ("ball ø6mm", 3e-3),
+        ("ball d 0.25 in", 3.175e-3),
+    ],
+)
+def test_a_ball_is_known_by_its_radius_or_its_diameter(text: str, radius: float) -> None:
+    shape = pin_shape(text)
+    assert isinstance(shape, RoundPin)
+    assert shape.tip_radius == approx(radius)
+
+
+@pytest.mark.parametrize("text", ["flat 6mm", "pin 6mm", "flat diameter 6mm", "pin d6mm", "flat radius 3mm"])
+def test_a_flat_pin_is_known_by_its_diameter_or_its_radius(text: str) -> None:
+    assert pin_shape(text) == FlatPin(diameter=6e-3)
+
+
+@pytest.mark.parametrize(
+    ("text", "track", "speed"),
+    [
+        ("60 rpm", {"track_radius": "15mm"}, 2 * pi * 15e-3),
+        ("60rpm", {"track_diameter": "30mm"}, 2 * pi * 15e-3),
+        ("1 rev/s", {"track_radius": "15mm"}, 2 * pi * 15e-3),
+        ("60 U/min", {"track_radius": "15mm"}, 2 * pi * 15e-3),
+        ("60/min", {"track_radius": "15mm"}, 2 * pi * 15e-3),
+        ("10 rad/s", {"track_radius": "15mm"}, 0.15),
+        ("40.6 mm/s", {}, 40.6e-3),
+        ("8 in/s", {}, 0.2032),
+    ],
+)
+def test_a_rotational_speed_slides_as_two_pi_times_radius_times_turns(
+    text: str, track: dict[str, str], speed: float
+) -> None:
+    assert speed_of(text, **track).sliding_speed == approx(speed)
+
+
+@pytest.mark.parametrize(
+    ("text", "height"),
+    [
+        ("Ra 0.4", np.sqrt(pi / 2) * 0.4e-6),
+        ("Ra 0.4um", np.sqrt(pi / 2) * 0.4e-6),
+        ("ra=0,4 µm", np.sqrt(pi / 2) * 0.4e-6),
+        ("0.4um", np.sqrt(pi / 2) * 0.4e-6),
+        ("400nm", np.sqrt(pi / 2) * 0.4e-6),
+        ("ground Ra 0.4", np.sqrt(pi / 2) * 0.4e-6),
+        ("Ra 16 uin", np.sqrt(pi / 2) * 16 * 25.4e-9),
+        ("Rz 3.2", 3.2e-6 / 4.5),
+        ("Rz 3.2um", 3.2e-6 / 4.5),
+        ("Rq 0.5um", 0.5e-6),
+        ("N6", np.sqrt(pi / 2) * np.sqrt(0.4 * 0.8) * 1e-6),
+    ],
+)
+def test_a_finish_by_a_number_has_the_height_of_gaussian_surfaces(text: str, height: float) -> None:
+    assert surface_of(text).roughness.rms_height == approx(height)
+
+
+def test_a_number_tells_more_of_the_height_than_a_grade_and_that_more_than_a_process() -> None:
+    deviations = [surface_of(text).height_deviation for text in ("Ra 0.6um", "N6", "ground")]
+    assert deviations == sorted(deviations)
+    assert deviations[0] == approx(log(1.43 / 1.04) / 4)
+
+
+def test_what_was_assumed_in_reading_a_finish_is_said() -> None:
+    assert "um assumed" in surface_of("Ra 0.4").height_reason
+    assert "read as Ra" in surface_of("0.4um").height_reason
+    assert "assumed" not in surface_of("Rz 3.2um").height_reason
+
+
+def test_a_stated_amplitude_is_not_called_measured_until_its_uncertainty_is_removed() -> None:
+    rig = rig_of(KNOWN)
+    assert resolved_vibration(rig).source == "measured"
+    assert resolved_vibration(rig).text == "stated, 3 um at 20 kHz"
+    assert "3 um stated" in dict(rig.table())["vibration amplitude"]
+    content = rig.content()
+    del content["uncertainty"]["vibration.vibration_amplitude"]
+    assert resolved_vibration(rig_from(content)).text == "measured, 3 um at 20 kHz"
+
+
+def test_a_class_puts_its_spread_into_the_file_and_an_alloy_does_not() -> None:
+    rig = rig_of(replace(KNOWN, pin="brass", disc="ceramic"))
+    known = {key: law for key, law in rig.uncertainty.items() if key.endswith("youngs_modulus")}
+    assert set(known) == {"contact.softer.youngs_modulus", "contact.harder.youngs_modulus"}
+    low, high = known["contact.harder.youngs_modulus"].quantile((0.1587, 0.8413))
+    assert log(high / low) / 2 == approx(material("ceramic").property("youngs_modulus").deviation, rel=1e-2)
+    assert "the class, not the material" in rig.assumptions["contact.softer.yield_strength"]
+    assert not any(key.endswith("youngs_modulus") for key in rig_of(KNOWN).uncertainty)
+
+
+def test_the_strength_of_a_class_is_less_known_than_that_of_an_alloy_by_the_spread_of_its_hardness() -> None:
+    key = "contact.softer.yield_strength"
+    deviations = []
+    for name in ("steel_1045", "steel"):
+        low, high = rig_of(replace(KNOWN, pin=name, disc="silicon_carbide")).uncertainty[key].quantile((0.1587, 0.8413))
+        deviations.append(log(high / low) / 2)
+    spread = material("steel").property("hardness").deviation
+    assert deviations[1] == approx(hypot(deviations[0], spread), rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["ptfe", "polyacetal", "peek", "uhmwpe", "polymer", "rubber", "felt", "skin", "dlc"])
+def test_soft_bodies_and_films_are_written_with_a_range_of_friction(name: str) -> None:
+    rig = rig_of(replace(KNOWN, pin=name, disc="stainless_steel_304", friction_coefficient=None))
+    assert rig.pin_material == name
+    assert "friction.friction_coefficient" in rig.uncertainty
+
+
+def test_a_property_that_the_catalogue_lacks_of_a_material_is_that_of_its_class() -> None:
+    rig = rig_of(replace(KNOWN, pin="uncoated_steel", disc="silicon_carbide"))
+    assert "unspecified steel" in rig.assumptions["contact.softer.youngs_modulus"]
+    assert "contact.softer.youngs_modulus" in rig.uncertainty

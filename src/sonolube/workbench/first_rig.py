@@ -49,8 +49,10 @@ def new_rig(
         tests where both it and the stiffness are absent. [m]
     stiffness : str, optional
         Measured normal stiffness of the contact under the load, such as "1.5 MN/m", in place of the decay length.
-    track_radius, track_diameter : str, optional
-        Of the track on the disc, one of them for a speed in rpm, such as "15 mm". [m]
+    track_radius : str, optional
+        Radius of the track on the disc, such as "15 mm", for a speed in rpm. [m]
+    track_diameter : str, optional
+        Its diameter, in place of the radius.
 
     Returns
     -------
@@ -79,7 +81,7 @@ def new_rig(
         disc=material(disc).name,
         shape=pin_shape(shape, name="shape"),
         normal_load=reader("N", name="load")(load),
-        sliding_speed=sliding.value,
+        sliding_speed=sliding.sliding_speed,
         speed_reason=sliding.reason,
         frequency=reader("Hz", name="frequency")(frequency),
         vibration=vibration_of(amplitude, name="amplitude"),

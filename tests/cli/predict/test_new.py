@@ -9,13 +9,16 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from math import pi
 from pathlib import Path
+from typing import Any
 
 import pytest
-from pytest import CaptureFixture, MonkeyPatch, raises
+from pytest import CaptureFixture, MonkeyPatch, approx, raises
 
 from sonolube.cli import main
 from sonolube.rig import read_rig
+from sonolube.workbench import new_rig
 
 PROGRAM = str(Path(sys.executable).parent / "sonolube")
 PIN, DISC = "brass_c36000", "stainless_steel_304"
@@ -104,7 +107,7 @@ def test_questions_on_a_terminal_give_the_same_rig_as_options() -> None:
 def test_an_empty_answer_takes_the_default_that_the_question_shows() -> None:
     code, screen = conversation(["new", "rig.toml", *KNOWN[4:]], ["", "", ""])
     assert code == 0, screen
-    assert "Material of the pin, such as aluminium_2024 [stainless_steel_304]: " in screen
+    assert "Material of the pin, such as aluminium_2024 or steel [stainless_steel_304]: " in screen
     rig = read_rig("rig.toml")
     assert rig.pin_material == rig.disc_material == "stainless_steel_304"
 
@@ -142,9 +145,27 @@ def test_off_a_terminal_the_missing_options_are_named(capsys: CaptureFixture[str
         (("--pin", "aluminium_2042"), "unknown material 'aluminium_2042'; did you mean aluminium_2024?"),
         (("--speed", "5N"), "--speed 5N is a force; expected a speed"),
         (("--finish", "N66"), "unknown surface finish 'n66'"),
+        (("--finish", "shiny"), "write a process, an ISO grade, both, Ra or Rz: 'ground', 'lapped', 'turned', 'N6',"),
+        (("--finish", "0.4"), "surface finish '0.4' has neither a unit nor Ra, Rz or Rq; write a process"),
+        (("--finish", "Ra 4mm"), "surface finish 'Ra 4mm' lies beyond any finish: expected 100 pm to 200 um"),
+        (("--finish", "Ra 1,600"), "surface finish 'Ra 1,600' may mean two numbers; write it without a comma"),
+        (("--finish", "grund Ra 0.4"), "unknown surface finish 'grund'; did you mean ground?"),
+        (("--speed", "100 rpm"), "--speed 100 rpm is a rotational speed: give --track-radius or --track-diameter too"),
+        (("--speed", "-100 rpm", "--track-radius", "15mm"), "--speed -100 rpm must be positive"),
+        (("--track-radius", "15mm"), "--track-radius belongs to a speed in rpm; --speed 0.2m/s needs none"),
+        (
+            ("--speed", "9 rpm", "--track-radius", "15mm", "--track-diameter", "30mm"),
+            "give either --track-radius or --track-diameter, got both",
+        ),
+        (("--speed", "9 rpm", "--track-radius", "15"), "--track-radius 15 has no unit; expected a length"),
         (("--shape", "cone 3mm"), "--shape 'cone 3mm' must be 'flat' with its diameter or 'ball' with its radius"),
+        (("--shape", "ball diameter"), "'ball 5mm', 'ball radius 5mm', 'ball diameter 10mm'"),
+        (("--pin", "stee"), "unknown material 'stee'; did you mean steel?"),
+        (
+            ("--pin", "powder_coating"),
+            "powder_coating has no youngs_modulus: no source is known; name another material",
+        ),
         (("--voltage", "40V"), "--actuator and --voltage belong together"),
-        (("--pin", "ptfe", "--disc", "silicon_carbide"), "no dry friction is known of ptfe on silicon_carbide;"),
         (("--actuator", "sa050510", "--voltage", "40V"), "give either --amplitude or --actuator, got both"),
         (("--pin-finish", "N6", "--pin-scan", "pin.opd"), "give either --pin-finish or --pin-scan, got both"),
         (("--scan", "none.opd"), "none.opd"),
@@ -153,6 +174,49 @@ def test_off_a_terminal_the_missing_options_are_named(capsys: CaptureFixture[str
 )
 def test_what_cannot_be_is_refused_in_one_line(change: tuple[str, ...], line: str, capsys: CaptureFixture[str]) -> None:
     assert line in refused(capsys, "rig.toml", *KNOWN, *change)
+
+
+def test_a_rotational_speed_on_a_terminal_asks_for_the_radius_of_the_track() -> None:
+    code, screen = conversation(["new", "rig.toml", *KNOWN[:6], *KNOWN[8:], "--shape", "flat 3mm"], ["60 rpm", "15mm"])
+    assert code == 0, screen
+    assert "Radius of the track, such as 15mm [20mm]: " in screen
+    assert read_rig("rig.toml").sliding_speed == approx(2 * pi * 15e-3, rel=1e-3)
+
+
+def test_options_and_python_give_the_same_file_byte_for_byte() -> None:
+    # what is given here, and how the answer repeats it
+    typed: dict[str, Any] = {"pin": "100Cr6", "disc": "Stahl", "shape": "ball d6mm", "load": "5N", "speed": "60 rpm"}
+    typed |= {"frequency": "20kHz", "amplitude": "2um", "finish": "Ra 0.4"}
+    options = [text for key, value in typed.items() for text in (f"--{key}", value)]
+    with raises(SystemExit):
+        main(["new", "given.toml", *options, "--track-diameter", "30mm"])
+    new_rig(**typed, track_diameter="30mm").to_toml("made.toml")
+    text = Path("given.toml").read_text()
+    assert Path("made.toml").read_text() == text
+    for said in (
+        "ball of 6 mm in diameter, tip radius 3 mm",
+        "2 pi r n, with 60 rpm and a track of 15 mm in radius",
+        "Ra 400 nm, stated as 'Ra 0.4', um assumed",
+        "the class, not the material, is known: 190 GPa to 214 GPa",
+        "as stated, taken as not measured",
+    ):
+        assert said in text
+
+
+def test_a_pair_without_known_friction_is_written_with_the_range_of_its_class(capsys: CaptureFixture[str]) -> None:
+    with raises(SystemExit) as end:
+        main(["new", "rig.toml", *KNOWN, "--pin", "ptfe", "--disc", "silicon_carbide"])
+    assert not end.value.code
+    assert "range of the class of pair, polymer on any material" in capsys.readouterr().out
+    assert read_rig("rig.toml").uncertainty["friction.friction_coefficient"].text == "uniform, 0.05 to 0.6"
+
+
+def test_the_help_shows_the_forms_that_are_read(capsys: CaptureFixture[str]) -> None:
+    with raises(SystemExit):
+        main(["new", "--help"])
+    shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    for form in ("'Ra 0.4'", "'Rz 3.2um'", "'100 rpm'", "'ball diameter", "100Cr6"):
+        assert form in shown
 
 
 def test_a_file_that_exists_is_replaced_only_by_force(capsys: CaptureFixture[str]) -> None:

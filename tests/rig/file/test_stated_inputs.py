@@ -52,6 +52,13 @@ def test_a_grade_lies_between_the_average_of_its_range() -> None:
     assert sqrt(pi / 2) * 0.4e-6 < height < sqrt(pi / 2) * 0.8e-6
 
 
+@pytest.mark.parametrize("finish", ["Ra 0.8", "Ra 0.8um", "0.8um", "turned Ra 0.8"])
+def test_a_finish_may_be_stated_by_its_number(finish: str) -> None:
+    by_number = rig('roughness_average = "0.8 um"', f'finish = "{finish}"')
+    assert by_number.contact.roughness == rig().contact.roughness
+    assert f"stated as '{finish}'" in by_number.assumptions["contact.roughness.rms_height"]
+
+
 def test_the_maximum_height_is_several_times_the_rms_height() -> None:
     height = rig('roughness_average = "0.8 um"', 'maximum_height = "4 um"').contact.roughness.rms_height
     assert 4e-6 / 8 < height < 4e-6 / 3
@@ -93,6 +100,7 @@ def test_summits_that_the_file_gives_stay_and_are_certain() -> None:
     [
         ("[contact.softer]", 'finish = "N6"\n[contact.softer]', "give one of rms_height, .* got roughness_average and"),
         ("[contact.softer]", 'rms_height = "1 um"\n[contact.softer]', "got rms_height and roughness_average"),
+        ('roughness_average = "0.8 um"', 'finish = "0.8"', "neither a unit nor Ra, Rz or Rq; write a process"),
         ('roughness_average = "0.8 um"', 'finish = "N66"', "contact.roughness: unknown surface finish 'n66'"),
         ('"0.8 um"', '"-0.8 um"', "contact.roughness: roughness_average must be positive"),
         ('"137 HV"', '"0 HV"', "contact.softer: hardness must be positive"),

@@ -77,11 +77,12 @@ def new(
     speed: Annotated[
         str | None, typer.Option(metavar="SPEED", help="Sliding speed: 0.2m/s, or '100 rpm' with the track.")
     ] = None,
-    track_radius: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Radius of the track on the disc, for a speed in rpm.")
+    by_radius: Annotated[
+        str | None,
+        typer.Option("--track-radius", metavar="LENGTH", help="Radius of the track on the disc, for a speed in rpm."),
     ] = None,
-    track_diameter: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Its diameter, in place of the radius.")
+    by_diameter: Annotated[
+        str | None, typer.Option("--track-diameter", metavar="LENGTH", help="Its diameter, in place of the radius.")
     ] = None,
     at: Annotated[
         str | None, typer.Option("--frequency", metavar="FREQUENCY", help="Frequency of the vibration.")
@@ -150,13 +151,13 @@ def new(
     materials = _value(_PIN, pin, _material, asks=asks), _value(_DISC, disc, _material, asks=asks)
     stated_shape = _value(_SHAPE, shape, pin_shape, asks=asks)
     normal_load = _value(_LOAD, load, reader("N", name="--load"), asks=asks)
-    sliding = _sliding_speed(speed, track_radius, track_diameter, asks=asks)
+    sliding = _sliding_speed(speed, by_radius, by_diameter, asks=asks)
     known = KnownRig(
         pin=materials[0],
         disc=materials[1],
         shape=stated_shape,
         normal_load=normal_load,
-        sliding_speed=sliding.value,
+        sliding_speed=sliding.sliding_speed,
         speed_reason=sliding.reason,
         frequency=_value(_FREQUENCY, at, reader("Hz", name="--frequency"), asks=asks),
         vibration=_value(_AMPLITUDE, driven, vibration_of, asks=asks),

@@ -28,7 +28,7 @@ class YieldStrength:
 
     Parameters
     ----------
-    value : float
+    yield_strength : float
         Median. [Pa]
     deviation : float
         Standard deviation of its logarithm.
@@ -36,7 +36,7 @@ class YieldStrength:
         Where it comes from.
     """
 
-    value: float
+    yield_strength: float
     deviation: float
     reason: str
 
@@ -76,10 +76,10 @@ class KnownBody:
         """Hardness, or three times the strength where the catalogue lacks it. [Pa]"""
         if "hardness" in self.material.properties:
             return self.material.value("hardness")
-        return 3 * self.yield_strength.value
+        return 3 * self.strength.yield_strength
 
     @property
-    def yield_strength(self) -> YieldStrength:
+    def strength(self) -> YieldStrength:
         """Yield strength, of metals by Tabor's relation from their hardness, of others that of the catalogue.
 
         Raises
@@ -98,14 +98,14 @@ class KnownBody:
             if found.deviation:
                 reason = f"{_CLASS}{tension}: {found.source}" + f"; {found.note}" * bool(found.note)
             return YieldStrength(
-                value=found.value, deviation=hypot(found.deviation, _CATALOGUE_STRENGTH), reason=reason
+                yield_strength=found.value, deviation=hypot(found.deviation, _CATALOGUE_STRENGTH), reason=reason
             )
         estimate = yield_strength_from_hardness(hardness=found.value)
         beyond = "" if is_metal else "; beyond the metals that the relation is of"
         origin = f"{_CLASS}: {found.source}" + f"; {found.note}" * bool(found.note) if found.deviation else ""
         reason = f"from {found.value / 9.80665e6:.0f} HV of the catalogue; {estimate.source}; {estimate.reason}{beyond}"
         return YieldStrength(
-            value=estimate.yield_strength,
+            yield_strength=estimate.yield_strength,
             deviation=hypot(found.deviation, deviation_of_range(estimate.low, estimate.high)),
             reason="; ".join(filter(None, (reason, origin))),
         )

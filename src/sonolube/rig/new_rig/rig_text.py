@@ -182,8 +182,8 @@ def _contact(known: KnownRig) -> Entries:
     """Return the tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
     pin, disc = KnownBody.of(known.pin), KnownBody.of(known.disc)
     softer, harder = (disc, pin) if disc.hardness < pin.hardness else (pin, disc)
-    strength = softer.yield_strength
-    pair = contact_pair(softer=softer.elastic, harder=harder.elastic, yield_strength=strength.value)
+    strength = softer.strength
+    pair = contact_pair(softer=softer.elastic, harder=harder.elastic, yield_strength=strength.yield_strength)
     area = known.shape.nominal_area(effective_modulus=pair.effective_modulus, normal_load=known.normal_load)
     surface = surfaces_in_contact(known.pin_surface, known.disc_surface)
     roughness, place = surface.roughness, "contact.roughness"
@@ -205,7 +205,7 @@ def _contact(known: KnownRig) -> Entries:
             },
             "contact.softer": {
                 **softer_entries.tables["contact.softer"],
-                "yield_strength": toml_text(strength.value, "Pa"),
+                "yield_strength": toml_text(strength.yield_strength, "Pa"),
             },
             **harder_entries.tables,
         },

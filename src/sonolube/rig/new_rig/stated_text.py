@@ -44,13 +44,13 @@ class StatedSpeed:
 
     Parameters
     ----------
-    value : float
-        In m/s.
+    sliding_speed : float
+        Mean sliding speed. [m/s]
     reason : str
         How it follows from a rotational speed; empty where it was stated itself.
     """
 
-    value: float
+    sliding_speed: float
     reason: str = ""
 
 
@@ -113,8 +113,10 @@ def speed_of(
     ----------
     text : str
         Speed or rotational speed, with its unit.
-    track_radius, track_diameter : str or None
-        Of the circle on which the pin slides; for a rotational speed one of them.
+    track_radius : str or None
+        Radius of the track, for a rotational speed. [m]
+    track_diameter : str or None
+        Its diameter, in place of the radius.
     name, radius_name, diameter_name : str
         How a refusal calls them.
 
@@ -140,7 +142,7 @@ def speed_of(
         speed = reader("m/s", name=name)(text)
         if stated:
             raise InvalidInput(f"{next(iter(stated))} belongs to a speed in rpm; {name} {text} needs none")
-        return StatedSpeed(value=speed)
+        return StatedSpeed(sliding_speed=speed)
     if not turns > 0:
         raise InvalidInput(f"{name} {text} must be positive")
     if not stated:
@@ -153,7 +155,7 @@ def speed_of(
     radius = length if key == radius_name else length / 2
     value = require_plausible(2 * pi * radius * turns, unit="m/s", text=f"{name} {text} at a radius of {size}")
     return StatedSpeed(
-        value=value,
+        sliding_speed=value,
         reason=f"2 pi r n, with {60 * turns:.6g} rpm and a track of {format_si(radius, 'm', digits=4)} in radius",
     )
 
