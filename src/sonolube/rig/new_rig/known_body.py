@@ -93,16 +93,16 @@ class KnownBody:
         key = "yield_strength" if own is None else own
         found = self._property(key)
         if key != "hardness":
-            tension = " in tension, taken as that at yield" if key == "ultimate_strength" else ""
-            reason = f"of the catalogue{tension}, {found.source}; 15 % between batches assumed"
-            if found.deviation:
-                reason = f"{_CLASS}{tension}: {found.source}" + f"; {found.note}" * bool(found.note)
+            tension = "; strength in tension, taken as that at yield" if key == "ultimate_strength" else ""
+            origin = _origin(found) if found.deviation else f"of the catalogue, {found.source}"
             return YieldStrength(
-                yield_strength=found.value, deviation=hypot(found.deviation, _CATALOGUE_STRENGTH), reason=reason
+                yield_strength=found.value,
+                deviation=hypot(found.deviation, _CATALOGUE_STRENGTH),
+                reason=f"{origin}{tension}; 15 % between batches assumed",
             )
         estimate = yield_strength_from_hardness(hardness=found.value)
         beyond = "" if is_metal else "; beyond the metals that the relation is of"
-        origin = f"{_CLASS}: {found.source}" + f"; {found.note}" * bool(found.note) if found.deviation else ""
+        origin = _origin(found) if found.deviation else ""
         reason = f"from {found.value / 9.80665e6:.0f} HV of the catalogue; {estimate.source}; {estimate.reason}{beyond}"
         return YieldStrength(
             yield_strength=estimate.yield_strength,
@@ -129,9 +129,7 @@ class KnownBody:
         modulus = self._property("youngs_modulus")
         if "youngs_modulus" not in self.material.properties or modulus.deviation:
             table["youngs_modulus"] = toml_text(modulus.value, "Pa")
-            reasons[f"{place}.youngs_modulus"] = f"{_CLASS}: {modulus.source}" + f"; {modulus.note}" * bool(
-                modulus.note
-            )
+            reasons[f"{place}.youngs_modulus"] = _origin(modulus)
         if modulus.deviation:
             laws[f"{place}.youngs_modulus"] = lognormal_text(modulus.deviation)
         if "poisson_ratio" not in self.material.properties:
@@ -150,3 +148,8 @@ class KnownBody:
             return self.material.property(key)
         except MissingProperty as refusal:
             raise MissingProperty(f"{str(refusal).partition(';')[0]}; name another material") from None
+
+
+def _origin(known: SourcedValue) -> str:
+    """Return where a property of a class is from."""
+    return "; ".join(filter(None, (f"{_CLASS}: {known.source}", known.note)))
