@@ -59,7 +59,7 @@ def velocity(chain: Chain, f: Samples, *, spring: float, softening: float = 0.0)
 def noisy(rng: Generator, values: Samples, deviation: float) -> Samples:
     """Values with complex noise of a standard deviation relative to the largest."""
     noise = rng.standard_normal(values.size) + 1j * rng.standard_normal(values.size)
-    return values + deviation * np.abs(values).max() * noise / np.sqrt(2)
+    return np.asarray(values + deviation * np.abs(values).max() * noise / np.sqrt(2))
 
 
 def equivalent_spring(stiffness: float, *, amplitude: float, decay_length: float) -> float:

@@ -30,7 +30,9 @@ def _trial(seed: int) -> Record:
     runs = [(0.0, 0.0), (k, share * drift), (0.0, drift), (softer, share * drift)]
     spectra = [
         vibration_spectrum(
-            f, virtual.noisy(rng, virtual.velocity(chain, f, spring=spring, softening=soft), noise), quantity="velocity"
+            frequency=f,
+            response=virtual.noisy(rng, virtual.velocity(chain, f, spring=spring, softening=soft), noise),
+            quantity="velocity",
         )
         for spring, soft in runs
     ]
@@ -45,7 +47,7 @@ def _trial(seed: int) -> Record:
         mode_near=153.0 if is_slow else 22.0e3,
         large=spectra[3],
         vibration_amplitude=stated,
-        amplitude_deviation=_AMPLITUDE_DEVIATION,
+        log_amplitude_deviation=_AMPLITUDE_DEVIATION,
     ).stiffness
     estimates = {
         "stiffness": found.normal_stiffness and (found.normal_stiffness, k),
@@ -123,7 +125,7 @@ STUDY = Study(
     " known within 10 % and an amplitude known within 5 %.",
     sources=(
         "measurement/contact_stiffness/*.py",
-        "dynamics/contact_resonances.py",
+        "dynamics/contact_spring.py",
         "measurement/statistics/autocorrelation.py",
     ),
     trials=100,

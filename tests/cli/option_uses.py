@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from reliability import virtual_contact
 
 from sonolube.lab import Block, Channel
 from sonolube.lab.records import new_run
@@ -536,6 +537,30 @@ MODES = {
         ("FOLDER/tip.csv", "--frequency", "1kHz"),
         {"--frequency": "1.1kHz", "--modes": "FOLDER/shapes.csv", "--mapping": "FOLDER/tip.toml"} | SHEETS,
     ),
+    "stiffness of a contact": Mode(
+        "measure stiffness",
+        ("FOLDER/free.csv", "FOLDER/pressed.csv", "--rig", RIG, "--mode-near", "154Hz"),
+        {
+            "--rig": COLLAR,
+            "--load": "2N",
+            "--set": "contact.normal_load=2N",
+            "--mode-near": "0Hz",
+            "--pressed-near": "128Hz",
+            "--modal-mass": "5kg",
+            "--mass-uncertainty": "20%",
+            "--large": "FOLDER/large.csv",
+            "--amplitude": "2.5um",
+            "--amplitude-uncertainty": "10%",
+        },
+    ),
+    "stiffness by the ratio of shifts": Mode(
+        "measure stiffness",
+        (
+            *("FOLDER/free.csv", "FOLDER/pressed.csv", "--rig", RIG, "--mode-near", "154Hz"),
+            *("--large", "FOLDER/large.csv", "--amplitude", "2.5um"),
+        ),
+        {"--large": "FOLDER/pressed.csv", "--amplitude": "3um", "--amplitude-uncertainty": "10%"},
+    ),
     "compare": Mode(
         "compare",
         (RIG, "--model", "kinematic"),
@@ -660,6 +685,12 @@ def write_inputs(place: Path) -> None:
     w = 2 * np.pi * f
     z = 1 / (1j * w * 1e-8 + 1 / (20 + 1j * w * 0.1 + 1 / (1j * w * 6e-10))) + 0.01 * rng.standard_normal(f.size)
     _table(place / "spectrum.csv", "frequency (Hz),|Z| (ohm),phase (deg)", f, np.abs(z), np.degrees(np.angle(z)))
+    hertz = np.linspace(70, 400, 166)
+    for name, spring in (("free", 0.0), ("pressed", 4.286e6), ("large", 2.03e6)):
+        v = virtual_contact.velocity(virtual_contact.TRIBOMETER, hertz, spring=spring)
+        v = virtual_contact.noisy(rng, v, 1e-3)
+        heads = "frequency (Hz),velocity (m/s),phase (deg)"
+        _table(place / f"{name}.csv", heads, hertz, np.abs(v), np.degrees(np.angle(v)))
     x = np.arange(96.0)
     plate = 1e-6 * (np.sin(x / 3)[:, np.newaxis] + np.cos(x / 7) + 0.3 * rng.standard_normal((96, 96)))
     np.save(place / "plate.npy", plate - 1e-9 * (x - 48) ** 2)

@@ -15,10 +15,7 @@ from .chain import (
     modal_structure as modal_structure,
     pin_on_disc_chain as pin_on_disc_chain,
 )
-from .contact_resonances import (
-    contact_resonances as contact_resonances,
-    stiffness_at_resonance as stiffness_at_resonance,
-)
+from .contact_spring import contact_resonances as contact_resonances, stiffness_at_resonance as stiffness_at_resonance
 from .continuation import (
     ResponseCurve as ResponseCurve,
     reached_by_ramp as reached_by_ramp,

@@ -1,3 +1,26 @@
+from .contact_stiffness.analysis import (
+    MeasuredContactStiffness as MeasuredContactStiffness,
+    measured_contact_stiffness as measured_contact_stiffness,
+)
+from .contact_stiffness.large_vibration import (
+    decay_length_from_ratio as decay_length_from_ratio,
+    equivalent_stiffness_ratio as equivalent_stiffness_ratio,
+)
+from .contact_stiffness.resonance_fit import (
+    Resonance as Resonance,
+    ResonanceFit as ResonanceFit,
+    fit_resonances as fit_resonances,
+)
+from .contact_stiffness.resonance_spectrum import (
+    ResonanceSpectrum as ResonanceSpectrum,
+    read_resonance_spectrum as read_resonance_spectrum,
+    vibration_spectrum as vibration_spectrum,
+)
+from .contact_stiffness.stiffness_estimate import (
+    ContactStiffness as ContactStiffness,
+    LogEstimate as LogEstimate,
+    single_mode as single_mode,
+)
 from .friction.loops import (
     FrictionLoops as FrictionLoops,
     FrictionWork as FrictionWork,

@@ -36,7 +36,7 @@ class Probe:
         Load over stiffness of the contact. [m]
     pressed_frequency : ndarray, shape (n,)
         Undamped, with a spring of that stiffness at the contact, in Hz.
-    half_width : ndarray, shape (n,)
+    peak_half_width : ndarray, shape (n,)
         Half width of the pressed resonance at half power, in Hz.
     shift_uncertainty : ndarray, shape (n,)
         Standard uncertainty of the shift if each frequency is resolved to a fraction of its half width, in Hz.
@@ -52,7 +52,7 @@ class Probe:
     free_frequency: float
     decay_length: Floats
     pressed_frequency: Floats
-    half_width: Floats
+    peak_half_width: Floats
     shift_uncertainty: Floats
     resolvable: NDArray[np.bool_]
     log_stiffness_deviation: Floats
@@ -141,7 +141,7 @@ def stiffness_probes(
                 free_frequency=f_0,
                 decay_length=lengths,
                 pressed_frequency=pressed,
-                half_width=damping * pressed,
+                peak_half_width=damping * pressed,
                 shift_uncertainty=shift_uncertainty,
                 resolvable=resolvable,
                 log_stiffness_deviation=deviation,
@@ -183,7 +183,7 @@ def _sentence(probe: Probe) -> str:
         )
         limit = "" if probe.resolvable.all() else ", at the stiffer contacts only"
         return f"{probe.name}: pressed {places}; its shift gives k_n within {within} %{limit}"
-    shift, width = float(probe.shift.max()), 2 * float(probe.half_width.max())
+    shift, width = float(probe.shift.max()), 2 * float(probe.peak_half_width.max())
     if width >= 2 * _WIDEST * float(probe.pressed_frequency.max()):
         return f"{probe.name}: pressed {places}; too damped to show a peak"
     share = f"a {width / shift:.0f}th" if shift > 0 else "nothing"

@@ -73,7 +73,7 @@ def stiffness(
         mode_near=mode_near,
         pressed_near=pressed_near,
         vibration_amplitude=amplitude,
-        amplitude_deviation=0.05 if amplitude_uncertainty is None else amplitude_uncertainty,
+        log_amplitude_deviation=0.05 if amplitude_uncertainty is None else amplitude_uncertainty,
     )
     found, lines = contact_stiffness_sheet(free, pressed, settings=settings, again=again, large=large)
     deliver(
@@ -122,7 +122,7 @@ class StiffnessAnswer(Answer):
         share = self.settings.modal_mass_deviation
         assumed = {"modal mass": f"known within {share:.0%}; the stiffness is proportional to it"}
         if self.settings.vibration_amplitude is not None:
-            assumed["amplitude"] = f"known within {self.settings.amplitude_deviation:.0%}"
+            assumed["amplitude"] = f"known within {self.settings.log_amplitude_deviation:.0%}"
         known = {} if self.rig is None else self.rig.assumptions
         return assumed | {key: reason for key, reason in known.items() if key.startswith(("structure", "stack"))}
 

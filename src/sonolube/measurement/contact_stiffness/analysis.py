@@ -52,7 +52,7 @@ def measured_contact_stiffness(
     pressed_near: float | None = None,
     large: ResonanceSpectrum | None = None,
     vibration_amplitude: float | None = None,
-    amplitude_deviation: float = 0.05,
+    log_amplitude_deviation: float = 0.05,
 ) -> MeasuredContactStiffness:
     """Normal stiffness and decay length of a contact from spectra measured free, pressed and free again.
 
@@ -78,7 +78,7 @@ def measured_contact_stiffness(
         Under the load, at a large vibration of constant amplitude.
     vibration_amplitude : float or None
         That amplitude at the contact, zero to peak. [m]
-    amplitude_deviation : float
+    log_amplitude_deviation : float
         Standard deviation of its logarithm.
 
     Returns
@@ -125,7 +125,7 @@ def measured_contact_stiffness(
         modal_mass_deviation=modal_mass_deviation,
         large=at_large,
         vibration_amplitude=vibration_amplitude,
-        amplitude_deviation=amplitude_deviation,
+        log_amplitude_deviation=log_amplitude_deviation,
     )
     fits = [*free_fits, pressed_fit, *([] if large_fit is None else [large_fit])]
     own = [
@@ -165,4 +165,4 @@ def _between(fit: ResonanceFit, free: Sequence[Resonance], pressed: Resonance) -
     """Resonance at the large vibration: the strongest between the free and the pressed one, else the nearest."""
     lowest = min((one.frequency for one in free), default=0.0)
     inside = [one for one in fit.resonances if lowest <= one.frequency <= pressed.frequency]
-    return max(inside, key=lambda one: one.height) if inside else fit.nearest(pressed.frequency)
+    return max(inside, key=lambda one: one.relative_height) if inside else fit.nearest(pressed.frequency)

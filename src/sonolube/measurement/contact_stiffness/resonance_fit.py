@@ -34,17 +34,17 @@ class Resonance:
     frequency : float
         Modulus of its pole. [Hz]
     frequency_uncertainty : float
-        Standard uncertainty by the noise of the spectrum. [Hz]
+        Standard uncertainty by the noise of the spectrum, in Hz.
     quality_factor : float
-        Frequency over full width at half power.
-    height : float
+        Frequency over full width at half power. []
+    relative_height : float
         Response at the resonance without the other modes, relative to the largest of the spectrum.
     """
 
     frequency: float
     frequency_uncertainty: float
     quality_factor: float
-    height: float
+    relative_height: float
 
     @property
     def half_width(self) -> float:
@@ -82,7 +82,7 @@ class ResonanceFit:
 
     def strongest(self) -> Resonance:
         """Resonance of the greatest response."""
-        return max(self.resonances, key=lambda one: one.height)
+        return max(self.resonances, key=lambda one: one.relative_height)
 
 
 def fit_resonances(spectrum: ResonanceSpectrum, *, modes: int | None = None) -> ResonanceFit:
@@ -162,7 +162,7 @@ class _Solution:
     def criterion(self) -> float:
         """Bayesian information criterion, all but the shape of the modes alike."""
         n, count = self.residuals.size, 3 * self.shape.size
-        return n * float(np.log(max(np.mean(self.residuals**2), _ROUNDING**2))) + count * float(np.log(n))
+        return n * float(np.log(max(float(np.mean(self.residuals**2)), _ROUNDING**2))) + count * float(np.log(n))
 
 
 class _Problem:
@@ -297,7 +297,7 @@ class _Problem:
                 frequency=float(pairs[k, 0]),
                 frequency_uncertainty=float(pairs[k, 0] * error[k]),
                 quality_factor=float(pairs[k, 1]),
-                height=float(heights[k]) / largest,
+                relative_height=float(heights[k]) / largest,
             )
             for k in self.inside(solution)
         ]

@@ -86,7 +86,7 @@ class ResonanceSpectrum:
 
 
 def vibration_spectrum(
-    frequency: Floats, response: Complexes | Floats, *, quantity: str = "displacement"
+    *, frequency: Floats, response: Complexes | Floats, quantity: str = "displacement"
 ) -> ResonanceSpectrum:
     """Spectrum of a measured vibration, whose noise is taken as the same at all frequencies.
 
@@ -153,7 +153,9 @@ def read_resonance_spectrum(path: Path, *, sweep: str | None = None) -> Resonanc
         raise InvalidInput(f"{path}: is a table of one spectrum of vibration; leave sweep {sweep!r} out")
     order = np.argsort(table.frequency, kind="stable")
     try:
-        found = vibration_spectrum(table.frequency[order], table.response[order], quantity=table.quantity)
+        found = vibration_spectrum(
+            frequency=table.frequency[order], response=table.response[order], quantity=table.quantity
+        )
     except InvalidInput as refusal:
         raise InvalidInput(f"{path}: {refusal}") from None
     return _named(found, path, hashlib.sha256(content).hexdigest(), ())

@@ -58,9 +58,9 @@ class ContactStiffness:
     mode : int
         Number of the mode of the structure.
     normal_stiffness : LogEstimate or None
-        None where the shift is not resolved.
+        None where the shift is not resolved. [N/m]
     decay_length : LogEstimate or None
-        By load over stiffness.
+        By load over stiffness. [m]
     decay_length_by_ratio : LogEstimate or None
         By the ratio of the shifts at large and at small vibration.
     decay_length_combined : LogEstimate or None
@@ -147,7 +147,7 @@ def contact_stiffness(
     modal_mass_deviation: float = 0.1,
     large: Resonance | None = None,
     vibration_amplitude: float | None = None,
-    amplitude_deviation: float = 0.05,
+    log_amplitude_deviation: float = 0.05,
 ) -> ContactStiffness:
     r"""Normal stiffness and decay length of a contact from the shift of one resonance of its structure.
 
@@ -168,7 +168,7 @@ def contact_stiffness(
         Under the load, at a large vibration of constant amplitude.
     vibration_amplitude : float or None
         That amplitude at the contact, zero to peak. [m]
-    amplitude_deviation : float
+    log_amplitude_deviation : float
         Standard deviation of its logarithm.
 
     Returns
@@ -194,7 +194,7 @@ def contact_stiffness(
     frequencies and of the modal mass, to which the stiffness is proportional.
     """
     load = float(require_positive(normal_load=normal_load))
-    require_non_negative(modal_mass_deviation=modal_mass_deviation, amplitude_deviation=amplitude_deviation)
+    require_non_negative(modal_mass_deviation=modal_mass_deviation, log_amplitude_deviation=log_amplitude_deviation)
     if len(free) > 2:
         raise InvalidInput(f"free must hold at most two resonances, got {len(free)}")
     if large is not None and vibration_amplitude is None:
@@ -225,7 +225,7 @@ def contact_stiffness(
     found = replace(found, normal_stiffness=stiffness, decay_length=length)
     if large is None or vibration_amplitude is None:
         return found
-    return _with_ratio(found, tuned, (u_0, parts), large, float(vibration_amplitude), amplitude_deviation)
+    return _with_ratio(found, tuned, (u_0, parts), large, float(vibration_amplitude), log_amplitude_deviation)
 
 
 def _free_frequency(free: Sequence[Resonance]) -> tuple[float, float, float | None]:
@@ -328,11 +328,12 @@ def _with_ratio(
     small: tuple[float, Floats],
     large: Resonance,
     amplitude: float,
-    amplitude_deviation: float,
+    log_amplitude_deviation: float,
 ) -> ContactStiffness:
     """Record with the decay length by the ratio of shifts, and with that of both routes together."""
-    assert found.normal_stiffness is not None
-    assert found.decay_length is not None
+    pressed, first = found.normal_stiffness, found.decay_length
+    assert pressed is not None
+    assert first is not None
     u_0, parts = small
     f_0 = found.free_frequency
     if large.frequency - f_0 < _RESOLVED * np.hypot(u_0, large.frequency_uncertainty):
@@ -343,7 +344,7 @@ def _with_ratio(
         return replace(found, not_found=(*found.not_found, reason))
     slopes = tuned.slopes(f_0, large.frequency, u_0, large)
     k_large = tuned.stiffness(f_0, large.frequency)
-    ratio = k_large / found.normal_stiffness.median
+    ratio = k_large / pressed.median
     # columns: free, pressed, large, modal mass, amplitude; the modal mass leaves the ratio
     of_large = np.array([slopes[0] * u_0, 0.0, slopes[1] * large.frequency_uncertainty, parts[3], 0.0])
     of_ratio = of_large - parts
@@ -357,9 +358,9 @@ def _with_ratio(
         return replace(found, not_found=(*found.not_found, reason))
     length = decay_length_from_ratio(ratio, vibration_amplitude=amplitude)
     slope = log_ratio_slope(vibration_amplitude=amplitude, decay_length=length)
-    by_ratio = of_ratio / -slope + np.array([0.0, 0.0, 0.0, 0.0, amplitude_deviation])
+    by_ratio = of_ratio / -slope + np.array([0.0, 0.0, 0.0, 0.0, log_amplitude_deviation])
     by_stiffness = -parts
-    estimates = np.log([found.decay_length.median, length])
+    estimates = np.log([first.median, length])
     errors = np.stack([by_stiffness, by_ratio])
     apart = float(np.linalg.norm(errors[0] - errors[1]))
     second = LogEstimate(median=length, log_deviation=float(np.linalg.norm(by_ratio)))
@@ -369,7 +370,7 @@ def _with_ratio(
     difference = abs(float(estimates[1] - estimates[0])) / apart
     if difference > _CONTRADICTION:
         caveat = (
-            f"both decay lengths contradict each other: {found.decay_length.median * 1e6:.3g} um by the stiffness and"
+            f"both decay lengths contradict each other: {first.median * 1e6:.3g} um by the stiffness and"
             f" {length * 1e6:.3g} um by the ratio of shifts differ by {difference:.1f} standard uncertainties; the"
             " load, the modal mass, the amplitude at the contact or the exponential law is not as stated"
         )

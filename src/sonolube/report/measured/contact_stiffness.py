@@ -32,7 +32,7 @@ class StiffnessSettings:
         Frequency of the pressed resonance, in Hz.
     vibration_amplitude : float or None
         At the contact in the spectrum at large drive, zero to peak. [m]
-    amplitude_deviation : float
+    log_amplitude_deviation : float
         Standard deviation of its logarithm.
     """
 
@@ -43,7 +43,7 @@ class StiffnessSettings:
     mode_near: float | None = None
     pressed_near: float | None = None
     vibration_amplitude: float | None = None
-    amplitude_deviation: float = 0.05
+    log_amplitude_deviation: float = 0.05
 
 
 def contact_stiffness_sheet(
@@ -86,7 +86,7 @@ def contact_stiffness_sheet(
         pressed_near=settings.pressed_near,
         large=None if large is None else read_resonance_spectrum(large),
         vibration_amplitude=settings.vibration_amplitude,
-        amplitude_deviation=settings.amplitude_deviation,
+        log_amplitude_deviation=settings.log_amplitude_deviation,
     )
     one = found.stiffness
     names = [("free", free), ("pressed", pressed), ("free again", again), ("large drive", large)]

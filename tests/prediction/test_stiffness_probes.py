@@ -1,0 +1,60 @@
+"""Which resonances of the reference rig tell the stiffness of its contact."""
+
+from pathlib import Path
+
+import numpy as np
+from pytest import approx, raises
+
+from sonolube.errors import InvalidInput
+from sonolube.prediction.stiffness_probes import probe_sentences, stiffness_probes
+from sonolube.rig import read_rig
+
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
+PROBES = stiffness_probes(read_rig(RIGS / "tribometer.toml"), decay_length=[2e-6, 0.7e-6])
+
+
+def test_slow_modes_of_the_reference_rig_move_as_an_independent_program_found() -> None:
+    floating, slow, _ = PROBES
+    assert floating.pressed_frequency == approx([99.5, 127.8], abs=0.05)
+    assert slow.pressed_frequency == approx([168.5, 221.7], abs=0.05)
+    assert floating.resolvable.all()
+    assert slow.resolvable.all()
+
+
+def test_the_drive_resonance_moves_by_less_than_its_width_resolves() -> None:
+    drive = PROBES[-1]
+    assert drive.free_frequency == approx(22e3, rel=1e-3)
+    assert drive.shift[0] == approx(7.6, abs=0.05)
+    assert 2 * drive.peak_half_width[0] / drive.shift[0] == approx(140, rel=0.05)
+    assert not drive.resolvable[0]
+    assert np.isinf(drive.log_stiffness_deviation[0])
+    # first order: k_n/(8 pi^2 m f_0)
+    assert drive.shift[0] == approx(1.5e6 / (8 * np.pi**2 * drive.modal_mass * drive.free_frequency), rel=0.01)
+
+
+def test_sentences_name_the_best_probe_first_and_the_blind_one_last() -> None:
+    first, *_, last = probe_sentences(PROBES)
+    assert "99.52 Hz at l = 2 um and 127.8 Hz at l = 700 nm" in first
+    assert last.startswith("mode at 22 kHz")
+    assert last.endswith("not resolvable")
+
+
+def test_expected_uncertainty_falls_with_finer_frequencies_down_to_that_of_the_mass() -> None:
+    rig = read_rig(RIGS / "tribometer.toml")
+    coarse, fine = (
+        stiffness_probes(rig, decay_length=2e-6, resolution=share, modal_mass_deviation=0.05)[1]
+        for share in (1 / 20, 1 / 1000)
+    )
+    assert coarse.log_stiffness_deviation[0] > 0.08
+    assert fine.log_stiffness_deviation[0] == approx(0.05, rel=0.01)
+
+
+def test_a_rig_without_structure_has_no_probe_and_is_told_so() -> None:
+    probes = stiffness_probes(read_rig(RIGS / "welder_flat.toml"), decay_length=2e-6)
+    assert probes == ()
+    assert "no structure is known" in probe_sentences(probes)[0]
+
+
+def test_a_decay_length_of_zero_is_refused() -> None:
+    with raises(InvalidInput, match="decay_length must be positive"):
+        stiffness_probes(read_rig(RIGS / "tribometer.toml"), decay_length=0.0)
