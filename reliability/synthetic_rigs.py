@@ -1,7 +1,7 @@
-"""Rigs with known friction under vibration, by stick-slip stepped through a period: code of its own, outside the package.
+"""Rigs with known friction under vibration, by stick-slip stepped through a period: code of its own.
 
-Truth is drawn from what was learned of the population: memory length, decay length, and a discrepancy of the model that is
-a Gaussian process over the logarithms of amplitude and speed with Student's scale.
+Truth is drawn from what was learned of the population: memory length, decay length, and a discrepancy of the model that
+is a Gaussian process over the logarithms of amplitude and speed with Student's scale.
 """
 
 from dataclasses import dataclass

@@ -43,6 +43,7 @@ from sonolube.measurement.measured_runs import RUN_COLUMNS
 from sonolube.measurement.recordings.formats import RECORDING_FORMATS
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.prediction import Calibration, calibrations
+from sonolube.prediction.published_figures import blind_caption
 from sonolube.prediction.scores import PROBABILITIES
 from sonolube.published import errata
 from sonolube.rig import Rig, available_sources, read_rig, rig_schema
@@ -212,10 +213,20 @@ def wear_models() -> str:
     return _grid(["Name", "Model"], [[f"`{name}`", _plain(_summary(model))] for name, model in WEAR_MODELS.items()])
 
 
+_CALIBRATION_HEADS = (
+    *("Prediction", *(f"{100 * each:.0f} %" for each in PROBABILITIES), "p (80 %)"),
+    *("CRPS", "Score", "Width", "Fall by the blind"),
+)
+
+
 def prediction_calibration() -> str:
     """Coverage and scores of ways to predict published tests unseen."""
-    heads = ["Prediction", *(f"{100 * each:.0f} %" for each in PROBABILITIES), "p (80 %)", "CRPS", "Score", "Width"]
-    return _grid(heads, map(_calibration_cells, calibrations()))
+    return _grid(_CALIBRATION_HEADS, map(_calibration_cells, calibrations()))
+
+
+def blind_calibration() -> str:
+    """Coverage and scores of the blind prediction and of the mean ratio."""
+    return _grid(_CALIBRATION_HEADS, map(_calibration_cells, calibrations()[:2]))
 
 
 def _calibration_cells(one: Calibration) -> list[str]:
@@ -224,11 +235,18 @@ def _calibration_cells(one: Calibration) -> list[str]:
         for each in PROBABILITIES
     ]
     scores = [f"{one.p_value(0.8):.2f}", f"{one.crps:.3f}", f"{one.interval_score:.2f}", f"{one.median_width:.2f}"]
-    return [one.name, *coverages, *scores]
+    gain, low, high = calibrations()[0].gain_over(one)
+    fall = "" if one is calibrations()[0] else f"{gain:.3f} ({low:.3f} to {high:.3f})"
+    return [one.name, *coverages, *scores, fall]
 
 
 def _percent(ends: tuple[float, float]) -> str:
     return f"{100 * ends[0]:.0f} to {100 * ends[1]:.0f} %"
+
+
+def blind_headline() -> str:
+    """Coverage and score of the blind prediction in words."""
+    return blind_caption()
 
 
 TABLES: Mapping[str, Callable[[], str]] = {
@@ -252,6 +270,8 @@ TABLES: Mapping[str, Callable[[], str]] = {
         friction_models,
         wear_models,
         prediction_calibration,
+        blind_calibration,
+        blind_headline,
     )
 }
 

@@ -16,7 +16,8 @@ def _measures(records: Sequence[Record]) -> list[Measure]:
 
 STUDY = Study(
     title="Own runs on synthetic rigs without discrepancy",
-    question="As before, on rigs that the friction model describes exactly: intervals that allow for its error cover more.",
+    question="As before, on rigs that the friction model describes exactly: intervals that allow for its error cover"
+    " more.",
     sources=tuple(
         f"prediction/{name}"
         for name in ("closures.py", "hierarchy.py", "learned.json", "predictive.py", "rig_draws.py", "run_check.py")

@@ -134,6 +134,6 @@ def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
             for one in calibrations
         ]
     )
-    scores.legend(loc="upper right")
+    scores.legend(loc="lower right")
     figure.legend(*coverage.get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
