@@ -79,6 +79,7 @@ MODES = {
         "predict",
         (RIG, "--runs", OWN_RUNS, "--pin", "m50", "--disc", "m50"),
         {"--runs": RUNS, "--pin": "aluminium_2024", "--disc": "aluminium_2024", "--seed": "1", **VIBRATED},
+        ("--lubricant",),
     ),
     "plan": Mode(
         "plan",
@@ -148,7 +149,7 @@ MODES = {
         ("OUT/rig.toml", *KNOWN, "--actuator", "sa050510", "--voltage", "40V"),
         {"--actuator": "sa030318", "--voltage": "50V"},
     ),
-    "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}),
+    "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}, ("--no-interval",)),
     "wear": Mode("wear", (RIG,), VIBRATED),
     "simulate": Mode("simulate", (RIG,), VIBRATED),
     "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", "--set": "contact.normal_load=2N"}),
@@ -326,7 +327,7 @@ MODES = {
             "--amplitude": "per-volt",
             "--keep": "OUT/keep",
         },
-        ("--sobol",),
+        ("--sobol", "--no-interval"),
     ),
     "optimise": Mode(
         "optimise",

@@ -26,7 +26,7 @@ def test_the_pin_comes_first_and_a_stated_hardness_counts() -> None:
 
 
 def test_without_a_hardness_three_times_the_yield_strength_is_taken_and_said() -> None:
-    rig = read_rig(RIGS / "poisson_steel_steel.toml").replace("contact.softer.material", "inconel_718")
+    rig = read_rig(RIGS / "poisson_steel_steel.toml").replace("contact.softer.material", "bronze_c51000")
     body = named_bodies(rig.replace("contact.softer.yield_strength", "500 MPa"))[0]
     assert body.is_estimated
     assert body.hardness == approx(1.5e9)

@@ -1,6 +1,7 @@
 """Conditions beyond those of the published tests, and inputs that a prediction knows least."""
 
 from dataclasses import replace
+from math import exp, log
 from pathlib import Path
 
 from pytest import approx, mark
@@ -30,7 +31,7 @@ def test_a_rig_of_the_published_tests_is_no_extrapolation() -> None:
     [
         ("sliding.sliding_speed=1m/s", "sliding speed 1 m/s", "modulus"),
         ("sliding.sliding_speed=1mm/s", "sliding speed 1 mm/s", "modulus"),
-        ("contact.pair.effective_modulus=2MPa", "effective modulus 2 MPa", "speed"),
+        ("contact.pair.effective_modulus=12GPa", "effective modulus 12 GPa", "speed"),
     ],
 )
 def test_what_lies_outside_the_published_tests_is_named_and_nothing_else(change: str, label: str, other: str) -> None:
@@ -50,8 +51,8 @@ def with_friction_known_within(factor: float) -> Rig:
 
 
 def test_the_least_known_input_stands_first_and_each_names_a_measurement() -> None:
-    found = predict(with_friction_known_within(1.5))
-    assert found["input"].to_numpy().tolist()[0] == "friction_coefficient"
+    found = predict(with_friction_known_within(2.5))
+    assert found["input"].to_numpy().tolist()[:2] == ["friction_coefficient", "decay_length"]
     assert found["input"].size == 3
     assert found["input_spread"].to_numpy() == approx(sorted(found["input_spread"].to_numpy(), reverse=True))
     assert "without vibration" in found["remedy"].to_numpy()[0]
@@ -65,5 +66,6 @@ def test_dry_friction_known_better_narrows_the_force_and_leaves_the_ratio() -> N
     assert interval(known, "friction_ratio") == approx(interval(vague, "friction_ratio"))
     narrowed = (interval(each, "friction_force") for each in (known, vague))
     better, now = (high - low for low, high in narrowed)
-    assert float(row["force_interval_share_left"]) == approx(better / now, abs=0.01)
+    # expected over what would be measured: in proportion to a lognormal coefficient, whose mean exceeds its median
+    assert float(row["force_interval_share_left"]) == approx(better / now * exp(log(1.5) ** 2 / 2), abs=0.03)
     assert better / now < 0.95

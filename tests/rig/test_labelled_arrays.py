@@ -43,7 +43,7 @@ def stored(content: bytes) -> xr.Dataset:
     return xr.load_dataset(BytesIO(content), engine="h5netcdf")
 
 
-@pytest.mark.parametrize("arrays", [lambda: ARRAYS, simulated, lambda: prediction_arrays(read_rig(RIG), draws=50)])
+@pytest.mark.parametrize("arrays", [lambda: ARRAYS, simulated, lambda: prediction_arrays(read_rig(RIG), draws=100)])
 def test_a_file_without_xarray_reads_as_one_that_xarray_wrote(arrays: Callable[[], LabelledArrays]) -> None:
     found = arrays()
     read, expected = stored(found.netcdf()), stored(bytes(found.dataset().to_netcdf(engine="h5netcdf")))

@@ -175,9 +175,9 @@ def test_the_inputs_known_least_come_first_and_each_measurement_once() -> None:
     rig = rig_of(KNOWN)
     listed = least_known(rig)
     assert [one.deviation for one in listed] == sorted((one.deviation for one in listed), reverse=True)
-    # friction hangs on the decay length R_q/3, the amplitude and the coefficient without vibration, and on no more
+    # friction hangs on the decay length, the amplitude and the coefficient without vibration, and on no more
     names = [one.key.rpartition(".")[2] for one in listed]
-    assert set(names) == {"friction_coefficient", "vibration_amplitude", "rms_height"}
+    assert set(names) == {"friction_coefficient", "vibration_amplitude", "decay_length"}
     assert len({one.remedy for one in listed}) == 3
 
 

@@ -212,7 +212,7 @@ def test_voltages_scale_the_amplitude_of_the_rig_and_need_one() -> None:
     [
         ([0.5], [1e-6], r"1 run under one condition \(1 um, 50 mm/s\) rank no models: vary amplitude or speed"),
         ([0.5, 0.52], [1e-6, 1e-6], "2 runs under one condition"),
-        ([0.5, 0.5, 0.5], [1e-6] * 3, "1 run under one condition"),
+        ([0.5, 0.5, 0.5], [1e-6] * 3, "3 runs under one condition"),
         ([0.5, 2.5], [1e-6, 2e-6], "run 2 has a friction ratio of 2.5"),
         ([0.5, 0.6], [1e-6, -2e-6], "vibration_amplitude of run 2 must be positive"),
     ],

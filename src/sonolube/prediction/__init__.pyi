@@ -2,4 +2,4 @@ from .calibration import Calibration as Calibration, calibrations as calibration
 from .figures import calibration_figure as calibration_figure, prediction_figure as prediction_figure
 from .live_prediction import LivePrediction as LivePrediction, predict as predict
 from .posterior import learned as learned
-from .statement import interval as interval, statement as statement
+from .rig_statement import interval as interval, statement as statement

@@ -18,7 +18,7 @@ class FrictionInterval:
     Parameters
     ----------
     low, high : float or None
-        Ends; None where there is no prediction. []
+        Ends; None where there is no prediction.
     reason : str
         Why there is none.
     """

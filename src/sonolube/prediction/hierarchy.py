@@ -51,11 +51,8 @@ _BATCH: Final = 256  # rows of hyperparameters at a time, to bound memory
 class Prior:
     """Lognormal priors of the hyperparameters other than the parameter: median, and deviation of the logarithm.
 
-    Parameters
-    ----------
-    length_factor, parameter_spread, length_spread, discrepancy, correlation_length : tuple of float
-    parameter_deviation : float or None
-        Of the logarithm of the parameter; that of the friction model where None.
+    Fields are named as in `HYPERPARAMETERS`; `parameter_deviation` is that of the logarithm of the parameter, by the
+    friction model where None.
     """
 
     length_factor: tuple[float, float] = (1.0, 0.7)

@@ -70,7 +70,7 @@ class RigInputs:
 
     Parameters
     ----------
-    decay_length, amplitude, friction : Input
+    decay, amplitude, friction : Input
         Decay length of the contact force, vibration amplitude and intrinsic coefficient of friction: the uncertain
         ones.
     measured_length : bool
@@ -87,7 +87,7 @@ class RigInputs:
         Friction by the rig's own model.
     """
 
-    decay_length: Input
+    decay: Input
     amplitude: Input
     friction: Input
     measured_length: bool
@@ -100,12 +100,12 @@ class RigInputs:
     @property
     def uncertain(self) -> tuple[Input, Input, Input]:
         """Decay length, amplitude and dry friction."""
-        return self.decay_length, self.amplitude, self.friction
+        return self.decay, self.amplitude, self.friction
 
     def with_input(self, known: Input) -> "RigInputs":
         """Return the inputs with the uncertain one of the same name replaced."""
         length, amplitude, friction = (known if known.name == each.name else each for each in self.uncertain)
-        return replace(self, decay_length=length, amplitude=amplitude, friction=friction)
+        return replace(self, decay=length, amplitude=amplitude, friction=friction)
 
     def at(
         self, *, vibration_amplitude: ArrayLike | None = None, sliding_speed: ArrayLike | None = None
@@ -114,7 +114,7 @@ class RigInputs:
         amplitude = self.amplitude.value if vibration_amplitude is None else vibration_amplitude
         speed = self.sliding_speed if sliding_speed is None else sliding_speed
         a, v = np.broadcast_arrays(np.atleast_1d(np.asarray(amplitude, float)), np.asarray(speed, float))
-        length = self.decay_length.value if self.measured_length else REFERENCE_DECAY_LENGTH
+        length = self.decay.value if self.measured_length else REFERENCE_DECAY_LENGTH
         return UncertainConditions(
             conditions=Conditions(
                 vibration_amplitude=a,
@@ -122,7 +122,7 @@ class RigInputs:
                 sliding_speed=v,
                 decay_length=np.full(a.shape, length),
             ),
-            decay_length_spread=self.decay_length.spread if self.measured_length else None,
+            decay_length_spread=self.decay.spread if self.measured_length else None,
             amplitude_spread=self.amplitude.spread,
         )
 
@@ -152,7 +152,7 @@ def rig_inputs(rig: Rig) -> RigInputs:
         raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is 0 m")
     length = _measured_decay_length(rig)
     return RigInputs(
-        decay_length=length or _decay_length_of_the_population(),
+        decay=length or _decay_length_of_the_population(),
         amplitude=_amplitude(rig, point),
         friction=_friction(rig),
         measured_length=length is not None,

@@ -15,8 +15,8 @@ from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, RigPrediction, rig_prediction
 from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, OwnLogarithms, measures, own_logarithms, share_left
+from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
 from sonolube.prediction.scores import LEVELS
-from sonolube.prediction.statement import prediction_attributes, statement, wear_sentence
 from sonolube.prediction.wear import vibration_weight
 from sonolube.prediction.wear_statement import pair_of
 from sonolube.rig import Rig
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 _CURVE: Final = 33  # points of a curve, the operating point in the middle
 _FARTHEST: Final = 6.0  # point of a curve over the operating point
 _FEWEST, _MOST = 100, 200_000  # draws
+_NOT_IN_THE_RATIO: Final = "friction_coefficient", "interval_share_left"
 
 
 class LivePrediction:
@@ -145,7 +146,7 @@ class LivePrediction:
             attrs=prediction_attributes(rig, inputs, own, found, limits)
             | {
                 "heat": heating if isinstance(heating, str) else "",
-                "wear": wear_sentence(rig, drawn["wear_rate_ratio"], contradicted=_contradicted(found)),
+                "wear": wear_sentence(rig, ratios=drawn["wear_rate_ratio"], contradicted=_contradicted(found)),
             },
         )
         return result.assign_attrs(statement="\n".join(statement(result)))
@@ -282,8 +283,8 @@ def _shares_left(
         found[share] = np.array(
             [
                 1.0
-                if each.spread <= KNOWN_WELL[each.name]
-                else share_left(target, observed=getattr(logs, each.name), noise=KNOWN_WELL[each.name])
+                if each.spread <= KNOWN_WELL[each.name] or (each.name, share) == _NOT_IN_THE_RATIO
+                else share_left(target, observed=logs.of(each.name), noise=KNOWN_WELL[each.name])
                 for each in uncertain
             ]
         )

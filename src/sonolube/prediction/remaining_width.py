@@ -31,7 +31,7 @@ class Measure:
     label : str
         In words.
     share_left : float
-        Expected width of the 80 % interval of the friction ratio after it, over the width now. []
+        Expected width of the 80 % interval of the friction ratio after it, over the width now.
     """
 
     label: str
@@ -44,15 +44,24 @@ class OwnLogarithms:
 
     Parameters
     ----------
-    decay_length, vibration_amplitude : ndarray, shape (draws,)
-        Of factors on their medians.
-    friction_coefficient : ndarray, shape (draws,)
+    log_length, log_amplitude : ndarray, shape (draws,)
+        Of factors on the medians of decay length and amplitude.
+    log_friction : ndarray, shape (draws,)
         Of the coefficient without vibration.
     """
 
-    decay_length: Floats
-    vibration_amplitude: Floats
-    friction_coefficient: Floats
+    log_length: Floats
+    log_amplitude: Floats
+    log_friction: Floats
+
+    def of(self, name: str) -> Floats:
+        """Logarithms of an input by its name."""
+        known = {
+            "decay_length": self.log_length,
+            "vibration_amplitude": self.log_amplitude,
+            "friction_coefficient": self.log_friction,
+        }
+        return known[name]
 
 
 def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> OwnLogarithms:
@@ -80,9 +89,7 @@ def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> Own
     fresh = np.random.default_rng(seed + 7).standard_normal(found.count)
     amplitude = at.amplitude_spread / both * (-at.amplitude_spread * deviate + scatter * fresh)
     return OwnLogarithms(
-        decay_length=middle + both * deviate + amplitude,
-        vibration_amplitude=amplitude,
-        friction_coefficient=np.log(intrinsic),
+        log_length=middle + both * deviate + amplitude, log_amplitude=amplitude, log_friction=np.log(intrinsic)
     )
 
 
@@ -151,7 +158,7 @@ def measures(found: RigPrediction, inputs: RigInputs, *, ratio: Floats, seed: in
         ),
     ]
     if not inputs.measured_length:
-        length = own_logarithms(found, intrinsic=np.ones(found.count), seed=seed).decay_length
+        length = own_logarithms(found, intrinsic=np.ones(found.count), seed=seed).log_length
         made += [
             Measure(
                 label=f"contact stiffness within {100 * noise:.0f} %",

@@ -12,7 +12,7 @@ from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 
-CENTRAL_SHARE: Final = 0.8
+CENTRAL_SHARE: Final = 0.95
 """Share of published contacts whose range of decay lengths the caveat gives. []"""
 
 
@@ -76,7 +76,7 @@ def decay_length_caveat(rig: Rig, *, vibration_amplitude: float | None = None) -
     str or None
         With the friction ratio of a sine of that amplitude by the rig's own friction model, for its own decay length
         and for the median of `PUBLISHED_DECAY_LENGTH`, where it has an amplitude; None where the rig states its decay
-        length, its heights are not exponential, or R_q/lambda lies within the central 80 % of that population.
+        length, its heights are not exponential, or R_q/lambda lies within the central 95 % of that population.
     """
     heights, (low, high) = rig.contact.heights, PUBLISHED_DECAY_LENGTH.central_range()
     if rig.contact.decay_length is not None or not isinstance(heights, ExponentialHeights):

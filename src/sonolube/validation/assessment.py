@@ -171,12 +171,14 @@ def unseen_error(model: FrictionModel) -> ErrorStatistics | None:
     Returns
     -------
     ErrorStatistics or None
-        None for parameters other than the defaults, of which no error is known.
+        None for parameters other than the defaults, and for a model without a variant to fit, of which no error is
+        known.
     """
     if model != type(model)():
         return None
     variants = {variant.name: variant for variant in FRICTION_MODEL_VARIANTS}
-    return cross_validation_errors(variants[model.name.replace("_", "-")], FITTED_SETS)
+    variant = variants.get(model.name.replace("_", "-"))
+    return None if variant is None else cross_validation_errors(variant, FITTED_SETS)
 
 
 def information_criteria(fit: Fit, tests: Tests) -> InformationCriteria | None:

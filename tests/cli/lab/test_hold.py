@@ -62,7 +62,8 @@ def test_a_reference_beyond_reach_is_a_caveat_and_the_voltage_stays_below_its_li
     sonolube: Program, rigs: Path, tmp_path: Path
 ) -> None:
     options = ("--friction", "0.53N", "--duration", "2s", "--voltage-limit", "20V", "--step-to", "20.3mm/s")
-    answer = sonolube("lab", "hold", rigs / "tribometer.toml", *options, "--out", tmp_path, "--json").answer
+    specimen = ("--seed", "3", "--out", tmp_path)
+    answer = sonolube("lab", "hold", rigs / "tribometer.toml", *options, *specimen, "--json").answer
     (phase,) = answer["phases"]
     assert phase["voltage_peak_to_peak"]["value"] <= 20.0
     assert any("the voltage was at its limit or 0 for" in line for line in answer["caveats"])

@@ -5,16 +5,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from sonolube.prediction.friction_interval import FrictionInterval, friction_interval
-from sonolube.validation.assessment import unseen_error
-
 if TYPE_CHECKING:
     from sonolube.friction import FrictionModel
+    from sonolube.prediction.friction_interval import FrictionInterval
     from sonolube.rig import Rig
     from sonolube.validation.assessment import ErrorStatistics
 
 Interval = Annotated[
-    bool, typer.Option("--interval/--no-interval", help="State the predictive interval of the friction ratio beside.")
+    bool,
+    typer.Option("--interval/--no-interval", help="State the error of the friction model, and the interval with it."),
 ]
 """Option for the predictive interval."""
 
@@ -32,30 +31,36 @@ class BeyondTheModel:
     """
 
     error: "ErrorStatistics | None"
-    interval: FrictionInterval | None
+    interval: "FrictionInterval | None"
 
     def rows(self) -> list[tuple[str, str]]:
         """Names and texts."""
+        if self.interval is None:
+            return [("left out", "the error of the model, which --interval states")]
         error = "the error of the model, which with these parameters is not known"
         if self.error is not None:
             error = (
                 f"the error of the model: +-{self.error.rms:.2g} in the ratio on {self.error.count} published tests,"
                 " each unseen"
             )
-        rows = [("left out", error)]
-        return rows if self.interval is None else [*rows, ("predicted ratio", self.interval.text)]
+        return [("left out", error), ("predicted ratio", self.interval.text)]
 
     def object(self) -> dict[str, Any]:
         """Entries for JSON."""
-        content: dict[str, Any] = {
-            "model_error": None if self.error is None else {"rms": self.error.rms, "tests": self.error.count}
-        }
         if self.interval is None:
-            return content
+            return {}
         ends = None if self.interval.low is None else [self.interval.low, self.interval.high]
-        return content | {"predicted_friction_ratio": {"interval_80": ends, "reason": self.interval.reason or None}}
+        return {
+            "model_error": None if self.error is None else {"rms": self.error.rms, "tests": self.error.count},
+            "predicted_friction_ratio": {"interval_80": ends, "reason": self.interval.reason or None},
+        }
 
 
 def beyond_the_model(rig: "Rig", model: "FrictionModel", *, interval: bool) -> BeyondTheModel:
     """What the friction ratio of a rig by a friction model leaves out."""
-    return BeyondTheModel(error=unseen_error(model), interval=friction_interval(rig) if interval else None)
+    if not interval:
+        return BeyondTheModel(error=None, interval=None)
+    from sonolube.prediction.friction_interval import friction_interval
+    from sonolube.validation.assessment import unseen_error  # which fits, with scipy.optimize
+
+    return BeyondTheModel(error=unseen_error(model), interval=friction_interval(rig))

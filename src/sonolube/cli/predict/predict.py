@@ -16,8 +16,8 @@ from sonolube.compilation import few_points
 from sonolube.measurement.measured_runs import runs_help
 from sonolube.prediction.figures import prediction_figure
 from sonolube.prediction.live_prediction import prediction_arrays
+from sonolube.prediction.rig_statement import interval
 from sonolube.prediction.scores import PROBABILITIES
-from sonolube.prediction.statement import interval
 from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.rig.labelled_arrays import LabelledArrays

@@ -156,10 +156,10 @@ def _outlier_caveats(check: RunCheck | None, own: OwnRuns) -> list[str]:
     ]
 
 
-def wear_sentence(rig: Rig, wear_rate_ratio: Floats, *, contradicted: bool) -> str:
+def wear_sentence(rig: Rig, *, ratios: Floats, contradicted: bool) -> str:
     """Change of the wear rate in words, with the body that wears."""
     if contradicted:
         return (
             "What vibration does to wear is not known where the runs contradict the prediction of friction: measure it."
         )
-    return wear_statement(wear_rate_ratio, pair=pair_of(rig), worn_body=worn_body(rig))
+    return wear_statement(ratios, pair=pair_of(rig), worn_body=worn_body(rig))
