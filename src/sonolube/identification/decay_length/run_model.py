@@ -1,0 +1,293 @@
+r"""Readings at the switches from the courses of decay length and amplitude, with their priors and noise.
+
+Over the run the decay length grows by :math:`e^{g}` and the amplitude falls by :math:`e^{d}`,
+
+.. math:: l(s) = l_0 e^{g\,c(s; S_l, n_l)}, \qquad a(s) = a_0 e^{-d\,c(s; S_a, n_a)}, \qquad
+    c(s; S, n) = \frac{1 - e^{-(s/S)^n}}{1 - e^{-(s_1/S)^n}} ,
+
+where :math:`s_1` is the distance of the run. The readings are
+
+.. math::
+
+    \frac{F_1 - z}{F_0 - z} &= R(a/l,\ v l/(\omega a D_c)) + \delta_0 + \delta_1 \ln\frac{a\,l_0}{a_0\,l}
+        + \delta_2\,c(s; S_\delta) \\
+    I &\propto \abs{\mathrm{j} p + r e^{-\mathrm{j}\varphi}}, \qquad r = a/a_0, \quad
+        \sin\varphi = t \sqrt{1 - r^2} \\
+    \Delta_s (1 + \Delta_s/2f_0) &= \frac{F_N/l}{8 \pi^2 m f_0}, \qquad
+    \frac{\Delta_l (1 + \Delta_l/2f_0)}{\Delta_s (1 + \Delta_s/2f_0)} = \frac{2 I_1(\beta)}{\beta I_0(\beta)}
+
+with asperity stick-slip R, a capacitive current p over the motional one, whose phase turns where the resonance leaves the
+drive (t = 1 or -1) and does not where the drive weakens (t = 0), and :math:`\beta = A/l` for the amplitude A at large
+drive, which follows that of the vibration or does not.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
+from sonolube.identification.decay_length.channel_noise import noise_covariance, relaxation
+from sonolube.identification.decay_length.conditions import LONG_DECAY_LENGTH, SHORT_DECAY_LENGTH, SwitchConditions
+from sonolube.identification.decay_length.stick_slip_table import interpolated_ratio
+from sonolube.identification.decay_length.switch_table import SwitchTable
+
+DIFFERENCE: Final = float(np.log(LONG_DECAY_LENGTH / SHORT_DECAY_LENGTH))
+"""Logarithm of the ratio of the two decay lengths that the published sets ask for."""
+
+PARAMETERS: Final = (
+    "decay_length", "amplitude", "memory_length", "discrepancy_slope", "large_drive", "shift_scale",
+    "capacitive_share", "turned_share", "growth", "growth_distance", "growth_exponent", "fall", "fall_distance",
+    "fall_exponent", "drift", "drift_distance",
+)  # fmt: skip
+"""Parameters in their order; logarithms of lengths and factors, the logit of the share."""
+
+_LEVEL_ERROR: Final = 0.1  # of the friction model: the rms error of a friction ratio on published tests
+_SLOPE_ERROR: Final = 0.08  # of the ratio for a factor of e in amplitude over decay length
+_MASS_ERROR: Final = 0.15  # relative, of a stated modal mass
+_STEADY_LENGTH: Final = 0.05  # standard deviation of the logarithm of a change that a steady decay length may have
+_STEADY_AMPLITUDE: Final = 0.03  # likewise of an amplitude at constant voltage
+_CHANGE_SPREAD: Final = 0.5  # of the logarithm of a change that a hypothesis has
+_DRIFT: Final = 0.03  # of the friction ratio over the run, by what the model leaves out
+_UNEXPLAINED: Final = 0.3  # the same where the friction ratio changes by itself
+_LARGEST_SHARE: Final = 0.8  # of a capacitive current over the motional one
+_ANY: Final = 10.0  # standard deviation of a level that is not known
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Channel:
+    """Readings of one kind with their noise.
+
+    Parameters
+    ----------
+    name : str
+        Of the quantity.
+    rows : ndarray of int
+        Switches that have the reading.
+    values : ndarray
+        In the unit of the model: friction ratios, logarithms of currents, linear frequency shifts.
+    covariance : ndarray
+        Of their noise, with that of a free level.
+    level : float
+        Standard deviation of that level.
+    """
+
+    name: str
+    rows: np.ndarray
+    values: Floats
+    covariance: Floats
+    level: float
+
+
+class RunModel:
+    """Residuals of all readings of a run for many parameter values at once.
+
+    Parameters
+    ----------
+    table : SwitchTable
+    conditions : SwitchConditions
+    grows, falls : bool
+        Whether the decay length grows, and the amplitude falls, over the run; if not they are steady.
+    drifts : bool
+        Whether the friction ratio changes by itself too.
+    follows : bool
+        Whether the amplitude at large drive falls with that of the vibration.
+    channels : tuple of Channel
+        From `run_channels`.
+    """
+
+    def __init__(
+        self,
+        table: SwitchTable,
+        conditions: SwitchConditions,
+        *,
+        grows: bool,
+        falls: bool,
+        drifts: bool,
+        follows: bool,
+        channels: tuple[Channel, ...],
+    ) -> None:
+        self.table, self.conditions, self.channels, self.follows = table, conditions, channels, follows
+        self._whiteners = [np.linalg.inv(np.linalg.cholesky(each.covariance)) for each in channels]
+        self.means, self.deviations = self._priors(grows=grows, falls=falls, drifts=drifts)
+
+    def _priors(self, *, grows: bool, falls: bool, drifts: bool) -> tuple[Floats, Floats]:
+        """Means and standard deviations of the normal priors of the parameters."""
+        end = self.table.sliding_distance[-1]
+        change = (DIFFERENCE, _CHANGE_SPREAD)
+        priors = {
+            "decay_length": (np.log(1.5e-6), 0.7),
+            "amplitude": (np.log(self.conditions.vibration_amplitude), 0.15),
+            "memory_length": (np.log(EMPIRICAL_MEMORY_LENGTH), 0.4),
+            "discrepancy_slope": (0.0, _SLOPE_ERROR),
+            "large_drive": (np.log(self.conditions.large_drive_amplitude or self.conditions.vibration_amplitude), 0.3),
+            "shift_scale": self._shift_scale(),
+            "capacitive_share": (-0.5, 1.0),
+            "turned_share": (0.0, 1.0),
+            "growth": change if grows else (0.0, _STEADY_LENGTH),
+            "growth_distance": (np.log(end / 5), 1.0),
+            "growth_exponent": (0.3, 0.4),
+            "fall": change if falls else (0.0, _STEADY_AMPLITUDE),
+            "fall_distance": (np.log(end / 2), 1.0),
+            "fall_exponent": (0.3, 0.4),
+            "drift": (0.0, _UNEXPLAINED if drifts else _DRIFT),
+            "drift_distance": (np.log(end / 3), 1.0),
+        }
+        table = np.array([priors[name] for name in PARAMETERS])
+        return table[:, 0], table[:, 1]
+
+    @property
+    def has_stiffness(self) -> bool:
+        """Whether a shift is a contact stiffness: mass and natural frequency of the mode are stated."""
+        return self.conditions.modal_mass is not None and self.conditions.natural_frequency is not None
+
+    def _shift_scale(self) -> tuple[float, float]:
+        """Prior of the logarithm of the shift at the beginning, or of the error of the stated modal mass."""
+        if self.has_stiffness:
+            return 0.0, _MASS_ERROR
+        shifts = [each.values for each in self.channels if each.name.endswith("drive_shift")]
+        level = float(np.median(np.concatenate(shifts))) if shifts else 1.0
+        spread = float(np.sqrt(np.mean(np.concatenate(shifts) ** 2))) if shifts else 1.0
+        return float(np.log(max(level, 0.1 * spread, 1e-12))), 2.0
+
+    def parameters(self, deviates: Floats) -> dict[str, Floats]:
+        """Parameters by name, shape (n, 1), from standard normal deviates of shape (n, parameters)."""
+        values = self.means + self.deviations * deviates
+        return {name: values[:, [column]] for column, name in enumerate(PARAMETERS)}
+
+    def courses(self, deviates: Floats) -> tuple[Floats, Floats]:
+        """Decay length and amplitude at each switch, shape (n, switches) each, in m."""
+        p = self.parameters(deviates)
+        grown, fallen = (
+            relaxation(
+                self.table.sliding_distance,
+                length=np.exp(p[f"{name}_distance"][:, 0]),
+                exponent=np.exp(p[f"{name}_exponent"][:, 0]),
+            )
+            for name in ("growth", "fall")
+        )
+        length = np.exp(p["decay_length"] + p["growth"] * grown)
+        return length, np.exp(p["amplitude"] - p["fall"] * fallen)
+
+    def predicted(self, deviates: Floats) -> dict[str, Floats]:
+        """Readings of each channel without noise at all switches, shape (n, switches)."""
+        from scipy.special import expit, i0e, i1e
+
+        p = self.parameters(deviates)
+        length, a = self.courses(deviates)
+        known = self.conditions
+        v = known.sliding_speed * length / (2 * np.pi * known.frequency * a * np.exp(p["memory_length"]))
+        start = np.exp(p["amplitude"] - p["decay_length"])
+        ratio = interpolated_ratio(relative_amplitude=a / length, reduced_speed=v)
+        ratio = ratio + p["discrepancy_slope"] * np.log(a / length / start)
+        drifted = relaxation(self.table.sliding_distance, length=np.exp(p["drift_distance"][:, 0]))
+        ratio = ratio + p["drift"] * drifted
+        fall = a / np.exp(p["amplitude"])
+        small = np.exp(p["shift_scale"]) * self._stiffness_shift(length, np.exp(p["decay_length"]))
+        beta = np.exp(p["large_drive"]) * (fall if self.follows else 1.0) / length
+        return {
+            "friction_ratio": ratio,
+            "stack_current": _log_current(fall, _LARGEST_SHARE * expit(p["capacitive_share"]), p["turned_share"]),
+            "small_drive_shift": small,
+            "large_drive_shift": small * 2 * i1e(beta) / (beta * i0e(beta)),
+        }
+
+    def _stiffness_shift(self, length: Floats, first: Floats) -> Floats:
+        """Shift at small drive over its scale, in Hz where the mode is known, else over that at the beginning."""
+        mass, f0 = self.conditions.modal_mass, self.conditions.natural_frequency
+        if mass is None or f0 is None:
+            return np.asarray(first / length)
+        return np.asarray(self.conditions.normal_load / length / (8 * np.pi**2 * mass * f0))
+
+    def residuals(self, deviates: Floats) -> Floats:
+        """White residuals of all channels one after the other, shape (n, readings)."""
+        predicted = self.predicted(deviates)
+        return np.concatenate(
+            [
+                (each.values - predicted[each.name][:, each.rows]) @ whitener.T
+                for each, whitener in zip(self.channels, self._whiteners, strict=True)
+            ],
+            axis=1,
+        )
+
+    def fitted(self, deviates: Floats) -> dict[str, Floats]:
+        """Readings at all switches for one set of deviates, with the levels that fit best, in SI."""
+        found = {}
+        predicted = self.predicted(deviates[None])
+        for each in self.channels:
+            course = predicted[each.name][0]
+            rest = each.values - course[each.rows]
+            course = course + each.level**2 * np.linalg.solve(each.covariance, rest).sum()
+            if each.name == "stack_current":
+                course = np.exp(course)
+            elif each.name != "friction_ratio" and self.conditions.natural_frequency is not None:
+                f0 = self.conditions.natural_frequency
+                course = f0 * (np.sqrt(1 + 2 * course / f0) - 1)
+            found[each.name] = course
+        return found
+
+
+def _log_current(fall: Floats, capacitive: Floats, turned: Floats) -> Floats:
+    """Logarithm of the current of a resonator beside its capacitance, over the motional current at the beginning.
+
+    `fall` is the amplitude over that at the beginning, `capacitive` the capacitive current in the same unit, and
+    `turned` the deviate of how far the fall comes from the phase of a resonance that leaves the drive.
+    """
+    sine = np.sin(np.pi / 2 * np.tanh(2 * turned)) * np.sqrt(np.clip(1 - fall**2, 0.0, None))
+    in_phase = fall**2 * (1 - sine**2)
+    return np.asarray(0.5 * np.log(in_phase + (capacitive - fall * sine) ** 2))
+
+
+def run_channels(table: SwitchTable, conditions: SwitchConditions) -> tuple[Channel, ...]:
+    """Readings of a run in the units of the model, each with the covariance of its noise.
+
+    Parameters
+    ----------
+    table : SwitchTable
+    conditions : SwitchConditions
+
+    Returns
+    -------
+    tuple of Channel
+        Friction ratio, then current and shifts where the run has them.
+    """
+    ratio, uncertainty = zero_free_ratio(table)
+    channels = [_channel("friction_ratio", table, ratio, uncertainty, level=_LEVEL_ERROR)]
+    if "stack_current" not in table.missing and table.stack_current is not None:
+        known = table.stack_current_uncertainty
+        relative = None if known is None else known / table.stack_current
+        channels.append(_channel("stack_current", table, np.log(table.stack_current), relative, level=_ANY))
+    for name in ("small_drive_shift", "large_drive_shift"):
+        shift, stated = getattr(table, name), getattr(table, f"{name}_uncertainty")
+        if name in table.missing:
+            continue
+        f0 = conditions.natural_frequency
+        factor = np.zeros_like(shift) if f0 is None else shift / f0
+        spread = None if stated is None else stated * np.abs(1 + factor)
+        channels.append(_channel(name, table, shift * (1 + factor / 2), spread, level=0.0))
+    return tuple(channels)
+
+
+def zero_free_ratio(table: SwitchTable) -> tuple[Floats, Floats | None]:
+    """Friction ratio of each switch with its zero subtracted, and its standard uncertainty where all are stated. []"""
+    without = table.intrinsic_friction_force - table.force_zero
+    ratio = (table.friction_force - table.force_zero) / without
+    parts = (
+        table.friction_force_uncertainty,
+        table.intrinsic_friction_force_uncertainty,
+        table.force_zero_uncertainty,
+    )
+    on, off, zero = parts
+    if on is None or off is None or zero is None:
+        return ratio, None
+    return ratio, np.sqrt(on**2 + (ratio * off) ** 2 + ((1 - ratio) * zero) ** 2) / without
+
+
+def _channel(name: str, table: SwitchTable, values: Floats, uncertainty: Floats | None, *, level: float) -> Channel:
+    """Readings that are known, with their noise and a free level of a standard deviation."""
+    known = np.isfinite(values) if uncertainty is None else np.isfinite(values) & np.isfinite(uncertainty)
+    rows = np.flatnonzero(known)
+    kept = None if uncertainty is None else uncertainty[rows]
+    noise = noise_covariance(table.sliding_distance[rows], values[rows], kept)
+    return Channel(name=name, rows=rows, values=values[rows], covariance=noise + level**2, level=level)
