@@ -40,6 +40,7 @@ class Truth:
     """What a run was made of, each at its switches."""
 
     kind: str
+    changed: tuple[str, ...]
     distance: Samples
     decay_length: Samples
     amplitude: Samples
@@ -83,7 +84,7 @@ def truth(rng: Generator, kind: str) -> Truth:
     zero, dry = np.zeros(s.size), rng.uniform(0.17, 0.32) * NORMAL_LOAD
     alone = np.zeros(s.size)
     changes = {
-        "several": tuple(rng.permutation(["long_sliding", "zero_error", "detuning"])[:2]),
+        "several": tuple(rng.permutation(["long_sliding", "zero_error", "detuning"])[:2].tolist()),
         "weak": ("weak",),
         "friction_alone": ("friction_alone",),
         "none": (),
@@ -93,21 +94,21 @@ def truth(rng: Generator, kind: str) -> Truth:
     if "detuning" in changes:
         fall = np.log(_factor(rng)) * _course(rng, s)
     if "zero_error" in changes:
-        zero = -dry * rng.uniform(0.34, 0.55) * (np.ones(s.size) if rng.random() < 0.5 else _sigmoid(rng, s))
+        zero = -dry * rng.uniform(0.34, 0.65) * (np.ones(s.size) if rng.random() < 0.5 else _sigmoid(rng, s))
         length = np.full(s.size, 1e-6 * rng.uniform(1.3, 2.1)) if kind == "zero_error" else length
     if kind == "weak":
         which, course = rng.integers(3), _course(rng, s)
         length = length * np.exp((which == 0) * rng.uniform(0.15, 0.3) * course)
         fall = fall + (which == 1) * rng.uniform(0.15, 0.3) * course
         zero = zero - (which == 2) * rng.uniform(0.10, 0.18) * dry * course
-        length = np.maximum(length, 1.5e-6) if which == 2 else length  # for low ratios a small zero matters much
+        changes = (("long_sliding", "detuning", "zero_error")[which],)
     if kind == "friction_alone":
         alone = rng.uniform(0.2, 0.3) * _sigmoid(rng, s)
-    return _with_readings(rng, kind, s, length, fall, zero, dry, alone)
+    return _with_readings(rng, (kind, changes), s, length, fall, zero, dry, alone)
 
 
 def _with_readings(
-    rng: Generator, kind: str, s: Samples, length: Samples, fall: Samples, zero: Samples, dry: float, alone: Samples
+    rng: Generator, what: tuple[str, tuple[str, ...]], s: Samples, length: Samples, fall: Samples, zero: Samples, dry: float, alone: Samples
 ) -> Truth:
     """Readings without noise of the courses of a run, each with its own slow wander."""
     length = length * np.exp(_wander(rng, s, 0.03))
@@ -124,7 +125,8 @@ def _with_readings(
     ]
     wander = _wander(rng, s, 0.01)
     return Truth(
-        kind=kind,
+        kind=what[0],
+        changed=what[1],
         distance=s,
         decay_length=length,
         amplitude=amplitude,

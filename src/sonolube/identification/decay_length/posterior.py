@@ -17,7 +17,7 @@ from sonolube.identification.decay_length.verdict import HYPOTHESES
 
 _SEVERAL: Final = 0.1  # prior probability of more than one change, shared by four combinations
 _OTHER: Final = 0.05  # prior probability that the friction ratio changes by itself
-_GROWTH, _FALL, _DRIFT = (PARAMETERS.index(name) for name in ("growth", "fall", "drift"))
+_DRIFT: Final = PARAMETERS.index("drift")
 _DISTANCES: Final = tuple(PARAMETERS.index(name) for name in ("growth_distance", "fall_distance", "drift_distance"))
 _TURNED: Final = PARAMETERS.index("turned_share")
 _STARTS: Final = ((0.0, 0.0), (-2.0, 0.0), (1.0, 1.0), (0.0, -1.0))  # deviates of the distances, and of that share
@@ -140,15 +140,10 @@ class RunPosterior:
         return self.models[combination.key]
 
     def _log_evidence(self, combination: Combination) -> float:
-        """Logarithm of the evidence with moment priors: the square of each change over its mean under the normal prior."""
-        model, found = self.fit_of(combination)
-        log_evidence = found.log_evidence
-        flags = {_GROWTH: combination.grows, _FALL: combination.falls, _DRIFT: combination.drifts}
-        for column in (each for each, flag in flags.items() if flag):
-            mean, deviation = model.means[column], model.deviations[column]
-            square = found.weights @ (mean + deviation * found.draws[:, column]) ** 2
-            log_evidence += float(np.log(square / (mean**2 + deviation**2)))
-        return log_evidence
+        """Logarithm of the evidence; a friction ratio that changes by itself has a moment prior."""
+        found = self.fit_of(combination)[1]
+        moment = float(found.weights @ found.draws[:, _DRIFT] ** 2) if combination.drifts else 1.0
+        return found.log_evidence + float(np.log(moment))
 
     @property
     def probabilities(self) -> dict[str, float]:
