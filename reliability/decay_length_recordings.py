@@ -1,12 +1,12 @@
 """Generated runs with switched vibration whose decay length, zero and amplitude are known; it uses nothing of sonolube.
 
-Friction comes from elements that stick and slip, marched through a period in small steps; contact stiffnesses from the
+Friction comes from elements that stick and slip, marched through periods in small steps; contact stiffnesses from the
 contact force integrated over a period; the current from a resonator beside the capacitance of its stack. Courses over
-the distance are sigmoids and straight lines. The friction ratio has an error in level and slope, every reading has noise
-and a slow wander, and the force has the wobble of the disc.
+the distance are sigmoids and straight lines. The friction ratio has an error in level and slope, every reading has
+noise and a slow wander, and the force has the wobble of the disc.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
@@ -24,15 +24,6 @@ FREE_FREQUENCY = 40.0  # Hz, of the slow mode
 MODAL_MASS = 8.0  # kg
 VOLTAGE = 26.0  # V, peak to peak
 KINDS = ("long_sliding", "zero_error", "detuning", "none", "several", "weak", "friction_alone")
-READINGS = (
-    "sliding_distance",
-    "friction_force",
-    "intrinsic_friction_force",
-    "force_zero",
-    "stack_current",
-    "small_drive_shift",
-    "large_drive_shift",
-)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -108,7 +99,14 @@ def truth(rng: Generator, kind: str) -> Truth:
 
 
 def _with_readings(
-    rng: Generator, what: tuple[str, tuple[str, ...]], s: Samples, length: Samples, fall: Samples, zero: Samples, dry: float, alone: Samples
+    rng: Generator,
+    what: tuple[str, tuple[str, ...]],
+    s: Samples,
+    length: Samples,
+    fall: Samples,
+    zero: Samples,
+    dry: float,
+    alone: Samples,
 ) -> Truth:
     """Readings without noise of the courses of a run, each with its own slow wander."""
     length = length * np.exp(_wander(rng, s, 0.03))
@@ -227,11 +225,3 @@ def recording(rng: Generator, made: Truth, *, rate: float = 10.0, lift: float = 
         "stack_current": np.where(on, at(made.current), 0.0) + 0.002 + 0.001 * rng.standard_normal(size) ** 2,
         **shift,
     }
-
-
-def shortened(made: Truth, *, every: int) -> Truth:
-    """The same run with fewer switches."""
-    kept = {
-        name: values[::every] for name, values in vars(made).items() if isinstance(values, np.ndarray)
-    }
-    return replace(made, **kept)

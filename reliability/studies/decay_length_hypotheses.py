@@ -1,4 +1,4 @@
-"""Decisions about what sets the decay length, on generated runs under each hypothesis in turn and under none of them."""
+"""Decisions about what sets the decay length, on generated runs under each hypothesis in turn and under none."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ _WORDS = {
 def switches(rng: np.random.Generator, truth: made.Truth, *, recorded: bool) -> SwitchTable:
     """Table of a generated run, by way of its recording or at once."""
     if not recorded:
-        return SwitchTable(**made.noisy_table(rng, truth))
+        return SwitchTable(title="generated", caveats=(), **made.noisy_table(rng, truth))
     import xarray as xr
 
     channels = made.recording(rng, truth, rate=5.0)
@@ -102,9 +102,10 @@ def _sample_measures(records: Sequence[Record]) -> list[Measure]:
 
 STUDY = Study(
     title="What sets the decay length: decisions on generated runs",
-    question="Runs of 300 m with the vibration switched every 5 m, made by another program under each hypothesis in turn "
-    "(long sliding, a zero error of the load cell, detuning), under none, under two at once, with a change of 15 to 30 "
-    "%, and with friction that changes by itself: the analysis names the right one, and decides nothing where it must not.",
+    question="Runs of 300 m with the vibration switched every 5 m, made by another program under each hypothesis in "
+    "turn (long sliding, a zero error of the load cell, detuning), under none, under two at once, with a change of 15 "
+    "to 30 %, and with friction that changes by itself: the analysis names the right one, and decides nothing where it "
+    "must not. One run in four is a recording, the others are tables of their switches.",
     sources=tuple(
         f"identification/decay_length/{name}.py"
         for name in (

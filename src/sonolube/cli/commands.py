@@ -82,6 +82,7 @@ COMMANDS = (
     Command(_COMPARE, "compare", "compare.compare:compare"),
     Command(_COMPARE, "fit", "compare.fit:fit"),
     Command(_COMPARE, "identify rig", "compare.identify:identify_rig"),
+    Command(_COMPARE, "identify decay-length", "compare.decay_length:decay_length"),
     Command(_COMPARE, "literature", "compare.literature:literature"),
     Command(_COMPARE, "reproduce", "compare.reproduce:reproduce"),
     Command(_LAB, "lab run", "lab.run:run"),
@@ -105,7 +106,7 @@ GROUPS = {
     "horn": "Design horns and other resonators.",
     "measure": "Measure what instruments recorded: friction, surfaces, spectra, vibration.",
     "lab": "Laboratory: run protocols on a rig, and keep their records.",
-    "identify": "Identify the parameters of a model from published facts.",
+    "identify": "Identify the parameters of a rig from facts, and what sets the decay length of a contact.",
 }
 """Help of each group of commands."""
 

@@ -1,4 +1,13 @@
 from .bounded_error import identify as identify
+from .decay_length.conditions import SwitchConditions as SwitchConditions
+from .decay_length.decision import (
+    DecayLengthDecision as DecayLengthDecision,
+    Interval as Interval,
+    decide_decay_length as decide_decay_length,
+)
+from .decay_length.figure import decision_dataset as decision_dataset, decision_figure as decision_figure
+from .decay_length.recorded_switches import recorded_switches as recorded_switches
+from .decay_length.switch_table import SwitchTable as SwitchTable, switch_table as switch_table
 from .fact import (
     Bounds as Bounds,
     Fact as Fact,

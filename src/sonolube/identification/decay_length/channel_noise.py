@@ -41,11 +41,7 @@ def noise_covariance(distance: Floats, values: Floats, uncertainty: Floats | Non
         shares.append(share)
     courses = relaxation(distance, length=distance[-1] * np.array(_COURSES))
     designs = [np.column_stack([np.ones(values.size), c, c**2]) for c in courses]
-    found = [
-        (*_restricted(values, design, shape), index)
-        for index, shape in enumerate(shapes)
-        for design in designs
-    ]
+    found = [(*_restricted(values, design, shape), index) for index, shape in enumerate(shapes) for design in designs]
     _, variance, index = max(found)
     floor = 0.0 if uncertainty is None else float(np.mean(uncertainty**2))
     variance = max(variance, floor / (1 - shares[index]), (_CAUTION * float(np.abs(values).max())) ** 2, 1e-300)

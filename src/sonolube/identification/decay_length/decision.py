@@ -29,7 +29,7 @@ DECIDING_PROBABILITY: Final = 0.9
 """Posterior probability from which a hypothesis counts as decided."""
 
 SUFFICIENT_FACTOR: Final = float(np.exp(DIFFERENCE / 3))
-"""Factor in amplitude over decay length from which a change explains the sets: a third of 2 um/0.7 um, in logarithms."""
+"""Factor in amplitude over decay length from which a change explains the sets: a third of ln(2 um/0.7 um)."""
 
 STEADY_FACTOR: Final = float(np.exp(DIFFERENCE / 8))
 """Factor below which a change counts as none, with a probability of 0.9: an eighth of that difference."""
@@ -129,10 +129,12 @@ def decide_decay_length(
     -----
     Three changes are each present or absent: over the run the decay length grows by :math:`e^g`, the amplitude falls by
     :math:`e^d`, and the zero is off by z. Where absent they are small, :math:`g \sim N(0, 0.05^2)`,
-    :math:`d \sim N(0, 0.03^2)` and :math:`z/F_0 \sim N(0, 0.03^2)`; where present :math:`g, d \sim N(\ln(2/0.7), 0.4^2)` and
-    :math:`z/F_0 \sim N(0, 0.35^2)`. None, and each alone, have the prior probability 0.2125, two or more together 0.1, and a
-    friction ratio that changes by itself, by :math:`N(0, 0.3^2)`, 0.05. The last two densities are these
-    normal ones times the square of the change (moment priors), for hardly any change is none.
+    :math:`d \sim N(0, 0.03^2)` and :math:`z/F_0 \sim N(0, 0.03^2)`; where present
+    :math:`g, d \sim N(\ln(2/0.7), 0.4^2)` and :math:`z/F_0 \sim N(0, 0.35^2)`. None, and each alone, have the prior
+    probability 0.2125, two or more together 0.1, and a friction ratio that changes by itself, by :math:`N(0, 0.3^2)`,
+    0.05. The last two densities are these normal ones times the square of the change (moment priors), for hardly any
+    change is none.
+
     The levels of decay length, amplitude and memory length, the errors of the friction model in level and slope, the
     scale of the shifts, the capacitive share of the current and the relaxation distances have normal priors, most in
     their logarithms, and are integrated by importance sampling. The noise of each reading, white and slowly wandering,
@@ -176,11 +178,7 @@ def decide_decay_length(
 
 
 def _lacking(
-    found: RunPosterior,
-    leading: str,
-    misfits: Mapping[str, float],
-    changes: Mapping[str, Floats],
-    table: SwitchTable,
+    found: RunPosterior, leading: str, misfits: Mapping[str, float], changes: Mapping[str, Floats], table: SwitchTable
 ) -> Undecided | None:
     """Reason for which nothing is decided; None where a hypothesis is."""
     probabilities = found.probabilities

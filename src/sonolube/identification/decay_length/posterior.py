@@ -48,12 +48,7 @@ class Combination:
     @property
     def parts(self) -> tuple[str, ...]:
         """Names of the hypotheses whose changes it has."""
-        flags = {
-            "long_sliding": self.grows,
-            "zero_error": self.off,
-            "detuning": self.falls,
-            "other": self.drifts,
-        }
+        flags = {"long_sliding": self.grows, "zero_error": self.off, "detuning": self.falls, "other": self.drifts}
         return tuple(name for name, flag in flags.items() if flag)
 
     @property
@@ -68,7 +63,6 @@ class Combination:
         alone = _OTHER if self.drifts else (1 - _SEVERAL - _OTHER) / 4
         own = _SEVERAL / 4 if len(self.parts) > 1 else alone
         return own / 2 if self.falls else own
-
 
     @property
     def key(self) -> tuple[bool, bool, bool, bool]:
@@ -165,7 +159,7 @@ class RunPosterior:
     def draws(self) -> tuple[Floats, Floats]:
         """Decay length and amplitude at each switch, shape (n, switches) each, drawn from all combinations."""
         rng = np.random.default_rng(self._seed)
-        shares = {key: 0.0 for key in self.models}
+        shares = dict.fromkeys(self.models, 0.0)
         for each, weight in self.weights.items():
             shares[each.key] += weight
         lengths, amplitudes = [], []

@@ -1,6 +1,7 @@
 """Reduction of a recording with switched vibration and lifted pin to the table of its switches."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -53,8 +54,8 @@ def recorded_switches(
     ----------
     recording : xarray.Dataset
         With the channels `friction_force`, `voltage_peak_to_peak` and `normal_load`, in which the pin counts as lifted
-        below a tenth of the median load, and `stack_current`, `small_drive_shift` and `large_drive_shift` where they were
-        recorded: shifts in the samples about a switch, NaN elsewhere.
+        below a tenth of the median load, and `stack_current`, `small_drive_shift` and `large_drive_shift` where they
+        were recorded: shifts in the samples about a switch, NaN elsewhere.
     sliding_speed : float
         While the pin is on the track. [m/s]
     rotation_speed : float, optional
@@ -117,10 +118,7 @@ def _parts(load: Floats, voltage: Floats) -> list[_Part]:
     driven &= ~lifted
     ends = np.flatnonzero((np.diff(lifted.astype(np.int8)) != 0) | (np.diff(driven.astype(np.int8)) != 0)) + 1
     edges = [0, *ends.tolist(), load.size]
-    return [
-        _Part(begin, end, bool(lifted[begin]), bool(driven[begin]))
-        for begin, end in zip(edges, edges[1:], strict=False)
-    ]
+    return [_Part(begin, end, bool(lifted[begin]), bool(driven[begin])) for begin, end in pairwise(edges)]
 
 
 def _switches(parts: list[_Part]) -> list[tuple[_Part, _Part | None, _Part]]:

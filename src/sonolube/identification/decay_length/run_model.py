@@ -16,9 +16,9 @@ where :math:`s_1` is the distance of the run. The readings are
     \Delta_s (1 + \Delta_s/2f_0) &= \frac{F_N/l}{8 \pi^2 m f_0}, \qquad
     \frac{\Delta_l (1 + \Delta_l/2f_0)}{\Delta_s (1 + \Delta_s/2f_0)} = \frac{2 I_1(\beta)}{\beta I_0(\beta)}
 
-with asperity stick-slip R, a capacitive current p over the motional one, whose phase turns where the resonance leaves the
-drive (t = 1 or -1) and does not where the drive weakens (t = 0), and :math:`\beta = A/l` for the amplitude A at large
-drive, which follows that of the vibration or does not.
+with asperity stick-slip R, a capacitive current p over the motional one, whose phase turns where the resonance leaves
+the drive (t = 1 or -1) and does not where the drive weakens (t = 0), and :math:`\beta = A/l` for the amplitude A at
+large drive, which follows that of the vibration or does not.
 """
 
 from dataclasses import dataclass
@@ -273,11 +273,7 @@ def zero_free_ratio(table: SwitchTable) -> tuple[Floats, Floats | None]:
     """Friction ratio of each switch with its zero subtracted, and its standard uncertainty where all are stated. []"""
     without = table.intrinsic_friction_force - table.force_zero
     ratio = (table.friction_force - table.force_zero) / without
-    parts = (
-        table.friction_force_uncertainty,
-        table.intrinsic_friction_force_uncertainty,
-        table.force_zero_uncertainty,
-    )
+    parts = (table.friction_force_uncertainty, table.intrinsic_friction_force_uncertainty, table.force_zero_uncertainty)
     on, off, zero = parts
     if on is None or off is None or zero is None:
         return ratio, None

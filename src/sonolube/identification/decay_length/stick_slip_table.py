@@ -29,8 +29,8 @@ def _table() -> Floats:
         memory_length=length,
     )
     spline = RectBivariateSpline(np.log(beta), np.log(speed), ratio)
-    fine = [np.linspace(*np.log(ends), count) for ends, count in zip((_BETA, _SPEED), _FINE, strict=True)]
-    return np.clip(spline(*fine), 0.0, 1.0)
+    fine = [np.log(np.geomspace(*ends, count)) for ends, count in zip((_BETA, _SPEED), _FINE, strict=True)]
+    return np.asarray(np.clip(spline(*fine), 0.0, 1.0))
 
 
 def interpolated_ratio(*, relative_amplitude: Floats, reduced_speed: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""Sentences of a decision about the decay length: the hypothesis that holds, or why none is decided and what to repeat."""
+"""Sentences of a decision about the decay length: the hypothesis that holds, or why none is decided."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,9 +21,9 @@ _READINGS: Final = {
     "large_drive_shift": "the shift at large drive",
 }
 _APART: Final = {
-    frozenset(("long_sliding", "none")): "slide farther on a fresh track, with the shift at small drive at each switch",
+    frozenset(("long_sliding", "none")): "slide farther on a fresh track, with the small-drive shift at each switch",
     frozenset(("detuning", "none")): "slide farther, and read the current, and the shift at large drive, more finely",
-    frozenset(("zero_error", "none")): "lift the pin longer at each switch, and calibrate the load cell before and after",
+    frozenset(("zero_error", "none")): "lift the pin longer at each switch, and calibrate the cell before and after",
     frozenset(("long_sliding", "detuning")): "read the stack current and the shift at small drive at each switch: the"
     " current tells the amplitude, the shift the contact stiffness",
 }  # fmt: skip
@@ -56,7 +56,9 @@ def decided_sentence(leading: str, probabilities: Mapping[str, float]) -> str:
     name, _, meaning = HYPOTHESES[leading].partition(":")
     others = sorted((p, other) for other, p in probabilities.items() if other != leading)
     following = HYPOTHESES[others[-1][1]].partition(":")[0]
-    return f"{name} ({_percent(probabilities[leading])}): {meaning.strip()}; next {following} ({_percent(others[-1][0])})"
+    return (
+        f"{name} ({_percent(probabilities[leading])}): {meaning.strip()}; next {following} ({_percent(others[-1][0])})"
+    )
 
 
 def misfit_reason(readings: Sequence[str]) -> Undecided:
