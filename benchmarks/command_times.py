@@ -45,6 +45,7 @@ COMMANDS = (
     ("literature", RIG),
     ("fit", str(EXAMPLES / "tribometer-runs.csv"), "--rig", RIG),
     ("plan", RIG),
+    ("identify", "decay-length", str(EXAMPLES / "decay-length-run.csv"), "--free-frequency", "40Hz"),
     ("identify", "rig", RIG, "--facts", str(EXAMPLES / "facts" / "tribometer.toml"), "--out", "my.toml"),
     ("modes", "block", "--set", "length=127mm", "--set", "width=60.96mm", "--set", "thickness=25.4mm"),
     (

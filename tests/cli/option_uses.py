@@ -22,6 +22,7 @@ SIZES = ("--set", "length=20mm", "--set", "width=10mm", "--set", "thickness=5mm"
 BAR = ("--set", "length=10mm", "--set", "width=4mm", "--set", "thickness=20mm")
 RUNS = str(ROOT / "examples" / "efficiency-runs.csv")
 OWN_RUNS = str(ROOT / "examples" / "tribometer-runs.csv")
+SWITCHES = str(ROOT / "examples" / "decay-length-run.csv")
 OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
 STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--points": "4", "--voltage": "10V"}
 DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7", "--backend": "gpu"}
@@ -148,6 +149,21 @@ MODES = {
         "new",
         ("OUT/rig.toml", *KNOWN, "--actuator", "sa050510", "--voltage", "40V"),
         {"--actuator": "sa030318", "--voltage": "50V"},
+    ),
+    "identify decay-length": Mode(
+        "identify decay-length",
+        (SWITCHES, "--free-frequency", "40Hz", "--modal-mass", "8kg"),
+        {
+            "--free-frequency": ("40Hz", "60Hz"),
+            "--modal-mass": ("8kg", "6kg"),
+            "--vibration": "2um",
+            "--frequency": "21kHz",
+            "--sliding-speed": "50mm/s",
+            "--load": "4N",
+            "--large-amplitude": "3um",
+            "--rotation-speed": "0.5 1/s",
+            "--seed": "1",
+        },
     ),
     "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}, ("--no-interval",)),
     "wear": Mode("wear", (RIG,), VIBRATED),

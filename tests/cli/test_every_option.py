@@ -61,7 +61,7 @@ def outcome(command: str, arguments: tuple[str, ...], folder: Path, place: str) 
     out = folder / place
     words = [word.replace("FOLDER", str(folder)).replace("OUT", str(out)) for word in (*command.split(), *arguments)]
     if "--out" in options_of(command):
-        words += ["--out", str(out / "rig.toml" if words[0] == "identify" else out)]
+        words += ["--out", str(out / "rig.toml" if command == "identify rig" else out)]
     answer, errors = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(answer), contextlib.redirect_stderr(errors), pytest.raises(SystemExit) as end:
         main([*words, "--json"])

@@ -56,7 +56,7 @@ def decay_length(
     amplitude: Annotated[
         float, si_option("m", "Of the vibration along the normal, at the beginning.", "--vibration")
     ] = TypedNumber("2.3um", "m"),
-    frequency: Annotated[float, si_option("Hz", "Of the vibration.", "--frequency")] = TypedNumber("22kHz", "Hz"),
+    drive: Annotated[float, si_option("Hz", "Of the vibration.", "--frequency")] = TypedNumber("22kHz", "Hz"),
     speed: Annotated[float, si_option("m/s", "Sliding speed.", "--sliding-speed")] = TypedNumber("65mm/s", "m/s"),
     load: Annotated[float, si_option("N", "Normal load.", "--load")] = TypedNumber("5N", "N"),
     free: Annotated[
@@ -88,7 +88,7 @@ def decay_length(
     conditions = SwitchConditions(
         normal_load=load,
         vibration_amplitude=amplitude,
-        frequency=frequency,
+        frequency=drive,
         sliding_speed=speed,
         large_drive_amplitude=large,
         natural_frequency=free,

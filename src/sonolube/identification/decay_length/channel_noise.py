@@ -15,12 +15,12 @@ _EXPONENTS = (0.1, 8.0)
 _CAUTION = 1e-9
 
 
-def relaxation(distance: Floats, *, length: Floats, exponent: Floats | float = 1.0) -> Floats:
+def relaxation(distance: Floats, *, reach: Floats, exponent: Floats | float = 1.0) -> Floats:
     """Course from 0 on the fresh track to 1 at the end of the run, a row for each relaxation distance S and exponent n.
 
     (1 - exp(-(s/S)^n))/(1 - exp(-(s_end/S)^n)).
     """
-    scale = np.clip(np.asarray(length)[..., None] / distance[-1], *_SCALES)
+    scale = np.clip(np.asarray(reach)[..., None] / distance[-1], *_SCALES)
     power = np.clip(np.asarray(exponent)[..., None], *_EXPONENTS)
     slid = distance / distance[-1]
     return np.asarray(np.expm1(-((slid / scale) ** power)) / np.expm1(-((1 / scale) ** power)))
@@ -39,7 +39,7 @@ def noise_covariance(distance: Floats, values: Floats, uncertainty: Floats | Non
     for share, length in product(_SHARES[1:], _LENGTHS):
         shapes.append((1 - share) * np.diag(weights) + share * np.exp(-gaps / length))
         shares.append(share)
-    courses = relaxation(distance, length=distance[-1] * np.array(_COURSES))
+    courses = relaxation(distance, reach=distance[-1] * np.array(_COURSES))
     designs = [np.column_stack([np.ones(values.size), c, c**2]) for c in courses]
     found = [(*_restricted(values, design, shape), index) for index, shape in enumerate(shapes) for design in designs]
     _, variance, index = max(found)

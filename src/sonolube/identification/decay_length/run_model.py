@@ -162,7 +162,7 @@ class RunModel:
         grown, fallen = (
             relaxation(
                 self.table.sliding_distance,
-                length=np.exp(p[f"{name}_distance"][:, 0]),
+                reach=np.exp(p[f"{name}_distance"][:, 0]),
                 exponent=np.exp(p[f"{name}_exponent"][:, 0]),
             )
             for name in ("growth", "fall")
@@ -181,7 +181,7 @@ class RunModel:
         start = np.exp(p["amplitude"] - p["decay_length"])
         ratio = interpolated_ratio(relative_amplitude=a / length, reduced_speed=v)
         ratio = ratio + p["discrepancy_slope"] * np.log(a / length / start)
-        drifted = relaxation(self.table.sliding_distance, length=np.exp(p["drift_distance"][:, 0]))
+        drifted = relaxation(self.table.sliding_distance, reach=np.exp(p["drift_distance"][:, 0]))
         ratio = ratio + p["drift"] * drifted
         fall = a / np.exp(p["amplitude"])
         small = np.exp(p["shift_scale"]) * self._stiffness_shift(length, np.exp(p["decay_length"]))

@@ -76,7 +76,7 @@ def zero_evidence(table: SwitchTable, conditions: SwitchConditions, *, seed: int
     white = np.diag(np.full(zero.size, _white_variance(zero, table.force_zero_uncertainty, rows)))
     gaps = np.abs(np.subtract.outer(s, s)) / s[-1]
     wanders = [(share * force) ** 2 * np.exp(-gaps / length) for share in _WANDERS for length in _LENGTHS]
-    courses = relaxation(s, length=s[-1] * np.array(_RELAXATIONS))
+    courses = relaxation(s, reach=s[-1] * np.array(_RELAXATIONS))
     level = np.ones((zero.size, 1))
     shapes = [level, *(np.column_stack([level, course]) for course in courses)]
     good = [_log_evidence(zero, white + wander, level, _TRUE_ZERO * force)[0] for wander in wanders]

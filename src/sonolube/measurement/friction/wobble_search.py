@@ -65,7 +65,7 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
     t, y = np.concatenate(times), np.concatenate([force - force.mean() for force in forces])
     duration = float(t[-1] - t[0])
     frequency, power = _explained_power(times, forces)
-    width = int(2 * _NOISE_BAND / frequency[1])
+    width = min(int(2 * _NOISE_BAND / frequency[1]), frequency.size - 1)
     noise = median_filter(power, width | 1, mode="reflect") / np.log(2)
     relative = power / np.maximum(noise, 1e-300)
     slowest = int(np.ceil(_FEWEST_TURNS / duration / frequency[1]))
