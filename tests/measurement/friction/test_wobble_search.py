@@ -42,9 +42,9 @@ def test_a_wobble_in_proportion_to_friction_is_found_where_little_friction_is_le
     assert find_rotation_speed(PARTS, forces) == approx(0.75, abs=0.1 / 24)
 
 
-def test_the_rotation_is_found_in_few_samples_a_second_too() -> None:
+def test_the_rotation_is_found_in_two_samples_a_second_too() -> None:
     rng = np.random.default_rng(3)
-    t = np.arange(0, 600, 0.5)
+    t = np.arange(0, 6000, 0.5)
     force = 1 + 0.2 * np.cos(2 * np.pi * 0.15 * t + 1) + 0.05 * np.cos(4 * np.pi * 0.15 * t)
     found = find_rotation_speed([t], [force + 0.02 * rng.standard_normal(t.size)], harmonics=2)
     assert found == approx(0.15, rel=1e-3)
