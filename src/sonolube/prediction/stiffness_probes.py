@@ -29,7 +29,7 @@ class Probe:
     name : str
         As printed.
     modal_mass : float
-        At the free contact, in kg; infinite for a mode that does not move it.
+        At the free contact; infinite for a mode that does not move it. [kg]
     free_frequency : float
         Without contact, in Hz; zero for a rigid-body mode.
     decay_length : ndarray, shape (n,)

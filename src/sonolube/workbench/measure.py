@@ -171,7 +171,7 @@ def stiffness(
     mode_near : float, optional
         Frequency of the free resonance to take, in Hz; zero for a mode that floats, the strongest where absent.
     modal_mass : float, optional
-        Of the mode at the contact, in kg, instead of the rig's structure.
+        Of the mode at the contact, instead of the rig's structure. [kg]
     large : str or Path, optional
         Under the load at large drive, of constant amplitude.
     vibration_amplitude : float, optional

@@ -35,8 +35,8 @@ def stiffness(
     pressed_near: Annotated[
         float | None, si_option("Hz", "Pressed resonance to take; by default the nearest above the free one.")
     ] = None,
-    modal_mass: Annotated[
-        float | None, si_option("kg", "Of the mode at the contact, instead of the rig's structure.")
+    mass: Annotated[
+        float | None, si_option("kg", "Of the mode at the contact, instead of the rig's structure.", "--modal-mass")
     ] = None,
     mass_uncertainty: Annotated[
         float | None, si_option("", "Standard uncertainty of the modal mass, such as 10%.", metavar="SHARE")
@@ -67,8 +67,8 @@ def stiffness(
     known = None if rig is None else loaded_rig(rig, load=load, changes=changes)
     settings = StiffnessSettings(
         normal_load=_normal_load(known, load),
-        structure=None if known is None or modal_mass is not None else known.structure,
-        modal_mass=modal_mass,
+        structure=None if known is None or mass is not None else known.structure,
+        modal_mass=mass,
         modal_mass_deviation=0.1 if mass_uncertainty is None else mass_uncertainty,
         mode_near=mode_near,
         pressed_near=pressed_near,

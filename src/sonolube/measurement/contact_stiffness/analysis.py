@@ -67,7 +67,7 @@ def measured_contact_stiffness(
     structure : Structure or None
         With its contact free.
     modal_mass : float or None
-        Of the mode at the contact, in kg, instead of a structure.
+        Of the mode at the contact, instead of a structure. [kg]
     modal_mass_deviation : float
         Standard deviation of the logarithm of the modal mass.
     mode_near : float or None

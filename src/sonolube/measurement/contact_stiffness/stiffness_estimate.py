@@ -113,7 +113,7 @@ def single_mode(*, modal_mass: float, frequency: float) -> Structure:
     Parameters
     ----------
     modal_mass : float
-        At the contact, in kg.
+        At the contact. [kg]
     frequency : float
         Without contact. [Hz]
 

@@ -23,7 +23,7 @@ class StiffnessSettings:
     structure : Structure or None
         Of the rig, its contact free.
     modal_mass : float or None
-        Of the mode at the contact, in kg, instead of the structure.
+        Of the mode at the contact, instead of the structure. [kg]
     modal_mass_deviation : float
         Standard deviation of the logarithm of the modal mass.
     mode_near : float or None
