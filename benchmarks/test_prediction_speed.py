@@ -1,6 +1,8 @@
-"""Speed of predictions: tables of friction ratios beside their computation point by point."""
+"""Speed of predictions: tables of friction ratios beside their computation, changed rigs live beside anew."""
 
 from collections.abc import Callable
+from itertools import count
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,9 +10,12 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from sonolube.checks import Floats
 from sonolube.friction import SpringContact, load_balanced_approach, normal_oscillation_ratio, sine_stick_slip_ratio
+from sonolube.prediction import LivePrediction, predict
 from sonolube.prediction.closures import CLOSURES, Closure, Conditions
+from sonolube.rig import Rig, read_rig
 
 DRAWS, POINTS = 4096, 40
+RIG = Path(__file__).parents[1] / "examples" / "rigs" / "tribometer.toml"
 UNIT = SpringContact(friction_coefficient=1.0, mindlin_ratio=1.0)
 
 
@@ -64,3 +69,20 @@ def test_the_same_ratios_point_by_point(
     logs, at = log_lengths(), conditions()
     ratio(logs, at)  # compiled outside the measurement
     benchmark(lambda: ratio(logs, at))
+
+
+@pytest.mark.parametrize("way", ["live at 1,000 draws", "fresh at 1,000 draws", "fresh at 4,000 draws"])
+@pytest.mark.benchmark(group="prediction of a changed rig")
+def test_a_changed_rig_is_predicted_live_and_anew(benchmark: BenchmarkFixture, way: str) -> None:
+    rig = read_rig(RIG)
+    live, speeds = LivePrediction(rig, draws=1000), count(30)
+
+    def changed() -> tuple[tuple[Rig], dict[str, object]]:
+        return (rig.replace("sliding.sliding_speed", f"{next(speeds)} mm/s"),), {}
+
+    ways: dict[str, Callable[[Rig], object]] = {
+        "live at 1,000 draws": live.at,
+        "fresh at 1,000 draws": lambda one: predict(one, draws=1000),
+        "fresh at 4,000 draws": predict,
+    }
+    benchmark.pedantic(ways[way], setup=changed, rounds=15)  # type: ignore[no-untyped-call]
