@@ -4,11 +4,13 @@ import json
 import subprocess
 import sys
 from dataclasses import replace
+from math import exp
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from pytest import approx, mark, raises
+from scipy.stats import norm
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs
@@ -96,6 +98,18 @@ def test_a_run_and_the_stiffness_are_said_to_narrow_the_interval_as_they_do(tmp_
     ]
     assert left["one run at this point"] == approx(np.mean(widths) / (high - low), abs=0.06)
     assert left["contact stiffness within 10 %"] < left["contact stiffness within 30 %"] < 1
+
+
+def test_a_measured_stiffness_leaves_of_the_interval_what_is_said() -> None:
+    found, median, deviation = predict(brass_rig()), 1.62e-6, 0.6
+    left = dict(zip(found["measure_label"].to_numpy(), found["measure_share_left"].to_numpy(), strict=True))
+    law = Distribution(law=LogNormal(median=1.0, factor=exp(0.3)), lowest=0.0, text="within 30 %")
+    widths = []
+    for share in (0.1, 0.3, 0.5, 0.7, 0.9):  # of the population's lengths, which a stiffness within 30 % blurs
+        length = median * exp(np.hypot(deviation, 0.3) * norm.ppf(share) * deviation**2 / (deviation**2 + 0.09))
+        known = brass_rig().replace("contact.decay_length", f"{length:.6g} m")
+        widths.append(width(predict(replace(known, uncertainty={"contact.decay_length": law}))))
+    assert left["contact stiffness within 30 %"] == approx(np.mean(widths) / width(found), abs=0.08)
 
 
 def test_what_is_typed_for_friction_counts_whatever_range_the_file_has() -> None:

@@ -156,6 +156,20 @@ def test_one_outlier_among_six_is_named_and_moves_an_unseen_median_little() -> N
     assert abs(medians[0] - medians[1]) < 0.08
 
 
+def test_each_run_is_compared_with_what_the_others_predict_at_its_conditions() -> None:
+    amplitudes, speeds = [1e-6, 1.5e-6, 2e-6, 2.5e-6], [0.03, 0.06, 0.03, 0.06]
+    ratios = [0.8, 0.7, 0.45, 0.5]
+    at = uncertain(amplitudes, speeds)
+    check = rig_prediction(learned().friction, at, count=2000, own=runs(ratios, amplitudes, speeds)).check
+    assert check is not None
+    for place in range(4):
+        others = [each for each in range(4) if each != place]
+        known = runs(*([values[each] for each in others] for values in (ratios, amplitudes, speeds)))
+        alone = uncertain([amplitudes[place]], [speeds[place]])
+        predicted = ratio_draws(learned().friction, alone, count=4000, own=known)[:, 0]
+        assert check.left_out[place] == approx(predicted.mean(), abs=0.025)
+
+
 def test_the_same_seed_gives_the_same_draws() -> None:
     at = uncertain([2e-6], [0.02])
     own = runs([0.5, 0.4], [1e-6, 2e-6], [0.02, 0.02])
