@@ -254,6 +254,11 @@ def test_the_figure_shows_bands_published_tests_and_own_runs(tmp_path: Path) -> 
     assert "own runs" in labels
 
 
+def test_runs_above_a_ratio_of_one_lie_within_the_figure(tmp_path: Path) -> None:
+    figure = prediction_figure(predict(rig(), runs=read_runs(runs_file(tmp_path, "2.5,20.3,1.3")), draws=200))
+    assert all(axes.get_ylim()[1] > 1.35 for axes in figure.axes)
+
+
 def test_no_sampler_is_imported_for_a_prediction() -> None:
     program = (
         "import sys, json\nfrom sonolube.prediction import predict\nfrom sonolube.rig import read_rig\n"

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from sonolube.rig.labelled_arrays import LabelledArrays
 
 _OPACITIES: Final = (0.15, 0.25, 0.4)  # of the bands, the widest first
+_HIGHEST: Final = 1.15  # ratio on the axis, where no own run lies above
 _AXES: Final = (
     ("amplitude", "vibration_amplitude", 1e6, "vibration amplitude (µm)"),
     ("speed", "sliding_speed", 1e3, "sliding speed (mm/s)"),
@@ -47,7 +48,7 @@ def prediction_figure(prediction: "xr.Dataset | LabelledArrays") -> "Figure":
         draw_bands(axes, places, curves.to_numpy())
         _points(axes, condition, scale, prediction)
         axes.axvline(scale * prediction.attrs[condition], color="0.4", lw=0.8, ls=":", label="operating point")
-        axes.set(xlabel=label, xscale="log", xlim=(places[0], places[-1]), ylim=(-0.05, 1.15))
+        axes.set(xlabel=label, xscale="log", xlim=(places[0], places[-1]), ylim=(-0.05, _highest(prediction)))
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter("{x:g}")  # not as formulas, which take ten times as long to draw
         axes.xaxis.set_minor_formatter("")
@@ -55,6 +56,14 @@ def prediction_figure(prediction: "xr.Dataset | LabelledArrays") -> "Figure":
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=3)
     return figure
+
+
+def _highest(prediction: "xr.Dataset | LabelledArrays") -> float:
+    """Upper end of the axis of ratios, above every own run."""
+    if "run" not in prediction.sizes:
+        return _HIGHEST
+    runs = prediction["measured_friction_ratio"].to_numpy() + prediction["measured_uncertainty"].to_numpy()
+    return max(_HIGHEST, 0.05 + float(runs.max()))
 
 
 def draw_bands(axes: "Axes", places: Floats, quantiles: Floats) -> None:
