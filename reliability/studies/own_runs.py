@@ -174,15 +174,18 @@ def _sample_measures(records: Sequence[Record]) -> list[Measure]:
     return [Measure(label="narrower after 30 runs", value=str(sum(narrower)), holds=all(narrower))]
 
 
+SOURCES = tuple(
+    f"prediction/{name}"
+    for name in ("closures.py", "hierarchy.py", "learned.json", "predictive.py", "rig_draws.py", "run_check.py")
+)
+"""Code that predictions after own runs rest on."""
+
 STUDY = Study(
     title="Own runs on synthetic rigs",
     question="Rigs are drawn from the learned population, discrepancy and decay length included, by code outside the"
     " package. An unseen setting of each is predicted after 0 to 30 runs; runs that contradict the prediction, and one"
     " outlier in six, are put in.",
-    sources=tuple(
-        f"prediction/{name}"
-        for name in ("closures.py", "hierarchy.py", "learned.json", "predictive.py", "rig_draws.py", "run_check.py")
-    ),
+    sources=SOURCES,
     trials=200,
     sample=1,
     trial=_trial,

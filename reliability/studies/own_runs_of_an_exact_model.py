@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from reliability.studies.own_runs import coverage_measures, predictions
+from reliability.studies.own_runs import SOURCES, coverage_measures, predictions
 from reliability.study import Measure, Record, Study
 
 
@@ -18,10 +18,7 @@ STUDY = Study(
     title="Own runs on synthetic rigs without discrepancy",
     question="As before, on rigs that the friction model describes exactly: intervals that allow for its error cover"
     " more.",
-    sources=tuple(
-        f"prediction/{name}"
-        for name in ("closures.py", "hierarchy.py", "learned.json", "predictive.py", "rig_draws.py", "run_check.py")
-    ),
+    sources=SOURCES,
     trials=200,
     sample=1,
     trial=_trial,

@@ -35,7 +35,7 @@ HYPERPARAMETERS: Final = (
 """Their logarithms are the columns of every array of hyperparameters: mu, kappa, tau, tau_l, sigma, lambda."""
 
 OWN_DEVIATES: Final = 3
-"""What one rig has of its own, as standard normal deviates: of ln theta, of ln l/a, of the scale of the discrepancy."""
+"""Number of standard normal deviates of one rig: of ln theta, of ln l/a, of the scale of the discrepancy."""
 
 _FULL_DISCREPANCY: Final = 0.2  # reduction from which the discrepancy is as large as it becomes
 _LEAST_DISCREPANCY: Final = 0.25  # share of it without a reduction

@@ -208,7 +208,7 @@ def predict(
     draws: int = DRAWS,
     seed: int = 0,
 ) -> "xr.Dataset":
-    """What vibration along the normal does to friction and wear on a rig, with its uncertainty.
+    """Friction and wear of a rig under vibration along the normal, with predictive intervals.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ AMPLITUDE_SOURCES: Final[tuple[AmplitudeSource, ...]] = get_args(AmplitudeSource
 """Sources of an amplitude, the one taken first where a rig has several first."""
 
 DecayLengthOrigin = Literal["own_runs", "normal_stiffness", "worn_scan", "published_tests", "stated"]
-"""How the decay length of a contact is known, where it is known otherwise than by R_q/lambda."""
+"""Origins of a decay length other than R_q/lambda."""
 
 DECAY_LENGTH_ORIGINS: Final[Mapping[DecayLengthOrigin, str]] = MappingProxyType(
     {

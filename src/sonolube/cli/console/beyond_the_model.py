@@ -1,4 +1,4 @@
-"""What a computed friction ratio leaves out, as text and for JSON: the error of its model, and the interval with it."""
+"""Error of the friction model and predictive interval beside a computed friction ratio, as text and for JSON."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any

@@ -45,7 +45,7 @@ BLOCKINGS: Final[Mapping[str, Blocking]] = MappingProxyType(
 
 
 INTERLEAVED: Final = (False, True, False)
-"""Whether the vibration is on, by the states of a run on one pair of bodies; the middle one lasts twice as long."""
+"""States of the vibration in a run on one pair of bodies, True for on; the middle one lasts twice as long."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

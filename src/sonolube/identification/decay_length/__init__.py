@@ -1,1 +1,1 @@
-"""What sets the decay length of a worn contact: hypotheses weighed by a run with vibration switched on and off."""
+"""Probabilities of what sets the decay length of a worn contact, by a run with vibration switched on and off."""
