@@ -6,7 +6,7 @@ import numpy as np
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.prediction.stiffness_probes import probe_sentences, stiffness_probes
+from sonolube.prediction.stiffness_probes import probe_sentences, stiffness_probes, told_probes
 from sonolube.rig import read_rig
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
@@ -58,3 +58,15 @@ def test_a_rig_without_structure_has_no_probe_and_is_told_so() -> None:
 def test_a_decay_length_of_zero_is_refused() -> None:
     with raises(InvalidInput, match="decay_length must be positive"):
         stiffness_probes(read_rig(RIGS / "tribometer.toml"), decay_length=0.0)
+
+
+def test_a_prediction_tells_the_two_best_probes_and_the_mode_that_vibrates() -> None:
+    collar = read_rig(RIGS / "collar.toml")
+    assert collar.drive is not None
+    probes = stiffness_probes(collar, decay_length=1.6e-6)
+    told = told_probes(probes, frequency=collar.drive.frequency)
+    assert len(told) == 3
+    best = min(probe.log_stiffness_deviation[0] for probe in probes)
+    assert told[0].log_stiffness_deviation[0] == best
+    assert abs(told[2].free_frequency - collar.drive.frequency) < 500
+    assert told_probes((), frequency=2e4) == ()

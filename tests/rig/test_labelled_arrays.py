@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from sonolube.prediction.live_prediction import prediction_arrays
+from sonolube.prediction import LivePrediction
 from sonolube.rig import read_rig, simulate, write_netcdf
 from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
 from sonolube.rig.result_datasets import simulation_arrays
@@ -43,7 +43,7 @@ def stored(content: bytes) -> xr.Dataset:
     return xr.load_dataset(BytesIO(content), engine="h5netcdf")
 
 
-@pytest.mark.parametrize("arrays", [lambda: ARRAYS, simulated, lambda: prediction_arrays(read_rig(RIG), draws=100)])
+@pytest.mark.parametrize("arrays", [lambda: ARRAYS, simulated, lambda: LivePrediction(read_rig(RIG), draws=100).first])
 def test_a_file_without_xarray_reads_as_one_that_xarray_wrote(arrays: Callable[[], LabelledArrays]) -> None:
     found = arrays()
     read, expected = stored(found.netcdf()), stored(bytes(found.dataset().to_netcdf(engine="h5netcdf")))

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from pytest import approx, raises
+from scipy import special
 from scipy.integrate import dblquad
 
 from sonolube.errors import InvalidInput
 from sonolube.thermal import (
     EllipticSource,
+    HertzianSource,
     RectangularSource,
     ThermalSolid,
     blok_partition,
@@ -142,3 +144,13 @@ def test_the_peclet_number_follows_jaegers_definition() -> None:
 def test_a_negative_flux_is_refused_by_name() -> None:
     with raises(InvalidInput, match=r"heat_flux must not be negative, got -1\.0 W/m2"):
         flash_rise(STEEL, DOT, heat_flux=-1.0, sliding_speed=1.0)
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 0.01, 0.3, 0.999999, 1.0, 1 / 0.3, 1e4])
+def test_the_rise_of_a_stationary_ellipse_has_the_elliptic_integral_of_a_library(ratio: float) -> None:
+    source = EllipticSource(half_length=1e-3, half_width=ratio * 1e-3)
+    short, long = min(1.0, ratio), max(1.0, ratio)
+    expected = 2 / np.pi * special.ellipkm1((short / long) ** 2) * short
+    assert source.peak_low_peclet == approx(expected, rel=1e-12)
+    hertzian = HertzianSource(half_length=1e-3, half_width=ratio * 1e-3)
+    assert hertzian.peak_low_peclet == approx(3 * np.pi / 8 * expected, rel=1e-12)

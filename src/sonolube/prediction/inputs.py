@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from sonolube.errors import InvalidInput
 from sonolube.prediction.closures import Conditions, UncertainConditions
 from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH
-from sonolube.prediction.posterior import learned
+from sonolube.prediction.posterior import Posterior, learned
 from sonolube.rig import Distribution, FrictionPoint, Rig, friction_point
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.units import format_si
@@ -152,7 +152,7 @@ def rig_inputs(rig: Rig) -> RigInputs:
         raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is 0 m")
     length = _measured_decay_length(rig)
     return RigInputs(
-        decay=length or _decay_length_of_the_population(),
+        decay=length or decay_length_of(learned().friction, known_from="published tests"),
         amplitude=_amplitude(rig, point),
         friction=_friction(rig),
         measured_length=length is not None,
@@ -183,15 +183,15 @@ def _measured_decay_length(rig: Rig) -> Input | None:
     )
 
 
-def _decay_length_of_the_population() -> Input:
-    """Decay length of the force of worn contacts by the published tests."""
-    value, spread = learned().friction.decay_length()
+def decay_length_of(posterior: Posterior, *, known_from: str) -> Input:
+    """Decay length of the force of worn contacts by a posterior, and the tests that it is known from."""
+    value, spread = posterior.decay_length()
     return Input(
         name="decay_length",
         label="decay length of the contact",
         value=value,
         spread=spread,
-        reason="of worn contacts by published tests; no roughness tells it",
+        reason=f"of worn contacts by {known_from}; no roughness tells it",
         remedy="a run with vibration on this rig, or its contact stiffness (`sonolube measure stiffness`)",
     )
 

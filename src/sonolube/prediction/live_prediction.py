@@ -10,13 +10,15 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.prediction.applicability import Applicability, applicability
 from sonolube.prediction.contact_heating import contact_heating
-from sonolube.prediction.inputs import Input, RigInputs, rig_inputs
+from sonolube.prediction.inputs import Input, RigInputs, decay_length_of, rig_inputs
+from sonolube.prediction.laboratory import Laboratory, laboratory
 from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, RigPrediction, rig_prediction
 from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, OwnLogarithms, measures, own_logarithms, share_left
 from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
 from sonolube.prediction.scores import LEVELS
+from sonolube.prediction.stiffness_probes import Probe, probe_sentences, stiffness_probes, told_probes
 from sonolube.prediction.wear import vibration_weight
 from sonolube.prediction.wear_statement import pair_of
 from sonolube.rig import Rig
@@ -30,6 +32,7 @@ _CURVE: Final = 33  # points of a curve, the operating point in the middle
 _FARTHEST: Final = 6.0  # point of a curve over the operating point
 _FEWEST, _MOST = 100, 200_000  # draws
 _NOT_IN_THE_RATIO: Final = "friction_coefficient", "interval_share_left"
+_WITHIN_80: Final = 1.2816  # standard deviations
 
 
 class LivePrediction:
@@ -39,7 +42,9 @@ class LivePrediction:
     ----------
     rig : Rig
     runs : xarray.Dataset, optional
-        Own measured runs over `run`, as `sonolube.measurement.read_runs` returns them.
+        Own measured runs over `run`, as `sonolube.measurement.measured_runs.read_runs` returns them.
+    laboratory_runs : sequence of (Rig, xarray.Dataset)
+        Other rigs of the same laboratory with runs of each, which tell of the decay length and its scatter.
     pin, disc : str, optional
         Materials of the catalogue, for the temperature rise of the contact; by default those of the rig.
     lubricant : bool
@@ -51,7 +56,7 @@ class LivePrediction:
     Raises
     ------
     InvalidInput
-        If the number of draws is out of range, or as `at` does.
+        If the number of draws is out of range, or as `at` does, also for a rig of the laboratory.
     """
 
     def __init__(
@@ -59,6 +64,7 @@ class LivePrediction:
         rig: Rig,
         *,
         runs: "xr.Dataset | None" = None,
+        laboratory_runs: "Sequence[tuple[Rig, xr.Dataset]]" = (),
         pin: str | None = None,
         disc: str | None = None,
         lubricant: bool = False,
@@ -70,6 +76,9 @@ class LivePrediction:
         self._runs, self._materials, self._lubricant = runs, (pin, disc), lubricant
         self._draws, self._seed = draws, seed
         self._kept: tuple[bytes, RigPrediction] | None = None
+        self._probes: tuple[Rig, tuple[Probe, ...]] | None = None
+        self._laboratory = _laboratory(laboratory_runs, seed=seed) if laboratory_runs else None
+        self._posterior = learned().friction if self._laboratory is None else self._laboratory.posterior
         self.first: LabelledArrays = self.at(rig)
 
     def at(self, rig: Rig) -> LabelledArrays:
@@ -96,6 +105,8 @@ class LivePrediction:
         if limits.refusal:
             raise InvalidInput(limits.refusal)
         inputs = rig_inputs(rig)
+        if self._laboratory is not None and not inputs.measured_length:
+            inputs = inputs.with_input(decay_length_of(self._posterior, known_from=self._laboratory.known_from))
         own = None if self._runs is None else own_runs(self._runs, inputs, title=rig.title)
         if own is not None and own.friction is not None:
             inputs = inputs.with_input(own.friction)
@@ -117,7 +128,8 @@ class LivePrediction:
         drawn = _frictional(ratio, intrinsic, rig, heating) | self._wear(rig, found, own, ratio)
         uncertain = sorted(inputs.uncertain, key=lambda each: -each.spread)
         logs = own_logarithms(found, intrinsic=intrinsic, seed=self._seed)
-        better = () if unknown else measures(found, inputs, ratio=ratio, seed=self._seed)
+        probes = () if inputs.measured_length else self._told_probes(rig, inputs)
+        better = () if unknown else measures(found, inputs, ratio=ratio, probes=probes, seed=self._seed)
         variables = {
             **{
                 name: LabelledArray(dims=("draw",), values=values, attrs=labels(name)) for name, values in drawn.items()
@@ -143,8 +155,9 @@ class LivePrediction:
             coordinates={
                 name: LabelledArray(dims=(name,), values=np.asarray(values)) for name, values in coordinates.items()
             },
-            attrs=prediction_attributes(rig, inputs, own, found, limits)
+            attrs=prediction_attributes(rig, inputs, own, found, limits, self._laboratory)
             | {
+                "stiffness_probes": "" if inputs.measured_length else "\n".join(probe_sentences(probes)),
                 "heat": heating if isinstance(heating, str) else "",
                 "wear": wear_sentence(rig, ratios=drawn["wear_rate_ratio"], contradicted=_contradicted(found)),
             },
@@ -161,9 +174,19 @@ class LivePrediction:
             parts += [tested.friction_ratio, tested.uncertainty]
         key = np.concatenate(parts).tobytes()
         if self._kept is None or self._kept[0] != key:
-            found = rig_prediction(learned().friction, at, count=self._draws, seed=self._seed, own=tested)
+            found = rig_prediction(self._posterior, at, count=self._draws, seed=self._seed, own=tested)
             self._kept = key, found
         return self._kept[1]
+
+    def _told_probes(self, rig: Rig, inputs: RigInputs) -> tuple[Probe, ...]:
+        """Resonances that may tell the contact stiffness, kept while structure and load stay as they are."""
+        kept = None if self._probes is None else self._probes[0]
+        if kept is None or kept.structure != rig.structure or kept.normal_load != rig.normal_load:
+            middle, spread = learned().friction.decay_length()
+            lengths = middle * np.exp(spread * np.array([-_WITHIN_80, 0.0, _WITHIN_80]))
+            self._probes = rig, stiffness_probes(rig, decay_length=lengths)
+        assert self._probes is not None
+        return told_probes(self._probes[1], frequency=inputs.frequency)
 
     def _ratios(self, found: RigPrediction, inputs: RigInputs, *, unknown: bool, **along: Floats) -> Floats:
         """Draws of the friction ratio along a curve, shape (draws, points)."""
@@ -202,6 +225,7 @@ def predict(
     rig: Rig,
     *,
     runs: "xr.Dataset | None" = None,
+    laboratory_runs: "Sequence[tuple[Rig, xr.Dataset]]" = (),
     pin: str | None = None,
     disc: str | None = None,
     lubricant: bool = False,
@@ -213,15 +237,8 @@ def predict(
     Parameters
     ----------
     rig : Rig
-    runs : xarray.Dataset, optional
-        Own measured runs over `run`, as `sonolube.measurement.read_runs` returns them.
-    pin, disc : str, optional
-        Materials of the catalogue, for the temperature rise of the contact; by default those of the rig.
-    lubricant : bool
-        Whether the contact is lubricated.
-    draws : int
-        Equally probable outcomes, 100 to 200,000.
-    seed : int
+    runs, laboratory_runs, pin, disc, lubricant, draws, seed
+        As of `LivePrediction`.
 
     Returns
     -------
@@ -241,21 +258,16 @@ def predict(
     MissingProperty, UnknownName
         For a material without thermal properties.
     """
-    return prediction_arrays(rig, runs=runs, pin=pin, disc=disc, lubricant=lubricant, draws=draws, seed=seed).dataset()
+    live = LivePrediction(
+        rig, runs=runs, laboratory_runs=laboratory_runs, pin=pin, disc=disc, lubricant=lubricant, draws=draws, seed=seed
+    )
+    return live.first.dataset()
 
 
-def prediction_arrays(
-    rig: Rig,
-    *,
-    runs: "xr.Dataset | None" = None,
-    pin: str | None = None,
-    disc: str | None = None,
-    lubricant: bool = False,
-    draws: int = DRAWS,
-    seed: int = 0,
-) -> LabelledArrays:
-    """Prediction of a rig as `predict` describes it, without xarray."""
-    return LivePrediction(rig, runs=runs, pin=pin, disc=disc, lubricant=lubricant, draws=draws, seed=seed).first
+def _laboratory(rigs_with_runs: "Sequence[tuple[Rig, xr.Dataset]]", *, seed: int) -> Laboratory:
+    """Population of a laboratory from the runs of its rigs."""
+    tested = [own_runs(runs, rig_inputs(rig), title=rig.title).tested for rig, runs in rigs_with_runs]
+    return laboratory(learned().friction, tested, seed=seed)
 
 
 def _frictional(ratio: Floats, intrinsic: Floats, rig: Rig, heating: float | str) -> dict[str, Floats]:

@@ -1,5 +1,6 @@
 """Expected width of a predictive interval after a further measurement: one run, the contact stiffness, an input."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -11,6 +12,8 @@ from sonolube.prediction.hierarchy import discrepancy_correlation
 from sonolube.prediction.inputs import RigInputs
 from sonolube.prediction.predictive import RigPrediction
 from sonolube.prediction.scores import central_interval
+from sonolube.prediction.stiffness_probes import Probe
+from sonolube.units import format_si
 
 KNOWN_WELL: Final = {"decay_length": 0.1, "vibration_amplitude": 0.02, "friction_coefficient": 0.03}
 """Standard deviation of the logarithm of each uncertain input after a careful measurement."""
@@ -134,8 +137,10 @@ def share_left(target: Floats, *, observed: Floats, noise: float) -> float:
     return min(expected_width(target, observed=observed, noise=noise) / width(target), 1.0)
 
 
-def measures(found: RigPrediction, inputs: RigInputs, *, ratio: Floats, seed: int) -> tuple[Measure, ...]:
-    """Measurements that would narrow the prediction at the operating point, the one that helps most first.
+def measures(
+    found: RigPrediction, inputs: RigInputs, *, ratio: Floats, probes: Sequence[Probe], seed: int
+) -> tuple[Measure, ...]:
+    """Measurements that would narrow the prediction at the operating point: a run first, then the contact stiffness.
 
     Parameters
     ----------
@@ -143,6 +148,8 @@ def measures(found: RigPrediction, inputs: RigInputs, *, ratio: Floats, seed: in
     inputs : RigInputs
     ratio : ndarray, shape (draws,)
         Friction ratio at the operating point.
+    probes : sequence of Probe
+        Resonances of the rig that may tell the contact stiffness.
     seed : int
 
     Returns
@@ -159,14 +166,31 @@ def measures(found: RigPrediction, inputs: RigInputs, *, ratio: Floats, seed: in
     ]
     if not inputs.measured_length:
         length = own_logarithms(found, intrinsic=np.ones(found.count), seed=seed).log_length
-        made += [
-            Measure(
-                label=f"contact stiffness within {100 * noise:.0f} %",
-                share_left=share_left(ratio, observed=length, noise=noise),
-            )
-            for noise in _STIFFNESS
-        ]
+        made += _stiffness_measures(ratio, length, probes)
     return tuple(made)
+
+
+def _stiffness_measures(ratio: Floats, length: Floats, probes: Sequence[Probe]) -> list[Measure]:
+    """What each resonance that tells the contact stiffness would leave; two uncertainties where none is known to."""
+    made = []
+    for probe in probes:
+        if not probe.resolvable.any():
+            continue
+        deviation = float(np.mean(probe.log_stiffness_deviation[probe.resolvable]))
+        low, high = (format_si(float(each), "Hz", digits=3) for each in np.sort(probe.pressed_frequency)[[0, -1]])
+        told = float(np.mean(probe.resolvable))  # share of contacts of which the shift tells
+        left = told * share_left(ratio, observed=length, noise=deviation) + 1 - told
+        label = f"contact stiffness by the {probe.name} ({low} to {high} when pressed)"
+        made.append(Measure(label=label, share_left=left))
+    if made:
+        return made
+    return [
+        Measure(
+            label=f"contact stiffness within {100 * noise:.0f} %",
+            share_left=share_left(ratio, observed=length, noise=noise),
+        )
+        for noise in _STIFFNESS
+    ]
 
 
 def _two_points(found: RigPrediction, inputs: RigInputs) -> tuple[Floats, Floats]:

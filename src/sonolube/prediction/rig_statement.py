@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability
+from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability, extrapolation_caveats
 from sonolube.prediction.inputs import RigInputs
+from sonolube.prediction.laboratory import Laboratory
 from sonolube.prediction.own_runs import OwnRuns
 from sonolube.prediction.predictive import RigPrediction
 from sonolube.prediction.run_check import RunCheck
 from sonolube.prediction.scores import central_interval
-from sonolube.prediction.tested_range import extrapolation_caveats
 from sonolube.prediction.wear_statement import pair_of, wear_statement, worn_body
 from sonolube.rig import Rig
 from sonolube.rig.labelled_arrays import LabelledArrays
@@ -66,11 +66,17 @@ def statement(prediction: "xr.Dataset | LabelledArrays") -> tuple[str, ...]:
 
 
 def prediction_attributes(
-    rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RigPrediction, limits: Applicability
+    rig: Rig,
+    inputs: RigInputs,
+    own: OwnRuns | None,
+    found: RigPrediction,
+    limits: Applicability,
+    laboratory: Laboratory | None,
 ) -> dict[str, object]:
     """Title, caveats, assumptions and numbers without a distribution of a prediction."""
     point = inputs.point
     caveats = [*limits.caveats, *point.caveats, *extrapolation_caveats(rig, inputs)]
+    caveats += () if laboratory is None else laboratory.caveats
     if own is not None:
         caveats += [*_outlier_caveats(found.check, own), *own.caveats]
     attributes: dict[str, object] = {
@@ -113,7 +119,11 @@ def _advice(prediction: "xr.Dataset | LabelledArrays") -> str:
     if not labels.size:
         return "Own runs, fitted by `sonolube fit`, tell what vibration does here."
     one, other = 100 * left[0], 100 * left[1]
-    return f"One run at this point would leave {one:.0f} % of the width here, {other:.0f} % at twice the speed."
+    run = f"One run at this point would leave {one:.0f} % of the width here, {other:.0f} % at twice the speed"
+    if left.size < 3:
+        return f"{run}."
+    best = 2 + int(np.argmin(left[2:]))
+    return f"{run}; {labels[best]} would leave {100 * left[best]:.0f} %."
 
 
 def _limits(prediction: "xr.Dataset | LabelledArrays") -> str:

@@ -17,7 +17,7 @@ _COMPARED: Final = 1024  # draws of the prediction that runs are compared with
 _LARGEST: Final = 1.4  # ratio that anything else than the prediction may give
 _MIN_REPLICATES: Final = 200  # of runs drawn from the prediction
 _PRODUCTS: Final = 2e7  # of densities, to bound the time
-_CONTRADICTION: Final = 0.04  # probability below which runs contradict the prediction
+_CONTRADICTION: Final = 0.05  # probability below which runs contradict the prediction
 _OUTLIER: Final = 0.05  # probability, over all runs, below which one disagrees with the others
 
 

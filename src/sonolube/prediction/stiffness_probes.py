@@ -16,6 +16,7 @@ _RESOLVED = 3.0  # shift over its standard uncertainty
 _STEP = 0.01  # of central differences, in the logarithm of the stiffness
 _WIDEST = 0.5  # damping ratio from which on no peak shows
 _LISTED = 6  # probes named in a sentence
+_BEST = 2  # of them that a prediction tells
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -150,6 +151,29 @@ def stiffness_probes(
     return tuple(found)
 
 
+def told_probes(probes: Sequence[Probe], *, frequency: float) -> tuple[Probe, ...]:
+    """The two probes of least uncertainty, and the mode nearest to a frequency of vibration.
+
+    Parameters
+    ----------
+    probes : sequence of Probe
+        Of `stiffness_probes`.
+    frequency : float
+        Of the vibration. [Hz]
+
+    Returns
+    -------
+    tuple of Probe
+        Up to three, the one of least uncertainty first.
+    """
+    if not probes:
+        return ()
+    ranked = _ranked(probes)
+    vibrated = min(probes, key=lambda one: abs(one.free_frequency - frequency))
+    best = [one for one in ranked[:_BEST] if one.resolvable.any()]
+    return (*best, *(one for one in (vibrated,) if one not in best))
+
+
 def probe_sentences(probes: Sequence[Probe]) -> tuple[str, ...]:
     """Which resonances of a rig can tell the stiffness of its contact, one sentence each.
 
@@ -165,8 +189,12 @@ def probe_sentences(probes: Sequence[Probe]) -> tuple[str, ...]:
     """
     if not probes:
         return ("no structure is known, so no resonance can be named whose shift tells the stiffness of the contact",)
-    ranked = sorted(probes, key=lambda one: (float(np.mean(~one.resolvable)), float(one.log_stiffness_deviation.min())))
-    return tuple(_sentence(probe) for probe in ranked[:_LISTED])
+    return tuple(_sentence(probe) for probe in _ranked(probes)[:_LISTED])
+
+
+def _ranked(probes: Sequence[Probe]) -> list[Probe]:
+    """Probes by the share of contacts that they cannot tell, then by their least uncertainty."""
+    return sorted(probes, key=lambda one: (float(np.mean(~one.resolvable)), float(one.log_stiffness_deviation.min())))
 
 
 def _sentence(probe: Probe) -> str:
@@ -186,7 +214,7 @@ def _sentence(probe: Probe) -> str:
     shift, width = float(probe.shift.max()), 2 * float(probe.peak_half_width.max())
     if width >= 2 * _WIDEST * float(probe.pressed_frequency.max()):
         return f"{probe.name}: pressed {places}; too damped to show a peak"
-    share = f"a {width / shift:.0f}th" if shift > 0 else "nothing"
+    share = f"1/{width / shift:.0f}" if shift > 0 else "nothing"
     return (
         f"{probe.name}: shifts by {format_si(shift, 'Hz', digits=2)} at most, {share} of its"
         f" width of {format_si(width, 'Hz', digits=2)}: not resolvable"

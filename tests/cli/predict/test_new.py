@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 from pytest import CaptureFixture, MonkeyPatch, approx, raises
+from tests.work import calls
 
 from sonolube.cli import main
 from sonolube.rig import read_rig
@@ -26,8 +27,7 @@ KNOWN = (
     *("--pin", PIN, "--disc", DISC, "--load", "5N", "--speed", "0.2m/s", "--frequency", "20kHz"),
     *("--amplitude", "3um", "--finish", "ground N6"),
 )
-_LONGEST = 60.0  # s
-_REACTION = 0.2  # s; what is typed before a line editor has set the terminal may be lost
+_LONGEST = 300.0  # s, which ends a hung test only
 
 
 @pytest.fixture(autouse=True)
@@ -38,18 +38,19 @@ def desk(tmp_path: Path, monkeypatch: MonkeyPatch) -> Path:
 
 
 def conversation(arguments: Sequence[str], answers: Sequence[str], *, end: bytes = b"") -> tuple[int, str]:
-    """Exit status and screen of the program on a terminal, each answer typed after a question, then `end`."""
+    """Exit status and screen of the program on a terminal, each answer typed after a question, then `end`.
+
+    An end is typed again while nothing comes of it: Python notes a signal that comes just before a read after the read.
+    """
     process, terminal = pty.fork()
     if process == 0:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # a background job ignores it
         os.execv(PROGRAM, [PROGRAM, *arguments])
-    screen, typed, seen, begin = (
-        b"",
-        [f"{each}\n".encode() for each in answers] + [end] * bool(end),
-        0,
-        time.monotonic(),
-    )
+    typed = [f"{each}\n".encode() for each in answers] + [end] * bool(end)
+    screen, seen, begin = b"", 0, time.monotonic()
     while time.monotonic() - begin < _LONGEST:
-        if select.select([terminal], [], [], 0.1)[0]:
+        is_idle = not select.select([terminal], [], [], 1.0)[0]
+        if not is_idle:
             try:
                 part = os.read(terminal, 4096)
             except OSError:
@@ -59,8 +60,9 @@ def conversation(arguments: Sequence[str], answers: Sequence[str], *, end: bytes
             screen += part
         if typed and screen[seen:].rstrip(b" ").endswith(b"]:"):
             seen = len(screen)
-            time.sleep(_REACTION)
             os.write(terminal, typed.pop(0))
+        elif is_idle and not typed:
+            os.write(terminal, end)
     else:
         os.kill(process, signal.SIGKILL)
     _, status = os.waitpid(process, 0)
@@ -80,19 +82,27 @@ def refused(capsys: CaptureFixture[str], *arguments: str) -> str:
 
 def predicted(path: str) -> tuple[float, float]:
     """80 % interval of the friction ratio that `predict` gives for a rig."""
-    run = subprocess.run([PROGRAM, "predict", path, "--json"], capture_output=True, text=True, check=True, timeout=60)
+    run = subprocess.run([PROGRAM, "predict", path, "--json"], capture_output=True, text=True, check=True, timeout=300)
     low, high = json.loads(run.stdout)["friction_ratio"]["interval_80"]
     return low, high
 
 
-def test_from_what_is_known_to_a_prediction_takes_less_than_a_minute() -> None:
-    begin = time.monotonic()
-    run = subprocess.run([PROGRAM, "new", "rig.toml", *KNOWN], capture_output=True, text=True, check=True, timeout=60)
+def test_from_what_is_known_to_a_prediction_are_two_commands() -> None:
+    run = subprocess.run([PROGRAM, "new", "rig.toml", *KNOWN], capture_output=True, text=True, check=True, timeout=300)
     assert "next: sonolube predict rig.toml" in run.stdout
     low, high = predicted("rig.toml")
-    assert time.monotonic() - begin < 60
     assert high - low <= 0.8
     assert high >= 0.02
+
+
+def test_from_what_is_known_to_a_prediction_is_the_work_of_seconds() -> None:
+    def commands() -> None:
+        for words in (["new", "rig.toml", *KNOWN], ["predict", "rig.toml"]):
+            with raises(SystemExit):
+                main(words)
+
+    work = calls(commands)
+    assert work < 30_000_000  # calls, of which even a slow machine does a million a second: less than a minute
 
 
 def test_questions_on_a_terminal_give_the_same_rig_as_options() -> None:

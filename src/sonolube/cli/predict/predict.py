@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
@@ -13,9 +13,10 @@ from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Load, Ou
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.measured import Measurement, measured_on
 from sonolube.compilation import few_points
+from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import runs_help
 from sonolube.prediction.figures import prediction_figure
-from sonolube.prediction.live_prediction import prediction_arrays
+from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.rig_statement import interval
 from sonolube.prediction.scores import PROBABILITIES
 from sonolube.report import Drawing
@@ -23,6 +24,9 @@ from sonolube.rig import Rig
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _INPUT_HEADS = ["  least known inputs", "value", "known well, it leaves of ratio and force", "known from"]
 _MEASURE_HEADS = ["  what would narrow it", "leaves of the interval"]
@@ -37,6 +41,14 @@ _PERCENT = ("friction_reduction", "wear_reduction")
 def predict(
     rig: RigPath,
     runs: Annotated[Path | None, typer.Option(metavar="RUNS.csv", help=runs_help("Own measured runs"))] = None,
+    laboratory: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="RIG.toml=RUNS.csv",
+            help="Another rig of your laboratory with its runs, which tell of the contact's decay length; may be"
+            " repeated.",
+        ),
+    ] = None,
     pin: Annotated[
         str | None, typer.Option(metavar="MATERIAL", help="Material of the pin, for the heat; by default the rig's.")
     ] = None,
@@ -59,10 +71,21 @@ def predict(
     """
     known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     own = None if runs is None else measured_runs(runs)
-    result = prediction_arrays(known, runs=own, pin=pin, disc=disc, lubricant=lubricant, seed=seed)
+    others = [_rig_with_runs(text) for text in laboratory or []]
+    result = LivePrediction(
+        known, runs=own, laboratory_runs=others, pin=pin, disc=disc, lubricant=lubricant, seed=seed
+    ).first
     measured = measured_on(known, vibration_amplitude=result.attrs["vibration_amplitude"])
     answer = PredictionAnswer(rig=known, prediction=result, measured=measured, name=f"{rig.stem}-prediction")
     deliver(answer, folder=out, as_json=json)
+
+
+def _rig_with_runs(text: str) -> "tuple[Rig, xr.Dataset]":
+    """Rig and runs of `--laboratory`."""
+    rig, equals, runs = text.partition("=")
+    if not (rig and equals and runs):
+        raise InvalidInput(f"--laboratory {text}: give a rig file and the table of its runs as RIG.toml=RUNS.csv")
+    return loaded_rig(Path(rig), changes=None, amplitude=None), measured_runs(Path(runs))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,6 +110,7 @@ class PredictionAnswer(Answer):
             *attributes["statement"].split("\n"),
             *grid([heads, *map(self._row, self._names())]),
             *grid([_MEASURE_HEADS, *self._measure_rows()]),
+            *(f"  {line}" for line in self._probes()),
             *grid([_INPUT_HEADS, *map(self._input_row, range(self.prediction.sizes["input"]))]),
             *about,
             *(f"  measured {one.label}: {one.text}" for one in self.measured),
@@ -102,6 +126,7 @@ class PredictionAnswer(Answer):
             "share_left_by_measurement": dict(
                 zip(self._column("measure_label"), self._column("measure_share_left"), strict=True)
             ),
+            "stiffness_probes": self._probes(),
             "measured": [one.object() for one in self.measured],
             "interval_share_left": dict(zip(self._column("input"), self._column("interval_share_left"), strict=True)),
             **{name: self.prediction.attrs.get(name) for name in ("runs", "actuator_power")},
@@ -118,6 +143,10 @@ class PredictionAnswer(Answer):
     def files(self) -> Mapping[str, LabelledArrays]:
         """Draws and curves."""
         return {f"{self.name}.nc": self.prediction}
+
+    def _probes(self) -> list[str]:
+        """Which resonances of the rig tell the contact stiffness, a sentence each."""
+        return [line for line in self.prediction.attrs["stiffness_probes"].split("\n") if line]
 
     def _column(self, name: str) -> list[Any]:
         """Values of a variable over the uncertain inputs."""

@@ -67,7 +67,11 @@ def _modes(text: str) -> dict[str, list[float]]:
     except csv.Error as failure:
         raise InvalidInput(f"not a table of comma-separated values: {failure}") from None
     columns = [_column(head) for head in heads]
-    missing = [name for name in MODE_LISTS if name not in (known for known, _ in columns)]
+    names = [known for known, _ in columns]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice:
+        raise InvalidInput(f"two columns are named {twice}; keep one of them")
+    missing = [name for name in MODE_LISTS if name not in names]
     if missing:
         raise InvalidInput(f"column {missing[0]} is missing; a file of modes has {', '.join(MODE_LISTS)}")
     if not rows:
