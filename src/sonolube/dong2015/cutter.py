@@ -5,10 +5,16 @@ Its sizes are not printed. With the assumed ones the mode in which the rim of th
 """
 
 from dataclasses import replace
+from typing import Final
 
 from sonolube.dong2015.tribometer import TRIBOMETER_ACTUATOR_DIMENSIONS
 from sonolube.fem.parts.tips import hub_disc
 from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
+from sonolube.fem.solver.cad import cad_kernel
+from sonolube.fem.solver.geometry import bond, single_body
+from sonolube.fem.solver.model import FixedSupport
+
+_FAR: Final = 1e3  # mm, beyond all bodies
 
 CUTTER_HEAD_DIMENSIONS = (
     *TRIBOMETER_ACTUATOR_DIMENSIONS[:6],  # D 4.4.2: the stack is that of the tribometer
@@ -96,3 +102,25 @@ def cutter_head(
     )
     transducer = stack_from_bodies(bodies, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
     return replace(transducer, dimensions=CUTTER_HEAD_DIMENSIONS)
+
+
+def cutter_head_quarter() -> Transducer:
+    """Quarter of the cutter head of default sizes, of positive x and y.
+
+    Returns
+    -------
+    Transducer
+        Its modes are those of the head that are even about both planes, among them all axisymmetric ones, in a third of
+        the time.
+    """
+    whole = cutter_head()
+    quadrant = cad_kernel().Box((0, 0, -_FAR), (_FAR, _FAR, _FAR))
+    solids = zip(whole.geometry.regions, whole.geometry.shape.solids, strict=True)
+    return replace(
+        whole,
+        geometry=bond({name: single_body(solid * quadrant, name) for name, solid in solids}),
+        fixed=tuple(
+            FixedSupport(face=f"{region}.-{plane}", along=plane) for region in whole.geometry.regions for plane in "xy"
+        ),
+        copies=4,
+    )

@@ -7,20 +7,28 @@ from typing import Final
 from sonolube.errors import UnknownName
 from sonolube.prediction.published_figures import published_prediction_figures
 from sonolube.reproduce.chapter2.flextensional import flextensional_rows
+from sonolube.reproduce.chapter2.flextensional_figures import flextensional_figures
 from sonolube.reproduce.chapter2.material_pairs import material_pair_figures, material_pair_rows
+from sonolube.reproduce.chapter2.metal_forming_figures import metal_forming_figures
 from sonolube.reproduce.chapter2.poisson_effect import poisson_effect_figures, poisson_effect_rows
 from sonolube.reproduce.chapter2.tribometer import tribometer_rows
 from sonolube.reproduce.chapter2.tribometer_figures import tribometer_figures
 from sonolube.reproduce.chapter2.welder import welder_rows
+from sonolube.reproduce.chapter2.welder_figures import welder_figures
 from sonolube.reproduce.chapter2.welder_motor import welder_motor_rows
 from sonolube.reproduce.chapter3.cube_figures import cube_figures
 from sonolube.reproduce.chapter3.cube_rows import cube_rows
 from sonolube.reproduce.chapter3.parametric_study_figures import parametric_study_figures
 from sonolube.reproduce.chapter3.parametric_study_rows import parametric_study_rows
+from sonolube.reproduce.chapter3.vibration_period_figures import vibration_period_figures
+from sonolube.reproduce.chapter4.coated_plate_figures import coated_plate_figures
 from sonolube.reproduce.chapter4.collar_figures import collar_figures
 from sonolube.reproduce.chapter4.collar_rows import collar_rows
+from sonolube.reproduce.chapter4.cutter_head_figures import cutter_head_figures
+from sonolube.reproduce.chapter4.dry_temperature_figures import dry_temperature_figures
 from sonolube.reproduce.chapter4.load import load_figures, load_rows
 from sonolube.reproduce.chapter4.lubrication import lubrication_figures, lubrication_rows
+from sonolube.reproduce.chapter4.lubrication_method_figures import lubrication_method_figures
 from sonolube.reproduce.chapter4.maps import map_figures, map_rows
 from sonolube.reproduce.chapter4.power_figures import power_figures
 from sonolube.reproduce.chapter4.power_rows import power_map_rows
@@ -45,19 +53,25 @@ def published_comparison() -> tuple[ComparedFit, ...]:
 
 SECTIONS: Final = (
     Section(number="2.1", rows=poisson_effect_rows, figures=poisson_effect_figures),
-    Section(number="2.2", rows=flextensional_rows),
+    Section(number="2.2", rows=flextensional_rows, figures=flextensional_figures),
     Section(number="2.3", rows=tribometer_rows, figures=tribometer_figures),
-    Section(number="2.4", rows=welder_rows),
+    Section(number="2.4", figures=metal_forming_figures),
+    Section(number="2.4", rows=welder_rows, figures=welder_figures),
     Section(number="2.4", rows=welder_motor_rows),
     Section(number="2.5", rows=material_pair_rows, figures=material_pair_figures),
     Section(number="3.1", rows=cube_rows, figures=cube_figures),
     Section(number="3.3", rows=parametric_study_rows, figures=parametric_study_figures),
+    Section(number="3.3", figures=vibration_period_figures),
     Section(number="4.1", rows=power_map_rows, figures=power_figures),
     Section(number="4.1", rows=map_rows, figures=map_figures),
+    Section(number="4.1", figures=coated_plate_figures),
     Section(number="4.1", rows=load_rows, figures=load_figures),
+    Section(number="4.2", figures=lubrication_method_figures),
     Section(number="4.2", rows=lubrication_rows, figures=lubrication_figures),
     Section(number="4.3", rows=temperature_rows, figures=temperature_figures),
+    Section(number="4.3", figures=dry_temperature_figures),
     Section(number="4.4", rows=skin_replica_rows, figures=skin_replica_figures),
+    Section(number="4.4", figures=cutter_head_figures),
     Section(number="4.5", rows=collar_rows, figures=collar_figures),
     Section(number="2.3", rows=tribometer_test_rows),
     Section(number="4.1", rows=power_map_test_rows),

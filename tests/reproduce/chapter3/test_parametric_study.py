@@ -11,6 +11,7 @@ from sonolube.figure import ReportFigure, publication_style
 from sonolube.reproduce import Verdict
 from sonolube.reproduce.chapter3.parametric_study_figures import parametric_study_figures
 from sonolube.reproduce.chapter3.parametric_study_rows import parametric_study_rows
+from sonolube.reproduce.chapter3.vibration_period_figures import vibration_period_figures
 from sonolube.reproduce.chapter4.load import load_figures, load_rows
 from sonolube.reproduce.tribometer_rigs import tribometer_rig
 from sonolube.rig import read_rig
@@ -72,7 +73,11 @@ def test_the_arm_of_the_model_has_no_effect_on_friction_at_6_or_7_newton() -> No
     assert ROWS["4.1.2-arm-extra-reduction"].computed == approx(0, abs=0.1)
 
 
-@pytest.mark.parametrize("figure", [*parametric_study_figures(), *load_figures()], ids=lambda figure: figure.name)
+@pytest.mark.parametrize(
+    "figure",
+    [*parametric_study_figures(), *vibration_period_figures(), *load_figures()],
+    ids=lambda figure: figure.name,
+)
 def test_axes_of_the_study_have_units(figure: ReportFigure) -> None:
     with publication_style():
         drawn = figure.draw()

@@ -85,8 +85,9 @@ def map_figures() -> Iterator[ReportFigure]:
     yield ReportFigure(
         name="figure-4-20-power-maps",
         title="Friction reduction over sliding speed and power",
-        caption="As D figures 4.11, 4.12, 4.20 and B.1 to B.6, by the multi-scale model, for all seven loads. More "
-        "power and less speed reduce friction more, as in the text; no ridge lies within the powers of the tests.",
+        caption="As D figures 4.11, 4.20 and the maps of appendix B on uncoated steel, by the multi-scale model, for "
+        "all seven loads. More power and less speed reduce friction more, as in the text; no ridge lies within the "
+        "powers of the tests.",
         draw=lambda: map_figure(power_maps()),
     )
     yield ReportFigure(
