@@ -171,7 +171,7 @@ def test_text_without_end_is_no_surface(content: bytes, tmp_path: Path) -> None:
     pytest.importorskip("SurfaceTopography")
     path = tmp_path / "a.asc"
     path.write_bytes(content)
-    with pytest.raises(InvalidInput, match="of no format of SurfaceTopography"):
+    with pytest.raises(InvalidInput, match="as text no table of heights"):
         read_height_map(path)
 
 

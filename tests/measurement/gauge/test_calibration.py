@@ -1,11 +1,13 @@
 """Force gauge with hysteresis: properties of Preisach's model, and recovery of known loops."""
 
 from itertools import pairwise
+from unittest.mock import patch
 
 import numpy as np
 from hypothesis import given, settings, strategies as st
-from pytest import approx, fixture, raises
+from pytest import approx, fail, fixture, raises
 
+from sonolube.compilation import Kernel, few_points
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.measurement.gauge.calibration import (
     PreisachCalibration,
@@ -183,3 +185,12 @@ def test_a_reading_outside_the_calibrated_range_is_refused() -> None:
         fit_preisach(displacement=np.arange(5.0), applied_force=np.ones(5))
     with raises(InvalidInput, match="levels must lie between 2 and 64"):
         PreisachPlane(lowest=0.0, highest=1.0, levels=65)
+
+
+def test_a_few_samples_are_converted_without_compiling_and_alike() -> None:
+    x = np.array(ramps(TEST)) * 6.0
+    compiled = preisach_output(PLANE, WEIGHTS, x), relay_fractions(PLANE, x)
+    with few_points(), patch.object(Kernel, "compiled", property(lambda kernel: fail("compiled for a few samples"))):
+        plain = preisach_output(PLANE, WEIGHTS, x), relay_fractions(PLANE, x)
+    for one, other in zip(compiled, plain, strict=True):
+        assert one == approx(other, abs=1e-12)

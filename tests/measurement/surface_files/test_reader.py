@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pytest import MonkeyPatch, approx, importorskip, mark, raises, skip
+from pytest import CaptureFixture, MonkeyPatch, approx, importorskip, mark, raises, skip
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import read_height_map, read_surface_file
@@ -98,6 +98,44 @@ def test_other_formats_without_the_extra_are_refused_with_advice(tmp_path: Path,
     monkeypatch.setattr(builtins, "__import__", without)
     with raises(InvalidInput, match=r"pip install 'sonolube\[surfaces\]'"):
         read_height_map(tmp_path / "plate.sur")
+
+
+def dektak(points: int, *, tail: str) -> str:
+    """Export of a Dektak profiler: heights of 10 nm steps every 0.5 um."""
+    head = "Scan Parameters,\nMeas Title,step\nStylus,Radius: 12.5 um\n\nScan Data\n\nLateral um,Raw Micrometer,\n"
+    return head + "".join(f"{0.5 * at:.3f},{0.01 * (at % 7):.4f},\n" for at in range(points)) + tail
+
+
+@mark.parametrize("tail", ["", "\n\n", " \n\n"])
+@mark.parametrize("points", [50, 3000])
+def test_blank_lines_behind_the_points_of_a_dektak_export_are_no_damage(points: int, tail: str, tmp_path: Path) -> None:
+    importorskip("SurfaceTopography", exc_type=ImportError)
+    path = tmp_path / "step.csv"
+    path.write_text(dektak(points, tail=tail), encoding="latin-1")
+    found = read_surface_file(path).height_map
+    assert found.spacing_x == approx(0.5e-6)
+    assert found.height.ravel() == approx(np.array([1e-8 * (at % 7) for at in range(points)]), abs=1e-12)
+
+
+def test_long_prose_is_no_failure_of_a_reader_that_was_not_tried(tmp_path: Path) -> None:
+    importorskip("SurfaceTopography", exc_type=ImportError)
+    path = tmp_path / "notes.txt"
+    path.write_text("a page of notes about the plate\n" * 2000)
+    with raises(
+        InvalidInput, match=r"notes\.txt: is no surface file by its signature, and as text no table of heights"
+    ):
+        read_surface_file(path)
+
+
+def test_what_a_reader_of_the_library_prints_does_not_reach_the_output(
+    tmp_path: Path, capfd: CaptureFixture[str]
+) -> None:
+    importorskip("SurfaceTopography", exc_type=ImportError)
+    path = tmp_path / "plate.dat"
+    path.write_bytes(bytes(range(256)) * 300)
+    with raises(InvalidInput, match="damaged, or of no format of SurfaceTopography"):
+        read_surface_file(path)
+    assert capfd.readouterr() == ("", "")
 
 
 def test_a_file_of_no_known_format_is_refused(tmp_path: Path) -> None:

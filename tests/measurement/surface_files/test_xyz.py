@@ -10,6 +10,7 @@ from pytest import approx, mark, raises
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.measurement.surface_files.reader import read_surface_file
 from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 from sonolube.measurement.surface_files.xyz import XyzText
 
@@ -83,3 +84,20 @@ def test_points_that_form_no_grid_are_refused(text: str, said: str) -> None:
 def test_extreme_positions_are_refused_without_allocation() -> None:
     with raises(InvalidInput):
         read("0 0 1\n1e-300 0 1\n1e300 1 1\n-1e300 2 1\n")
+
+
+@mark.parametrize("axis", ["x", "y"])
+@mark.parametrize("value", ["1e300", "-1e300", "20000"])
+def test_one_position_far_from_all_others_is_named(axis: str, value: str) -> None:
+    points = [[str(x), str(y), "0.1"] for y in range(4) for x in range(4)]
+    points[6]["xy".index(axis)] = value
+    with raises(InvalidInput, match=rf"surface\.xyz: {axis} = \S+ lies far from all other points") as refused:
+        read("\n".join(" ".join(point) for point in points))
+    assert f"{axis} = {float(value):g} lies" in str(refused.value)
+
+
+def test_a_spacing_of_many_kilometres_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "wide.xyz"
+    path.write_text("\n".join(f"{x}e300 {y} 0.1" for y in range(4) for x in range(4)))
+    with raises(InvalidInput, match=r"wide\.xyz: spacing must not exceed 1e\+06 m, got 1e\+294 m; check its unit"):
+        read_surface_file(path, length_unit="um")

@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -11,7 +12,7 @@ import numpy as np
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.measurement.file_format import refuse_unreadable
-from sonolube.measurement.impedance.column_headings import parse_heading
+from sonolube.measurement.impedance.column_headings import ColumnHeading, parse_heading
 from sonolube.measurement.impedance.passivity import passive_spectrum
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.limits import require_points
@@ -213,6 +214,7 @@ def _vibration_table(path: Path, lines: list[str]) -> _Table | None:
         frequency = next((place for place, heading in enumerate(headings) if heading and heading.symbol == "f"), None)
         if amplitude is None or frequency is None:
             continue
+        _require_one_of_each(path, at + 1, labels, headings)
         phase = next((place for place, h in enumerate(headings) if h and h.symbol.startswith("theta")), None)
         if phase is None and any(label.lower().startswith("phase") for label in labels):
             raise InvalidInput(f"{path}: line {at + 1}: the phase needs a unit, 'phase (deg)' or '(rad)'")
@@ -235,6 +237,20 @@ def _vibration_table(path: Path, lines: list[str]) -> _Table | None:
         assert matched is not None
         return _Table(f_heading.scale * column(frequency), response, matched[1].lower())
     return None
+
+
+def _require_one_of_each(path: Path, line: int, labels: list[str], headings: Sequence[ColumnHeading | None]) -> None:
+    """Refuse a table with two columns of the frequency, of one quantity of vibration or of the phase."""
+    found: dict[str, int] = {}
+    for place, (label, heading) in enumerate(zip(labels, headings, strict=True), start=1):
+        vibration = _VIBRATION.match(label)
+        symbol = heading.symbol if heading else ""
+        kind = vibration[1].lower() if vibration else {"f": "frequency"}.get(symbol, symbol[:5])
+        if kind in ("frequency", "theta") or vibration:
+            if kind in found:
+                word = "phase" if kind == "theta" else kind
+                raise InvalidInput(f"{path}: line {line}: columns {found[kind]} and {place} are of {word}; keep one")
+            found[kind] = place
 
 
 def _number(path: Path, line: int, row: list[str], place: int, sign: str) -> float:

@@ -15,6 +15,8 @@ from sonolube.checks import Floats
 from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
 
+_FEW = {"most": 100_000, "at_first": 1_000_000}  # samples times cells, a microsecond and a half each as plain Python
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PreisachPlane:
@@ -78,7 +80,8 @@ def relay_fractions(plane: PreisachPlane, values: Floats) -> Floats:
     .. [1] I. D. Mayergoyz, Mathematical Models of Hysteresis and Their Applications, Elsevier (2003), chapter 1.
     """
     fractions = np.empty((values.size, plane.cells))
-    _fill_fractions(_in_levels(plane, values), plane.levels, fractions)
+    fill_fractions = _fill_fractions.for_points(fractions.size, **_FEW)
+    fill_fractions(_in_levels(plane, values), plane.levels, fractions)
     return fractions
 
 
@@ -101,7 +104,8 @@ def preisach_output(plane: PreisachPlane, weights: Floats, values: Floats) -> Fl
     --------
     relay_fractions : the fractions that are summed.
     """
-    return np.asarray(_output(_in_levels(plane, values), plane.levels, np.ascontiguousarray(weights)))
+    output = _output.for_points(values.size * plane.cells, **_FEW)
+    return np.asarray(output(_in_levels(plane, values), plane.levels, np.ascontiguousarray(weights)))
 
 
 def mean_relay_widths(plane: PreisachPlane) -> Floats:

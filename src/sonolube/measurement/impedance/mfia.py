@@ -53,7 +53,8 @@ class Mfia:
         Raises
         ------
         InvalidInput
-            Naming the file and the line, if a value is no number, fields differ in length or a field is missing.
+            Naming the file and the line, if a value is no number, fields differ in length, or a field is missing
+            or there twice.
         """
         separator = ";" if ";" in lines[0] else ","
         chunks: dict[str, dict[str, tuple[int, Floats]]] = {}
@@ -66,7 +67,13 @@ class Mfia:
                 raise InvalidInput(f"{path}: line {at}: has {len(cells)} cells, not chunk, timestamp, size, fieldname")
             field = cells[_LEADING_CELLS - 1]
             if field in _FREQUENCY_FIELDS or any(field in pair for pair in _IMPEDANCE_FIELDS):
-                chunks.setdefault(cells[0], {})[field] = (at, _values(path, at, cells[_LEADING_CELLS:]))
+                fields = chunks.setdefault(cells[0], {})
+                if field in fields:
+                    raise InvalidInput(
+                        f"{path}: line {at}: chunk {cells[0][:20]!r} has {field} a second time, after line"
+                        f" {fields[field][0]}; keep one of them"
+                    )
+                fields[field] = (at, _values(path, at, cells[_LEADING_CELLS:]))
         if not chunks:
             raise InvalidInput(f"{path}: line 1: announces fields, but none is a frequency or an impedance")
         return {chunk: _chunk_sweep(path, chunk, fields) for chunk, fields in chunks.items()}

@@ -5,6 +5,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.column_headings import (
     IMPEDANCE_PARTS,
@@ -101,17 +102,17 @@ def sweep_from_columns(
     Returns
     -------
     ImpedanceSweep
-        Of the first column of each quantity, and the first pair of `IMPEDANCE_PARTS` that the table has: the magnitude
-        alone only where there is nothing else.
+        Of the first pair of `IMPEDANCE_PARTS` that the table has: the magnitude alone only where there is nothing else.
 
     Raises
     ------
     InvalidInput
-        Naming the file and the line, if the headings name no frequency and impedance, or a cell is no number.
+        Naming the file and the line, if the headings name no frequency and impedance, two columns are of one quantity
+        and differ, or a cell is no number.
     """
-    place = {heading.symbol: at for at, heading in reversed(list(enumerate(headings))) if heading}
-    pair = next((pair for pair in IMPEDANCE_PARTS if all(part in place for part in pair)), None)
-    if "f" not in place or pair is None:
+    known = {heading.symbol for heading in headings if heading}
+    pair = next((pair for pair in IMPEDANCE_PARTS if all(part in known for part in pair)), None)
+    if "f" not in known or pair is None:
         raise InvalidInput(
             f"{path}: line {heading_line}: names no columns of frequency and impedance, such as"
             " 'frequency (Hz)', '|Z| (ohm)', 'phase (deg)' or 'R (ohm)', 'X (ohm)'"
@@ -120,16 +121,27 @@ def sweep_from_columns(
         raise InvalidInput(f"{path}: line {heading_line}: no values follow")
     columns = {}
     for symbol in ("f", *pair):
-        values = np.array([_finite_number(path, row, place[symbol], decimal_sign) for row in rows])
-        scale = next(heading.scale for heading in headings if heading and heading.symbol == symbol)
-        with np.errstate(all="ignore"):
-            columns[symbol] = scale * values
+        several = {at: heading for at, heading in enumerate(headings) if heading and heading.symbol == symbol}
+        found = {at: _column(path, rows, at, heading, decimal_sign) for at, heading in several.items()}
+        columns[symbol], *others = found.values()
+        if not all(np.array_equal(columns[symbol], other) for other in others):
+            numbers = " and ".join(str(at + 1) for at in found)
+            raise InvalidInput(
+                f"{path}: line {heading_line}: columns {numbers} are all of {symbol} and differ; keep one of them"
+            )
     return ImpedanceSweep(
         frequency=columns["f"],
         impedance=impedance_from_parts(columns, pair),
         lines=np.array([line for line, _ in rows]),
         has_phase=pair not in MAGNITUDES,
     )
+
+
+def _column(path: Path, rows: list[NumberedCells], at: int, heading: ColumnHeading, decimal_sign: str) -> Floats:
+    """Return the numbers of one column in SI."""
+    values = np.array([_finite_number(path, row, at, decimal_sign) for row in rows])
+    with np.errstate(all="ignore"):
+        return np.asarray(heading.scale * values)
 
 
 def _finite_number(path: Path, row: NumberedCells, at: int, decimal_sign: str) -> float:

@@ -12,7 +12,7 @@ from sonolube.measurement.recordings.mapping import Selection
 TIME_LABELS = frozenset({"time", "t", "x_value", "timestamp", "elapsed_time"})
 """Names of columns that hold the time of a recording."""
 
-_UNIT_OF_LABEL = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))\Z")
+_UNIT_OF_LABEL = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))(?: #\d+)?\Z")
 _MOST_LISTED = 16
 
 

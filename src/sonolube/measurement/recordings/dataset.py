@@ -9,7 +9,7 @@ import numpy as np
 
 from sonolube import __version__
 from sonolube.checks import Floats
-from sonolube.errors import InvalidInput, suggestion
+from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.channel_choice import (
     TIME_LABELS,
     ChannelEntry,
@@ -19,6 +19,7 @@ from sonolube.measurement.recordings.channel_choice import (
 )
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
+from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
 from sonolube.measurement.recordings.written_units import convert_to_si, si_conversion
 from sonolube.vocabulary import quantities, unit_of
 
@@ -81,15 +82,24 @@ def recording_dataset(
 def _selected(table: RawTable, mapping: RecordingMapping, path: Path) -> RawTable:
     """Return the columns that the selection of a mapping chooses."""
     group = mapping.selection.group
+    numbered = list(table.by_label)
     entries = [
-        entry if entry.group or not entry.label.startswith((f"{group}/", f"{group}.")) else replace(entry, group=group)
-        for entry in _entries(table.columns)
+        replace(
+            entry, label=label, group=entry.group or (group if label.startswith((f"{group}/", f"{group}.")) else "")
+        )
+        for entry, label in zip(_entries(table.columns), numbered, strict=True)
     ]
     chosen = chosen_channels(entries, mapping.selection, path)
     if len(chosen) == len(table.columns) and not mapping.selection.group:
         return table
-    columns = tuple(replace(table.columns[index], label=label) for index, label in chosen)
-    return replace(table, columns=columns)
+    columns = [table.columns[index] for index, _ in chosen]
+    labels = [label for _, label in chosen]
+    if not mapping.channels:  # a label that is the only one of its kind among those chosen needs no number
+        numbers = [numbered[index].removeprefix(table.columns[index].label) for index, _ in chosen]
+        plain = [label.removesuffix(number) for label, number in zip(labels, numbers, strict=True)]
+        labels = [own if plain.count(own) == 1 else label for own, label in zip(plain, labels, strict=True)]
+    columns = [replace(column, label=label) for column, label in zip(columns, labels, strict=True)]
+    return replace(table, columns=tuple(columns))
 
 
 def _entries(columns: Iterable[RawColumn]) -> list[ChannelEntry]:
@@ -119,7 +129,11 @@ def _channel_sources(
         if name in TIME_LABELS or name == quantity or column.label == axis:
             continue
         if name in sources:
-            raise InvalidInput(f"{path}: two columns have the label {column.label!r}; choose one with a mapping")
+            several = numbered_labels([own.label for own in table.columns if _name_and_unit(own)[0] == name])
+            raise InvalidInput(
+                f"{path}: {len(several)} columns are named {name!r}; choose one by --channel or a mapping,"
+                f" {several[0]!r} to {several[-1]!r}"
+            )
         sources[name] = ChannelSource(column=column.label, unit=unit)
     return sources
 
@@ -131,13 +145,8 @@ def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
 
 
 def _column(table: RawTable, path: Path, label: str) -> RawColumn:
-    """Return the column of a label; refuse one that is not there, with the closest."""
-    column = table.by_label.get(label)
-    if column is not None:
-        return column
-    labels = list(table.by_label)
-    hint = suggestion(label, labels) or "it has " + ", ".join(labels[:12])
-    raise InvalidInput(f"{path}: has no column {label!r}; {hint}")
+    """Return the column of a label; refuse one that is not there, or that several columns have."""
+    return column_of_label(table.by_label, label, path)
 
 
 def _channel(
@@ -194,6 +203,7 @@ def _axis(
         name, unit = _name_and_unit(column)
         if name in TIME_LABELS or name == quantity:
             require_common_length(_entries([column, *used]), path)
+            _require_one_axis(column, table, path)
             return _axis_column(column, table, path, quantity, ChannelSource(column=column.label, unit=unit))
     time_bases = {(column.start or 0.0, column.interval) for column in used if column.interval is not None}
     if len(time_bases) != 1:
@@ -204,6 +214,16 @@ def _axis(
     if interval is None or not (np.isfinite(start) and np.isfinite(interval) and interval > 0):
         raise InvalidInput(f"{path}: the time between samples is {interval!r} s")
     return start + interval * (table.first_row + np.arange(rows, dtype=np.float64))
+
+
+def _require_one_axis(axis: RawColumn, table: RawTable, path: Path) -> None:
+    """Refuse a table with several columns of the label of the axis, where their values differ."""
+    several = [column for column in table.columns if column.label == axis.label]
+    if not all(np.array_equal(column.values, axis.values, equal_nan=True) for column in several):
+        raise InvalidInput(
+            f"{path}: {len(several)} columns are named {axis.label!r} and differ; choose one with a mapping:"
+            f' axis.column = "{axis.label} #1" to "{axis.label} #{len(several)}"'
+        )
 
 
 def _axis_column(column: RawColumn, table: RawTable, path: Path, quantity: str, source: ChannelSource) -> Floats:

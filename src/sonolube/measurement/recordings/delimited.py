@@ -13,7 +13,8 @@ from sonolube.measurement.recordings.channel_choice import TIME_LABELS, name_and
 from sonolube.measurement.recordings.joining import begun_at, time_shifts
 from sonolube.measurement.recordings.mapping import RecordingMapping, TextLayout
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
-from sonolube.measurement.recordings.text_columns import column_index, column_values, is_text
+from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
+from sonolube.measurement.recordings.text_columns import column_values, is_text
 from sonolube.measurement.recordings.text_file import decoded_text
 from sonolube.measurement.recordings.text_tables import TextTable, text_tables
 from sonolube.measurement.recordings.written_units import si_conversion
@@ -92,17 +93,17 @@ def _part(
     table: TextTable, mapping: RecordingMapping | None, sign: str, missing: frozenset[str], path: Path
 ) -> list[RawColumn]:
     """Return the columns of one table: those that the mapping requests, or all numeric ones."""
-    indices = {label: index for index, label in reversed(list(enumerate(table.labels)))}
+    indices = {label: index for index, label in enumerate(numbered_labels(table.labels))}
     required = dict(mapping.rows) if mapping else {}
     for label, cell in required.items():
-        index = column_index(indices, label, path)
+        index = column_of_label(indices, label, path)
         table.rows[:] = [row for row in table.rows if row[1][index].strip() == cell]
     if not table.rows:
         raise InvalidInput(f"{path}: holds no rows" + (f" with {required}" if required else ""))
     requested = _requested_labels(mapping, table.labels)
     columns = []
     for place, label in enumerate(table.labels if requested is None else requested):
-        index = place if requested is None else column_index(indices, label, path)
+        index = place if requested is None else column_of_label(indices, label, path)
         if requested is None and (not label or is_text(table.rows, index, sign, missing)):
             continue
         values = column_values(table.rows, index, label, sign, missing, path)

@@ -1,7 +1,7 @@
 """Mapping of an instrument's columns to vocabulary quantities: column, unit, calibration and text layout (TOML)."""
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -9,6 +9,7 @@ from typing import Any
 
 from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName, suggestion
+from sonolube.measurement.recordings.repeated_labels import numbered_labels
 from sonolube.toml_text import read_toml
 from sonolube.units import to_si
 from sonolube.vocabulary import quantity
@@ -53,7 +54,8 @@ class ChannelSource:
     Parameters
     ----------
     column : str
-        Label of the column in the file, with line breaks written as spaces.
+        Label of the column in the file, with line breaks written as spaces; where several columns have it, with the
+        number of the column among them, such as "force #2".
     unit : str or None
         Unit of the calibrated value; None for the unit stated in the file.
     gain, offset : float
@@ -217,11 +219,11 @@ class RecordingMapping:
             if self.axis is not None:
                 raise InvalidInput("axis: give a column or a sample_rate, not both")
 
-    def for_labels(self, labels: Collection[str]) -> "RecordingMapping":
+    def for_labels(self, labels: Sequence[str]) -> "RecordingMapping":
         """Return the mapping with the columns that a file of these labels has, without its absent optional channels."""
         if not (self.channels or self.axis):
             return self
-        known = set(labels)
+        known = {*labels, *numbered_labels(labels)}
         channels = {name: _present(source, known) for name, source in self.channels.items()}
         kept = {
             name: source for name, source in channels.items() if not (source.optional and source.column not in known)

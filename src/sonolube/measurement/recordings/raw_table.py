@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.measurement.recordings.repeated_labels import numbered_labels
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -67,7 +68,7 @@ class RawTable:
     caveats : tuple of str
         What speaks against the values, one line each: assumptions of the reader and complaints of its library.
     by_label : mapping of str to RawColumn
-        The columns by label, the first one where several have the same.
+        The columns by label, with their numbers where several have the same (`numbered_labels`).
     """
 
     columns: tuple[RawColumn, ...]
@@ -81,7 +82,8 @@ class RawTable:
     by_label: Mapping[str, RawColumn] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "by_label", {column.label: column for column in reversed(self.columns)})
+        labels = numbered_labels([column.label for column in self.columns])
+        object.__setattr__(self, "by_label", dict(zip(labels, self.columns, strict=True)))
 
     def place(self, row: int) -> str:
         """Return the sample or line number of a row in the file, for messages."""

@@ -220,7 +220,7 @@ def _selected_channels(file: Any, path: Path, mapping: RecordingMapping | None) 
     found = list(entries.values())
     numeric = {label: found[index] for index, label in chosen_channels(list(entries), selection, path)}
     if mapping is not None and mapping.channels:
-        named = mapping.for_labels(numeric)
+        named = mapping.for_labels(list(numeric))
         requested = {source.column for source in named.channels.values()}
         requested |= {named.axis.column} if named.axis else set()
         numeric = {label: channel for label, channel in numeric.items() if label in requested}

@@ -1,10 +1,10 @@
 """Columns of numbers from rows of text cells."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from sonolube.checks import Floats
-from sonolube.errors import InvalidInput, suggestion
+from sonolube.errors import InvalidInput
 from sonolube.measurement.numeric_text import parse_number, parse_numbers
 
 NumberedCells = tuple[int, list[str]]
@@ -27,16 +27,6 @@ def column_values(
         line = rows[invalid_row][0]
         raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[invalid_row][:40]!r}, which is not a number")
     return values
-
-
-def column_index(indices: Mapping[str, int], label: str, path: Path) -> int:
-    """Return the place of a label among the columns; refuse one that is not there, with the closest."""
-    try:
-        return indices[label]
-    except KeyError:
-        labels = [known for known in indices if known]
-        hint = suggestion(label, labels) or "it has " + ", ".join(labels[:12])
-        raise InvalidInput(f"{path}: has no column {label!r}; {hint}") from None
 
 
 def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missing: frozenset[str]) -> bool:

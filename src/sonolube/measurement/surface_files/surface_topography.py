@@ -1,8 +1,10 @@
 """All formats of the SurfaceTopography library, with the extra ``surfaces``."""
 
+import io
 import math
 import warnings
 from collections.abc import Sequence
+from contextlib import redirect_stdout
 from datetime import datetime
 from pathlib import Path
 from typing import Any, BinaryIO, ClassVar, final
@@ -110,9 +112,15 @@ def _opened(readers: Sequence[Any], path: Path) -> Any:
         if name in _TEXTS and name not in texts:
             continue
         try:
-            return reader(str(path))
+            with redirect_stdout(io.StringIO()):  # readers of others' files print what they find
+                return reader(str(path))
         except Exception:  # of any type where the file has another format
             continue
+    if not texts and b"\0" not in head:
+        raise InvalidInput(
+            f"{path}: is no surface file by its signature, and as text no table of heights, whose lines are x z, x y z"
+            " or rows of a matrix, with few others before them"
+        )
     raise InvalidInput(f"{path}: damaged, or of no format of SurfaceTopography")
 
 

@@ -38,7 +38,8 @@ def text_readers(path: Path) -> tuple[str, ...]:
     text = content.decode(encoding, errors="replace")
     if "\0" in text:
         return ()
-    return _readers_of_lines(text.split("\n"))
+    lines = text.rstrip().split("\n")
+    return () if text.count("\n") - len(lines) > _MOST_OTHER_LINES else _readers_of_lines(lines)
 
 
 def _readers_of_lines(lines: list[str]) -> tuple[str, ...]:
@@ -55,7 +56,7 @@ def _readers_of_lines(lines: list[str]) -> tuple[str, ...]:
         other_lines += 1
         if other_lines > _MOST_OTHER_LINES or len(line) > _LONGEST_OTHER_LINE:
             return ()
-    later_lines = other_lines - header_lines - (not lines[-1])
+    later_lines = other_lines - header_lines
     if rows > _MOST_ROWS:
         return ()
     is_table = len(columns) == 1 and columns <= set(_COORDINATES) and not later_lines
