@@ -79,7 +79,10 @@ MODES = {
     "predict": Mode(
         "predict",
         (RIG, "--runs", OWN_RUNS, "--pin", "m50", "--disc", "m50"),
-        {"--runs": RUNS, "--pin": "aluminium_2024", "--disc": "aluminium_2024", "--seed": "1", **VIBRATED},
+        {
+            **{"--runs": RUNS, "--laboratory": f"{RIG}={OWN_RUNS}", "--pin": "aluminium_2024"},
+            **{"--disc": "aluminium_2024", "--seed": "1", **VIBRATED},
+        },
         ("--lubricant",),
     ),
     "plan": Mode(

@@ -312,14 +312,31 @@ def test_heights_beyond_any_surface_are_refused(desk: Path, capsys: CaptureFixtu
 def test_a_run_that_is_killed_leaves_nothing_half_written(desk: Path) -> None:
     program = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a background job ignores it
-        "from sonolube.cli import main; print('ready', flush=True); main()"
+        "from sonolube.cli.console import progress; progress.SHORT = progress._BETWEEN_LINES = 0.05\n"
+        "from sonolube.cli import main; main()"
     )
     command = [sys.executable, "-c", program, "uncertainty", UNCERTAIN, "--samples", "65536"]
-    with subprocess.Popen(command, cwd=desk, stdout=subprocess.PIPE) as run:
-        assert run.stdout
-        assert run.stdout.readline() == b"ready\n"
-        with raises(subprocess.TimeoutExpired):
-            run.wait(4)
+    with subprocess.Popen(command, cwd=desk, stderr=subprocess.PIPE) as run:
+        assert run.stderr
+        while b"of 65536" not in run.stderr.readline():  # the first samples are computed
+            assert run.poll() is None
         run.send_signal(signal.SIGINT)
-        assert run.wait(60) == 130
+        run.communicate(timeout=60)
+    assert run.returncode == 130
     assert not (desk / "out").exists()
+
+
+@pytest.mark.usefixtures("desk")
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (TRIBOMETER, "RIG.toml=RUNS.csv"),
+        (f"nothing.toml={COLLAR}", "nothing.toml"),
+        (f"{TRIBOMETER}=nothing.csv", "nothing.csv"),
+        (f"{TRIBOMETER}=garbage", "garbage"),
+    ],
+)
+def test_another_rig_of_the_laboratory_that_cannot_be_read_is_named(
+    text: str, said: str, capsys: CaptureFixture[str]
+) -> None:
+    assert said in refused(capsys, "predict", TRIBOMETER, "--laboratory", text)

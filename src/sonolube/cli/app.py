@@ -6,10 +6,12 @@ import sys
 from collections.abc import Callable, Sequence
 
 import typer
+from typer.main import get_command
 
 from sonolube import __version__
 from sonolube.cli.commands import COMMANDS, GROUPS, MOVED_COMMANDS, RENAMED_OPTIONS, Command
 from sonolube.cli.console.figure_style import with_figure_style
+from sonolube.cli.console.literal_help import show_help_literally
 from sonolube.cli.console.outputs import with_checked_files
 from sonolube.errors import SeveralFaults, SonolubeError
 from sonolube.printable_text import printable
@@ -79,7 +81,9 @@ def run(arguments: Sequence[str] | None = None) -> None:
     try:
         if command in MOVED_COMMANDS:
             raise SonolubeError(MOVED_COMMANDS[command])
-        code = program(arguments)(args=arguments, prog_name="sonolube", standalone_mode=False)
+        called = get_command(program(arguments))
+        show_help_literally(called)
+        code = called(args=arguments, prog_name="sonolube", standalone_mode=False)
     except SeveralFaults as refusal:
         code = _refuse(command, refusal.heading, refusal.lines)
     except (SonolubeError, OSError) as refusal:
@@ -106,7 +110,9 @@ def _print_everything() -> None:
 def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
     """Function of a command that is called; for others one with the same help, whose module is not imported."""
     if _is_called(command, words):
-        return with_figure_style(with_checked_files(command.function))
+        function = with_figure_style(with_checked_files(command.function))
+        function.__doc__ = function.__doc__ or command.help  # Python -OO strips docstrings
+        return function
 
     def not_called() -> None:
         pass
