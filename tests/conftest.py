@@ -1,4 +1,4 @@
-"""Shared settings and fixtures: hypothesis without deadlines, and a copy of the package that a test may extend."""
+"""Shared settings and fixtures: hypothesis without clocks, and a copy of the package that a test may extend."""
 
 import gc
 import shutil
@@ -7,10 +7,10 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 from tests import skips
 
-settings.register_profile("patient", deadline=None)
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("patient")
 
 _OBJECTS = 20_000  # allocated between two collections of garbage; Python's 700 take a twentieth of the time

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given, strategies as st
+from tests.cli.terminal import without_progress
 
 from sonolube.errors import InvalidInput
 from sonolube.figure import render_figure
@@ -107,7 +108,7 @@ def test_no_toml_takes_long_to_refuse() -> None:
         "             'a=[' + '1.0,' * 200_000 + ']', 'a-' * 500_000, \"'.'\" * 300_000):\n"
         "    try: toml_content(text)\n    except InvalidInput: pass\n"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=300)
 
 
 @pytest.fixture
@@ -139,8 +140,8 @@ def test_hostile_names_and_titles_pass_through_a_command(
     out = () if command == ("friction",) else ("--out", tmp_path / "\udcfd\x1b[2J")
     ran = run(command[0], path, *command[1:], *form, *out)
     assert ran.returncode == 0
-    told = ran.stderr.decode()  # progress, on a slow machine
-    assert all(re.fullmatch(r"[a-z]+: .* \(\d+ of \d+, .*\)", line) for line in told.splitlines())
+    told = ran.stderr.decode()
+    assert without_progress(told) == ""
     assert printable(told) == told
     shown = ran.stdout.decode()
     assert printable(shown) == shown

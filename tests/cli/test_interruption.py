@@ -1,6 +1,5 @@
 """Signals at any moment: one line, the exit status of the signal, no traceback, and nothing unfinished."""
 
-import re
 import signal
 import subprocess
 import sys
@@ -9,6 +8,7 @@ from pathlib import Path
 
 from pytest import mark
 from tests.cli.conftest import Program
+from tests.cli.terminal import without_progress
 
 from sonolube.files import locked_folder
 
@@ -16,11 +16,20 @@ pytestmark = mark.skipif(sys.platform == "win32", reason="Windows has no such si
 
 ROOT = Path(__file__).parents[2]
 TRIBOMETER = ROOT / "examples" / "rigs" / "tribometer.toml"
-SWEEP = ("sweep", str(TRIBOMETER), "--over", "sliding.sliding_speed=10mm/s:90mm/s:4000", "--chunk", "50")
+SWEEP = ("sweep", str(TRIBOMETER), "--over", "sliding.sliding_speed=10mm/s:90mm/s:400000", "--chunk", "50")
 LINES = {signal.SIGINT: "sonolube: interrupted\n", signal.SIGTERM: "sonolube: terminated\n"}
 PROGRAM = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a background job ignores it
     "import sonolube.cli; print('ready', flush=True); sonolube.cli.main()"
+)
+KILLED = (  # while it writes its third chunk
+    "import os, signal, sys, sonolube.files as files\n"
+    "complete = files.UnfinishedFile.complete\n"
+    "def killed(file):\n"
+    "    if file._path.name.startswith('chunk-000002'): os.kill(os.getpid(), signal.SIGKILL)\n"
+    "    complete(file)\n"
+    "files.UnfinishedFile.complete = killed\n"
+    "import sonolube.cli; sonolube.cli.main()"
 )
 
 
@@ -31,11 +40,6 @@ def started(folder: Path, *words: str) -> "subprocess.Popen[str]":
     assert run.stdout
     assert run.stdout.readline() == "ready\n"
     return run
-
-
-def without_progress(err: str) -> str:
-    """Lines on standard error but those of progress, which a slow machine tells."""
-    return "".join(line for line in err.splitlines(keepends=True) if not re.fullmatch(r"\w+: .*\(.*\)\n", line))
 
 
 def unfinished(folder: Path) -> list[Path]:
@@ -106,11 +110,9 @@ def test_a_second_sweep_into_the_folder_of_one_at_work_is_refused(tmp_path: Path
 
 def test_a_sweep_that_was_killed_is_finished_by_the_next(tmp_path: Path, sonolube: Program) -> None:
     words = (*SWEEP[:3], "sliding.sliding_speed=10mm/s:90mm/s:400", "--chunk", "50", "--out")
-    with started(tmp_path, *words, "out") as run:
-        while not list((tmp_path / "out").glob("chunk-*.npz")):
-            assert run.poll() is None
-            time.sleep(0.01)
-        run.kill()
+    run = subprocess.run([sys.executable, "-c", KILLED, *words, "out"], cwd=tmp_path, capture_output=True, check=False)
+    assert run.returncode == -signal.SIGKILL
+    assert len(list((tmp_path / "out").glob("chunk-*.npz"))) == 2
     assert unfinished(tmp_path)
     for folder in ("out", "undisturbed"):
         assert sonolube(*words, tmp_path / folder).code == 0

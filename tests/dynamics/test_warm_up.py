@@ -56,7 +56,11 @@ def interrupted() -> None:
     raise KeyboardInterrupt
 
 
-def test_an_interrupted_caller_kills_the_second_process() -> None:
+def test_an_interrupted_caller_kills_the_second_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    endless = tmp_path / "python"
+    endless.write_text("#!/bin/sh\nexec sleep 3600\n")
+    endless.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(endless))
     with pytest.raises(KeyboardInterrupt), compile_in_parallel(UNDAMPED, stability=True, tolerance=1e-6) as process:
         interrupted()
     assert process.wait() not in {None, 0}

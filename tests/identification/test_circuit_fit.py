@@ -1,5 +1,6 @@
 """Equivalent circuits fitted to spectra of known ones: values, numbers of branches and coverage of the intervals."""
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -145,3 +146,13 @@ def test_the_curve_that_the_analyser_computed_is_one_branch_to_its_last_digit(rb
     assert len(found.circuit.branches) == 1
     assert found.residual_rms < 1e-6
     assert found.caveats == ()
+
+
+@mark.parametrize("factor", [1e-6, 10.0, 1e3, 1e12, 1e100, -1e5])
+def test_a_point_without_its_decimal_point_ends_in_a_fit_or_one_line(factor: float) -> None:
+    clean = spectrum(ONE, noise=1e-3, points=81)
+    for point in range(0, 81, 8):
+        impedance = clean.impedance.copy()
+        impedance[point] *= factor
+        with suppress(InvalidInput):
+            assert fit_circuit(replace(clean, impedance=impedance)).circuit.branches

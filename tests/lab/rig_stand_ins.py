@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pytest import MonkeyPatch
 from tests.lab.daqmx_device import DaqmxDevice, install
+from tests.lab.patience import be_patient, expect_no_answer
 from tests.lab.scpi_generator import Generator, LineServer
 from tests.lab.serial_motor import Controller, SerialPort
 
 from sonolube.lab import Devices
-from sonolube.lab.drivers import read_device_map
+from sonolube.lab.drivers import FunctionGenerator, LineMotor, read_device_map
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "lab" / "devices.toml"
 GAIN = 20.0  # of the amplifier, V/V
@@ -87,7 +88,7 @@ def instrument_rig(folder: Path) -> Iterator[StandIn]:
     with ExitStack() as after:
         card = after.enter_context(_card())
         patch = after.enter_context(MonkeyPatch.context())
-        patch.setattr("sonolube.lab.drivers.visa_connection.TIMEOUT", 0.2)
+        be_patient(patch)
         server, port = LineServer(generator.answer), SerialPort(controller)
         after.callback(server.close)
         after.callback(port.close)
@@ -96,10 +97,15 @@ def instrument_rig(folder: Path) -> Iterator[StandIn]:
         outputs = outputs.replace("ASRL/dev/ttyUSB0::INSTR", port.resource)
         devices = read_device_map(_map(folder, f"[drive]{outputs}")).devices()
 
+        instruments = [
+            each for each in (devices.drive, devices.motor) if isinstance(each, FunctionGenerator | LineMotor)
+        ]
+
         def unplug() -> None:
             card.unplugged = -50405
             controller.is_mute = True
             server.unplug()
+            expect_no_answer(patch, *instruments)
 
         def was_on() -> None:
             generator.is_on, controller.counts, controller.is_enabled = True, 100, True

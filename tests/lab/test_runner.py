@@ -170,12 +170,17 @@ def test_a_pause_holds_the_clock_and_a_stop_ends_after_the_present_block() -> No
         def read(self, samples: int) -> Block:
             if self.total == 1000:
                 control.pause()
-                threading.Timer(0.2, control.resume).start()
             if self.total >= 4000:
                 control.stop("enough")
             return super().read(samples)
 
-    result, _, record = run(protocol(), Watched(), control=control)
+    class Resuming(MemoryRecord):
+        def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
+            super().note(kind, sample=sample, **facts)
+            if facts.get("reason") == "on request":
+                threading.Timer(0.2, control.resume).start()
+
+    result, _, record = run(protocol(), Watched(), record=Resuming(), control=control)
     assert (result.outcome, result.reason) == ("stopped", "enough")
     assert sum(record.samples()) == 4020
     assert [kind for kind, _ in record.notes].count("pause") == 2  # the prompt, and the request
@@ -243,8 +248,11 @@ def test_progress_tells_step_time_and_friction() -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_the_run_after_the_present_block_and_handlers_are_as_before(number: signal.Signals) -> None:
-    before = signal.getsignal(number)
+def test_a_signal_ends_the_run_after_the_present_block_and_handlers_are_as_before(
+    number: signal.Signals, request: pytest.FixtureRequest
+) -> None:
+    former = signal.signal(number, signal.default_int_handler)  # a background job ignores it
+    request.addfinalizer(lambda: signal.signal(number, former))
 
     class Signalled(SimulatedRig):
         def read(self, samples: int) -> Block:
@@ -256,4 +264,4 @@ def test_a_signal_ends_the_run_after_the_present_block_and_handlers_are_as_befor
     assert result.outcome == "stopped"
     assert result.reason in ("interrupted", "terminated")
     assert sum(record.samples()) == 1020
-    assert signal.getsignal(number) is before
+    assert signal.getsignal(number) is signal.default_int_handler

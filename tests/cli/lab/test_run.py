@@ -1,9 +1,6 @@
 """Commands `lab run` and `lab virtual`: a protocol on the virtual tribometer, its record, and every refusal."""
 
 import signal
-import subprocess
-import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from pytest import approx
+from tests.cli.lab.test_watch import LONG, folder_of, running
 
 from sonolube.lab.records import read_run
 from sonolube.protocol import protocol_names
@@ -90,21 +88,11 @@ def test_bad_input_is_one_line_and_makes_no_folder(
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_a_run_in_order(number: signal.Signals, rigs: Path, tmp_path: Path) -> None:
-    code = (
-        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "import sonolube.cli; sonolube.cli.main()"
-    )
-    words = ["lab", "run", "map_test", "--rig", str(rigs / "power_map.toml"), "--real-time", "--out", str(tmp_path)]
-    with subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
-        while not list(tmp_path.rglob("*.raw")) + list(tmp_path.rglob("raw/*")):
-            assert run.poll() is None
-            time.sleep(0.02)
-        time.sleep(0.5)
+    with running(tmp_path, rigs, duration=LONG) as run:
         run.send_signal(number)
         run.communicate(timeout=60)
     assert run.returncode == 1
-    (folder,) = (path for path in tmp_path.iterdir() if (path / "run.json").exists())
-    found = read_run(folder).summary
+    found = read_run(folder_of(tmp_path / "runs")).summary
     assert (found.outcome, found.reason) == ("stopped", "interrupted" if number == signal.SIGINT else "terminated")
     assert found.samples > 0
 

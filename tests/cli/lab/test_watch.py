@@ -2,7 +2,6 @@
 
 import os
 import pty
-import select
 import signal
 import subprocess
 import sys
@@ -10,25 +9,40 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Event
 
 import pytest
 from pytest import MonkeyPatch, approx
 from tests.cli.conftest import Program
+from tests.cli.terminal import read_until, rest
 from tests.lab.records.recorded import begun, block_of, recorded
 from tests.lab.records.test_recovery import unfinished
 
 from sonolube.cli.lab import watch
 from sonolube.lab.records import read_run
 
+LONG = 3600.0  # s, of a run that a test ends
 PROGRAM = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\nimport sonolube.cli; sonolube.cli.main()"
 )
+HELD = """
+import sys, time
+from pathlib import Path
+from sonolube.lab.virtual_tribometer import simulation
+blocks, seen = 0, Path(sys.argv.pop())
+def hold(seconds):
+    global blocks
+    blocks += 1
+    while blocks == 20 and not seen.exists():
+        time.sleep(0.01)
+simulation.sleep = hold
+"""
 SLOW = """title = "slow"
 source = "none"
 
 [limits]
 voltage_maximum = "30 V"
-duration_maximum = "60 s"
+duration_maximum = "2 h"
 
 [[steps]]
 kind = "acquire"
@@ -43,12 +57,20 @@ sliding_speed = "50 mm/s"
 
 
 @contextmanager
-def running(folder: Path, rigs: Path, *, duration: float) -> Iterator[subprocess.Popen[bytes]]:
-    """Program that records a virtual run in real time, of which blocks are on the disk."""
+def running(
+    folder: Path, rigs: Path, *, duration: float, until: Path | None = None
+) -> Iterator[subprocess.Popen[bytes]]:
+    """Program that records a virtual run in real time, of which blocks are on the disk.
+
+    Where it has to last until there is a file, it takes no time but waits for that after a second of the run.
+    """
     protocol = folder / "slow.toml"
     protocol.write_text(SLOW.format(duration=duration))
     words = ["lab", "run", str(protocol), "--rig", str(rigs / "power_map.toml"), "--real-time"]
     command = [sys.executable, "-c", PROGRAM, *words, "--out", str(folder / "runs")]
+    if until is not None:
+        command[2] = HELD + PROGRAM
+        command.append(str(until))
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
         try:
             while not any(path.stat().st_size > 2000 for path in folder.rglob("raw/*")):
@@ -67,9 +89,21 @@ def folder_of(runs: Path) -> Path:
 def test_a_run_is_followed_to_its_end_with_lines_where_nothing_can_be_written_over(
     sonolube: Program, rigs: Path, tmp_path: Path, monkeypatch: MonkeyPatch
 ) -> None:
+    class Looks(Event):
+        """End of the watching, for which it waits between looks; after the third the run goes on."""
+
+        waits = 0
+
+        def wait(self, timeout: float | None = None) -> bool:
+            self.waits += 1
+            if self.waits == 3:
+                (tmp_path / "seen").touch()
+            return super().wait(timeout)
+
+    monkeypatch.setattr(watch, "Event", Looks)
     monkeypatch.setattr(watch, "LOOK_INTERVAL", 0.05)
-    monkeypatch.setattr(watch, "LINE_INTERVAL", 0.3)
-    with running(tmp_path, rigs, duration=2.0) as program:
+    monkeypatch.setattr(watch, "LINE_INTERVAL", 0.0)
+    with running(tmp_path, rigs, duration=2.0, until=tmp_path / "seen") as program:
         seen = sonolube("lab", "watch", tmp_path / "runs")
         program.communicate(timeout=60)
     assert (seen.code, seen.err, program.returncode) == (0, "", 0)
@@ -126,7 +160,7 @@ def test_a_run_that_is_killed_while_it_is_watched_ends_the_watching(
     sonolube: Program, rigs: Path, tmp_path: Path, monkeypatch: MonkeyPatch
 ) -> None:
     monkeypatch.setattr(watch, "LOOK_INTERVAL", 0.05)
-    with running(tmp_path, rigs, duration=30.0) as program:
+    with running(tmp_path, rigs, duration=LONG) as program:
         os.kill(program.pid, signal.SIGKILL)
         run = sonolube("lab", "watch", tmp_path / "runs")
     assert run.code == 1
@@ -136,15 +170,15 @@ def test_a_run_that_is_killed_while_it_is_watched_ends_the_watching(
 def test_a_signal_ends_the_watching_and_not_the_run_and_a_terminal_gets_one_line_that_is_written_over(
     rigs: Path, tmp_path: Path
 ) -> None:
-    with running(tmp_path, rigs, duration=30.0) as program:
+    with running(tmp_path, rigs, duration=LONG) as program:
         leader, follower = pty.openpty()
         command = [sys.executable, "-c", PROGRAM, "lab", "watch", str(tmp_path / "runs")]
         with subprocess.Popen(command, stdout=follower, stderr=follower, stdin=follower) as watching:
             os.close(follower)
-            text = _read_until(leader, b"s left")
+            text = read_until(leader, b"s left")
             watching.send_signal(signal.SIGINT)
-            text += _rest(leader)
-            assert watching.wait(timeout=30) == 0
+            text += rest(leader)
+            assert watching.wait(timeout=60) == 0
         assert program.poll() is None
         assert b"\rrunning; step 2" in text
         assert b"\x1b[K" in text
@@ -152,27 +186,6 @@ def test_a_signal_ends_the_watching_and_not_the_run_and_a_terminal_gets_one_line
         program.send_signal(signal.SIGINT)
         program.communicate(timeout=60)
     assert read_run(folder_of(tmp_path / "runs")).summary.outcome == "stopped"
-
-
-def _read_until(handle: int, word: bytes) -> bytes:
-    """What a terminal shows until a word."""
-    text, latest = b"", time.monotonic() + 60
-    while word not in text:
-        assert time.monotonic() < latest, text
-        if select.select([handle], [], [], 1.0)[0]:
-            text += os.read(handle, 4096)
-    return text
-
-
-def _rest(handle: int) -> bytes:
-    """What a terminal shows until the program has ended."""
-    text = b""
-    try:
-        while piece := os.read(handle, 4096):
-            text += piece
-    except OSError:  # the program has closed the terminal
-        pass
-    return text
 
 
 @pytest.mark.parametrize("place", ["none", "empty"])

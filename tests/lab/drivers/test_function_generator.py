@@ -6,6 +6,7 @@ from itertools import pairwise
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 from pytest import MonkeyPatch, approx, raises
+from tests.lab.patience import be_patient, expect_nothing_on_open_line, silence
 from tests.lab.scpi_generator import Generator, LineServer
 
 from sonolube.errors import MissingPackage
@@ -14,6 +15,7 @@ from sonolube.lab.drivers import DriveLimits, FunctionGenerator, VisaConnection
 
 GAIN = 20.0
 LIMITS = DriveLimits(amplifier_gain=GAIN, actuator_voltage=150.0, output_voltage=10.0, frequency_maximum=1e6)
+UNCHECKED = (HealthCheck.too_slow, HealthCheck.function_scoped_fixture)
 SETTING = DriveSetting(voltage_peak_to_peak=28.0, frequency=22e3)
 
 reaches = st.floats(0.01, 1.0)
@@ -34,7 +36,7 @@ settings_of_drive = st.builds(
 
 @pytest.fixture
 def bench(monkeypatch: MonkeyPatch) -> Iterator[tuple[Generator, LineServer, FunctionGenerator]]:
-    monkeypatch.setattr("sonolube.lab.drivers.visa_connection.TIMEOUT", 0.2)
+    be_patient(monkeypatch)
     generator = Generator()
     server = LineServer(generator.answer)
     device = FunctionGenerator(VisaConnection(name="generator", resource=server.resource), output=1, limits=LIMITS)
@@ -69,7 +71,7 @@ def test_the_output_is_switched_on_last(bench: Bench) -> None:
     assert [line.partition(";")[0] for line in generator.heard] == ["SOUR1:FREQ 22100"]
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=15, deadline=None, suppress_health_check=UNCHECKED)
 @given(several=st.lists(settings_of_drive, min_size=2, max_size=5))
 def test_no_order_of_possible_settings_meets_a_limit_of_the_generator_on_the_way(
     several: list[DriveSetting], bench: Bench
@@ -118,6 +120,7 @@ def test_a_lost_connection_is_opened_anew_to_switch_off(bench: Bench) -> None:
     device.connect()
     device.drive(SETTING)
     server.drop_client()
+    expect_nothing_on_open_line(device)
     with raises(DeviceLost):
         device.drive(DriveSetting(voltage_peak_to_peak=30.0, frequency=22e3))
     assert generator.is_on
@@ -130,6 +133,7 @@ def test_a_generator_that_was_switched_off_and_on_is_set_up_again_before_it_driv
     device.connect()
     device.drive(SETTING)
     server.drop_client()
+    expect_nothing_on_open_line(device)
     generator.__init__()  # type: ignore[misc]  # as it starts: 50 ohm, 0.1 V
     device.off()
     device.drive(SETTING)
@@ -149,11 +153,11 @@ def test_an_answer_to_a_command_that_was_broken_off_is_not_taken_for_the_confirm
 def test_a_generator_that_keeps_silent_is_lost_in_the_time_that_is_given_to_it(bench: Bench) -> None:
     generator, _, device = bench
     device.connect()
-    generator.is_mute = True
-    with raises(DeviceLost, match="does not answer"):
-        device.drive(SETTING)
-    with raises(DeviceLost, match="does not answer"):
-        device.off()
+    with silence(generator, device):
+        with raises(DeviceLost, match="does not answer"):
+            device.drive(SETTING)
+        with raises(DeviceLost, match="does not answer"):
+            device.off()
 
 
 def test_another_instrument_is_refused_by_its_name(bench: Bench) -> None:
@@ -186,7 +190,7 @@ def test_without_its_packages_the_command_that_installs_them_is_named(module: st
 
 @pytest.mark.parametrize("resource", ["TCPIP::127.0.0.1::1::SOCKET", "ASRL/dev/no-such-port::INSTR", "nonsense"])
 def test_what_cannot_be_opened_is_refused_in_one_line_with_its_name(resource: str, monkeypatch: MonkeyPatch) -> None:
-    monkeypatch.setattr("sonolube.lab.drivers.visa_connection.TIMEOUT", 0.2)
+    be_patient(monkeypatch)
     device = FunctionGenerator(VisaConnection(name="generator", resource=resource), output=1, limits=LIMITS)
     with raises(DeviceError, match=r"^generator: .*look at") as failure:
         device.connect()

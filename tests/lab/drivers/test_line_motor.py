@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from pytest import MonkeyPatch, raises
+from tests.lab.patience import be_patient, silence
 from tests.lab.scpi_generator import LineServer
 from tests.lab.serial_motor import Controller, SerialPort
 
@@ -23,7 +24,7 @@ Bench = tuple[Controller, LineMotor]
 
 @pytest.fixture(params=["serial port", "socket"])
 def bench(request: pytest.FixtureRequest, monkeypatch: MonkeyPatch) -> Iterator[Bench]:
-    monkeypatch.setattr("sonolube.lab.drivers.visa_connection.TIMEOUT", 0.2)
+    be_patient(monkeypatch)
     controller = Controller()
     if request.param == "socket":
         server: LineServer | SerialPort = LineServer(controller.answer, termination="\r")
@@ -75,20 +76,18 @@ def test_a_command_without_an_answer_is_never_taken_as_done(bench: Bench) -> Non
     controller, motor = bench
     motor.connect()
     motor.turn(1.0)
-    controller.is_mute = True
-    with raises(DeviceLost, match="does not answer"):
-        motor.turn(2.0)
-    with raises(DeviceLost, match="does not answer"):
-        motor.off()
-    controller.is_mute = False
+    with silence(controller, motor):
+        with raises(DeviceLost, match="does not answer"):
+            motor.turn(2.0)
+        with raises(DeviceLost, match="does not answer"):
+            motor.off()
     motor.off()
     assert controller.counts == 0
 
 
 def test_a_controller_that_does_not_answer_at_first_is_not_connected(bench: Bench) -> None:
     controller, motor = bench
-    controller.is_mute = True
-    with raises(DeviceLost):
+    with silence(controller, motor), raises(DeviceLost):
         motor.connect()
     with raises(DeviceError, match="connect it"):
         motor.turn(1.0)

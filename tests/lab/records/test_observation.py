@@ -1,13 +1,13 @@
 """Observation: a run as it is now, from its folder alone, whatever is being written there."""
 
 import threading
-import time
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
 from pytest import approx
+from tests.lab.records.clock import Clock
 from tests.lab.records.recorded import RATE, begun, block_of, contents, recorded, values_of
 from tests.lab.records.test_recovery import unfinished
 from tests.lab.simulated_rig import SimulatedRig
@@ -46,16 +46,16 @@ def protocol(*steps: Mapping[str, object], **limits: str) -> Protocol:
 
 def looks(test: Protocol, parent: Path, rig: SimulatedRig) -> list[tuple[int, str, Observation]]:
     """Time in ms and doing that the runner tells, and what is observed at that moment, block by block."""
-    recorder = new_run(parent, title="watched", protocol=protocol_text(test))
-    observer, told = RunObserver(recorder.folder), list[tuple[int, str, Observation]]()
-    run_protocol(
-        test,
-        rig.devices(),
-        recorder,
-        operator=lambda prompt: True,
-        advance=lambda doing, done, whole: told.append((done, doing, observer.look())),
-    )
-    told.append((0, "", observer.look()))
+    with Clock.installed() as clock:
+        recorder = new_run(parent, title="watched", protocol=protocol_text(test))
+        observer, told = RunObserver(recorder.folder), list[tuple[int, str, Observation]]()
+
+        def look(doing: str, done: int, whole: int) -> None:
+            clock.pass_by(0.01)
+            told.append((done, doing, observer.look()))
+
+        run_protocol(test, rig.devices(), recorder, operator=lambda prompt: True, advance=look)
+        told.append((0, "", observer.look()))
     return told
 
 
@@ -110,15 +110,16 @@ def test_a_pause_for_the_operator_is_told_with_what_is_asked_and_everything_off(
 
 def test_without_a_recording_the_clock_on_the_wall_tells_the_time_up_to_the_next_set_point(tmp_path: Path) -> None:
     steps = [{"kind": "wait", "duration": "0.3 s"}, {"kind": "motor_speed", "sliding_speed": "50 mm/s"}]
-    recorder = new_run(tmp_path, title="waits", protocol=protocol_text(protocol(*steps)))
-    recorder.note("prepared", sample=None, protocol_time=0.0, reason="", state="running")
-    observer = RunObserver(recorder.folder)
-    first = observer.look()
-    time.sleep(0.1)
-    assert 0.1 <= observer.look().protocol_time - first.protocol_time < 0.25
-    time.sleep(0.3)
-    assert observer.look().protocol_time == approx(0.3)
-    recorder.finish("completed")
+    with Clock.installed() as clock:
+        recorder = new_run(tmp_path, title="waits", protocol=protocol_text(protocol(*steps)))
+        recorder.note("prepared", sample=None, protocol_time=0.0, reason="", state="running")
+        observer = RunObserver(recorder.folder)
+        times = []
+        for _ in range(4):
+            times.append(observer.look().protocol_time)
+            clock.pass_by(0.125)
+        recorder.finish("completed")
+    assert times == approx([0.0, 0.125, 0.25, 0.3], abs=1e-6)
 
 
 def test_the_last_second_is_that_of_the_whole_file_wherever_reading_begins(
@@ -208,23 +209,26 @@ def recorded_virtually(parent: Path, *, is_watched: bool) -> Path:
     """Folder of a virtual run that threads observe without rest, or of the same run that nobody observes."""
     test = protocol(STEPS[0], *STEPS[1:4])
     recorder = new_run(parent, title="watched", protocol=protocol_text(test), facts={"rig": parent.name})
-    ended, seen = threading.Event(), list[Observation]()
+    ended, has_means = threading.Event(), threading.Event()
 
     def watch() -> None:
         observer = RunObserver(recorder.folder)
         while not ended.is_set():
-            seen.append(observer.look())
+            if observer.look().means:
+                has_means.set()
+
+    def hold(doing: str, done: int, whole: int) -> None:
+        assert not is_watched or done < 2000 or has_means.wait(60.0)
 
     threads = [threading.Thread(target=watch) for _ in range(2 if is_watched else 0)]
     for thread in threads:
         thread.start()
     devices = virtual_tribometer(read_rig(RIG), seed=3).devices
-    result = run_protocol(test, devices, recorder, operator=lambda prompt: True, control=RunControl())
+    result = run_protocol(test, devices, recorder, operator=lambda prompt: True, control=RunControl(), advance=hold)
     ended.set()
     for thread in threads:
         thread.join()
     assert result.outcome == "completed"
-    assert not is_watched or any(each.means for each in seen)
     return recorder.folder
 
 

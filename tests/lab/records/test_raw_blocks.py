@@ -20,7 +20,8 @@ RECORDS = [
 ]
 WHOLE = HEADER + b"".join(RECORDS)
 ENDS = np.cumsum([len(HEADER), *map(len, RECORDS)])
-ANY = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=300)
+UNCHECKED = (HealthCheck.too_slow, HealthCheck.function_scoped_fixture)
+ANY = settings(deadline=None, suppress_health_check=UNCHECKED, max_examples=300)
 
 
 def file_of(folder: Path, content: bytes) -> Path:

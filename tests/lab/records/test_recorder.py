@@ -11,7 +11,8 @@ import event_model
 import numpy as np
 import pytest
 import xarray as xr
-from pytest import MonkeyPatch
+from pytest import MonkeyPatch, approx
+from tests.lab.records.clock import Clock
 from tests.lab.records.recorded import CHANNELS, RATE, begun, block_of, documents, recorded, values_of
 
 from sonolube.errors import InvalidInput
@@ -97,13 +98,14 @@ def test_notes_come_back_with_sample_and_facts(tmp_path: Path) -> None:
 
 
 def test_parts_of_a_recording_are_files_that_join_on_one_axis(tmp_path: Path) -> None:
-    recorder = begun(tmp_path)
-    recorder.append(block_of(0, 100))
-    recorder.end()
-    time.sleep(0.15)
-    recorder.begin(CHANNELS, sample_rate=RATE)
-    recorder.append(block_of(0, 40))
-    run = read_run(recorder.finish("completed").folder)
+    with Clock.installed() as clock:
+        recorder = begun(tmp_path)
+        recorder.append(block_of(0, 100))
+        recorder.end()
+        clock.pass_by(0.15)
+        recorder.begin(CHANNELS, sample_rate=RATE)
+        recorder.append(block_of(0, 40))
+        run = read_run(recorder.finish("completed").folder)
     assert [path.name for path in run.recordings] == ["recording.nc", "recording-2.nc"]
     assert run.dataset(2).sizes["time"] == 40
     joined = run.dataset()
@@ -200,16 +202,17 @@ def test_a_rig_takes_one_run_at_a_time(tmp_path: Path) -> None:
     recorded(tmp_path, rig="tribometer 2")
 
 
-def test_times_do_not_follow_a_clock_that_jumps_and_the_jump_is_noted(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
-    recorder = begun(tmp_path)
-    recorder.append(block_of(0, 10))
-    true = time.time
-    for offset in (-3600.0, 3600.0):
-        monkeypatch.setattr(time, "time", lambda offset=offset: true() + offset)
-        recorder.append(block_of(10 if offset < 0 else 20, 10))
-    run = read_run(recorder.finish("completed").folder)
-    assert [round(note.facts["seconds"]) for note in run.notes] == [-3600, 7200]
-    assert all(0 <= note.time - run.summary.begun < 60 for note in run.notes)
+def test_times_do_not_follow_a_clock_that_jumps_and_the_jump_is_noted(tmp_path: Path) -> None:
+    with Clock.installed() as clock:
+        recorder = begun(tmp_path)
+        recorder.append(block_of(0, 10))
+        for offset in (-3600.0, 3600.0):
+            clock.pass_by(0.01)
+            clock.offset = offset
+            recorder.append(block_of(10 if offset < 0 else 20, 10))
+        run = read_run(recorder.finish("completed").folder)
+    assert [note.facts["seconds"] for note in run.notes] == approx([-3600, 7200], abs=1e-5)
+    assert [note.time - run.summary.begun for note in run.notes] == approx([0.01, 0.02], abs=1e-5)
     assert np.allclose(np.diff(run.dataset()["time"]), 1 / RATE)
     assert run.caveats == ("the clock of the computer was set 2 times during the run; times are by sample counters",)
 
