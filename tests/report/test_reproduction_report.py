@@ -26,6 +26,8 @@ KEYS = (
     "published_low",
     "published_high",
     "computed",
+    "possible_low",
+    "possible_high",
     "relative_error",
     "verdict",
     "note",
@@ -85,7 +87,8 @@ def test_the_whole_dissertation_gives_what_was_promised() -> None:
             <= row.computed
             <= row.published_high + 1e-9 * abs(row.published_high)
         )
-        assert within == (row.verdict in (Verdict.REPRODUCED, Verdict.TRIVIALLY_MET)), row
+        if row.verdict is not Verdict.UNDETERMINED:
+            assert within == (row.verdict in (Verdict.REPRODUCED, Verdict.FITTED, Verdict.TRIVIALLY_MET)), row
 
 
 @pytest.mark.parametrize(

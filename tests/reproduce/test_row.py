@@ -1,9 +1,10 @@
 """Verdicts follow from print, rounding and recorded evidence alone."""
 
+import pytest
 from hypothesis import given, strategies as st
 from pytest import approx
 
-from sonolube.published import PrintedNumber, PublishedValue, parse_printed, propagate_rounding
+from sonolube.published import PrintedNumber, PublishedValue, parse_printed, propagate_rounding, published_value
 from sonolube.reproduce.row import RowKind, Verdict, comparison_row, not_computed_row, range_rows, undetermined_row
 
 FORMULA, MODEL = RowKind.PUBLISHED_FORMULA, RowKind.DEFAULT_MODEL
@@ -41,6 +42,52 @@ def test_the_rounding_of_inputs_widens_the_range_by_what_it_does_to_the_result()
     row = comparison_row(published("4.09"), doubled, "", kind=FORMULA)
     assert row.verdict is Verdict.REPRODUCED
     assert [row.published_low, row.published_high] == approx([3.985, 4.195])
+
+
+def test_a_number_that_entered_the_computation_is_fitted_if_it_agrees() -> None:
+    agreeing, missing = (
+        comparison_row(published("20.3"), speed, "by a spring", kind=MODEL, fitted="the spring")
+        for speed in (20.3e-3, 25e-3)
+    )
+    assert (agreeing.verdict, missing.verdict) == (Verdict.FITTED, Verdict.NOT_REPRODUCED)
+    assert agreeing.note == "by a spring. Fitted to this number: the spring."
+    assert missing.note == "by a spring"
+
+
+@pytest.mark.parametrize(
+    ("possible", "verdict"),
+    [
+        ((10e-3, 30e-3), Verdict.UNDETERMINED),
+        ((30e-3, 20.3e-3), Verdict.UNDETERMINED),  # in any order
+        ((30e-3, 40e-3), Verdict.NOT_REPRODUCED),  # whatever the input
+        ((25e-3, 25e-3), Verdict.NOT_REPRODUCED),
+    ],
+)
+def test_an_input_that_is_not_printed_leaves_open_what_it_decides(
+    possible: tuple[float, float], verdict: Verdict
+) -> None:
+    row = comparison_row(published("20.3"), 25e-3, "", kind=MODEL, possible=possible)
+    assert row.verdict is verdict
+    assert row.possible_low == approx(1e3 * min(*possible, 25e-3))
+    assert row.possible_high == approx(1e3 * max(*possible, 25e-3))
+
+
+def test_an_input_that_is_not_printed_and_decides_nothing_leaves_a_number_reproduced() -> None:
+    row = comparison_row(published("20.3"), 20.3e-3, "", kind=MODEL, possible=(20.29e-3, 20.31e-3))
+    assert row.verdict is Verdict.REPRODUCED
+
+
+def test_about_leaves_a_tenth_and_never_less_than_the_rounding() -> None:
+    # "about 40 %", "about 80 degC" in its printed unit, "about 1" to within half a unit
+    numbers = [
+        published_value(name).number
+        for name in ("2.1.5-reduction-aluminium-horn", "4.3.5-temperature-peak", "2.2.5-littmann-ratio")
+    ]
+    assert [(number.low, number.high) for number in numbers] == [
+        approx((0.36, 0.44)),
+        approx((345.15, 361.15)),
+        approx((0.5, 1.5)),
+    ]
 
 
 def test_a_misprint_needs_evidence_and_the_corrected_number() -> None:

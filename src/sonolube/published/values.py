@@ -7,11 +7,15 @@ number of the table, column and row, counted from 1: "table-2.3-friction-force-2
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Final
 
 from sonolube.errors import InvalidInput
 from sonolube.published.printed_number import PrintedNumber, parse_printed
 from sonolube.published.printed_tables import table
-from sonolube.published.running_text import statement
+from sonolube.published.running_text import Statement, statement
+
+ABOUT: Final = 0.1
+"""Share of a number that D states as "about" by which another may differ from it; a convention, D gives none. []"""
 
 _PROTOCOL_CHAPTER = 2  # appendix A is the protocol of the tests of that chapter
 
@@ -33,7 +37,8 @@ class PublishedValue:
     unit : str
         Printed unit.
     number : PrintedNumber
-        Number with its interval, in SI. That of a statement "less than" runs from zero.
+        Number with its interval, in SI. That of a statement "less than" runs from zero, that of one "about" over at
+        least `ABOUT` of the number to either side.
     evidence : str
         Evidence against the print with the id of the erratum; empty where there is none.
     corrected : tuple of PrintedNumber
@@ -159,7 +164,6 @@ def _table_cell(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
 def _quoted_number(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
     """Return the published value of a number in the running text by its id."""
     source = statement(id)
-    number = source.number
     in_appendix = source.section.startswith("A")
     return PublishedValue(
         id=id,
@@ -167,10 +171,22 @@ def _quoted_number(id: str) -> PublishedValue:  # noqa: A002 - the field's own w
         source=f"Appendix {source.section}" if in_appendix else f"Section {source.section}",
         quantity=source.quantity,
         unit=source.unit,
-        number=replace(number, low=0.0, high=number.value) if source.relation == "<" else number,
+        number=_number_in_words(source),
         evidence=f"{source.evidence} [{source.erratum}]" if source.evidence else "",
         corrected=_corrected_numbers(source.corrected, source.quantity, source.unit, 1.0),
     )
+
+
+def _number_in_words(source: Statement) -> PrintedNumber:
+    """Return the number of a statement with the interval that the words before it leave: "less than" or "about"."""
+    number = source.number
+    if source.relation == "<":
+        return replace(number, low=0.0, high=number.value)
+    if source.relation == "about":
+        reach = ABOUT * abs(float(number.text))
+        widened = parse_printed(f"{number.text}±{reach:f}", source.unit, quantity=source.quantity)
+        return replace(number, low=min(number.low, widened.low), high=max(number.high, widened.high))
+    return number
 
 
 def _corrected_numbers(text: str, quantity: str, unit: str, scale: float) -> tuple[PrintedNumber, ...]:

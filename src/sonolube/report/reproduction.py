@@ -79,6 +79,7 @@ def validation_object(result: Reproduction) -> dict[str, Any]:
         "verdicts": counts(result.rows),
         "verdicts_by_kind": counts_by_kind(result.rows),
         "rows": [_row_object(row) for row in result.rows],
+        "caveats": list(result.caveats),
     }
 
 

@@ -37,7 +37,11 @@ from sonolube.reproduce.chapter4.temperature_figures import temperature_figures
 from sonolube.reproduce.chapter4.temperature_rows import temperature_rows
 from sonolube.reproduce.claims import findings
 from sonolube.reproduce.friction_models.computed_motion import computed_motion_figures
-from sonolube.reproduce.friction_models.friction_test_rows import power_map_test_rows, tribometer_test_rows
+from sonolube.reproduce.friction_models.friction_test_rows import (
+    power_map_test_rows,
+    roughness_caveat,
+    tribometer_test_rows,
+)
 from sonolube.reproduce.friction_models.mechanisms import mechanism_figures
 from sonolube.reproduce.friction_models.variant_figures import variant_figures
 from sonolube.reproduce.section import ChapterFigure, Reproduction, Section
@@ -114,4 +118,5 @@ def reproduction(*, chapter: int | None = None) -> Reproduction:
             for section in chosen
             for figure in section.figures()
         ),
+        caveats=() if chapter == 3 else (roughness_caveat(),),
     )

@@ -15,6 +15,7 @@ class ClaimVerdict(StrEnum):
     """Outcome of a claim over all its rows."""
 
     REPRODUCED = "reproduced"
+    FITTED = "fitted"
     MET_TRIVIALLY = "met trivially"
     PARTLY_REPRODUCED = "partly reproduced"
     NOT_REPRODUCED = "not reproduced"
@@ -100,20 +101,22 @@ def verdict_of(rows: Sequence[Row]) -> ClaimVerdict:
     -------
     ClaimVerdict
         `NOT_COMPUTED` if a part for one of the rows is missing here, `UNDETERMINED` if an input of all is not printed.
-        Over the others: `REPRODUCED` if each is, `MET_TRIVIALLY` if each is so, `NOT_REPRODUCED` if none is
-        reproduced other than trivially, else `PARTLY_REPRODUCED`.
+        Over the others: `REPRODUCED` if each agrees and one does so by neither fit nor triviality, `FITTED` or
+        `MET_TRIVIALLY` if each agrees by fits, or trivially, alone, `NOT_REPRODUCED` if one disagrees and none is
+        reproduced, else `PARTLY_REPRODUCED`.
     """
     count = Counter(row.verdict for row in rows)
     judged = len(rows) - count[Verdict.UNDETERMINED]
+    agreed = count[Verdict.REPRODUCED] + count[Verdict.FITTED] + count[Verdict.TRIVIALLY_MET]
     if count[Verdict.NOT_COMPUTED]:
         return ClaimVerdict.NOT_COMPUTED
     if not judged:
         return ClaimVerdict.UNDETERMINED
-    if count[Verdict.TRIVIALLY_MET] == judged:
-        return ClaimVerdict.MET_TRIVIALLY
-    if count[Verdict.REPRODUCED] + count[Verdict.TRIVIALLY_MET] == judged:
+    if agreed < judged:
+        return ClaimVerdict.PARTLY_REPRODUCED if count[Verdict.REPRODUCED] else ClaimVerdict.NOT_REPRODUCED
+    if count[Verdict.REPRODUCED]:
         return ClaimVerdict.REPRODUCED
-    return ClaimVerdict.PARTLY_REPRODUCED if count[Verdict.REPRODUCED] else ClaimVerdict.NOT_REPRODUCED
+    return ClaimVerdict.FITTED if count[Verdict.FITTED] else ClaimVerdict.MET_TRIVIALLY
 
 
 def numbers(rows: Sequence[Row]) -> tuple[str, str]:
@@ -126,11 +129,14 @@ def numbers(rows: Sequence[Row]) -> tuple[str, str]:
     Returns
     -------
     tuple of str
-        The second says how many of the rows are met trivially, if any.
+        The second says how many of the rows are fitted or met trivially, if any, and gives a number whose inputs are
+        not all printed with its possible values.
     """
-    trivial = sum(row.verdict is Verdict.TRIVIALLY_MET for row in rows)
-    found = _by_unit(rows, _computed)
-    return _by_unit(rows, _printed), f"{found}; {trivial} met trivially" if trivial else found
+    found = [_by_unit(rows, _computed)]
+    for verdict, text in ((Verdict.FITTED, "fitted"), (Verdict.TRIVIALLY_MET, "met trivially")):
+        if count := sum(row.verdict is verdict for row in rows):
+            found.append(f"{count} {text}")
+    return _by_unit(rows, _printed), "; ".join(found)
 
 
 def counts(rows: Sequence[Row]) -> tuple[str, str]:
@@ -154,7 +160,14 @@ def _printed(row: Row) -> str:
 
 
 def _computed(row: Row) -> str:
-    """Return a computed number to three digits, none smaller than a hundredth."""
+    """Return a computed number, with its possible values where it is undetermined."""
     if row.computed is None:
         return "-"
-    return f"{row.computed:.3g}" if abs(row.computed) >= 0.005 else "0"
+    if row.verdict is Verdict.UNDETERMINED and row.possible_low is not None and row.possible_high is not None:
+        return f"{_digits(row.computed)} ({_digits(row.possible_low)} to {_digits(row.possible_high)})"
+    return _digits(row.computed)
+
+
+def _digits(value: float) -> str:
+    """Return a number to three digits, zero below a two-hundredth."""
+    return f"{value:.3g}" if abs(value) >= 0.005 else "0"

@@ -8,7 +8,7 @@ from sonolube.checks import Floats
 from sonolube.contact import ASPERITY_LAWS, RoughContact
 from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.published import si_value
-from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, Bodies, poisson_contact
+from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, STEEL_YIELD_STRENGTHS, Bodies, poisson_contact
 
 Horn = Literal["aluminium", "steel"]
 """Material of the waveguide of the Poisson-effect tests."""
@@ -16,11 +16,19 @@ Horn = Literal["aluminium", "steel"]
 HORNS: Final[tuple[Horn, ...]] = ("aluminium", "steel")
 
 STEEL_ON_STEEL_NOTE: Final = (
-    f"yield strength of steel on steel not printed, {STEEL_YIELD_STRENGTH / 1e6:g} MPa implied by D 3.1.4"
+    f"yield strength of steel on steel not printed, {STEEL_YIELD_STRENGTH / 1e6:g} MPa implied by D 3.1.4,"
+    f" {STEEL_YIELD_STRENGTHS[0] / 1e6:g} to {STEEL_YIELD_STRENGTHS[1] / 1e6:g} MPa possible"
 )
 
 
-def poisson_friction_ratio(*, bodies: Bodies, horn: Horn, normal_load: Floats, axial_amplitude: float) -> Floats:
+def poisson_friction_ratio(
+    *,
+    bodies: Bodies,
+    horn: Horn,
+    normal_load: Floats,
+    axial_amplitude: float,
+    steel_yield_strength: float = STEEL_YIELD_STRENGTH,
+) -> Floats:
     """Return the friction ratio at the centre of the waveguide by the cube over the separating half period, D 3.15. []
 
     Parameters
@@ -33,14 +41,17 @@ def poisson_friction_ratio(*, bodies: Bodies, horn: Horn, normal_load: Floats, a
         Force pressing the bodies together. [N]
     axial_amplitude : float
         Axial amplitude at the ends of the waveguide. [m]
+    steel_yield_strength : float
+        Yield strength of steel on steel. [Pa]
 
     Returns
     -------
     ndarray, shape of `normal_load`
     """
     waveguide = poisson_waveguide(horn, axial_amplitude=axial_amplitude, frequency=si_value("3.1.4-frequency"))
+    contact = poisson_contact(bodies=bodies, steel_yield_strength=steel_yield_strength)
     return dong_2015_half_period_ratio(
-        poisson_contact(bodies=bodies), normal_load=normal_load, vibration_amplitude=normal_amplitude(waveguide)
+        contact, normal_load=normal_load, vibration_amplitude=normal_amplitude(waveguide)
     )
 
 

@@ -1,7 +1,7 @@
 """Rows of the reproduction: a published number, the numbers computed for it, and the verdict of their comparison."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Final
 
@@ -22,6 +22,7 @@ class Verdict(StrEnum):
     """Outcome of the comparison of a computed with a published number."""
 
     REPRODUCED = "reproduced"
+    FITTED = "fitted"
     TRIVIALLY_MET = "trivially_met"
     MISPRINT = "misprint"
     NOT_REPRODUCED = "not_reproduced"
@@ -84,6 +85,9 @@ class Row:
     verdict : Verdict
     note : str
         Method of the computation, and evidence for the verdict.
+    possible_low, possible_high : float or None
+        Limits of the computed value over what an input that is not printed can be; None where all are printed or their
+        values do not matter.
     alternatives : mapping of str to Alternative
         What other models give for the same number, by name. None of them affects the verdict.
     """
@@ -101,6 +105,8 @@ class Row:
     computed: float | None
     verdict: Verdict
     note: str
+    possible_low: float | None = None
+    possible_high: float | None = None
     alternatives: Mapping[str, Alternative] = field(default_factory=dict)
 
     @property
@@ -123,6 +129,8 @@ def comparison_row(
     *,
     kind: RowKind,
     suffix: str = "",
+    fitted: str = "",
+    possible: tuple[float, float] | None = None,
     alternatives: Mapping[str, tuple[Computed, str]] | None = None,
 ) -> Row:
     """Return the row that compares a computed with a published number.
@@ -139,25 +147,34 @@ def comparison_row(
         Class of the comparison.
     suffix : str
         Suffix of the row's id, where several numbers are computed for one published number.
+    fitted : str
+        What of the computation was fitted to, or chosen by, the published number itself; empty for nothing.
+    possible : tuple of float, optional
+        Lowest and highest computed value over what an input that is not printed can be, in SI.
     alternatives : mapping of str to (ComputedValue or float, str), optional
         Values of other models, in SI, each with its note, by name.
 
     Returns
     -------
     Row
-        `reproduced` within the interval that print, scatter and rounding leave, `trivially_met` if they leave a
-        reduction of zero open, as "less than 10 %" does, and none is computed. Outside it, `misprint` if the row is of
-        a published formula, a correction with evidence is on record and the computed number agrees with it; else
-        `not_reproduced`: that a model misses a test says nothing against the print.
+        `undetermined` if some possible values agree with the print and others do not. Else `reproduced` within the
+        interval that print, scatter and rounding leave, `fitted` if the number itself entered the computation,
+        `trivially_met` if a reduction of zero is left open, as "less than 10 %" does, and none is computed. Outside it,
+        `misprint` if the row is of a published formula, a correction with evidence is on record and the computed number
+        agrees with it; else `not_reproduced`: that a model misses a test says nothing against the print.
     """
     published = published_value(published) if isinstance(published, str) else published
     computed = _with_interval(computed)
-    if _agree(published.number, computed):
-        verdict = Verdict.TRIVIALLY_MET if _is_trivial(published, computed) else Verdict.REPRODUCED
+    if possible is not None and not fitted and _is_open(published.number, computed, possible):
+        verdict = Verdict.UNDETERMINED
+    elif _agree(published.number, computed):
+        verdict = _met(published, computed, fitted=fitted)
     elif kind is RowKind.PUBLISHED_FORMULA and _meets_correction(published, computed):
         verdict, note = Verdict.MISPRINT, f"{note.rstrip('.')}. {published.evidence}"
     else:
         verdict = Verdict.NOT_REPRODUCED
+    if verdict is Verdict.FITTED:
+        note = f"{note.rstrip('.')}. Fitted to this number: {fitted}."
     others = {
         name: Alternative(
             computed=_printed(published, _with_interval(other).value),
@@ -167,7 +184,11 @@ def comparison_row(
         for name, (other, other_note) in (alternatives or {}).items()
     }
     interval = _interval(published.number, computed)
-    return _row(published, suffix, interval, computed.value, verdict, note, kind=kind, alternatives=others)
+    row = _row(published, suffix, interval, computed.value, verdict, note, kind=kind, alternatives=others)
+    if possible is None:
+        return row
+    low, high = (_printed(published, limit) for limit in sorted((*possible, computed.value))[::2])
+    return replace(row, possible_low=low, possible_high=high)
 
 
 def formula_row(
@@ -269,6 +290,20 @@ def _with_interval(computed: Computed) -> ComputedValue:
     if isinstance(computed, ComputedValue):
         return computed
     return ComputedValue(value=computed, low=computed, high=computed)
+
+
+def _met(published: PublishedValue, computed: ComputedValue, *, fitted: str) -> Verdict:
+    """Return the verdict of a computed number that agrees with the print."""
+    if fitted:
+        return Verdict.FITTED
+    return Verdict.TRIVIALLY_MET if _is_trivial(published, computed) else Verdict.REPRODUCED
+
+
+def _is_open(number: PrintedNumber, computed: ComputedValue, possible: tuple[float, float]) -> bool:
+    """Return whether some, and not all, of the possible values agree with a printed number."""
+    low, high = _interval(number, computed)
+    least, most = min(*possible, computed.value), max(*possible, computed.value)
+    return least <= high and low <= most and not (low <= least and most <= high)
 
 
 def _meets_correction(published: PublishedValue, computed: ComputedValue) -> bool:

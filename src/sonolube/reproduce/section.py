@@ -30,11 +30,14 @@ class Reproduction:
     findings : tuple of Finding
     rows : tuple of Row
     figures : tuple of ChapterFigure
+    caveats : tuple of str
+        What the rows rest on that the dissertation speaks against.
     """
 
     findings: tuple[Finding, ...]
     rows: tuple[Row, ...]
     figures: tuple[ChapterFigure, ...]
+    caveats: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

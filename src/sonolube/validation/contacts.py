@@ -18,19 +18,26 @@ from sonolube.surfaces import Roughness
 STEEL_YIELD_STRENGTH: Final = 250e6
 """Yield strength of steel on steel. [Pa] Not printed; inferred from the separations stated in D 3.1.4."""
 
+STEEL_YIELD_STRENGTHS: Final = (205e6, 960e6)
+"""Lowest and highest yield strength that the steel of D can have. [Pa]
+
+Annealed 304 and 316 (ASTM A240), and the steel of the hardness of D 4.1.3 by Tabor's relation."""
+
 RMS_OVER_ARITHMETIC_MEAN: Final = sqrt(pi / 2)
 """R_q over R_a of Gaussian heights. []"""
 
 Bodies = Literal["aluminium_steel", "steel_steel"]
 
 
-def poisson_contact(*, bodies: Bodies) -> RoughContact:
+def poisson_contact(*, bodies: Bodies, steel_yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
     """Return the contact of the Poisson-effect tests, Table 3.1.
 
     Parameters
     ----------
     bodies : str
         Pair in contact.
+    steel_yield_strength : float
+        Yield strength of steel on steel. [Pa]
 
     Returns
     -------
@@ -44,7 +51,7 @@ def poisson_contact(*, bodies: Bodies) -> RoughContact:
         for metal in ("steel", "aluminium")
     )
     softer, strength = (
-        (steel, STEEL_YIELD_STRENGTH)
+        (steel, steel_yield_strength)
         if bodies == "steel_steel"
         else (aluminium, si_value("table-3.1-yield_strength-1"))
     )
@@ -72,23 +79,31 @@ def wear_contact() -> RoughContact:
     )
 
 
-def steel_on_steel_contact(*, nominal_area: float) -> RoughContact:
+def steel_on_steel_contact(*, nominal_area: float, steel_yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
     """Return the contact of two steel bodies with the roughness of Table 3.2.
 
     Parameters
     ----------
     nominal_area : float
         Nominal contact area. [m2]
+    steel_yield_strength : float
+        Yield strength of the steel. [Pa]
 
     Returns
     -------
     RoughContact
     """
-    return replace(poisson_contact(bodies="steel_steel"), roughness=_roughness("3.2"), nominal_area=nominal_area)
+    pressed = poisson_contact(bodies="steel_steel", steel_yield_strength=steel_yield_strength)
+    return replace(pressed, roughness=_roughness("3.2"), nominal_area=nominal_area)
 
 
-def uncoated_plate_contact() -> RoughContact:
+def uncoated_plate_contact(*, steel_yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
     r"""Return the contact of the steel pin on the uncoated steel plates of section 4.1.
+
+    Parameters
+    ----------
+    steel_yield_strength : float
+        Yield strength of the steel. [Pa]
 
     Returns
     -------
@@ -102,7 +117,8 @@ def uncoated_plate_contact() -> RoughContact:
     would be 1.69 um. The plates did not wear measurably, so that it holds during the tests. The roughness of the pin
     is not printed. Summit radius and density are those of Table 3.2.
     """
-    rough = steel_on_steel_contact(nominal_area=si_value("table-4.1-nominal_area-1"))
+    area = si_value("table-4.1-nominal_area-1")
+    rough = steel_on_steel_contact(nominal_area=area, steel_yield_strength=steel_yield_strength)
     height = RMS_OVER_ARITHMETIC_MEAN * si_value("4.1.3-roughness-uncoated")
     return replace(rough, roughness=replace(rough.roughness, rms_height=height))
 

@@ -26,6 +26,12 @@ NORMAL_VIBRATION_SETS: Final = {
 IN_PLANE_VIBRATION_SETS: Final = {"L": "along the sliding, earlier studies (sections 1.3.1 and 2.2.5)"}
 """Sets of tests of other authors with vibration in the plane of contact, as quoted by D."""
 
+FLEXTENSIONAL: Final = "H"
+"""Letter of the set of the flextensional actuator, whose gain at resonance is not printed."""
+
+FLEXTENSIONAL_GAINS: Final = (1.0, 20.0)
+"""Limits of that gain: none, and one beyond the strength of the ceramic at the printed voltage. []"""
+
 _STEEL_COEFFICIENT: Final = 0.26  # of steel on steel in D 3.1.4; for set H it is only drawn
 _TITANIUM_COEFFICIENT: Final = 0.4  # forces of titanium on titanium are only drawn; steel on titanium has 0.44
 _FLEXTENSIONAL_AREA: Final = 50e-6  # flats of the actuator, 10.5 mm by about 5 mm

@@ -40,7 +40,7 @@ def test_friction_times_superimposed_speed_cools_at_every_voltage_of_the_example
 
 def test_a_fraction_of_the_power_cools_and_warms_the_example_as_stated() -> None:
     rows = [row for name, row in ROWS.items() if name.endswith("by-vibration-heat")]
-    assert [row.verdict for row in rows] == [Verdict.REPRODUCED] * 4
+    assert [row.verdict for row in rows] == [Verdict.FITTED] * 4
     assert all("is not printed" in row.note for row in rows)
 
 
@@ -86,20 +86,23 @@ def test_temperature_jumps_creeps_and_falls_back_as_described_for_figure_4_30() 
 def test_the_welder_could_not_heat_its_waveguide_to_the_printed_peak() -> None:
     # 127 x 60.96 x 25.4 mm of 2780 kg/m3 and 875 J/(kg K): 478 J/K; 11 kJ warm it by 23 K
     row = ROWS["4.3.5-temperature-peak"]
-    assert row.computed == approx(20 + 2200 * 5 / 478.3, abs=0.1)
-    assert row.verdict is Verdict.NOT_REPRODUCED
+    assert f"{20 + 2200 * 5 / 478.3:.0f} degC at most" in row.note
+    assert row.verdict is Verdict.UNDETERMINED
     assert "5.7 kW" in row.note
 
 
 def test_the_foil_alone_does_not_explain_the_temperature_beneath_it() -> None:
     row = ROWS["4.3.5-foil-temperature-peak"]
-    assert row.computed == approx(80.0, abs=0.05)
+    assert "80 degC would remain" in row.note
     assert "0.54 times" in row.note
+    assert row.verdict is Verdict.UNDETERMINED
 
 
 def test_the_measured_peak_lies_between_a_conducting_and_an_insulated_thermocouple() -> None:
-    assert computed("4.3.5-tribometer-temperature-peak") < 53
-    assert "73 degC" in ROWS["4.3.5-tribometer-temperature-peak"].note
+    row = ROWS["4.3.5-tribometer-temperature-peak"]
+    assert row.computed == row.possible_low == approx(32.2, abs=0.1)
+    assert row.possible_high == approx(72.8, abs=0.1)
+    assert row.verdict is Verdict.UNDETERMINED
 
 
 @pytest.mark.parametrize(

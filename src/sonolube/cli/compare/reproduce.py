@@ -1,6 +1,6 @@
 """Command `reproduce`: published numbers of the dissertation beside computed ones."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -41,6 +41,10 @@ class ReproductionAnswer(Answer):
     def object(self) -> dict[str, Any]:
         """Claims, rows, and the number of rows by class and verdict."""
         return validation_object(self.result)
+
+    def caveats(self) -> Sequence[str]:
+        """What the rows rest on that the dissertation speaks against."""
+        return self.result.caveats
 
     def files(self) -> Mapping[str, str | bytes]:
         """Report, claims and rows as JSON, and every figure."""

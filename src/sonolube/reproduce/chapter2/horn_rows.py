@@ -48,6 +48,7 @@ def _modes() -> Iterator[Row]:
             f"({assumed.youngs_modulus / 1e9:g} GPa, {assumed.poisson_ratio:g}, {assumed.density:g} kg/m3).",
             suffix="assumed",
             kind=RowKind.DEFAULT_MODEL,
+            fitted="taper and moduli, with the mode of the other horn",
             alternatives={"plain block": (axial_mode(printed_shape(), plain).natural_frequency, plain_note)},
         )
 

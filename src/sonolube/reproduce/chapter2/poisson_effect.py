@@ -18,7 +18,7 @@ from sonolube.reproduce.chapter2.horn_rows import horn_rows
 from sonolube.reproduce.cube import HORNS, STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, poisson_waveguide
 from sonolube.reproduce.plots import axes_row
 from sonolube.reproduce.row import Row, RowKind, comparison_row
-from sonolube.validation.contacts import Bodies
+from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, STEEL_YIELD_STRENGTHS, Bodies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,22 +78,49 @@ def _friction_reductions() -> Iterator[Row]:
         "D 2.1 from both coefficients; D calls all three numbers approximate.",
         kind=RowKind.PUBLISHED_FORMULA,
     )
-    load = np.asarray(si_value("2.1.2-normal-load"))
+    load = si_value("2.1.2-normal-load")
     tests: tuple[tuple[str, str, Bodies, Horn, str], ...] = (
         ("2.1.5-reduction-aluminium-horn", "cube", "aluminium_steel", "aluminium", ""),
         ("2.1.5-reduction-steel-on-aluminium", "", "aluminium_steel", "steel", ""),
         ("2.1.5-reduction-steel-on-steel", "", "steel_steel", "steel", f" Assumed: {STEEL_ON_STEEL_NOTE}."),
     )
     for published, suffix, bodies, horn, remark in tests:
-        at_welder_amplitude, at_waveguide_amplitude = (
-            1 - float(poisson_friction_ratio(bodies=bodies, horn=horn, normal_load=load, axial_amplitude=amplitude))
-            for amplitude in (si_value("2.1.2-welder-amplitude"), si_value("4.3.5-waveguide-amplitude"))
-        )
+        reduction = partial(_cube_reduction, bodies=bodies, horn=horn, normal_load=load)
+        at_waveguide_amplitude = reduction("4.3.5-waveguide-amplitude")
         note = (
             f"Cube, D 3.15, {load:g} N, amplitude of D 2.1.2; with that of D 4.3.5 "
             f"{100 * at_waveguide_amplitude:.1f} %.{remark}"
         )
-        yield comparison_row(published, at_welder_amplitude, note, suffix=suffix, kind=RowKind.PUBLISHED_MODEL)
+        weakest, strongest = (
+            reduction("2.1.2-welder-amplitude", steel_yield_strength=strength) for strength in STEEL_YIELD_STRENGTHS
+        )
+        yield comparison_row(
+            published,
+            reduction("2.1.2-welder-amplitude"),
+            note,
+            suffix=suffix,
+            kind=RowKind.PUBLISHED_MODEL,
+            possible=(weakest, strongest) if bodies == "steel_steel" else None,
+        )
+
+
+def _cube_reduction(
+    amplitude: str,
+    *,
+    bodies: Bodies,
+    horn: Horn,
+    normal_load: float,
+    steel_yield_strength: float = STEEL_YIELD_STRENGTH,
+) -> float:
+    """Return the friction reduction by the cube at a published axial amplitude, given by its id. []"""
+    ratio = poisson_friction_ratio(
+        bodies=bodies,
+        horn=horn,
+        normal_load=np.asarray(normal_load),
+        axial_amplitude=si_value(amplitude),
+        steel_yield_strength=steel_yield_strength,
+    )
+    return 1 - float(ratio)
 
 
 def _paths() -> "Figure":

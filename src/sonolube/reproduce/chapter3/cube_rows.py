@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
 from itertools import product
 from typing import Final
 
@@ -16,10 +18,16 @@ from sonolube.contact import (
     separation,
     sinusoidal_motion,
 )
-from sonolube.published import propagate_rounding, published_number, published_value, si_value, table
+from sonolube.published import PrintedNumber, propagate_rounding, published_number, published_value, si_value, table
 from sonolube.reproduce.cube import STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, without_yielding
 from sonolube.reproduce.row import Row, RowKind, comparison_row, formula_row, undetermined_row
-from sonolube.validation.contacts import Bodies, poisson_contact, wear_contact
+from sonolube.validation.contacts import (
+    STEEL_YIELD_STRENGTH,
+    STEEL_YIELD_STRENGTHS,
+    Bodies,
+    poisson_contact,
+    wear_contact,
+)
 from sonolube.wear import cube_wear_rate, full_period_wear_ratio, vibrating_cube_wear_rate
 
 LOST_CONTACT: Final = 0.01
@@ -76,16 +84,27 @@ def _contact() -> Iterator[Row]:
 def _friction() -> Iterator[Row]:
     """Yield the friction reductions of section 3.1.4 by the cube, and its mean errors over the loads."""
     for published, bodies, horn, remark in _REDUCTIONS:
-        at_welder_amplitude, at_waveguide_amplitude = (
-            1 - poisson_friction_ratio(bodies=bodies, horn=horn, normal_load=_loads(), axial_amplitude=amplitude)
-            for amplitude in map(si_value, ("2.1.2-welder-amplitude", "4.3.5-waveguide-amplitude"))
-        )
+        reductions = partial(_reductions, bodies=bodies, horn=horn)
+        at_welder_amplitude = reductions("2.1.2-welder-amplitude")
+        at_waveguide_amplitude = reductions("4.3.5-waveguide-amplitude")
+        possible = [
+            reductions("2.1.2-welder-amplitude", steel_yield_strength=strength) for strength in STEEL_YIELD_STRENGTHS
+        ]
+        is_open = bodies == "steel_steel"
         note = (
             "Cube over the separating half period (D 3.15), mean over the loads at the 8.5 um of D 2.1.2, "
             f"{_percent_range(at_welder_amplitude)}; at the 11.24 um of D 4.3.5 "
             f"{_percent_range(at_waveguide_amplitude)}. The test falls with load, the cube rises slightly.{remark}"
         )
-        yield comparison_row(published, float(np.mean(at_welder_amplitude)), note, kind=RowKind.PUBLISHED_MODEL)
+        weakest, strongest = (float(np.mean(reduction)) for reduction in possible)
+        yield comparison_row(
+            published,
+            float(np.mean(at_welder_amplitude)),
+            note,
+            kind=RowKind.PUBLISHED_MODEL,
+            possible=(weakest, strongest) if is_open else None,
+        )
+        weakest, strongest = (_mean_error(reduction, published) for reduction in possible)
         note = (
             "Mean error of friction over the loads (D 3.16), of the cube at {} against a reduction that falls in "
             f"proportion to the load over the printed range, {published_number(published).text} %: the measured "
@@ -97,6 +116,7 @@ def _friction() -> Iterator[Row]:
             note.format("8.5 um (D 2.1.2)"),
             suffix=published.removeprefix("3.1.4-reduction-"),
             kind=RowKind.PUBLISHED_MODEL,
+            possible=(weakest, strongest) if is_open else None,
             alternatives={
                 "11.24 um of D 4.3.5": (
                     _mean_error(at_waveguide_amplitude, published),
@@ -113,6 +133,19 @@ def _mean_error(reduction: Floats, published: str) -> float:
     measured = published_number(published)
     test = 1 - np.linspace(measured.high, measured.low, reduction.size)
     return float(np.mean(np.abs(1 - reduction - test) / test))
+
+
+def _reductions(
+    amplitude: str, *, bodies: Bodies, horn: Horn, steel_yield_strength: float = STEEL_YIELD_STRENGTH
+) -> Floats:
+    """Return the friction reduction by the cube at each load, at a published axial amplitude, given by its id. []"""
+    return 1 - poisson_friction_ratio(
+        bodies=bodies,
+        horn=horn,
+        normal_load=_loads(),
+        axial_amplitude=si_value(amplitude),
+        steel_yield_strength=steel_yield_strength,
+    )
 
 
 def _wear() -> Iterator[Row]:
@@ -163,22 +196,26 @@ def _coupling_factor() -> Row:
 
 
 def _loss_of_contact() -> Row:
-    """Return the displacement at which contact is lost, "hopping" of section 3.3.5."""
+    """Return the row of the displacement of "hopping" of section 3.3.5, at which k_t "becomes virtually zero"."""
     contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
     printed = published_value("3.3.5-hopping-displacement")
-    at_rest = separation(contact, normal_load=load)
-    gap = at_rest + printed.number.value
-    force = float(normal_force(contact, separation=gap) / load)
-    stiffness = float(
-        cube_tangential_stiffness(contact, separation=gap) / cube_tangential_stiffness(contact, separation=at_rest)
+    at_rest, reach = separation(contact, normal_load=load), printed.number.value
+    apart, rest, nearest = (
+        float(cube_tangential_stiffness(contact, separation=at_rest + x)) for x in (reach, 0.0, -reach)
     )
+    force = float(normal_force(contact, separation=at_rest + reach) / load)
+    lost = float(decay_length(contact)) * math.log(1 / LOST_CONTACT)
     note = (
-        f"Displacement at which F_n falls to {LOST_CONTACT:.0%} of the load; an exponential height law never parts the "
-        f"surfaces. At 3.8 um F_n/F_N = {force:.2f}, k_t/k_t0 = {stiffness:.3f}."
+        f"Tangential stiffness at a displacement of {printed.number.text} um over its peak in such a period, which is "
+        f"virtually zero if below {LOST_CONTACT:.0%}; over its value at rest {apart / rest:.3f}. The surfaces do not "
+        f"part: {force:.0%} of the normal force remain, 1 % at {lost * 1e6:.1f} um, for an exponential height law has "
+        "no end"
     )
-    return comparison_row(
-        printed, float(decay_length(contact)) * math.log(1 / LOST_CONTACT), note, kind=RowKind.PUBLISHED_FORMULA
+    zero = PrintedNumber(
+        text=f"{LOST_CONTACT:g}", value=LOST_CONTACT, low=0.0, high=LOST_CONTACT, rounding_half_width=0.0
     )
+    virtually_zero = replace(printed, quantity="", unit="", number=zero)
+    return comparison_row(virtually_zero, apart / nearest, note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def _loads() -> Floats:

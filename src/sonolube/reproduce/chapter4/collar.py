@@ -1,8 +1,8 @@
 """Collar of D 4.5 by finite elements: modes, responses to voltage, and friction of a rod pulled through it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -10,8 +10,8 @@ from sonolube.checks import Floats
 from sonolube.contact import decay_length
 from sonolube.dong2015.bore import BoreMotion
 from sonolube.dong2015.collar import Collar
-from sonolube.dong2015.collar_analysis import Parity, collar_modes, reduced_collar_model
-from sonolube.dong2015.collar_designs import FINAL_COLLAR
+from sonolube.dong2015.collar_analysis import ELEMENT_SIZE, Parity, collar_modes, reduced_collar_model
+from sonolube.dong2015.collar_designs import ASSUMED_RANGES, FINAL_COLLAR
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.dynamics import ExponentialGap, steady_state
 from sonolube.fem import ReducedModel, contact_structure, with_free_body
@@ -81,8 +81,44 @@ def response_model(collar: Collar, *, clamped: bool = False, open_top: bool = Fa
 @cache
 def mode_frequency(collar: Collar, kind: BoreMotion) -> float:
     """Return the frequency of the mode of a kind with the largest motion of the inner ring. [Hz]"""
-    odd = kind in (BoreMotion.TORSIONAL, BoreMotion.DIAGONAL_OVAL, BoreMotion.TRANSLATION_ALONG_X)
-    return collar_modes(collar, count=_MODES, parity=Parity(odd_across=odd)).dominant_frequency(kind)
+    return collar_modes(collar, count=_MODES, parity=_parity(kind)).dominant_frequency(kind)
+
+
+@cache
+def mode_frequency_range(collar: Collar, kind: BoreMotion, *, assumed: tuple[str, ...]) -> tuple[float, float]:
+    """Return the frequencies of a mode at two corners of the ranges of assumed dimensions. [Hz]
+
+    Parameters
+    ----------
+    collar : Collar
+    kind : BoreMotion
+        Motion of the bore in the mode.
+    assumed : tuple of str
+        Dimensions that are not printed, of `ASSUMED_RANGES`.
+
+    Returns
+    -------
+    tuple of float
+        Lower and higher one: of a thick and narrow inner ring with thin bolts and pillars, and of a thin and wide one
+        with thick ones. By a coarse mesh, in proportion to what it gives for the collar itself.
+    """
+    over_coarse = mode_frequency(collar, kind) / _coarse_frequency(collar, kind)
+    corners: list[dict[str, Any]] = [
+        {name: ASSUMED_RANGES[name][stiff ^ (name == "ring_thickness")] for name in assumed} for stiff in (0, 1)
+    ]
+    low, high = sorted(over_coarse * _coarse_frequency(replace(collar, **corner), kind) for corner in corners)
+    return low, high
+
+
+def _coarse_frequency(collar: Collar, kind: BoreMotion) -> float:
+    """Return the frequency of a mode by a mesh of half the fineness and of quadratic elements. [Hz]"""
+    found = collar_modes(collar, count=_MODES, parity=_parity(kind), element_size=2 * ELEMENT_SIZE, order=2)
+    return found.dominant_frequency(kind)
+
+
+def _parity(kind: BoreMotion) -> Parity:
+    """Return the symmetry of the modes with a motion of the bore."""
+    return Parity(odd_across=kind in (BoreMotion.TORSIONAL, BoreMotion.DIAGONAL_OVAL, BoreMotion.TRANSLATION_ALONG_X))
 
 
 @cache

@@ -25,10 +25,11 @@ from sonolube.reproduce.chapter4.collar import (
     PULL_SPEED,
     ROD_LENGTH,
     mode_frequency,
+    mode_frequency_range,
     pulled_rod,
     response_model,
 )
-from sonolube.reproduce.row import Row, RowKind, comparison_row, not_computed_row, range_rows, undetermined_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, not_computed_row, undetermined_row
 
 _BY_FINITE_ELEMENTS: Final = (
     "4.5.2-breathing-mode-first",
@@ -42,6 +43,7 @@ _BY_FINITE_ELEMENTS: Final = (
 )
 _MESH_ERROR: Final = 0.003  # relative, against elements of higher order
 _ASSUMED: Final = "walls of the outer ring, thickness of the inner one and bolts are assumed"
+_ASSUMED_DIMENSIONS: Final = ("ring_thickness", "bolt_diameter", "pillar_width")  # base and top follow from others
 _PULLED: Final = (
     f"multi-scale model with the computed structure at its resonance, 28 V; assumed: rod of {ROD_LENGTH:g} m, load from"
     f" its weight in the middle to {LOAD_AT_ENDS:g} times that at the ends, a steady {1e3 * PULL_SPEED:g} mm/s,"
@@ -109,7 +111,8 @@ def _first_design() -> Iterator[Row]:
         "of thin rings, and the 27 kHz of the revised designs would take a ring of 59 mm: D's breathing is taken for "
         "the oval mode (erratum N16)"
     )
-    yield comparison_row(at_least, oval, note, kind=RowKind.DEFAULT_MODEL)
+    possible = mode_frequency_range(FIRST_COLLAR, BoreMotion.OVAL, assumed=_ASSUMED_DIMENSIONS)
+    yield comparison_row(at_least, oval, note, kind=RowKind.DEFAULT_MODEL, possible=possible)
     yield comparison_row(
         "4.5.2-torsional-mode-first",
         _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL)),
@@ -117,6 +120,7 @@ def _first_design() -> Iterator[Row]:
         f"diagonals and its sides rotate; {_ASSUMED}. In a symmetric collar no voltage excites it: its presence in the "
         "impedance requires stacks or bolts that differ",
         kind=RowKind.DEFAULT_MODEL,
+        possible=mode_frequency_range(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL, assumed=_ASSUMED_DIMENSIONS),
     )
 
 
@@ -132,7 +136,11 @@ def _revised_designs() -> Iterator[Row]:
             for shape, collar in (("hexagon", THIN_HEXAGON_COLLAR), ("ring", THIN_RING_COLLAR))
         )
         yield comparison_row(
-            f"4.5.2-{mode}-mode-revised", *hexagon, kind=RowKind.DEFAULT_MODEL, alternatives={"ring": ring}
+            f"4.5.2-{mode}-mode-revised",
+            *hexagon,
+            kind=RowKind.DEFAULT_MODEL,
+            possible=mode_frequency_range(THIN_HEXAGON_COLLAR, kind, assumed=(*_ASSUMED_DIMENSIONS, "ring_width")),
+            alternatives={"ring": ring},
         )
 
 
@@ -142,12 +150,16 @@ def _final_design() -> Iterator[Row]:
         tuned, guess = (
             _resonance(collar, open_top=open_top, origin=origin)
             for collar, origin in (
-                (FINAL_COLLAR, "assumed dimensions fitted to this and the other frequency, none by more than 9 %"),
+                (FINAL_COLLAR, "no assumed dimension off its nominal one by more than 9 %"),
                 (NOMINAL_COLLAR, "round inches for what D does not print, nothing fitted"),
             )
         )
         yield comparison_row(
-            statement_id, *tuned, kind=RowKind.DEFAULT_MODEL, alternatives={"dimensions in round inches": guess}
+            statement_id,
+            *tuned,
+            kind=RowKind.DEFAULT_MODEL,
+            fitted="the dimensions that are not printed, with the other frequency",
+            alternatives={"dimensions in round inches": guess},
         )
 
 
@@ -161,14 +173,29 @@ def _resonance(collar: Collar, *, open_top: bool, origin: str) -> tuple[Computed
 def _pulled_rod() -> Iterator[Row]:
     """Yield the reductions of friction and of its work on a rod pulled through the collar."""
     rod = pulled_rod()
-    low, high = 1 - rod.ratio_at_pull_speed.max(), 1 - rod.ratio_at_pull_speed.min()
-    note = f"At the ends and in the middle of the rod; {_PULLED}"
-    yield from range_rows("4.5.4-reduction", float(low), float(high), note, kind=RowKind.DEFAULT_MODEL)
+    ratios = rod.ratio_at_pull_speed
+    slowest, fastest = (1e3 * speed for speed in rod.sliding_speed[[0, -1]])
+    over_speeds = f"Possible: from {slowest:g} to {fastest:g} mm/s, for the speed is only drawn"
+    note = f"At the ends and in the middle of the rod; {_PULLED}. {over_speeds}"
+    limits = published_value("4.5.4-reduction").limits()
+    for limit, ratio, place in zip(limits, (ratios.max(), ratios.min()), (np.max, np.min), strict=True):
+        over_rod = 1 - place(rod.friction_ratio, axis=1)
+        yield comparison_row(
+            limit,
+            1 - float(ratio),
+            note,
+            kind=RowKind.DEFAULT_MODEL,
+            possible=(float(over_rod.min()), float(over_rod.max())),
+        )
     work = rod.work_reduction
     exact = float(np.interp(-si_value("4.5.4-work-reduction"), -work, rod.sliding_speed))
-    note = f"{_PULLED}. At {1e3 * exact:.0f} mm/s it would be the printed number"
+    note = f"{_PULLED}. At {1e3 * exact:.0f} mm/s it would be the printed number. {over_speeds}"
     yield comparison_row(
-        "4.5.4-work-reduction", float(np.interp(PULL_SPEED, rod.sliding_speed, work)), note, kind=RowKind.DEFAULT_MODEL
+        "4.5.4-work-reduction",
+        float(np.interp(PULL_SPEED, rod.sliding_speed, work)),
+        note,
+        kind=RowKind.DEFAULT_MODEL,
+        possible=(float(work.min()), float(work.max())),
     )
 
 

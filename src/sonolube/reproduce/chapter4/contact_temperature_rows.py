@@ -1,6 +1,7 @@
 """Section 4.3: rows of the temperatures of the vibrated contact and of the waveguide of the welder."""
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -10,7 +11,7 @@ from sonolube.checks import Floats
 from sonolube.materials import material
 from sonolube.published import column_numbers, si_value
 from sonolube.reproduce.chapter4 import temperature_tests as tests
-from sonolube.reproduce.row import Row, RowKind, comparison_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, undetermined_row
 
 _FRICTION_NOTE: Final = (
     f"Friction kept at {tests.EXAMPLE_FRICTION_RATIO:g} of its dry value at every voltage: in the text it falls "
@@ -57,7 +58,7 @@ def _example_by_superimposed_speed() -> Iterator[Row]:
         friction_force=tests.EXAMPLE_FRICTION_RATIO, sliding_speed=speed, vibration_velocity=peaks
     )
     note = f"Explanation of D: heat is proportional to friction times superimposed speed of Table 4.5. {_FRICTION_NOTE}"
-    yield from _example(heat / speed, "by-superimposed-speed", note, kind=RowKind.PUBLISHED_FORMULA)
+    yield from _example(heat / speed, "by-superimposed-speed", note, kind=RowKind.PUBLISHED_FORMULA, fitted="")
 
 
 def _example_by_vibration_heat() -> Iterator[Row]:
@@ -76,6 +77,7 @@ def _example_by_vibration_heat() -> Iterator[Row]:
         "by-vibration-heat",
         note,
         kind=RowKind.DEFAULT_MODEL,
+        fitted="the fraction of the power, with the other three statements",
     )
 
 
@@ -84,28 +86,34 @@ def _loss_tangent() -> float:
     return material(_CERAMIC).value("loss_tangent")
 
 
-def _example(ratios: Floats, suffix: str, note: str, *, kind: RowKind) -> Iterator[Row]:
+def _example(ratios: Floats, suffix: str, note: str, *, kind: RowKind, fitted: str) -> Iterator[Row]:
     """Yield the rows of the example at four voltages from heat with vibration over heat without."""
+    row = partial(comparison_row, note=note, suffix=suffix, kind=kind, fitted=fitted)
     for voltage, ratio in zip(tests.voltages(), ratios, strict=True):
         if voltage < 15:
-            yield comparison_row(f"4.3.4-example-cooler-{voltage:g}V", float(ratio), note, suffix=suffix, kind=kind)
+            yield row(f"4.3.4-example-cooler-{voltage:g}V", float(ratio))
         elif voltage > 20:
-            yield comparison_row(f"4.3.4-example-warmer-{voltage:g}V", float(1 / ratio), note, suffix=suffix, kind=kind)
+            yield row(f"4.3.4-example-warmer-{voltage:g}V", float(1 / ratio))
 
 
 def _low_speed() -> Row:
     """Return the temperature without vibration over that with it at the lowest speed."""
     slowest = float(tests.speeds()[0])
-    ratios = tests.slow_friction_ratio() + tests.vibration_heat() / tests.dry_heat(
-        normal_load=float(tests.loads()[0]), sliding_speed=slowest
+    dry = tests.dry_heat(normal_load=float(tests.loads()[0]), sliding_speed=slowest)
+    least, most = (
+        float(np.max(dry / (tests.slow_friction_ratio() * dry + tests.vibration_heat(fraction))))
+        for fraction in tests.vibration_heat_window()
     )
+    ratios = tests.slow_friction_ratio() + tests.vibration_heat() / dry
     listed = ", ".join(f"{ratio:.2f}" for ratio in ratios)
     note = (
         f"At {1e3 * slowest:g} mm/s and 26 MPa, the voltage of the least warming. Friction by asperity stick-slip, "
         "heat of vibration by the fraction from the example at 220 mm/s; rises with vibration over those without, from "
-        f"5.1 to 25.9 V: {listed}"
+        f"5.1 to 25.9 V: {listed}. Possible: over the fractions that the example leaves open"
     )
-    return comparison_row("4.3.4-low-speed-warmer", float(np.max(1 / ratios)), note, kind=RowKind.DEFAULT_MODEL)
+    return comparison_row(
+        "4.3.4-low-speed-warmer", float(np.max(1 / ratios)), note, kind=RowKind.DEFAULT_MODEL, possible=(least, most)
+    )
 
 
 def _tribometer_peak() -> Row:
@@ -115,21 +123,21 @@ def _tribometer_peak() -> Row:
     peak = tests.ROOM_TEMPERATURE + float(record.temperature_rise.max())
     contact = tests.heated_contact()
     flux = record.heat_rate.max() / contact.source.area
-    alone = thermal.flash_rise(
-        tests.POWDER_COATING, contact.source, heat_flux=flux, sliding_speed=speed
-    ).mean_temperature_rise
+    flash = thermal.flash_rise(tests.POWDER_COATING, contact.source, heat_flux=flux, sliding_speed=speed)
+    insulated = tests.ROOM_TEMPERATURE + float(flash.mean_temperature_rise)
     note = (
         f"Highest of the computed tests, 52 MPa, 220 mm/s and 25.9 V, {1e3 * record.heat_rate.max():.0f} mW of heat of "
         f"which {100 * record.heat_partition[record.heat_rate.argmax()]:.0f} % enter the pin. {tests.ASSUMED}. With an "
-        f"insulating adhesive of the thermocouple, the coating alone would give "
-        f"{tests.ROOM_TEMPERATURE - 273.15 + float(alone):.0f} degC: the measured peak lies between, "
-        "depending on the bond of the thermocouple"
+        f"insulating adhesive of the thermocouple, the coating alone would give {insulated - 273.15:.0f} degC: the "
+        "measured peak lies between, depending on the bond of the thermocouple, which is not printed"
     )
-    return comparison_row("4.3.5-tribometer-temperature-peak", peak, note, kind=RowKind.DEFAULT_MODEL)
+    return comparison_row(
+        "4.3.5-tribometer-temperature-peak", peak, note, kind=RowKind.DEFAULT_MODEL, possible=(peak, insulated)
+    )
 
 
 def _waveguide_peak() -> Row:
-    """Return the peak temperature of the waveguide, warmed by the power of the welder."""
+    """Return the row of the peak beside the waveguide, with the most that the welder's power could warm it to."""
     aluminium = material("aluminium_2024")
     length, width, thickness = (si_value(f"2.1.2-waveguide-{side}") for side in ("length", "width", "thickness"))
     volume, density = length * width * thickness, aluminium.value("density")
@@ -150,20 +158,19 @@ def _waveguide_peak() -> Row:
     at_one = thermal.vibration_loss_heat_rate(
         stored_energy=energy, frequency=si_value("2.1.2-welder-frequency"), quality_factor=1.0
     )
-    note = (
-        f"The aluminium waveguide of section 2.1 warmed evenly, without loss, by all {1e-3 * power:g} kW of the "
-        f"welder. To reach the printed peak it would take {1e-3 * needed:.1f} kW, a quality factor of "
-        f"{float(at_one) / needed:.0f} where metals have a thousand and more, which warms it by less than "
-        f"{float(at_one) / 1000 * duration / capacity:.1f} K. So not the waveguide reached that temperature, but the "
-        "thermocouple that rubs on it, as in the text"
+    missing = (
+        "load, friction and heat loss of the thermocouple that rubs on the waveguide, to which the text ascribes the "
+        "peak. The waveguide itself, of aluminium and warmed evenly without loss by all "
+        f"{1e-3 * power:g} kW of the welder, would reach {first + power * duration / capacity - 273.15:.0f} degC at "
+        f"most: the printed peak would take {1e-3 * needed:.1f} kW, a quality factor of {float(at_one) / needed:.0f} "
+        "where metals have a thousand and more, which warms it by less than "
+        f"{float(at_one) / 1000 * duration / capacity:.1f} K"
     )
-    return comparison_row(
-        "4.3.5-temperature-peak", first + power * duration / capacity, note, kind=RowKind.DEFAULT_MODEL
-    )
+    return undetermined_row("4.3.5-temperature-peak", missing, kind=RowKind.DEFAULT_MODEL)
 
 
 def _foil_peak() -> Row:
-    """Return the peak temperature behind a foil by its thermal conductance."""
+    """Return the row of the peak behind a foil, with what the conductance of the foil alone would leave of it."""
     first, peak = (si_value(f"4.3.5-temperature-{state}") for state in ("first", "peak"))
     sheltered = si_value("4.3.5-foil-temperature-peak")
     foil = float(
@@ -179,10 +186,11 @@ def _foil_peak() -> Row:
         )
     )
     behind = first + (peak - first) * foil / (foil + onward)
-    note = (
-        f"Through the foil alone, {1e-3 * foil:.0f} kW/(m2 K) with the conductivity of 2024, from the printed peak; "
-        "the thermocouple loses 100 W/(m2 K) onwards, assumed and generous. The thickness of the foil has next to no "
-        f"effect: the printed {sheltered - 273.15:.0f} degC correspond to a joint of {joint / onward:.2f} times the "
-        "loss of the thermocouple, spreading of the heat in the foil included"
+    missing = (
+        f"the joints of foil, waveguide and thermocouple. Through the foil alone, {1e-3 * foil:.0f} kW/(m2 K) with the "
+        f"conductivity of 2024, {behind - 273.15:.0f} degC would remain of the printed peak, as the thermocouple loses "
+        "100 W/(m2 K) onwards, assumed and generous: the thickness of the foil has next to no effect. The printed "
+        f"{sheltered - 273.15:.0f} degC correspond to a joint of {joint / onward:.2f} times the loss of the "
+        "thermocouple, spreading of the heat in the foil included"
     )
-    return comparison_row("4.3.5-foil-temperature-peak", behind, note, kind=RowKind.DEFAULT_MODEL)
+    return undetermined_row("4.3.5-foil-temperature-peak", missing, kind=RowKind.DEFAULT_MODEL)

@@ -30,6 +30,7 @@ _INFERRED: Final = (
     "film. Friction under vibration by asperity stick-slip; friction under Molykote is only drawn (Figs. 4.24 to "
     "4.27), and that of its film is inferred from the printed speed at the lowest stress"
 )
+_FILM: Final = "the friction of the film, from the same limit at the lowest stress"
 
 
 def lubrication_rows() -> Iterator[Row]:
@@ -52,12 +53,13 @@ def lubrication_rows() -> Iterator[Row]:
             note,
             suffix=f"at-{1e-6 * pressure:.0f}-MPa",
             kind=RowKind.DEFAULT_MODEL,
+            fitted=_FILM,
         )
     highest = max(_limit_speed(float(pressure)) for pressure in _pressures())
     useless = published_value(_NO_REDUCTION)
     from_zero = replace(useless, number=replace(useless.number, low=0.0, high=useless.number.value))
     note = f"Highest speed at which vibration alone is best at any stress, which must not exceed the print. {_INFERRED}"
-    yield comparison_row(from_zero, highest, note, kind=RowKind.DEFAULT_MODEL)
+    yield comparison_row(from_zero, highest, note, kind=RowKind.DEFAULT_MODEL, fitted=_FILM)
 
 
 def lubrication_figures() -> Iterator[ReportFigure]:

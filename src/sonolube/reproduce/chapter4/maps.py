@@ -19,6 +19,7 @@ from sonolube.reproduce.chapter4 import power_map
 from sonolube.reproduce.plots import draw_printed, single_axes
 from sonolube.reproduce.row import Row, RowKind, comparison_row, undetermined_row
 from sonolube.reproduce.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
+from sonolube.units import convert
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTH
 
 if TYPE_CHECKING:
@@ -159,13 +160,14 @@ def _plate_count() -> Row:
 
 
 def _hardness() -> Row:
-    """Return the hardness from the yield strength implied by section 3.1.4."""
+    """Return the row of the hardness of the plates, whose yield strength is not printed."""
     implied = si_value("4.1.3-hardness-uncoated") / _TABOR
-    note = (
-        f"{_TABOR:g} times the {STEEL_YIELD_STRENGTH / 1e6:g} MPa that the separations of D 3.1.4 imply (Tabor); the"
-        f" measured hardness is of a steel that yields at {implied / 1e6:.0f} MPa"
+    hardness = convert(_TABOR * STEEL_YIELD_STRENGTH, from_unit="Pa", to_unit="kgf/mm2")
+    missing = (
+        f"yield strength of the plates; that implied by the separations of D 3.1.4, {STEEL_YIELD_STRENGTH / 1e6:g} MPa,"
+        f" would give {hardness:.0f} kgf/mm2 (Tabor), and the measured hardness takes {implied / 1e6:.0f} MPa"
     )
-    return comparison_row("4.1.3-hardness-uncoated", _TABOR * STEEL_YIELD_STRENGTH, note, kind=RowKind.DEFAULT_MODEL)
+    return undetermined_row("4.1.3-hardness-uncoated", missing, kind=RowKind.DEFAULT_MODEL)
 
 
 def _reduction_over_speed() -> "Figure":

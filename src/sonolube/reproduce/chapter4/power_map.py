@@ -10,7 +10,7 @@ from sonolube.checks import Floats
 from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.metrics import efficiency_at, efficiency_coefficient, friction_at_power, power_for_friction
 from sonolube.published import PrintedNumber, column_numbers, published_number, si_value, table
-from sonolube.validation.contacts import uncoated_plate_contact
+from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, uncoated_plate_contact
 from sonolube.validation.efficiency import efficiency_line
 
 
@@ -97,13 +97,15 @@ def example_points() -> tuple[ExamplePoint, ...]:
     )
 
 
-def cube_friction(*, voltage_peak_to_peak: ArrayLike) -> Floats:
+def cube_friction(*, voltage_peak_to_peak: ArrayLike, steel_yield_strength: float = STEEL_YIELD_STRENGTH) -> Floats:
     """Return the friction of the example test by the cube over the separating half period, D 3.15. [N]
 
     Parameters
     ----------
     voltage_peak_to_peak : array_like, any shape
         Drive voltage, peak to peak. [V]
+    steel_yield_strength : float
+        Yield strength of the plates. [Pa]
 
     Returns
     -------
@@ -111,7 +113,7 @@ def cube_friction(*, voltage_peak_to_peak: ArrayLike) -> Floats:
     """
     test = example_test()
     ratio = dong_2015_half_period_ratio(
-        uncoated_plate_contact(),
+        uncoated_plate_contact(steel_yield_strength=steel_yield_strength),
         normal_load=test["normal_load"],
         vibration_amplitude=vibration_amplitude(voltage_peak_to_peak=voltage_peak_to_peak),
     )

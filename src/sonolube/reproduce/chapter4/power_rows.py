@@ -19,6 +19,7 @@ from sonolube.reproduce import formulas
 from sonolube.reproduce.chapter4 import power_map
 from sonolube.reproduce.cube import STEEL_ON_STEEL_NOTE
 from sonolube.reproduce.row import Row, RowKind, comparison_row, formula_row
+from sonolube.validation.contacts import STEEL_YIELD_STRENGTHS
 from sonolube.validation.efficiency import efficiency_line
 
 _UNIT_OF_LINE = 1e-9  # mW mm2/(N W) in m2/N
@@ -167,13 +168,23 @@ def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
 def _cube_friction(point: power_map.ExamplePoint) -> Row:
     """Return the friction of the cube at a voltage."""
     off = power_map.example_test()["intrinsic_friction_force"]
-    friction = float(power_map.cube_friction(voltage_peak_to_peak=point.voltage_peak_to_peak))
+    volts = point.voltage_peak_to_peak
+    friction = float(power_map.cube_friction(voltage_peak_to_peak=volts))
+    weakest, strongest = (
+        float(power_map.cube_friction(voltage_peak_to_peak=volts, steel_yield_strength=strength))
+        for strength in STEEL_YIELD_STRENGTHS
+    )
     note = (
         f"cube, D 3.15: ratio {friction / off:.3f} of {off:g} N; R_q = 2.12 um of the plates (D 4.1.3);"
         f" {STEEL_ON_STEEL_NOTE}; neither sliding speed nor in-plane motion of the tip enters"
     )
     return comparison_row(
-        f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-cube", kind=RowKind.PUBLISHED_MODEL
+        f"table-4.2-friction_force-{point.row}",
+        friction,
+        note,
+        suffix="by-the-cube",
+        kind=RowKind.PUBLISHED_MODEL,
+        possible=(weakest, strongest),
     )
 
 

@@ -112,9 +112,10 @@ def vibration_heat_fraction() -> float:
     return float(np.sqrt(low * high))
 
 
-def vibration_heat() -> Floats:
-    """Return the heat of vibration at the five voltages. [W]"""
-    return vibration_heat_fraction() * actuator_power(voltage_peak_to_peak=voltages())
+def vibration_heat(fraction: float | None = None) -> Floats:
+    """Return the heat of vibration at the five voltages, by default at the geometric mean of the limits. [W]"""
+    share = vibration_heat_fraction() if fraction is None else fraction
+    return share * actuator_power(voltage_peak_to_peak=voltages())
 
 
 def slow_friction_ratio() -> Floats:

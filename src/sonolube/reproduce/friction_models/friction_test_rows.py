@@ -4,12 +4,28 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Final
 
+from sonolube.friction import EMPIRICAL_MEMORY_LENGTH
 from sonolube.published import PrintedNumber, PublishedValue
 from sonolube.reproduce.friction_models.computed_motion import computed_motion_prediction
 from sonolube.reproduce.friction_models.mechanisms import mechanism_predictions
-from sonolube.reproduce.friction_models.variant_predictions import DEFAULT, Predictions, variant_predictions
+from sonolube.reproduce.friction_models.variant_predictions import (
+    DEFAULT,
+    Predictions,
+    is_fitted_to,
+    variant_predictions,
+)
 from sonolube.reproduce.row import Row, RowKind, comparison_row
-from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
+from sonolube.validation.assessment import FITTED_SETS
+from sonolube.validation.fitting import root_mean_square
+from sonolube.validation.friction_model_variants import asperity_stick_slip
+from sonolube.validation.published_tests import (
+    FLEXTENSIONAL,
+    FLEXTENSIONAL_GAINS,
+    NORMAL_VIBRATION_SETS,
+    FrictionTest,
+    friction_tests,
+    with_printed_roughness,
+)
 
 POWER_MAP: Final = "B"
 """Letter of the set of Table 4.2, of chapter 4; all others are of chapter 2."""
@@ -23,6 +39,24 @@ def tribometer_test_rows() -> Iterator[Row]:
 def power_map_test_rows() -> Iterator[Row]:
     """Yield the rows of the friction tests of Table 4.2."""
     yield from _rows(POWER_MAP)
+
+
+def roughness_caveat() -> str:
+    """Return the doubt on the roughness of the friction tests, with the error that the printed one would leave."""
+    recorded, printed = (
+        root_mean_square(
+            [
+                float(asperity_stick_slip(test, memory_length=EMPIRICAL_MEMORY_LENGTH)) - test.friction_ratio
+                for test in tests
+            ]
+        )
+        for tests in (friction_tests(FITTED_SETS), with_printed_roughness(friction_tests(FITTED_SETS)))
+    )
+    return (
+        "friction tests: all sets but B are computed with R_q = 6 um, which D took from comparison standards for other"
+        f" tests; with what D prints of the worn surfaces of C and G, rms errors grow from {recorded:.3f} to"
+        f" {printed:.3f} (asperity stick-slip, memory length 1.5 um)"
+    )
 
 
 def within_scatter(test: FrictionTest) -> PublishedValue:
@@ -59,8 +93,21 @@ def _rows(sets: str) -> Iterator[Row]:
             1 - ratio,
             note,
             kind=RowKind.DEFAULT_MODEL,
+            fitted="the memory length, with other tests" if is_fitted_to(test) else "",
+            possible=_possible(test),
             alternatives={name: (1 - other, other_note) for name, (other, other_note) in predictions.items()},
         )
+
+
+def _possible(test: FrictionTest) -> tuple[float, float] | None:
+    """Return the limits of the reduction of a flextensional test over the gain at resonance, not printed. []"""
+    if test.set_name != FLEXTENSIONAL:
+        return None
+    least, most = (
+        variant_predictions(replace(test, vibration_amplitude=gain * test.vibration_amplitude))[DEFAULT][0]
+        for gain in FLEXTENSIONAL_GAINS
+    )
+    return 1 - least, 1 - most
 
 
 def _predictions(test: FrictionTest) -> Predictions:

@@ -48,6 +48,11 @@ def reported_fits() -> tuple[Fit, ...]:
     return tuple(fit_variant(variant, _fitted_sets(variant)) for variant in FRICTION_MODEL_VARIANTS)
 
 
+def is_fitted_to(test: FrictionTest) -> bool:
+    """Return whether the default model is fitted to the set of a test."""
+    return any(fit.variant.name == DEFAULT and test.set_name in fit.sets for fit in reported_fits())
+
+
 def parameters_text(fit: Fit, sets: str) -> str:
     """Return the fitted parameters that apply to sets as text."""
     return ", ".join(
