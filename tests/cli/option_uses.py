@@ -75,7 +75,7 @@ class Mode:
 
 
 MODES = {
-    "contact": Mode("contact", (RIG,), LOADED),
+    "contact": Mode("contact", (RIG,), LOADED | {"--tangential-stiffness": "dong_2015"}),
     "predict": Mode(
         "predict",
         (RIG, "--runs", OWN_RUNS, "--pin", "m50", "--disc", "m50"),

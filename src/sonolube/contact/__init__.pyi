@@ -84,4 +84,9 @@ from .squeeze_film import (
     squeeze_film_pressure as squeeze_film_pressure,
     squeeze_number as squeeze_number,
 )
+from .tangential_stiffness import (
+    DEFAULT_TANGENTIAL_STIFFNESS as DEFAULT_TANGENTIAL_STIFFNESS,
+    TANGENTIAL_STIFFNESSES as TANGENTIAL_STIFFNESSES,
+    TangentialStiffness as TangentialStiffness,
+)
 from .validity_range import contact_caveats as contact_caveats, exponential_validity_range as exponential_validity_range

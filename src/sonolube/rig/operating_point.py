@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from sonolube.contact import cube_tangential_stiffness
 from sonolube.contact.rough import contact_count, normal_stiffness, real_contact_area
+from sonolube.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import AmplitudeSource, Rig
@@ -49,9 +49,11 @@ class ContactPoint:
     normal_stiffness : float
         Slope of the load against the separation. [N/m]
     tangential_stiffness : float
-        Bending stiffness of the cube, D 3.9. [N/m]
+        Force over displacement along the surface before any asperity slips. [N/m]
+    tangential_stiffness_model : str
+        Name of its model.
     mindlin_ratio : float
-        Tangential over normal stiffness by Mindlin's theory, beside that of the cube. []
+        Tangential over normal stiffness by Mindlin's theory. []
     caveats : tuple of str
         Reasons for caution about the numbers, one line each.
     """
@@ -62,6 +64,7 @@ class ContactPoint:
     contact_count: float
     normal_stiffness: float
     tangential_stiffness: float
+    tangential_stiffness_model: str
     mindlin_ratio: float
     caveats: tuple[str, ...]
 
@@ -169,24 +172,51 @@ class WearPoint:
     caveats: tuple[str, ...]
 
 
-def contact_point(rig: Rig) -> ContactPoint:
+def contact_point(rig: Rig, *, tangential_stiffness_model: str = DEFAULT_TANGENTIAL_STIFFNESS) -> ContactPoint:
     """Return the state of the contact under the rig's load, without vibration.
+
+    Parameters
+    ----------
+    rig : Rig
+    tangential_stiffness_model : str
+        Model of the tangential stiffness, of `sonolube.contact.TANGENTIAL_STIFFNESSES`.
+
+    Returns
+    -------
+    ContactPoint
 
     Raises
     ------
+    UnknownName
+        If there is no such model.
     OutsideRange
         If the surfaces would be pressed through each other, so that no separation is left.
     """
+    model = TANGENTIAL_STIFFNESSES.named(tangential_stiffness_model)
     gap = rest_separation(rig)
+    normal, tangential = (float(of(rig.contact, separation=gap)) for of in (normal_stiffness, model))
+    above = tangential / normal if tangential > normal else None
     return ContactPoint(
         normal_load=rig.normal_load,
         separation=gap,
         real_contact_area=float(real_contact_area(rig.contact, separation=gap)),
         contact_count=float(contact_count(rig.contact, separation=gap)),
-        normal_stiffness=float(normal_stiffness(rig.contact, separation=gap)),
-        tangential_stiffness=float(cube_tangential_stiffness(rig.contact, separation=gap)),
+        normal_stiffness=normal,
+        tangential_stiffness=tangential,
+        tangential_stiffness_model=tangential_stiffness_model,
         mindlin_ratio=rig.contact.pair.mindlin_ratio,
-        caveats=resting_caveats(rig),
+        caveats=(
+            *resting_caveats(rig),
+            *(() if above is None else (_stiffer_along(tangential_stiffness_model, above),)),
+        ),
+    )
+
+
+def _stiffer_along(model: str, ratio: float) -> str:
+    """Caveat of a tangential stiffness above the normal one."""
+    return (
+        f"the tangential stiffness by {model} is {ratio:.3g} times the normal one; that of asperities that stick is "
+        f"below it, see the model {DEFAULT_TANGENTIAL_STIFFNESS}"
     )
 
 

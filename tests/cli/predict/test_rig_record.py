@@ -46,6 +46,30 @@ def test_the_published_separation_of_18_um_is_one_command_away(sonolube: Program
     assert result["normal_load"] == {"value": 40.0, "unit": "N"}
 
 
+def test_the_tangential_stiffness_is_that_of_sticking_asperities(sonolube: Program, rigs: Path) -> None:
+    # 3 N over the decay length of 2 um are 1.5 MN/m, and for glass on aluminium Mindlin's ratio is below 1
+    result = sonolube("contact", rigs / "tribometer.toml", "--json").answer
+    ratio = result["mindlin_ratio"]["value"]
+    assert 2 / 3 < ratio < 1
+    assert result["tangential_stiffness"]["value"] == approx(ratio * 1.5e6)
+    assert result["tangential_stiffness_model"] == "mindlin"
+
+
+def test_the_dissertations_tangential_stiffness_has_its_name_and_a_caveat(sonolube: Program, rigs: Path) -> None:
+    # D 3.9 with D Table 3.2: 59.6 GPa (4981 um2)^2/(15.453 um)^3
+    result = sonolube("contact", rigs / "tribometer.toml", "--tangential-stiffness", "dong_2015", "--json").answer
+    expected = 59.6e9 * 4981e-12**2 / 15.453e-6**3
+    assert result["tangential_stiffness"]["value"] == approx(expected, rel=1e-3)
+    assert any("267 times the normal one" in caveat for caveat in result["caveats"])
+
+
+def test_an_unknown_tangential_stiffness_is_refused_with_the_names(sonolube: Program, rigs: Path) -> None:
+    refused = sonolube("contact", rigs / "tribometer.toml", "--tangential-stiffness", "mindlyn")
+    assert refused.code == 2
+    assert "mindlyn" in refused.err
+    assert "mindlin" in refused.err.replace("mindlyn", "")
+
+
 def test_wear_is_printed_as_the_dissertation_prints_it(sonolube: Program, rigs: Path) -> None:
     # D Table 3.4: 2.566e-2 and 1.355e-2 mm3/m
     text = sonolube("wear", rigs / "tribometer.toml", "--amplitude", "per-volt").out
