@@ -12,14 +12,16 @@ from sonolube.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, 
 from sonolube.rig import contact_point
 
 
+_MODEL_HELP = f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}."
+
+
 @few_points()
 def contact(
     rig: RigPath,
     load: Load = None,
-    tangential_stiffness: Annotated[
-        str,
-        typer.Option(metavar="MODEL", help=f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}."),
-    ] = DEFAULT_TANGENTIAL_STIFFNESS,
+    model: Annotated[str, typer.Option("--tangential-stiffness", metavar="MODEL", help=_MODEL_HELP)] = (
+        DEFAULT_TANGENTIAL_STIFFNESS
+    ),
     changes: Changes = None,
     json: Json = False,
 ) -> None:
@@ -28,6 +30,4 @@ def contact(
     Example: sonolube contact examples/rigs/poisson_al_steel.toml --load 40N
     """
     known = loaded_rig(rig, load=load, changes=changes)
-    deliver(
-        RigRecord(rig=known, result=contact_point(known, tangential_stiffness_model=tangential_stiffness)), as_json=json
-    )
+    deliver(RigRecord(rig=known, result=contact_point(known, tangential_stiffness_model=model)), as_json=json)
