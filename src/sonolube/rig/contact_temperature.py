@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.materials import material
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
@@ -151,6 +151,11 @@ def temperature_point(
     vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
     found = vibrated.ratio
     intrinsic, ratio = rig.friction_coefficient * rig.normal_load, float(found.require_within_range())
+    if ratio < 0:
+        raise OutsideRange(
+            f"friction ratio {ratio:.3g}: the vibration drives the sliding, and heat of friction has no meaning for it;"
+            " lower the vibration or friction.in_plane_fraction"
+        )
     times = np.linspace(0.0, duration, _STEPS + 1)
     history = partial(contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
     without = history(friction_force=intrinsic, vibration_heat_rate=0.0)

@@ -17,6 +17,12 @@ from sonolube.units import format_si
 
 _VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first
 
+NO_DISSIPATED_POWER = (
+    "no dissipated power: the vibration is a sine of a stated amplitude, which no structure with losses gives; take the"
+    " amplitude computed, from the tables stack and structure"
+)
+"""Reason for which a stated vibration has no dissipated power, and advice."""
+
 
 def waveform_of(drive: Drive) -> Waveform:
     """Return the shape of the drive voltage.
@@ -153,12 +159,13 @@ def energy_balance(*, actuator_power: float | None, dissipated_power: float | No
     Returns
     -------
     str or None
-        None where one of them is not known.
+        None where only the dissipated power is known.
     """
-    known = [power for power in (actuator_power, dissipated_power) if power is not None and isfinite(power)]
-    if len(known) < 2:
+    if dissipated_power is None or not isfinite(dissipated_power):
+        return NO_DISSIPATED_POWER
+    if actuator_power is None or not isfinite(actuator_power):
         return None
-    supplied, dissipated = known
+    supplied, dissipated = actuator_power, dissipated_power
     capacitive, motional = format_si(supplied, "W"), format_si(dissipated, "W")
     which = (
         f"{capacitive} charges the actuator's capacitance alone, from the supply of a linear amplifier (D 1.9);"

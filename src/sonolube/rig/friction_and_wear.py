@@ -139,12 +139,15 @@ def mean_friction(rig: Rig, motions: tuple[GapMotion, ...], *, sliding_speed: Ar
         Of the shape of `sliding_speed`.
     """
     every = [friction_ratios(rig, motion, sliding_speed=sliding_speed) for motion in motions]
-    raw = np.asarray(mean_over_time([one.raw_friction_ratio for one in every], motions))
+    mean, raw = (
+        np.asarray(mean_over_time([getattr(one, name) for one in every], motions))
+        for name in ("friction_ratio", "raw_friction_ratio")
+    )
     reason = every[0].reason
     for one in every[1:]:
         reason = np.where(reason == "", one.reason, reason)
     return CheckedRatio(
-        friction_ratio=np.where(reason == "", raw, np.nan), raw_friction_ratio=raw, reason=np.asarray(reason)
+        friction_ratio=np.where(reason == "", mean, np.nan), raw_friction_ratio=raw, reason=np.asarray(reason)
     )
 
 

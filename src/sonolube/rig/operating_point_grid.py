@@ -81,7 +81,7 @@ class OperatingPoints:
     actuator_power : ndarray
         Power a linear amplifier supplies, D 1.9. [W]
     dissipated_power : ndarray
-        Mean electrical power that stays in stack, dampers and contact. [W]
+        Mean electrical power that stays in stack, dampers and contact; NaN for a sine, whose `reason` says so. [W]
     gap_closed : ndarray of bool
         Whether the mean planes touch within the period, where the contact model no longer holds.
     amplitude_source : {"measured", "computed", "waveguide", "per-volt"}

@@ -14,7 +14,7 @@ from sonolube.errors import OutsideRange, SonolubeError
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.amplitude_source import ResolvedVibration
 from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.excitation import voltage_harmonics, voltage_range
+from sonolube.rig.excitation import NO_DISSIPATED_POWER, voltage_harmonics, voltage_range
 from sonolube.rig.friction_and_wear import prescribed_sine
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.operating_conditions import OperatingConditions
@@ -124,7 +124,9 @@ def stated_vibrations(rig: Rig, used: ResolvedVibration, distinct: Floats) -> Vi
             np.nan,
             float(motion.displacement.min() <= -rest),
         )
-        return PointVibration(status="periodic", reason="periodic: a sine", motion=motion, numbers=numbers)
+        return PointVibration(
+            status="periodic", reason=f"periodic: a sine; {NO_DISSIPATED_POWER}", motion=motion, numbers=numbers
+        )
 
     return vibration_at
 

@@ -9,7 +9,7 @@ from sonolube.actuator import stack_caveats
 from sonolube.contact import GapMotion, sinusoidal_motion
 from sonolube.errors import OutsideRange, SonolubeError
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
 from sonolube.rig.amplitude_source import ResolvedVibration, resolved_vibration, source_caveats
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.excitation import (
@@ -46,7 +46,8 @@ class Simulation:
     wear : WearPoint
         Wear under it, by the wear model of the friction model's name where there is one.
     energy_balance : str or None
-        How the power of the amplifier and the dissipated power compare, and why, where both are known.
+        How the power of the amplifier and the dissipated power compare, and why; where the vibration is a sine, why
+        there is no dissipated power.
     caveats : tuple of str
         Reasons for caution about the numbers, one line each.
     """
@@ -71,7 +72,7 @@ class VibratedFriction:
     vibration : VibrationOrigin
         Amplitude and its source.
     caveats : tuple of str
-        Reasons for caution about the numbers, one line each.
+        Reasons for caution about the numbers, one line each, ratios below 0 and above 1 among them.
     """
 
     ratio: CheckedRatio
@@ -106,6 +107,7 @@ def simulate(rig: Rig) -> Simulation:
     used, vibration = resolved_vibration(rig), steady_vibration(rig)
     origin, caveats = _origin(vibration), _caveats(rig, used, vibration)
     friction = _friction_point(rig, vibration, origin, caveats)
+    caveats = (*caveats, *ratio_caveats(friction.friction_ratio))
     return Simulation(
         status=OUTSIDE_MODEL_RANGE if friction.reason else vibration.status,
         reason=friction.reason or vibration.reason,
@@ -216,10 +218,11 @@ def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction
         if used.driven is not None:
             raise
         return VibratedFriction(ratio=_outside(refusal, sliding_speed), vibration=_stated_origin(used), caveats=())
+    ratio = mean_friction(rig, vibration.motions, sliding_speed=sliding_speed)
     return VibratedFriction(
-        ratio=mean_friction(rig, vibration.motions, sliding_speed=sliding_speed),
+        ratio=ratio,
         vibration=_origin(vibration),
-        caveats=_caveats(rig, used, vibration),
+        caveats=(*_caveats(rig, used, vibration), *ratio_caveats(ratio.friction_ratio)),
     )
 
 
@@ -257,7 +260,7 @@ def _friction_point(
         ratio=ratio,
         vibration=origin,
         actuator_power=_amplifier_power(rig),
-        caveats=caveats,
+        caveats=(*caveats, *ratio_caveats(ratio.friction_ratio)),
         others=_models_that_hold(rig, vibration) if ratio.reason else "",
     )
 

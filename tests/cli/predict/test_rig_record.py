@@ -141,3 +141,39 @@ def test_an_amplitude_beyond_all_tests_is_said_before_the_table(sonolube: Progra
     assert "decay lengths" in said[0]
     within = sonolube("friction", rigs / "tribometer.toml", "--json").answer["caveats"]
     assert not any("decay lengths" in each for each in within)
+
+
+@pytest.mark.parametrize("command", ["friction", "simulate", "sweep", "map"])
+def test_a_vibration_that_drives_the_slider_is_said_to(
+    command: str, sonolube: Program, rigs: Path, tmp_path: Path
+) -> None:
+    options: dict[str, tuple[str, ...]] = {
+        "friction": (),
+        "simulate": ("--out", str(tmp_path)),
+        "sweep": ("--over", "sliding.sliding_speed=20.3mm/s", "--out", str(tmp_path)),
+        "map": (
+            *("--over", "sliding.sliding_speed=15mm/s,20.3mm/s", "--over", "drive.voltage_peak_to_peak=20V,28V"),
+            *("--out", str(tmp_path), "--form", "png"),
+        ),
+    }
+    changes = ("--set", "friction.in_plane_fraction=0.5")
+    answer = sonolube(command, rigs / "tribometer.toml", *changes, *options[command], "--json").answer
+    assert any("drives the sliding" in caveat for caveat in answer["caveats"])
+
+
+def test_heat_of_friction_is_refused_where_the_vibration_drives(sonolube: Program, rigs: Path) -> None:
+    bodies = ("--pin", "stainless_steel_316", "--disc", "aluminium_2024")
+    refused = sonolube("thermal", rigs / "tribometer.toml", *bodies, "--set", "friction.in_plane_fraction=0.5")
+    assert refused.code == 2
+    assert "the vibration drives the sliding" in refused.err
+
+
+@pytest.mark.parametrize("rig", ["collar", "flextensional", "poisson_al_steel"])
+def test_a_stated_sine_says_why_it_has_no_dissipated_power(
+    rig: str, sonolube: Program, rigs: Path, tmp_path: Path
+) -> None:
+    path, changes = rigs / f"{rig}.toml", ("--over", "sliding.sliding_speed=20mm/s")
+    alone = sonolube("simulate", path, "--out", tmp_path / "one", "--json").answer
+    swept = sonolube("sweep", path, *changes, "--out", tmp_path / "swept", "--json").answer
+    assert "no dissipated power: the vibration is a sine" in alone["energy_balance"]
+    assert swept["least_friction"]["energy_balance"] == alone["energy_balance"]

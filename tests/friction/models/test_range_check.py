@@ -7,7 +7,7 @@ from pytest import approx, raises
 from sonolube.contact import GapMotion, RoughContact, sinusoidal_motion
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction import FRICTION_MODELS, FrictionModel
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, checked_ratio, model_friction
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, checked_ratio, model_friction, ratio_caveats
 from sonolube.rig import read_rig
 
 CONTACT = read_rig("examples/rigs/tribometer.toml").contact
@@ -96,3 +96,29 @@ def test_every_model_says_why_ratios_beyond_its_bounds_have_no_meaning() -> None
     for name, model in FRICTION_MODELS.items():
         assert issubclass(model, FrictionModel)
         assert len(model.range_note) > 40, name
+
+
+def test_a_value_beyond_an_exact_bound_by_rounding_is_the_bound() -> None:
+    # under a dead load |F1/F0| <= 1 (Coulomb), and harmonic balance finds the load to 1e-6
+    found = checked_ratio(
+        FRICTION_MODELS["asperity_stick_slip"](), [1.00000023, 1.0001, 0.9, -1.00002], mean_force_ratio=1.0000003,
+        gap_closed=False,
+    )  # fmt: skip
+    assert found.friction_ratio.tolist() == [1.0, 1.0, 0.9, -1.0]
+    assert found.raw_friction_ratio[0] == 1.00000023
+
+
+def test_a_mean_force_above_the_load_by_more_than_rounding_is_kept() -> None:
+    found = checked_ratio(FRICTION_MODELS["asperity_stick_slip"](), 1.001, mean_force_ratio=1.002, gap_closed=False)
+    assert found.friction_ratio == 1.001
+
+
+def test_ratios_within_0_and_1_need_no_caveat() -> None:
+    assert ratio_caveats([0.0, 0.4, 1.0, np.nan]) == ()
+    assert ratio_caveats(np.nan) == ()
+
+
+def test_a_ratio_below_0_is_said_to_drive_and_one_above_1_to_raise_friction() -> None:
+    below, above = ratio_caveats([-0.174, 0.5, 1.37])
+    assert below.startswith("friction ratio -0.174 is below 0: the mean friction force drives the sliding")
+    assert above.startswith("friction ratio 1.37 is above 1: the vibration raises friction")

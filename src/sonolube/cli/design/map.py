@@ -35,6 +35,7 @@ from sonolube.design.maps import default_axes, panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
+from sonolube.friction.models.range_check import ratio_caveats
 from sonolube.measurement.measured_runs import runs_help
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
@@ -163,8 +164,9 @@ class MapAnswer(Answer):
         }
 
     def caveats(self) -> Sequence[str]:
-        """Caveats of the rig at its own operating point, and runs without a place on the map."""
-        return (*operating_caveats(self.rig), *self.left_out)
+        """Caveats of the rig at its own operating point and of ratios on the map, and runs without a place on it."""
+        ratios = 1 - self.mapped["friction_reduction"].values
+        return (*operating_caveats(self.rig), *ratio_caveats(ratios), *self.left_out)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Contours of the map, and those between the measured runs."""

@@ -16,6 +16,7 @@ from sonolube.cli.console.progress import progress
 from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, friction_model_text
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts
 from sonolube.errors import InvalidInput
+from sonolube.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing
 from sonolube.rig import (
     STUDY_FIGURES,
@@ -154,7 +155,7 @@ class ParametricStudyAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point."""
-        return operating_caveats(self.rig)
+        return (*operating_caveats(self.rig), *ratio_caveats(self.study["friction_ratio"].values))
 
     def figures(self) -> Mapping[str, Drawing]:
         """Figure of the study."""

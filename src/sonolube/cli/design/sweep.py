@@ -35,6 +35,7 @@ from sonolube.design.point_statistics import extreme_place, extreme_point, failu
 from sonolube.dynamics.backend import usable_backend
 from sonolube.errors import InvalidInput
 from sonolube.files import expect_files
+from sonolube.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
 from sonolube.rig import Rig, energy_balance, operating_caveats
 from sonolube.units import format_quantity
@@ -204,8 +205,9 @@ class SweepAnswer(Answer):
         return assumptions
 
     def caveats(self) -> Sequence[str]:
-        """Caveats of the rig at its own operating point."""
-        return () if self.rig is None else operating_caveats(self.rig)
+        """Caveats of the rig at its own operating point, and the meaning of ratios below 0 and above 1."""
+        own = () if self.rig is None else operating_caveats(self.rig)
+        return (*own, *ratio_caveats(self.result["friction_ratio"].values))
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction over the keys that were swept."""

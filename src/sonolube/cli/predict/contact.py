@@ -11,7 +11,6 @@ from sonolube.compilation import few_points
 from sonolube.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.rig import contact_point
 
-
 _MODEL_HELP = f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}."
 
 

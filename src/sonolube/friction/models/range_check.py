@@ -15,6 +15,7 @@ OUTSIDE_MODEL_RANGE = "outside_model_range"
 """Status of a result beyond the range of validity of its model."""
 
 _ROUNDING = 2e-4  # of the friction ratio: that of tabulated ratios and of averages over a period
+_DEAD_LOAD = 1e-5  # of the load: harmonic balance finds the mean force to 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -74,9 +75,14 @@ def checked_ratio(
     See Also
     --------
     model_friction : From a motion of the gap.
+
+    Notes
+    -----
+    The bounds of a model are exact, so that a value beyond one by no more than the rounding of tables and averages,
+    2e-4, is the bound. A mean normal force within 1e-5 of the load is the load: under a dead load both are equal.
     """
-    values = np.asarray(raw, dtype=np.float64)
-    low, high = model.ratio_bounds(mean_force_ratio=np.asarray(mean_force_ratio, dtype=np.float64))
+    values, mean_force = np.asarray(raw, dtype=np.float64), np.asarray(mean_force_ratio, dtype=np.float64)
+    low, high = model.ratio_bounds(mean_force_ratio=np.where(np.abs(mean_force - 1) <= _DEAD_LOAD, 1.0, mean_force))
     closed = np.logical_and(gap_closed, model.needs_open_gap)
     slack = _ROUNDING * np.maximum(1.0, np.abs(high))
     beyond = (values < low - slack) | (values > high + slack)
@@ -89,8 +95,36 @@ def checked_ratio(
     )
     reason = np.where(np.broadcast_to(closed, values.shape), too_close, np.where(beyond, too_high, ""))
     return CheckedRatio(
-        friction_ratio=np.where(reason == "", values, np.nan), raw_friction_ratio=values, reason=np.asarray(reason)
+        friction_ratio=np.where(reason == "", np.clip(values, low, high), np.nan),
+        raw_friction_ratio=values,
+        reason=np.asarray(reason),
     )
+
+
+def ratio_caveats(friction_ratio: ArrayLike) -> tuple[str, ...]:
+    """Return the meaning of friction ratios below 0 and above 1, one line each; empty where there is none.
+
+    Parameters
+    ----------
+    friction_ratio : array_like, any shape
+        Friction with vibration over friction without, by `checked_ratio`. []
+
+    Returns
+    -------
+    tuple of str
+    """
+    known = np.asarray(friction_ratio, dtype=np.float64)
+    lowest, highest = (float(of(known, initial=0.5, where=np.isfinite(known))) for of in (np.min, np.max))
+    below = (
+        f"friction ratio {lowest:.3g} is below 0: the mean friction force drives the sliding instead of braking it, "
+        "as the vibration has a part along the sliding; it is the force of a motor, not friction reduced by more than "
+        "all of it"
+    )
+    above = (
+        f"friction ratio {highest:.6g} is above 1: the vibration raises friction, as the mean normal force of the "
+        "motion exceeds the load"
+    )
+    return (*([below] if lowest < 0 else []), *([above] if highest > 1 else []))
 
 
 def model_friction(
@@ -135,7 +169,7 @@ def model_friction(
     )
     reason = np.where(found.reason == "", refusals, found.reason)
     return CheckedRatio(
-        friction_ratio=np.where(reason == "", raw, np.nan).reshape(speeds.shape),
+        friction_ratio=np.where(reason == "", found.friction_ratio, np.nan).reshape(speeds.shape),
         raw_friction_ratio=raw.reshape(speeds.shape),
         reason=reason.reshape(speeds.shape),
     )
