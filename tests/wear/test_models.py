@@ -1,5 +1,7 @@
 """Wear models by name: ratios under a sine against closed forms and the tables of D."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pytest import approx
@@ -51,3 +53,9 @@ def test_about_the_load_balanced_mean_only_the_height_reduces_the_wear(amplitude
 @pytest.mark.parametrize("name", WEAR_MODELS)
 def test_without_vibration_every_model_gives_a_ratio_of_one(name: str) -> None:
     assert ratio(name, 0.0) == approx(1, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", WEAR_MODELS)
+def test_a_shift_of_the_mean_gap_changes_no_ratio(name: str) -> None:
+    shifted = replace(sine(2.5e-6), displacement=sine(2.5e-6).displacement + 0.7e-6)
+    assert float(WEAR_MODELS[name](ACORN_NUT_ON_DISC, shifted)) == approx(ratio(name, 2.5e-6), rel=1e-9)

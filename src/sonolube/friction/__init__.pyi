@@ -89,6 +89,7 @@ from .models.range_check import (
     CheckedRatio as CheckedRatio,
     checked_ratio as checked_ratio,
     model_friction as model_friction,
+    ratio_caveats as ratio_caveats,
 )
 from .oscillating_contact.approximations import (
     approximate_guided_ratio as approximate_guided_ratio,

@@ -6,15 +6,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
-from sonolube.contact import GapMotion, load_balanced_motion, sinusoidal_motion
+from sonolube.contact import GapMotion, load_balanced_motion, separation, sinusoidal_motion
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.friction.models import MeanGap
-from sonolube.friction.models.range_check import CheckedRatio, model_friction
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
 from sonolube.rig.record import Rig
-from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS
+from sonolube.units import format_si
+from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
 ANY_FREQUENCY = 1.0
 """Frequency of a sine where nothing depends on it. [Hz]"""
+
+_RISING_WEAR_MODEL = "dong_2015_load_balanced"
 
 
 def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) -> CheckedRatio:
@@ -154,3 +157,108 @@ def mean_friction(rig: Rig, motions: tuple[GapMotion, ...], *, sliding_speed: Ar
 def mean_over_time(values: Sequence[Floats], motions: tuple[GapMotion, ...]) -> Floats:
     """Return the mean over time of a quantity of several motions of unequal duration."""
     return np.asarray(np.average(np.stack(values), axis=0, weights=[1 / motion.frequency for motion in motions]))
+
+
+def mean_wear(
+    rig: Rig, motions: tuple[GapMotion, ...], *, wear_model: str, vibration_amplitude: float | None = None
+) -> tuple[float, str | None]:
+    """Return the mean wear ratio over several motions about the mean gap of a wear model, and why it does not hold.
+
+    Parameters
+    ----------
+    rig : Rig
+    motions : tuple of GapMotion
+        One after the other, each of its own duration.
+    wear_model : str
+        Of `sonolube.wear.WEAR_MODELS`.
+    vibration_amplitude : float, optional
+        Amplitude of a motion that is a sine; None for other motions. [m]
+
+    Returns
+    -------
+    tuple of float and str or None
+        None where the ratio is within the range of the model.
+    """
+    ratio, smallest = _raw_wear_ratio(rig, motions, wear_model, vibration_amplitude)
+    if smallest > 0:
+        return ratio, None
+    others = [
+        (name, *_raw_wear_ratio(rig, motions, name, vibration_amplitude)) for name in WEAR_MODELS if name != wear_model
+    ]
+    holding = [(value, name) for name, value, gap in others if gap > 0]
+    rest = float(separation(rig.contact, normal_load=rig.normal_load))
+    amplitude = format_si(max(float(np.ptp(motion.displacement)) / 2 for motion in motions), "m")
+    if wear_model != _RISING_WEAR_MODEL:
+        why = (
+            f"the amplitude {amplitude} exceeds the gap at rest {format_si(rest, 'm')}, about which no dead load can"
+            " hold the surfaces"
+        )
+    else:
+        why = f"the mean planes meet under the amplitude of {amplitude}, where the cube has no height"
+    reason = f"{OUTSIDE_MODEL_RANGE}: {why}; wear model {wear_model} has no meaning"
+    return ratio, f"{reason}; {range_text(holding, 'wear')}"
+
+
+def rise_caveats(motions: tuple[GapMotion, ...], *, wear_model: str) -> tuple[str, ...]:
+    """Return the line on the rise of computed motions, which wear about the gap at rest leaves out.
+
+    Parameters
+    ----------
+    motions : tuple of GapMotion
+    wear_model : str
+        Of `sonolube.wear.WEAR_MODELS`.
+
+    Returns
+    -------
+    tuple of str
+    """
+    rise = float(mean_over_time([np.asarray(motion.displacement.mean()) for motion in motions], motions))
+    if wear_model == _RISING_WEAR_MODEL or not rise > 0:
+        return ()
+    return (
+        f"wear by {wear_model} is about the gap at rest, as in the tables of D; the computed motion has its mean gap"
+        f" {format_si(rise, 'm')} above it, where wear is less",
+    )
+
+
+def range_text(holding: list[tuple[float, str]], of: str) -> str:
+    """Return the range of ratios by the models that hold, in words.
+
+    Parameters
+    ----------
+    holding : list of tuple of float and str
+        Ratio and name of each.
+    of : str
+        What they are models of, such as "wear".
+
+    Returns
+    -------
+    str
+    """
+    if not holding:
+        return f"no {of} model holds for this vibration"
+    (low, first), (high, last) = min(holding), max(holding)
+    if first == last:
+        return f"of the {of} models {first} holds: ratio {low:.3g}"
+    return f"the {of} models that hold give ratios from {low:.3g} ({first}) to {high:.3g} ({last})"
+
+
+def _raw_wear_ratio(
+    rig: Rig, motions: tuple[GapMotion, ...], model: str, vibration_amplitude: float | None
+) -> tuple[float, float]:
+    """Return the wear ratio by the formula of a model, and the smallest gap of the motion that it is for. [m]"""
+    load = rig.normal_load
+    rest = float(separation(rig.contact, normal_load=load))
+    smallest = rest + min(_lowest_displacement(rig, motion, model) for motion in motions)
+    if vibration_amplitude is not None and model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
+        vibrating = vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=vibration_amplitude)
+        return float(vibrating / cube_wear_rate(rig.contact, normal_load=load)), smallest
+    ratio = WEAR_MODELS[model]
+    return float(mean_over_time([np.asarray(ratio(rig.contact, motion)) for motion in motions], motions)), smallest
+
+
+def _lowest_displacement(rig: Rig, motion: GapMotion, model: str) -> float:
+    """Return the lowest displacement of a motion about the mean gap of a wear model. [m]"""
+    if model == _RISING_WEAR_MODEL:
+        return float(load_balanced_motion(rig.contact, motion).displacement.min())
+    return float(motion.displacement.min() - motion.displacement.mean())

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.actuator import stack_caveats
-from sonolube.contact import GapMotion, sinusoidal_motion
 from sonolube.errors import OutsideRange, SonolubeError
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
@@ -19,14 +18,13 @@ from sonolube.rig.excitation import (
     voltage_harmonics,
     voltage_range,
 )
-from sonolube.rig.friction_and_wear import mean_friction, mean_over_time, wear_model_of
+from sonolube.rig.friction_and_wear import mean_friction, mean_wear, range_text, rise_caveats, wear_model_of
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
 from sonolube.rig.worn_contact import resting_caveats
-from sonolube.units import format_si
-from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.wear import WEAR_MODELS
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -107,7 +105,7 @@ def simulate(rig: Rig) -> Simulation:
     used, vibration = resolved_vibration(rig), steady_vibration(rig)
     origin, caveats = _origin(vibration), _caveats(rig, used, vibration)
     friction = _friction_point(rig, vibration, origin, caveats)
-    caveats = (*caveats, *ratio_caveats(friction.friction_ratio))
+    caveats = (*caveats, *ratio_caveats(friction_ratio=friction.friction_ratio))
     return Simulation(
         status=OUTSIDE_MODEL_RANGE if friction.reason else vibration.status,
         reason=friction.reason or vibration.reason,
@@ -222,7 +220,7 @@ def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction
     return VibratedFriction(
         ratio=ratio,
         vibration=_origin(vibration),
-        caveats=(*_caveats(rig, used, vibration), *ratio_caveats(ratio.friction_ratio)),
+        caveats=(*_caveats(rig, used, vibration), *ratio_caveats(friction_ratio=ratio.friction_ratio)),
     )
 
 
@@ -260,7 +258,7 @@ def _friction_point(
         ratio=ratio,
         vibration=origin,
         actuator_power=_amplifier_power(rig),
-        caveats=(*caveats, *ratio_caveats(ratio.friction_ratio)),
+        caveats=(*caveats, *ratio_caveats(friction_ratio=ratio.friction_ratio)),
         others=_models_that_hold(rig, vibration) if ratio.reason else "",
     )
 
@@ -268,55 +266,13 @@ def _friction_point(
 def _wear_point(
     rig: Rig, vibration: SteadyVibration, model: str, caveats: tuple[str, ...], friction: FrictionPoint | None
 ) -> WearPoint:
-    ratio, reason = _wear_ratio(rig, vibration, model)
+    sine = vibration.vibration_amplitude if vibration.prescribed else None
+    ratio, reason = mean_wear(rig, vibration.motions, wear_model=model, vibration_amplitude=sine)
     if not reason and friction is not None and friction.reason and friction.friction_model == model:
         reason = friction.reason
+    if not reason and not vibration.prescribed:
+        caveats = (*caveats, *rise_caveats(vibration.motions, wear_model=model))
     return wear_under(rig, ratio=ratio, model=model, vibration=_origin(vibration), caveats=caveats, reason=reason)
-
-
-def _wear_ratio(rig: Rig, vibration: SteadyVibration, model: str) -> tuple[float, str | None]:
-    """Return the wear ratio of a model, and the reason for which it does not hold."""
-    ratio, smallest = _raw_wear_ratio(rig, vibration, model)
-    if smallest > 0:
-        return ratio, None
-    others = [(name, *_raw_wear_ratio(rig, vibration, name)) for name in WEAR_MODELS if name != model]
-    holding = [(value, name) for name, value, gap in others if gap > 0]
-    amplitude, rest = format_si(vibration.vibration_amplitude, "m"), format_si(rest_separation(rig), "m")
-    if vibration.prescribed and model != _RISING_WEAR_MODEL:
-        why = (
-            f"the amplitude {amplitude} exceeds the gap at rest {rest}, about which no dead load can hold the surfaces"
-        )
-    else:
-        why = f"the mean planes meet under the amplitude of {amplitude}, where the cube has no height"
-    reason = f"{OUTSIDE_MODEL_RANGE}: {why}; wear model {model} has no meaning"
-    return ratio, f"{reason}; {_range_text(holding, 'wear')}"
-
-
-def _raw_wear_ratio(rig: Rig, vibration: SteadyVibration, model: str) -> tuple[float, float]:
-    """Return the wear ratio by the formula of a model, and the smallest gap of the motion that it is for. [m]"""
-    rest, load = rest_separation(rig), rig.normal_load
-    motions = vibration.motions
-    if vibration.prescribed and model != _RISING_WEAR_MODEL:  # as D evaluated them, about the gap at rest
-        a = vibration.vibration_amplitude
-        motions = (
-            sinusoidal_motion(
-                rig.contact, normal_load=load, vibration_amplitude=a, frequency=vibration.motions[0].frequency
-            ),
-        )
-        if model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
-            still = cube_wear_rate(rig.contact, normal_load=load)
-            vibrating = vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=a)
-            return float(vibrating / still), rest - a
-    smallest = rest + min(float(motion.displacement.min()) for motion in motions)
-    return _mean_wear_ratio(rig, motions, model), smallest
-
-
-def _mean_wear_ratio(rig: Rig, motions: tuple[GapMotion, ...], model: str) -> float:
-    ratio = WEAR_MODELS[model]
-    return float(mean_over_time([np.asarray(ratio(rig.contact, motion)) for motion in motions], motions))
-
-
-_RISING_WEAR_MODEL = "dong_2015_load_balanced"
 
 
 def _models_that_hold(rig: Rig, vibration: SteadyVibration | None = None) -> str:
@@ -334,17 +290,7 @@ def _models_that_hold(rig: Rig, vibration: SteadyVibration | None = None) -> str
             continue
         if not found.reason:
             holding.append((float(found.friction_ratio), name))
-    return _range_text(holding, "friction")
-
-
-def _range_text(holding: list[tuple[float, str]], of: str) -> str:
-    """Return the range of ratios by the models that hold, in words."""
-    if not holding:
-        return f"no {of} model holds for this vibration"
-    (low, first), (high, last) = min(holding), max(holding)
-    if first == last:
-        return f"of the {of} models {first} holds: ratio {low:.3g}"
-    return f"the {of} models that hold give ratios from {low:.3g} ({first}) to {high:.3g} ({last})"
+    return range_text(holding, "friction")
 
 
 def _outside(refusal: OutsideRange, sliding_speed: ArrayLike) -> CheckedRatio:

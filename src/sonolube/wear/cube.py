@@ -1,5 +1,7 @@
 """Wear rates by the cube model of Dong (2015), with and without normal vibration."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -102,6 +104,7 @@ def full_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
     ----------
     contact : RoughContact
     motion : GapMotion
+        Its vibration is taken about the gap at rest; the mean of the motion has no effect.
 
     Returns
     -------
@@ -114,9 +117,10 @@ def full_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
 
     Notes
     -----
-    .. math:: \frac{W'}{W} = \frac1T \int_0^T \frac{A_r(d + x)\, (d + x)}{A_r(d)\, d}\, \mathrm{d}t
+    .. math:: \frac{W'}{W} = \frac1T \int_0^T \frac{A_r(d + x)\, (d + x)}{A_r(d)\, d}\, \mathrm{d}t,
+              \qquad \langle x \rangle = 0
 
-    About the mean gap at rest the ratio exceeds 1.
+    The ratio exceeds 1.
 
     See Also
     --------
@@ -127,10 +131,7 @@ def full_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
     ----------
     .. [1] D 3.28.
     """
-    d, at_rest = _separation_and_rate(contact, motion)
-    return richardson_period_mean(
-        lambda sampled: np.asarray(np.mean(_wear_rate(contact, d + sampled.displacement) / at_rest)), motion
-    )
+    return _period_wear_ratio(contact, _about_rest(motion))
 
 
 def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
@@ -140,6 +141,7 @@ def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
     ----------
     contact : RoughContact
     motion : GapMotion
+        Its vibration is taken about the gap at rest; the mean of the motion has no effect.
 
     Returns
     -------
@@ -152,9 +154,12 @@ def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
 
     Notes
     -----
-    .. math:: \frac{W'}{W} = \frac2T \int_{x > 0} \frac{A_r(d + x)\, (d + x)}{A_r(d)\, d}\, \mathrm{d}t
+    .. math:: \frac{W'}{W} = \frac2T \int_{x > 0} \frac{A_r(d + x)\, (d + x)}{A_r(d)\, d}\, \mathrm{d}t,
+              \qquad \langle x \rangle = 0
 
-    for a sine; of other motions the average over the time with x > 0. The tables of D follow from this average.
+    for a sine; of other motions the average over the time with x > 0. The tables of D follow from this average about
+    the gap at rest. A dead load raises the mean gap of a vibration, for which the average over half a period, that of
+    wider gaps, stands already; with both a computed motion would count the rise twice.
 
     See Also
     --------
@@ -169,7 +174,7 @@ def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
         lambda sampled: sampled_separating_mean(
             lambda x: _wear_rate(contact, d + x) / at_rest, displacement=sampled.displacement
         ),
-        motion,
+        _about_rest(motion),
     )
 
 
@@ -199,7 +204,20 @@ def load_balanced_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats
     .. math:: \frac{W'}{W} = 1 + \frac1d \left[ l \ln I_0\!\left( \frac al \right)
               - a\, \frac{I_1(a/l)}{I_0(a/l)} \right]
     """
-    return full_period_wear_ratio(contact, load_balanced_motion(contact, motion))
+    return _period_wear_ratio(contact, load_balanced_motion(contact, motion))
+
+
+def _about_rest(motion: GapMotion) -> GapMotion:
+    """Return a motion without the shift of its mean gap; its forces, which wear does not take, stay as they are."""
+    return replace(motion, displacement=motion.displacement - np.mean(motion.displacement))
+
+
+def _period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return the mean wear rate over a motion as it is, over that at rest. []"""
+    d, at_rest = _separation_and_rate(contact, motion)
+    return richardson_period_mean(
+        lambda sampled: np.asarray(np.mean(_wear_rate(contact, d + sampled.displacement) / at_rest)), motion
+    )
 
 
 def _separation_and_rate(contact: RoughContact, motion: GapMotion) -> tuple[Floats, Floats]:

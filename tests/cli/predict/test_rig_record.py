@@ -70,9 +70,10 @@ def test_an_unknown_tangential_stiffness_is_refused_with_the_names(sonolube: Pro
     assert "mindlin" in refused.err.replace("mindlyn", "")
 
 
-def test_wear_is_printed_as_the_dissertation_prints_it(sonolube: Program, rigs: Path) -> None:
+@pytest.mark.parametrize("source", [(), ("--amplitude", "per-volt")])
+def test_wear_is_printed_as_the_dissertation_prints_it(source: tuple[str, ...], sonolube: Program, rigs: Path) -> None:
     # D Table 3.4: 2.566e-2 and 1.355e-2 mm3/m
-    text = sonolube("wear", rigs / "tribometer.toml", "--amplitude", "per-volt").out
+    text = sonolube("wear", rigs / "tribometer.toml", *source).out
     assert re.search(r"Wear rate without vibration +0\.0257 mm3/m", text)
     assert re.search(r"Wear volume per sliding distance +0\.0135 mm3/m", text)
     assert "um2" not in text

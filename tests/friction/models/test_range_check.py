@@ -114,11 +114,11 @@ def test_a_mean_force_above_the_load_by_more_than_rounding_is_kept() -> None:
 
 
 def test_ratios_within_0_and_1_need_no_caveat() -> None:
-    assert ratio_caveats([0.0, 0.4, 1.0, np.nan]) == ()
-    assert ratio_caveats(np.nan) == ()
+    assert ratio_caveats(friction_ratio=[0.0, 0.4, 1.0, np.nan]) == ()
+    assert ratio_caveats(friction_ratio=np.nan) == ()
 
 
 def test_a_ratio_below_0_is_said_to_drive_and_one_above_1_to_raise_friction() -> None:
-    below, above = ratio_caveats([-0.174, 0.5, 1.37])
+    below, above = ratio_caveats(friction_ratio=[-0.174, 0.5, 1.37])
     assert below.startswith("friction ratio -0.174 is below 0: the mean friction force drives the sliding")
     assert above.startswith("friction ratio 1.37 is above 1: the vibration raises friction")

@@ -58,10 +58,21 @@ def test_every_example_rig_has_contact_friction_and_wear(name: str) -> None:
     assert 0 < wear.wear_rate_ratio < 1 or (wear.reason or "").startswith("outside_model_range")
 
 
-def test_the_tribometer_wears_as_table_3_4_prints() -> None:
-    wear = wear_point(read_rig(RIGS / "tribometer.toml", changes=["vibration.amplitude_source=per-volt"]))  # a sine
+@pytest.mark.parametrize("source", ["measured", "computed", "per-volt"])
+def test_the_tribometer_wears_as_table_3_4_prints_by_every_source_of_its_amplitude(source: str) -> None:
+    wear = wear_point(read_rig(RIGS / "tribometer.toml", changes=[f"vibration.amplitude_source={source}"]))
     assert wear.intrinsic_wear_rate * 1e9 == approx(2.566e-2, abs=0.5e-5)  # mm3/m
     assert wear.wear_rate * 1e9 == approx(1.355e-2, rel=1e-3)  # half a digit of 2.5 um moves it by 1 %
+
+
+def test_wear_about_the_gap_at_rest_states_the_rise_of_a_computed_motion() -> None:
+    # l ln I0(a/l) with 2.5 um and 2 um: 0.72 um
+    computed, stated = (
+        wear_point(read_rig(RIGS / "tribometer.toml", changes=[f"vibration.amplitude_source={source}"])).caveats
+        for source in ("computed", "per-volt")
+    )
+    assert any("has its mean gap 71" in caveat for caveat in computed)
+    assert not any("mean gap" in caveat for caveat in stated)
 
 
 def test_the_tribometer_draws_the_power_of_equation_1_9() -> None:

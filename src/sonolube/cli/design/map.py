@@ -166,7 +166,7 @@ class MapAnswer(Answer):
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point and of ratios on the map, and runs without a place on it."""
         ratios = 1 - self.mapped["friction_reduction"].values
-        return (*operating_caveats(self.rig), *ratio_caveats(ratios), *self.left_out)
+        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=ratios), *self.left_out)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Contours of the map, and those between the measured runs."""

@@ -155,7 +155,7 @@ class ParametricStudyAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point."""
-        return (*operating_caveats(self.rig), *ratio_caveats(self.study["friction_ratio"].values))
+        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.study["friction_ratio"].values))
 
     def figures(self) -> Mapping[str, Drawing]:
         """Figure of the study."""

@@ -207,7 +207,7 @@ class SweepAnswer(Answer):
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point, and the meaning of ratios below 0 and above 1."""
         own = () if self.rig is None else operating_caveats(self.rig)
-        return (*own, *ratio_caveats(self.result["friction_ratio"].values))
+        return (*own, *ratio_caveats(friction_ratio=self.result["friction_ratio"].values))
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction over the keys that were swept."""

@@ -101,7 +101,7 @@ def checked_ratio(
     )
 
 
-def ratio_caveats(friction_ratio: ArrayLike) -> tuple[str, ...]:
+def ratio_caveats(*, friction_ratio: ArrayLike) -> tuple[str, ...]:
     """Return the meaning of friction ratios below 0 and above 1, one line each; empty where there is none.
 
     Parameters
