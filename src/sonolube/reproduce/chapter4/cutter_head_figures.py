@@ -125,7 +125,7 @@ def _over_amplitude() -> "Figure":
     for axes in (coefficients, reductions):
         axes.set(xlabel="Amplitude at the centre\nover the decay length [1]", xticks=(0, 2, 4))
     for axes in (volts, coefficients):
-        axes.set(ylabel="Coefficient of friction", ylim=(0, 0.52), yticks=(0, 0.1, 0.2, 0.3, 0.4))
+        axes.set(ylabel="Coefficient of friction [1]", ylim=(0, 0.52), yticks=(0, 0.1, 0.2, 0.3, 0.4))
         axes.legend(loc="upper right")
     reductions.set(ylabel="Friction reduction [%]", ylim=(-3, 125), yticks=(0, 50, 100))
     reductions.legend(loc="upper left")

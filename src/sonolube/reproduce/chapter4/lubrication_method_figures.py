@@ -112,6 +112,6 @@ def _methods() -> "Figure":
         coefficient.label_outer(remove_inner_ticks=False)
         force.locator_params(axis="y", nbins=4)
         coefficient.locator_params(axis="y", nbins=4)
-    panels[1, 0].set(ylabel="Coefficient of friction")
+    panels[1, 0].set(ylabel="Coefficient of friction [1]")
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
