@@ -91,7 +91,7 @@ def test_extreme_positions_are_refused_without_allocation() -> None:
 def test_one_position_far_from_all_others_is_named(axis: str, value: str) -> None:
     points = [[str(x), str(y), "0.1"] for y in range(4) for x in range(4)]
     points[6]["xy".index(axis)] = value
-    with raises(InvalidInput, match=rf"surface\.xyz: {axis} = \S+ lies far from all other points") as refused:
+    with raises(InvalidInput, match=rf"plate\.xyz: {axis} = \S+ lies far from all other points") as refused:
         read("\n".join(" ".join(point) for point in points))
     assert f"{axis} = {float(value):g} lies" in str(refused.value)
 

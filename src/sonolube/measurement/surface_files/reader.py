@@ -13,6 +13,7 @@ from sonolube.measurement.surface_files.surface_reading import ASSUMED_METRES, G
 from sonolube.surfaces import HeightMap
 from sonolube.units import convert
 
+_LARGEST_SPACING = 1e6  # m, beyond which areas and slopes lose their digits
 _SPACING_ADVICE = "give spacing_x and spacing_y, the distances of columns and rows in m"
 _UNIT_ADVICE = 'give length_unit, such as "um"'
 
@@ -160,6 +161,9 @@ def _height_map(
     unit = convert(1.0, from_unit=length_unit, to_unit="m") if length_unit else 1.0
     try:
         step_x, step_y = _spacings(reading, unit, spacing_x=spacing_x, spacing_y=spacing_y)
+        if max(step_x, step_y) > _LARGEST_SPACING:
+            too_large = f"spacing must not exceed {_LARGEST_SPACING:g} m, got {max(step_x, step_y):g} m"
+            raise InvalidInput(f"{too_large}; check its unit")
         return HeightMap(height=unit * reading.height, spacing_x=step_x, spacing_y=step_y)
     except InvalidInput as failure:
         raise InvalidInput(f"{path}: {failure}") from None

@@ -20,6 +20,8 @@ _SEPARATORS = bytes.maketrans(b",;", b"  ")
 _COMMENTS = (b"#", b"%", b"//", b"*")
 _WANTED = {2: "a point has two numbers, x z", 3: "a point has three numbers, x y z"}
 _MISSING = ([b"bad"], [b"no", b"data"])  # spellings of Wyko and Zygo; "nan" is a number
+_REMOTE = 1000.0  # distance of one position from the others over their extent
+_FEWEST_POSITIONS = 3  # of which one can be remote
 _LEAST_FILLED = 0.05  # fraction of the grid
 # Texts that SurfaceTopography reads with the unit of their header: Hommel-Etamic's HFM, whose third column is a flag,
 # Dektak's export, and matrices with a comment such as "# Width: 12.34 um".
@@ -83,6 +85,8 @@ class XyzText:
 
     def _map(self, x: Floats, y: Floats, z: Floats) -> SurfaceReading:
         """Return the heights of points on a grid."""
+        for axis, positions in (("x", x), ("y", y)):
+            _refuse_remote(positions, axis=axis)
         column, spacing_x = grid_index(x, axis="x")
         row, spacing_y = grid_index(y, axis="y")
         columns, rows = int(column.max()) + 1, int(row.max()) + 1
@@ -105,6 +109,17 @@ class XyzText:
             spacing_y=spacing_y,
             states_unit=False,
         )
+
+
+def _refuse_remote(positions: Floats, *, axis: str) -> None:
+    """Refuse a lowest or highest position that is farther from all others than these can be of one grid."""
+    distinct = np.unique(positions)
+    if distinct.size < _FEWEST_POSITIONS:
+        return
+    for rest, extreme in ((distinct[1:], distinct[0]), (distinct[:-1], distinct[-1])):
+        gap, extent = np.abs(rest - extreme).min(), rest[-1] - rest[0]
+        if gap > _REMOTE * extent:
+            raise InvalidInput(f"{axis} = {extreme:g} lies far from all other points; leave its line out or mend it")
 
 
 def _numbers_on(line: bytes) -> int:
