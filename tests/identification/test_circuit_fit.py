@@ -10,6 +10,7 @@ from pytest import approx, fixture, mark, raises, skip
 from sonolube.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.identification.circuit_fit import fit_circuit
+from sonolube.identification.spectral_residual import RESIDUALS
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 
@@ -139,6 +140,35 @@ def test_the_logarithmic_fit_of_the_same_transducer_has_a_higher_quality_factor(
     assert found.residual == "log-complex"
     assert found.resonances.mechanical_quality_factor == approx([91.6], abs=0.5)
     assert any("does not describe the spectrum fully" in caveat for caveat in found.caveats)
+
+
+def test_where_the_circuit_lacks_something_intervals_contain_what_every_residual_gives(
+    rb5100: ImpedanceSpectrum,
+) -> None:
+    # quality factors of 73 and 91.6 for one spectrum: each fit is certain to 2 %, and they exclude each other
+    fits = [fit_circuit(rb5100, residual=residual) for residual in RESIDUALS]
+    for found in fits:
+        for other in fits:
+            value = other.resonances.mechanical_quality_factor[0]
+            interval = found.intervals["mechanical_quality_factor_1"]
+            assert interval.lower < value < interval.upper
+
+
+def test_intervals_of_a_spectrum_that_the_circuit_describes_are_those_of_one_residual() -> None:
+    found = fit_circuit(spectrum(ONE, noise=0.02, seed=1))
+    assert found.residual_correlation < 3
+    # Q of one branch is known to about noise sqrt(2/points within the resonance)
+    interval = found.intervals["mechanical_quality_factor_1"]
+    assert interval.upper / interval.lower < 1.1
+
+
+def test_losses_that_the_circuit_lacks_are_within_the_intervals_of_both_weights() -> None:
+    # 3 % of dielectric loss is left out by both fits; their quality factors differ, and the truth is 150
+    f = np.linspace(16e3, 32e3, 401)
+    lossy = circuit_admittance(ONE, frequency=f) + 2 * np.pi * f * 2e-9 * 0.03
+    found = fit_circuit(ImpedanceSpectrum(frequency=f, impedance=1 / lossy), branches=1)
+    interval = found.intervals["mechanical_quality_factor_1"]
+    assert interval.lower < 150 < interval.upper
 
 
 def test_the_curve_that_the_analyser_computed_is_one_branch_to_its_last_digit(rb5100: ImpedanceSpectrum) -> None:

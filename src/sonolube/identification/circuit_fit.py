@@ -17,7 +17,13 @@ from sonolube.actuator import (
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
 from sonolube.identification.minimum_phase import admittance_with_phase
-from sonolube.identification.spectral_residual import LOG_COMPLEX, caveats_of_spectrum, residual_for, residual_named
+from sonolube.identification.spectral_residual import (
+    LOG_COMPLEX,
+    RESIDUALS,
+    caveats_of_spectrum,
+    residual_for,
+    residual_named,
+)
 from sonolube.measurement.impedance.passivity import passive_spectrum
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import (
@@ -26,6 +32,7 @@ from sonolube.measurement.statistics.log_parameter_fit import (
     confidence_intervals,
     fit_log_parameters,
     residual_inefficiency,
+    spanning_intervals,
 )
 
 _MOST_BRANCHES = 8
@@ -37,6 +44,7 @@ _CORRELATED = 3.0  # residuals over independent ones, from which on a warning is
 _POINTS_PER_BRANCH = 4
 _INDUCTIVE_SHARE = 0.05  # of the points
 _MOSTLY = 0.5  # of the points
+_LARGEST_LOGARITHM = 300.0  # of a parameter, so that its square does not overflow
 _LARGEST_ERROR = 0.5  # standard error of the logarithm of a parameter
 
 
@@ -101,7 +109,7 @@ class _Spectrum:
     def resolves(self, logarithms: Floats) -> bool:
         """Whether every branch resonates within the sweep with a plausible quality factor."""
         modes = logarithms[1:].reshape(-1, 3)
-        f_s, quality = np.exp(modes[:, 0]), np.exp(modes[:, 1])
+        f_s, quality = np.exp(np.clip(modes[:, :2].T, -_LARGEST_LOGARITHM, _LARGEST_LOGARITHM))
         swept = (f_s > self.frequency[0]) & (f_s < self.frequency[-1])
         return bool(np.all(swept & (quality > _LOWEST_QUALITY) & (quality < _HIGHEST_QUALITY)))
 
@@ -162,8 +170,9 @@ def fit_circuit(
     sum of squares is of the logarithm of the magnitude. A spectrum of negative conductance is turned by 180 degrees
     (`passive_spectrum`).
 
-    Confidence intervals are of first order and widened for the correlation of residuals. They account for noise, not
-    for dielectric losses and other properties that the circuit leaves out.
+    Confidence intervals are of first order and widened for the correlation of residuals. Where these are correlated
+    over more than three points the circuit leaves properties out, such as dielectric losses, and how the points are
+    weighted decides the estimates: the intervals then span those of the fits by every residual.
 
     References
     ----------
@@ -191,6 +200,9 @@ def fit_circuit(
     is_selected = measured.residual == logarithmic.residual
     chosen = fits[-1] if is_selected else fit_log_parameters(measured.residuals, fits[-1].logarithms)
     found = _circuit_fit(measured, chosen, fits, branches, confidence_level)
+    if found.residual_correlation > _CORRELATED:
+        others = _other_residuals(measured, chosen, has_phase=spectrum.has_phase)
+        found = replace(found, intervals=_over_residuals(found, others))
     of_spectrum = (*turned, *caveats_of_spectrum(spectrum, found.intervals), *_inductive(spectrum, found.circuit))
     return replace(found, caveats=(*of_spectrum, *found.caveats))
 
@@ -287,9 +299,34 @@ def _poles(f: Floats, values: Complexes) -> list[complex]:
     return found
 
 
+def _other_residuals(
+    spectrum: _Spectrum, chosen: LogParameterFit, *, has_phase: bool
+) -> list[tuple[_Spectrum, LogParameterFit]]:
+    """Fits with as many branches by the residuals that were not chosen, which need no phase that was not measured."""
+    names = [name for name in RESIDUALS if name != spectrum.residual and (has_phase or name != LOG_COMPLEX)]
+    weighted = [replace(spectrum, residual=name) for name in names]
+    fits = [(each, fit_log_parameters(each.residuals, chosen.logarithms)) for each in weighted]
+    return [(each, fit) for each, fit in fits if fit.converged and each.resolves(fit.logarithms)]
+
+
+def _over_residuals(
+    found: CircuitFit, others: list[tuple[_Spectrum, LogParameterFit]]
+) -> dict[str, ConfidenceInterval]:
+    """Intervals of a fit, extended over those of the fits by other residuals."""
+    return spanning_intervals(
+        found.intervals,
+        [
+            confidence_intervals(
+                fit, _quantities, correlation=each.correlation(fit), confidence_level=found.confidence_level
+            )
+            for each, fit in others
+        ],
+    )
+
+
 def _circuit(logarithms: Floats, series_resistance: float) -> ButterworthVanDyke:
     """Circuit of the logarithms of C_0 and, for each branch, of f_s, Q and C."""
-    values = np.exp(np.clip(logarithms, -300, 300))
+    values = np.exp(np.clip(logarithms, -_LARGEST_LOGARITHM, _LARGEST_LOGARITHM))
     branches = tuple(
         MotionalBranch(
             resistance=1 / (2 * np.pi * f_s * quality * capacitance),
@@ -372,6 +409,6 @@ def _caveats(fit: LogParameterFit, branches: int, requested: int | None, correla
     if correlation > _CORRELATED:
         caveats.append(
             f"residuals are correlated over {correlation:.0f} points: the circuit does not describe the spectrum fully;"
-            " dielectric losses or weaker modes may be missing"
+            " dielectric losses or weaker modes may be missing; intervals span the fits to logarithms and to magnitudes"
         )
     return tuple(caveats)

@@ -1,7 +1,7 @@
 """Least squares over the logarithms of positive parameters, with confidence intervals of derived quantities."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
@@ -166,6 +166,31 @@ def confidence_intervals(
     return {
         name: ConfidenceInterval(value=value, lower=float(value / factor), upper=float(value * factor))
         for (name, value), factor in zip(values.items(), factors, strict=True)
+    }
+
+
+def spanning_intervals(
+    chosen: Mapping[str, ConfidenceInterval], others: Iterable[Mapping[str, ConfidenceInterval]]
+) -> dict[str, ConfidenceInterval]:
+    """Return the intervals of one fit, extended over those of others to the same data.
+
+    Parameters
+    ----------
+    chosen : mapping of str to ConfidenceInterval
+        Of the fit whose estimates are kept.
+    others : iterable of mapping of str to ConfidenceInterval
+        With the same names.
+
+    Returns
+    -------
+    dict of str to ConfidenceInterval
+    """
+    intervals = [chosen, *others]
+    return {
+        name: replace(
+            one, lower=min(each[name].lower for each in intervals), upper=max(each[name].upper for each in intervals)
+        )
+        for name, one in chosen.items()
     }
 
 

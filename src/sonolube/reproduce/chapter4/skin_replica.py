@@ -180,7 +180,9 @@ def _friction_coefficients() -> "Figure":
         axes.annotate("", *ends, arrowprops={"arrowstyle": "->", "color": "0.4"})
         reduction = formulas.friction_reduction(off, on)
         axes.text(load.value + 0.06, (off + on) / (2 * load.value), f"−{100 * reduction:.0f} %", va="center")
-    axes.set(xlabel="Normal load [N]", ylabel="Coefficient of friction [1]", xlim=(1.5, 4.7), ylim=(0, 0.6), xticks=newtons)
+    axes.set(
+        xlabel="Normal load [N]", ylabel="Coefficient of friction [1]", xlim=(1.5, 4.7), ylim=(0, 0.6), xticks=newtons
+    )
     axes.legend(loc="upper left")
     return figure
 
