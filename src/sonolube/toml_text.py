@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from sonolube.errors import InvalidInput
+from sonolube.input_files import input_text
 from sonolube.printable_text import active_character
 from sonolube.targets import record_input
 
@@ -39,7 +40,7 @@ def text_of(path: Path, *, kind: str) -> str:
     try:
         if path.stat().st_size > _LARGEST_FILE:
             raise InvalidInput(f"larger than {kind} can be (1 MB)")
-        return path.read_text(encoding="utf-8-sig")
+        return input_text(path, most=_LARGEST_FILE)
     except FileNotFoundError:
         raise InvalidInput("no such file") from None
     except OSError as failure:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import ClassVar, Protocol, TypeVar
 
 from sonolube.errors import InvalidInput
+from sonolube.input_files import open_input
 
 HEAD_SIZE = 8192
 """Number of bytes at the beginning of a file by which its format is detected."""
@@ -61,7 +62,7 @@ def read_head(path: Path) -> bytes:
     InvalidInput
         Naming the file, if it cannot be read or is empty.
     """
-    with refuse_unreadable(path), path.open("rb") as stream:
+    with refuse_unreadable(path), open_input(path) as stream:
         head = stream.read(HEAD_SIZE)
     if not head:
         raise InvalidInput(f"{path}: is empty")

@@ -1,6 +1,7 @@
 """Reader of measured runs from CSV: one row a run, one column a quantity with its unit; the list of the columns."""
 
 import csv
+import io
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.input_files import open_input
 from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.units import to_si
 from sonolube.vocabulary import quantities
@@ -296,8 +298,9 @@ def _skipped(empty: np.ndarray) -> str:
 def _rows(path: Path) -> list[list[str]]:
     """Header and rows of a CSV file, empty rows left out, no row longer than the header."""
     try:
-        with refuse_unreadable(path), path.open(newline="", encoding="utf-8-sig") as stream:
-            rows = [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
+        with refuse_unreadable(path), open_input(path) as stream:
+            text = io.TextIOWrapper(stream, encoding="utf-8-sig", newline="")
+            rows = [row for row in csv.reader(text) if any(cell.strip() for cell in row)]
     except (UnicodeDecodeError, csv.Error):
         raise InvalidInput(f"{path}: not a table of comma-separated values") from None
     if len(rows) > _MOST_RUNS:

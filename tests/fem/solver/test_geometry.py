@@ -1,10 +1,12 @@
 """Bonded bodies, STEP files and impossible geometries."""
 
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from pytest import approx, raises
+from pytest import MonkeyPatch, approx, mark, raises
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
@@ -79,3 +81,21 @@ def test_a_step_file_of_a_sheet_without_thickness_is_refused(tmp_path: Path) -> 
     block(length=R, width=r, thickness=FILLET).shape.faces[0].WriteStep(str(tmp_path / "sheet.step"))
     with raises(InvalidInput, match="no closed solid"):
         read_step(tmp_path / "sheet.step")
+
+
+@mark.parametrize(
+    ("code", "message"),
+    [
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "the CAD kernel ends on it without an answer"),
+        ("import sys; sys.stderr.write('no header'); sys.exit(3)", "not a STEP file that can be read: no header"),
+    ],
+)
+def test_a_step_file_that_ends_the_kernel_is_refused_and_the_program_goes_on(
+    code: str, message: str, tmp_path: Path, monkeypatch: MonkeyPatch
+) -> None:
+    # stand-in of the kernel's process: which damaged files end it depends on the kernel's version
+    run = subprocess.run
+    monkeypatch.setattr(subprocess, "run", lambda _command, **options: run([sys.executable, "-c", code], **options))
+    (tmp_path / "damaged.step").write_text("ISO-10303-21;")
+    with raises(InvalidInput, match=message):
+        read_step(tmp_path / "damaged.step")

@@ -25,6 +25,7 @@ from sonolube.identification import (
     switch_table,
 )
 from sonolube.identification.decay_length.verdict import HYPOTHESES
+from sonolube.input_files import open_input
 from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import read_recording
@@ -195,7 +196,7 @@ class DecayLengthAnswer(Answer):
 
 def _is_table(file: Path) -> bool:
     """Whether a file is a table of switches: text whose head names the sliding distance and no time."""
-    with refuse_unreadable(file), file.open("rb") as stream:
+    with refuse_unreadable(file), open_input(file) as stream:
         head = stream.read(_HEAD).split(b"\n")[0]
     return b"sliding_distance" in head and b"time" not in head
 

@@ -14,6 +14,7 @@ from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.identification import Identification, rig_tables
+from sonolube.input_files import input_text
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identify_from_facts
 from sonolube.units import format_si
@@ -49,7 +50,7 @@ def identify_rig(
             tables = rig_tables(identification, stack)
         else:
             identification, stack, tables = identify_from_facts(base, facts, seed=seed)
-    text = tables if base is None else with_tables(base.read_text(encoding="utf-8-sig"), tables)
+    text = tables if base is None else with_tables(input_text(base), tables)
     answer = IdentificationAnswer(
         identification=identification, stack=stack, text=text, file_name=None if out is None else out.name
     )

@@ -1,9 +1,11 @@
 """Tables of numbers in CSV files without header."""
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
+from sonolube.input_files import input_text
 
 if TYPE_CHECKING:
     from sonolube.checks import Floats
@@ -20,6 +22,6 @@ def number_table(path: Path) -> "Floats":
     import numpy as np
 
     try:
-        return np.loadtxt(path, delimiter=",", comments="#", ndmin=2, dtype=np.float64)
+        return np.loadtxt(io.StringIO(input_text(path)), delimiter=",", comments="#", ndmin=2, dtype=np.float64)
     except (OSError, ValueError) as failure:
         raise InvalidInput(f"{path}: is no table of numbers with commas between: {failure}") from None

@@ -22,6 +22,7 @@ from sonolube.design.optimisation import (
 )
 from sonolube.design.optimisation.designs_dataset import design_counts, designs_dataset
 from sonolube.design.optimisation.evaluation import LIMITS
+from sonolube.input_files import input_text
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
@@ -135,7 +136,7 @@ class OptimisationAnswer(Answer):
 
     def files(self) -> "Mapping[str, str | xr.Dataset]":
         """All designs as netCDF, and the best as a rig file."""
-        source = self.rig_file.read_text(encoding="utf-8-sig")
+        source = input_text(self.rig_file)
         return {
             f"{self._name}.nc": designs_dataset(self.optimum),
             f"{self._name}.toml": design_text(source, self.content, self.optimum.problem, self.optimum.best),

@@ -14,6 +14,7 @@ from sonolube.cli.console.answer import Answer, aligned, si
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.questions import is_terminal
 from sonolube.errors import InvalidInput
+from sonolube.input_files import input_text
 from sonolube.lab import RunControl, RunResult, State, require_possible, run_protocol
 from sonolube.lab.devices import Devices
 from sonolube.lab.drivers import missing_parts, read_device_map
@@ -267,7 +268,7 @@ def _has_prompts(protocol: Protocol) -> bool:
 def _files(plan: RunPlan) -> dict[str, str]:
     """Texts of the files that the run was given, by the name under which they are kept."""
     given = {"rig.toml": plan.rig_file, "devices.toml": plan.device_file}
-    return {name: path.read_text(encoding="utf-8-sig") for name, path in given.items() if path is not None}
+    return {name: input_text(path) for name, path in given.items() if path is not None}
 
 
 def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | bool]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel, captured_output
+from sonolube.fem.solver.step_trial import try_step_file
 
 _AXES = "xyz"
 _LEAST_VOLUME = 1e-9  # of the bounding box, below which a body counts as having no thickness
@@ -56,10 +57,16 @@ def read_step(path: Path) -> Geometry:
     ------
     InvalidInput
         If the file cannot be read, contains no closed solid, or its solids overlap.
+
+    Notes
+    -----
+    The CAD kernel ends the program, or never ends, on some damaged files. A process of its own with limits of time and
+    memory reads the file first.
     """
     if not path.is_file():
         raise InvalidInput(f"{path}: no such file")
     occ = cad_kernel()
+    try_step_file(path)
     try:
         with captured_output():
             shape = occ.OCCGeometry(str(path)).shape

@@ -11,6 +11,7 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.input_files import input_bytes
 from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.impedance.column_headings import ColumnHeading, parse_heading
 from sonolube.measurement.impedance.passivity import passive_spectrum
@@ -199,7 +200,7 @@ def _content(path: Path) -> bytes:
     with refuse_unreadable(path):
         if path.stat().st_size > _LARGEST_FILE:
             raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST_FILE >> 20} MiB, more than any sweep")
-        return path.read_bytes()
+        return input_bytes(path, most=_LARGEST_FILE)
 
 
 def _vibration_table(path: Path, lines: list[str]) -> _Table | None:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.input_files import input_bytes
 from sonolube.measurement.file_format import HEAD_SIZE, detect_format, refuse_unreadable
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, ImpedanceSweep, sorted_by_frequency
@@ -58,7 +59,7 @@ def _content_and_lines(path: Path) -> tuple[bytes, list[str]]:
     with refuse_unreadable(path):
         if path.stat().st_size > _LARGEST_FILE:
             raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST_FILE >> 20} MiB, more than any sweep")
-        content = path.read_bytes()
+        content = input_bytes(path, most=_LARGEST_FILE)
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as failure:

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.file_format import FileFormat, detect_format, read_head
+from sonolube.input_files import require_file
+from sonolube.measurement.file_format import FileFormat, detect_format, read_head, refuse_unreadable
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawTable
 from sonolube.variants import VariantTable
@@ -82,6 +83,9 @@ RECORDING_FORMATS: VariantTable[RecordingFormat] = VariantTable(
 """File formats of recordings in order of detection, the last one as fallback; a new one takes its file and one line."""
 
 
+_TEXTS = ("LabVIEW measurement text", "delimited text")  # which are read once, also from a pipe
+
+
 def recording_format(path: Path) -> RecordingFormat:
     """Return the format of a recording, by its signature, then by its suffix.
 
@@ -104,4 +108,7 @@ def recording_format(path: Path) -> RecordingFormat:
     if found is None:
         known = ", ".join(RECORDING_FORMATS)
         raise InvalidInput(f"{path}: byte 0: begins with {head[:8]!r}, which is no known format of recordings: {known}")
+    if found.name not in _TEXTS:
+        with refuse_unreadable(path):
+            require_file(path)
     return found

@@ -11,6 +11,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.files import write_atomically
+from sonolube.input_files import open_input
 from sonolube.measurement.recordings.dataset import recording_dataset, require_increasing_axis
 from sonolube.measurement.recordings.formats import StreamedRecordingFormat, recording_format
 from sonolube.measurement.recordings.instrument_mappings import recognised_mapping
@@ -175,5 +176,5 @@ def _mapping(mapping: RecordingMapping | Path | None, path: Path) -> RecordingMa
 
 def _sha256(path: Path) -> str:
     """Return the SHA-256 digest of a file, in hexadecimal."""
-    with path.open("rb") as stream:
+    with open_input(path) as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()

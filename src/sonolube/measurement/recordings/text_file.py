@@ -4,6 +4,7 @@ import codecs
 from pathlib import Path
 
 from sonolube.errors import InvalidInput
+from sonolube.input_files import input_bytes
 from sonolube.measurement.file_format import refuse_unreadable
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
@@ -32,7 +33,7 @@ def decoded_text(path: Path, *, encoding: str) -> tuple[str, tuple[str, ...]]:
         Naming the file and the line, if the file is missing, empty, or not of this encoding.
     """
     with refuse_unreadable(path):
-        content = path.read_bytes()
+        content = input_bytes(path)
     marked = next((name for mark, name in _MARKS if content.startswith(mark)), "utf-8")
     text = _decoded(content, encoding or marked, path, refuse=bool(encoding) or marked != "utf-8")
     caveats: tuple[str, ...] = ()

@@ -6,6 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 from sonolube.errors import InvalidInput
+from sonolube.input_files import require_file
 from sonolube.measurement.file_format import detect_format, read_head, refuse_unreadable
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.measurement.surface_files.plausible_size import size_caveats
@@ -88,6 +89,8 @@ def read_surface_file(
     For OPD, NMS, NPY and XYZ files memory stays within a small multiple of the file's size, whatever size it states.
     """
     place = Path(path)
+    with refuse_unreadable(place):
+        require_file(place)
     formats = tuple(SURFACE_FORMATS.values())
     file_format = detect_format(formats, read_head(place), place) or formats[-1]
     with refuse_unreadable(place), place.open("rb") as stream:
