@@ -55,7 +55,7 @@ def assert_refused(run: subprocess.CompletedProcess[str], line: str) -> None:
         (["materials", "unobtainium"], "sonolube materials: unknown material 'unobtainium'"),
         (["published", "9.9"], "sonolube published: unknown table '9.9'"),
         (["reproduce", "--chapter", "7"], "sonolube reproduce:"),
-        (["thermal", "RIG", "--pin", "m50", "--disc", "powder_coating"], "powder_coating has no thermal_conductivity"),
+        (["thermal", "RIG", "--pin", "m50", "--disc", "uncoated_steel"], "uncoated_steel has no thermal_conductivity"),
         (
             ["regime", "RIG", "--film-coefficient", "0.1", "--asperity-pressure", "10mm"],
             "--asperity-pressure 10mm is a length",

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, MissingProperty
@@ -66,7 +65,12 @@ def test_a_material_without_a_structure_is_refused_by_name() -> None:
         wear_of_materials(material("stainless_steel_304"), material("m50"))
 
 
-@pytest.mark.parametrize("name", ["uncoated_steel", "powder_coating"])
-def test_a_material_without_thermal_properties_is_refused(name: str) -> None:
+def test_a_material_without_thermal_properties_is_refused() -> None:
     with raises(MissingProperty, match="no thermal_conductivity"):
-        thermal_solid(name)
+        thermal_solid("uncoated_steel")
+
+
+def test_the_coating_of_d_4_1_says_that_its_thermal_properties_are_assumed() -> None:
+    found = material("powder_coating")
+    for name in ("thermal_conductivity", "density", "specific_heat_capacity"):
+        assert "assumed" in found.property(name).source

@@ -21,7 +21,7 @@ EXAMPLE_FRICTION_RATIO: Final = 0.9
 """Friction with vibration over friction without in the example: 10 % less at 5.1 and 10.3 V, beyond which it falls
 further by an unprinted amount. Kept at 10 % at every voltage, the case of the least cooling. []"""
 
-POWDER_COATING: Final = thermal.ThermalSolid(thermal_conductivity=0.25, density=1500.0, specific_heat_capacity=1200.0)
+POWDER_COATING: Final = thermal_solid("powder_coating")
 """Coating of the disc, assumed: a filled thermoset, of which D prints only thickness and hardness."""
 
 _NUT: Final = thermal.ThermalNetwork(heat_capacity=(1.5,), links=(), losses=(0.05,))  # 3 g of steel on a thread
