@@ -202,3 +202,19 @@ def test_the_warming_by_vibration_at_the_lowest_speed_is_that_of_reproduce(answe
         found = answer("thermal", "coated_temperature", *changes, *_SINE, "--vibration-heat", f"{heat}W")
         ratios.append(found["temperature_rise_ratio"]["value"])
     assert 1 / min(ratios) == approx(reproduced_rows(4)["4.3.4-low-speed-warmer"].computed, rel=2e-3)
+
+
+def test_the_highest_temperature_of_the_coated_rig_is_that_of_reproduce(answer: Answer) -> None:
+    levels = ",".join(f"{heat}W" for heat in temperature_tests.vibration_heat())
+    found = answer(
+        *("thermal", "coated_temperature", "--set", "contact.normal_load=6N"),
+        *(
+            "--set",
+            "friction.friction_coefficient=0.1",
+            "--friction-ratio",
+            str(temperature_tests.EXAMPLE_FRICTION_RATIO),
+        ),
+        *("--dry", "10s", "--duration", "30s", "--vibration-heat", levels),
+    )
+    reached = temperature_tests.ROOM_TEMPERATURE - 273.15 + found["temperature_rise"]["value"]
+    assert reached == approx(reproduced_rows(4)["4.3.5-tribometer-temperature-peak"].computed, abs=0.01)

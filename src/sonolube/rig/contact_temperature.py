@@ -4,9 +4,11 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from sonolube.checks import require_non_negative, require_positive
+from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.friction.models.range_check import CheckedRatio
 from sonolube.materials import material
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
@@ -31,7 +33,7 @@ class TemperaturePoint:
     frictional_heat_rate : float
         Heat of friction. [W]
     vibration_heat_rate : float
-        Heat of the vibration in the contact. [W]
+        Heat of the vibration in the contact, at the end of the test. [W]
     heat_partition : float
         Share of both that flows into the pin. []
     peclet_number : float
@@ -47,7 +49,7 @@ class TemperaturePoint:
     friction_ratio : float
         Friction with vibration over friction without. []
     friction_model : str
-        Name of the friction model.
+        Name of the friction model; "stated" for a stated ratio.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
     amplitude_source : {"measured", "computed", "waveguide", "per-volt"}
@@ -104,7 +106,9 @@ def temperature_point(
     heat_capacity: float,
     thermal_conductance: float,
     duration: float,
-    vibration_heat_rate: float = 0.0,
+    dry_duration: float = 0.0,
+    vibration_heat_rate: ArrayLike = 0.0,
+    friction_ratio: float | None = None,
     flash_model: str = "quadrature",
 ) -> TemperaturePoint:
     """Return the temperature of the rig's contact, taken as circular, over a test from ambient temperature.
@@ -122,8 +126,12 @@ def temperature_point(
         Heat that leaves the pin per kelvin, into its holder and the air. [W/K]
     duration : float
         Length of the test. [s]
-    vibration_heat_rate : float
-        Heat of the vibration in the contact. [W]
+    dry_duration : float
+        Time at its start without vibration. [s]
+    vibration_heat_rate : array_like, shape () or (n,)
+        Heat of the vibration in the contact; several are applied one after another, each for as long. [W]
+    friction_ratio : float, optional
+        Friction with vibration over that without, instead of that of the friction model. []
     flash_model : str
         Of `sonolube.thermal.flash_models.FLASH_MODELS`.
 
@@ -134,7 +142,7 @@ def temperature_point(
     Raises
     ------
     InvalidInput
-        If the rig does not slide, has no frequency, or a value is not positive.
+        If the rig does not slide, has no frequency, a value is not positive, or the dry part is as long as the test.
     OutsideRange
         If the load leaves no separation, or the vibration is outside the range of the friction model.
     """
@@ -142,30 +150,29 @@ def temperature_point(
         raise InvalidInput("sliding.sliding_speed must be positive for heat of friction")
     rest_separation(rig)
     require_positive(heat_capacity=heat_capacity, thermal_conductance=thermal_conductance, duration=duration)
-    require_non_negative(vibration_heat_rate=vibration_heat_rate)
+    levels = np.atleast_1d(require_non_negative(vibration_heat_rate=vibration_heat_rate))
+    if not 0 <= dry_duration < duration:
+        raise InvalidInput(
+            f"dry_duration must lie from 0 to below the duration of {duration:g} s, got {dry_duration!r} s"
+        )
     radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
     source = EllipticSource(half_length=radius, half_width=radius)
     moving_rise = FLASH_MODELS.named(flash_model)
     network = ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
     contact = HeatedContact(pin=pin, disc=disc, source=source, network=network, moving_rise=moving_rise)
     vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
-    found = vibrated.ratio
-    intrinsic, ratio = rig.friction_coefficient * rig.normal_load, float(found.require_within_range())
-    if ratio < 0:
-        raise OutsideRange(
-            f"friction ratio {ratio:.3g}: the vibration drives the sliding, and heat of friction has no meaning for it;"
-            " lower the vibration or friction.in_plane_fraction"
-        )
-    times = np.linspace(0.0, duration, _STEPS + 1)
+    intrinsic = rig.friction_coefficient * rig.normal_load
+    ratio = _braking_ratio(vibrated.ratio if friction_ratio is None else friction_ratio)
+    times, heat_rates, shaken = _steps(duration, dry_duration, levels)
     history = partial(contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
     without = history(friction_force=intrinsic, vibration_heat_rate=0.0)
-    warmed = history(friction_force=ratio * intrinsic, vibration_heat_rate=vibration_heat_rate)
+    warmed = history(friction_force=np.where(shaken, ratio, 1.0) * intrinsic, vibration_heat_rate=heat_rates)
     of_friction = float(frictional_heat_rate(friction_force=ratio * intrinsic, sliding_speed=rig.sliding_speed))
-    heat = of_friction + vibration_heat_rate
+    heat = of_friction + float(levels[-1])
     shared = contact_rise(pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed, moving_rise=moving_rise)
     return TemperaturePoint(
         frictional_heat_rate=of_friction,
-        vibration_heat_rate=vibration_heat_rate,
+        vibration_heat_rate=float(levels[-1]),
         heat_partition=float(shared.heat_partition),
         peclet_number=float(peclet_number(disc, source, sliding_speed=rig.sliding_speed)),
         peak_temperature_rise=float(shared.peak_temperature_rise),
@@ -173,14 +180,34 @@ def temperature_point(
         temperature_rise=float(warmed.temperature_rise[-1]),
         temperature_rise_ratio=float(warmed.temperature_rise[-1] / without.temperature_rise[-1]),
         friction_ratio=ratio,
-        friction_model=rig.friction_model.name,
+        friction_model=rig.friction_model.name if friction_ratio is None else "stated",
         vibration_amplitude=vibrated.vibration.amplitude,
         amplitude_source=vibrated.vibration.source,
         amplitude_origin=vibrated.vibration.text,
-        caveats=(*vibrated.caveats, *_caveats(network, vibration_heat_rate)),
+        caveats=(*vibrated.caveats, *_caveats(network, float(levels.max()))),
         with_vibration=warmed,
         without_vibration=without,
     )
+
+
+def _braking_ratio(ratio: CheckedRatio | float) -> float:
+    """Return a friction ratio, of a model or stated, that brakes the sliding."""
+    value = ratio if isinstance(ratio, float) else float(ratio.require_within_range())
+    if value < 0:
+        raise OutsideRange(
+            f"friction ratio {value:.3g}: the vibration drives the sliding, and heat of friction has no meaning for it;"
+            " lower the vibration or friction.in_plane_fraction"
+        )
+    return value
+
+
+def _steps(duration: float, dry_duration: float, levels: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Return times, heat of the vibration in each interval [W], and whether it vibrates in it; levels last as long."""
+    edges = np.linspace(dry_duration, duration, levels.size + 1)
+    times = np.unique(np.concatenate([np.linspace(0.0, duration, _STEPS + 1), edges]))
+    middle = (times[1:] + times[:-1]) / 2
+    shaken = middle > dry_duration
+    return times, np.where(shaken, levels[np.searchsorted(edges[1:-1], middle)], 0.0), shaken
 
 
 def _caveats(network: ThermalNetwork, vibration_heat_rate: float) -> tuple[str, ...]:

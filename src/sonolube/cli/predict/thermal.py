@@ -37,7 +37,24 @@ def thermal(
     conductance: Annotated[
         str, typer.Option(metavar="CONDUCTANCE", help="Thermal conductance from the pin to its surroundings.")
     ] = "0.05W/K",
-    vibration_heat: Annotated[str, typer.Option(metavar="POWER", help="Heat of the vibration in the contact.")] = "0W",
+    dry_time: Annotated[
+        str, typer.Option("--dry", metavar="TIME", help="Time at the start of the test without vibration.")
+    ] = "0s",
+    vibration_heat: Annotated[
+        str,
+        typer.Option(
+            metavar="POWER",
+            help="Heat of the vibration in the contact; several, such as 1mW,5mW, one after another, each for as long.",
+        ),
+    ] = "0W",
+    ratio: Annotated[
+        float | None,
+        typer.Option(
+            "--friction-ratio",
+            metavar="RATIO",
+            help="Friction with vibration over that without, such as a measured one, instead of the friction model's.",
+        ),
+    ] = None,
     flash_model: Annotated[
         str, typer.Option(metavar="MODEL", help=f"Model of the flash temperature: {', '.join(FLASH_MODELS)}.")
     ] = "quadrature",
@@ -58,7 +75,11 @@ def thermal(
         heat_capacity=plausible_si(capacity, unit="J/K", name="--heat-capacity"),
         thermal_conductance=plausible_si(conductance, unit="W/K", name="--conductance"),
         duration=plausible_si(test_time, unit="s", name="--duration"),
-        vibration_heat_rate=plausible_si(vibration_heat, unit="W", name="--vibration-heat"),
+        dry_duration=plausible_si(dry_time, unit="s", name="--dry"),
+        vibration_heat_rate=[
+            plausible_si(level, unit="W", name="--vibration-heat") for level in vibration_heat.split(",")
+        ],
+        friction_ratio=ratio,
         flash_model=flash_model,
     )
     drawing = Drawing(draw=lambda: temperature_figure(known, result))
