@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.friction.models.range_check import CheckedRatio
+from sonolube.errors import InvalidInput
 from sonolube.materials import material
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
@@ -144,7 +143,8 @@ def temperature_point(
     InvalidInput
         If the rig does not slide, has no frequency, a value is not positive, or the dry part is as long as the test.
     OutsideRange
-        If the load leaves no separation, or the vibration is outside the range of the friction model.
+        If the load leaves no separation, or the vibration is outside the range of the friction model or drives the
+        sliding.
     """
     if rig.sliding_speed <= 0:
         raise InvalidInput("sliding.sliding_speed must be positive for heat of friction")
@@ -153,7 +153,7 @@ def temperature_point(
     levels = np.atleast_1d(require_non_negative(vibration_heat_rate=vibration_heat_rate))
     if not 0 <= dry_duration < duration:
         raise InvalidInput(
-            f"dry_duration must lie from 0 to below the duration of {duration:g} s, got {dry_duration!r} s"
+            f"dry_duration must lie from 0 to below the {duration:g} s of the test, got {dry_duration!r} s"
         )
     radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
     source = EllipticSource(half_length=radius, half_width=radius)
@@ -162,7 +162,11 @@ def temperature_point(
     contact = HeatedContact(pin=pin, disc=disc, source=source, network=network, moving_rise=moving_rise)
     vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
     intrinsic = rig.friction_coefficient * rig.normal_load
-    ratio = _braking_ratio(vibrated.ratio if friction_ratio is None else friction_ratio)
+    ratio = float(
+        vibrated.ratio.require_braking()
+        if friction_ratio is None
+        else require_non_negative(friction_ratio=friction_ratio)
+    )
     times, heat_rates, shaken = _steps(duration, dry_duration, levels)
     history = partial(contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
     without = history(friction_force=intrinsic, vibration_heat_rate=0.0)
@@ -188,17 +192,6 @@ def temperature_point(
         with_vibration=warmed,
         without_vibration=without,
     )
-
-
-def _braking_ratio(ratio: CheckedRatio | float) -> float:
-    """Return a friction ratio, of a model or stated, that brakes the sliding."""
-    value = ratio if isinstance(ratio, float) else float(ratio.require_within_range())
-    if value < 0:
-        raise OutsideRange(
-            f"friction ratio {value:.3g}: the vibration drives the sliding, and heat of friction has no meaning for it;"
-            " lower the vibration or friction.in_plane_fraction"
-        )
-    return value
 
 
 def _steps(duration: float, dry_duration: float, levels: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:

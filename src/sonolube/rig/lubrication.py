@@ -105,7 +105,7 @@ def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: 
     InvalidInput
         If the rig does not slide or has no frequency, or the gain does not lie between 0 and 1.
     OutsideRange
-        If the vibration is outside the range of the friction model at a speed.
+        If the vibration is outside the range of the friction model at a speed, or drives the sliding.
     """
     rest_separation(rig)
     pressure = rig.normal_load / rig.contact.nominal_area
@@ -149,7 +149,7 @@ def lubrication_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: fl
     InvalidInput
         If the rig does not slide or has no frequency, or the gain does not lie between 0 and 1.
     OutsideRange
-        If the vibration is outside the range of the friction model at a speed.
+        If the vibration is outside the range of the friction model at a speed, or drives the sliding.
 
     Notes
     -----
@@ -195,6 +195,6 @@ def _coefficients(
     return lubrication_coefficients(
         lubricant,
         friction_coefficient=rig.friction_coefficient,
-        friction_ratio=vibrated.ratio.require_within_range(),
+        friction_ratio=vibrated.ratio.require_braking(),
         nominal_pressure=nominal_pressure,
     )

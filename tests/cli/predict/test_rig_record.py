@@ -162,11 +162,19 @@ def test_a_vibration_that_drives_the_slider_is_said_to(
     assert any("drives the sliding" in caveat for caveat in answer["caveats"])
 
 
-def test_heat_of_friction_is_refused_where_the_vibration_drives(sonolube: Program, rigs: Path) -> None:
-    bodies = ("--pin", "stainless_steel_316", "--disc", "aluminium_2024")
-    refused = sonolube("thermal", rigs / "tribometer.toml", *bodies, "--set", "friction.in_plane_fraction=0.5")
-    assert refused.code == 2
-    assert "the vibration drives the sliding" in refused.err
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        ("thermal", ("--pin", "stainless_steel_316", "--disc", "aluminium_2024")),
+        ("regime", ("--film-coefficient", "0.25", "--asperity-pressure", "10MPa")),
+    ],
+)
+def test_heat_and_lubrication_are_refused_where_the_vibration_drives(
+    command: str, options: tuple[str, ...], sonolube: Program, rigs: Path
+) -> None:
+    refused = sonolube(command, rigs / "tribometer.toml", *options, "--set", "friction.in_plane_fraction=0.5")
+    assert "the vibration drives the sliding" in refused.refusal
+    assert "lower the vibration or friction.in_plane_fraction" in refused.refusal
 
 
 @pytest.mark.parametrize("rig", ["collar", "flextensional", "poisson_al_steel"])

@@ -41,6 +41,7 @@ from sonolube.design.uncertainty_summary import (
     ranked_entries,
 )
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.friction.models.range_check import ratio_caveats
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats, read_rig, steady_vibration
@@ -197,7 +198,8 @@ class UncertaintyAnswer(Answer):
             caveats.append(self._convergence())
         if self.structure is not None and not self.structure.posterior.has_converged:
             caveats.append(agreement(self.structure))
-        return [*caveats, *operating_caveats(self.rig)]
+        meaning = ratio_caveats(friction_ratio=self.result[self._of].values) if self._of == "friction_ratio" else ()
+        return [*caveats, *operating_caveats(self.rig), *meaning]
 
     def leading_caveats(self) -> Sequence[str]:
         """An amplitude beyond that of all published tests, where friction is the outcome."""

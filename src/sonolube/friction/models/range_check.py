@@ -52,6 +52,26 @@ class CheckedRatio:
             raise OutsideRange(str(reason))
         return self.friction_ratio
 
+    def require_braking(self) -> Floats:
+        """Return the friction ratios where all brake the sliding, for heat and lubrication. []
+
+        Returns
+        -------
+        ndarray
+
+        Raises
+        ------
+        OutsideRange
+            If one is outside the range of the model or below 0.
+        """
+        ratios = self.require_within_range()
+        if np.any(ratios < 0):
+            raise OutsideRange(
+                f"friction ratio {float(np.min(ratios)):.3g}: the vibration drives the sliding, and friction that"
+                " brakes it is needed here; lower the vibration or friction.in_plane_fraction"
+            )
+        return ratios
+
 
 def checked_ratio(
     model: FrictionModel, raw: ArrayLike, *, mean_force_ratio: ArrayLike, gap_closed: ArrayLike
