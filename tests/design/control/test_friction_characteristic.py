@@ -48,6 +48,14 @@ def test_without_a_structure_the_characteristic_passes_through_the_rigs_operatin
     assert characteristic.highest_force == approx(0.26 * 6.7)
 
 
+def test_a_characteristic_ends_where_the_vibration_begins_to_drive_the_slider() -> None:
+    rig = read_rig(RIGS / "tribometer.toml", changes=["friction.in_plane_fraction=0.5"])
+    assert friction_point(rig).friction_force < 0  # at 28 V
+    characteristic = computed_characteristic(rig, voltage_maximum=28.0, points=15)
+    assert 0 <= characteristic.lowest_force < 0.2 * characteristic.highest_force
+    assert characteristic.voltage_peak_to_peak[-1] < 28.0
+
+
 def test_every_point_of_an_efficiency_characteristic_has_the_efficiency_of_the_line() -> None:
     line = EfficiencyLine(slope=0.0, intercept=2e-9)
     characteristic = efficiency_characteristic(TRIBOMETER, line, voltage_maximum=20.0, points=5)

@@ -130,7 +130,8 @@ def computed_characteristic(rig: Rig, *, voltage_maximum: float, points: int = 4
     Returns
     -------
     FrictionCharacteristic
-        Up to the voltage at which a limit of stack, contact or friction model is reached.
+        Up to the voltage at which a limit of stack, contact or friction model is reached, or the vibration drives the
+        sliding.
 
     Raises
     ------
@@ -232,11 +233,11 @@ def _ratios(rig: Rig, volts: Floats) -> Floats:
 
 
 def _decreasing_part(rig: Rig, volts: Floats, force: Floats) -> FrictionCharacteristic:
-    """Characteristic up to the first NaN, without the points at which friction does not decrease."""
+    """Characteristic up to the first NaN or driving force, without the points at which friction does not decrease."""
     intrinsic = rig.friction_coefficient * rig.normal_load
     kept = [0]
     for i in range(1, volts.size):
-        if np.isnan(force[i]):
+        if not force[i] >= 0:
             break
         if force[i] < force[kept[-1]] - _RESOLUTION * intrinsic:
             kept.append(i)
