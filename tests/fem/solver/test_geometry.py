@@ -87,7 +87,7 @@ def test_a_step_file_of_a_sheet_without_thickness_is_refused(tmp_path: Path) -> 
     ("code", "message"),
     [
         ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "the CAD kernel ends on it without an answer"),
-        ("import sys; sys.stderr.write('no header'); sys.exit(3)", "not a STEP file that can be read: no header"),
+        ("import sys; sys.stderr.write('damaged.step: no header'); sys.exit(3)", "damaged.step: no header"),
     ],
 )
 def test_a_step_file_that_ends_the_kernel_is_refused_and_the_program_goes_on(

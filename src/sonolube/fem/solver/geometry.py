@@ -65,8 +65,14 @@ def read_step(path: Path) -> Geometry:
     """
     if not path.is_file():
         raise InvalidInput(f"{path}: no such file")
-    occ = cad_kernel()
+    cad_kernel()  # a package that is missing is said before the trial
     try_step_file(path)
+    return unguarded_step_geometry(path)
+
+
+def unguarded_step_geometry(path: Path) -> Geometry:
+    """Solids of a STEP file as `read_step`, in this process, which a damaged file can end."""
+    occ = cad_kernel()
     try:
         with captured_output():
             shape = occ.OCCGeometry(str(path)).shape

@@ -2,21 +2,24 @@
 
 import subprocess
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.cad import cad_kernel
 
 _SECONDS: Final = 60  # of processor time
 _WAIT: Final = 300  # s, for a machine that gives the process a fifth of a processor
 _BYTES: Final = 4 * 2**30
-_UNREADABLE: Final = 3  # exit status of the trial where the kernel refuses the file
+_REFUSED: Final = 3  # exit status of the trial where it refuses the file
+_TRIAL: Final = (
+    "from sonolube.fem.solver import geometry, step_trial; step_trial.run_trial(geometry.unguarded_step_geometry)"
+)
 
 
 def try_step_file(path: Path) -> None:
-    """Raise where the CAD kernel refuses a STEP file, crashes on it, or needs too much time or memory for it.
+    """Raise where reading a STEP file refuses it, ends the program, or needs too much time or memory.
 
     Parameters
     ----------
@@ -27,14 +30,13 @@ def try_step_file(path: Path) -> None:
     InvalidInput
         Naming the file and what happened.
     """
-    command = [sys.executable, "-c", f"from {__name__} import main; main()", str(path)]
+    command = [sys.executable, "-c", _TRIAL, str(path)]
     try:
         ended = subprocess.run(command, capture_output=True, check=False, timeout=_WAIT)
     except subprocess.TimeoutExpired:
         raise InvalidInput(f"{path}: not read within {_WAIT} s; export it anew, with fewer faces") from None
-    if ended.returncode == _UNREADABLE:
-        said = ended.stderr.decode(errors="replace").strip().splitlines()
-        raise InvalidInput(f"{path}: not a STEP file that can be read: {said[-1] if said else 'no reason given'}")
+    if ended.returncode == _REFUSED:
+        raise InvalidInput(ended.stderr.decode(errors="replace").strip().splitlines()[-1])
     if ended.returncode:
         raise InvalidInput(
             f"{path}: the CAD kernel ends on it without an answer, or needs more than {_SECONDS} s or"
@@ -42,15 +44,14 @@ def try_step_file(path: Path) -> None:
         )
 
 
-def main() -> None:
-    """Read the STEP file that the command line names, within the limits."""
+def run_trial(read: Callable[[Path], object]) -> None:
+    """Read the file that the command line of this process names within the limits; print a refusal and exit with it."""
     _limit()
-    kernel = cad_kernel()
     try:
-        list(kernel.OCCGeometry(sys.argv[1]).shape.solids)
-    except Exception as failure:  # the kernel raises no narrower class
-        sys.stderr.write(f"{failure}\n")
-        sys.exit(_UNREADABLE)
+        read(Path(sys.argv[1]))
+    except InvalidInput as refusal:
+        sys.stderr.write(f"{refusal}\n")
+        sys.exit(_REFUSED)
 
 
 def _limit() -> None:
