@@ -10,7 +10,7 @@ from pytest import approx, raises
 
 from sonolube.dynamics import Status, contact_motion as vibration, steady_state, waveform_extremes, waveform_value
 from sonolube.dynamics.structure import contact_receptance, drive_receptance
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
 from sonolube.rig.driven_rig import driven_rig
@@ -173,3 +173,12 @@ def test_samples_that_make_no_waveform_are_refused(samples: list[float], complai
 def test_a_drive_that_makes_no_sense_is_refused(change: str, complaint: str) -> None:
     with raises(InvalidInput, match=complaint):
         read_rig(TRIBOMETER, changes=[change])
+
+
+def test_a_voltage_beyond_what_the_contact_is_defined_for_is_refused_before_any_march() -> None:
+    # 0.0892 um/V at resonance: a megavolt would move the tip by 89 mm beside a contact of micrometres
+    rig = read_rig(TRIBOMETER, changes=[COMPUTED, "drive.voltage_peak_to_peak=1e6V"])
+    with raises(
+        OutsideRange, match=r"drive.voltage_peak_to_peak 1 MV would move the tip by 89\.\d mm .* at most 14 kV"
+    ):
+        steady_vibration(rig)

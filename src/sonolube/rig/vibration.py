@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.actuator.drive import Drive
-from sonolube.contact import GapMotion, separation
-from sonolube.dynamics import Status, SteadyStates, contact_motion, steady_state
+from sonolube.contact import GapMotion, separation, separation_range
+from sonolube.dynamics import Status, SteadyStates, contact_motion, drive_receptance, steady_state
 from sonolube.dynamics.long_time_response import LongTimeResponse, march_until_settled
 from sonolube.errors import OutsideRange
 from sonolube.friction.models import MeanGap
@@ -157,6 +157,7 @@ def contact_loss_fraction(motion: GapMotion) -> float:
 
 def _of_structure(rig: DrivenRig) -> SteadyVibration:
     """Return the steady vibration that the structure of a rig takes up under its drive."""
+    _refuse_drive_beyond_contact(rig)
     balanced = _balanced(rig, upper_branch=False)
     if balanced.status == Status.PERIODIC:
         return _of_balance(rig, balanced, balanced.reason(()))
@@ -172,6 +173,25 @@ def _of_structure(rig: DrivenRig) -> SteadyVibration:
                 return _of_balance(rig, states, f"{route} that of {appears} appears{states.contact_loss_note(())}")
     early = "" if attained.settled else f"; followed for {format_si(attained.marched_time, 's')}, before it has settled"
     return _of_march(rig, attained, balanced, f"{route} another motion appears: {found.description}{early}")
+
+
+def _refuse_drive_beyond_contact(rig: DrivenRig) -> None:
+    """Refuse a drive under which the tip, without contact, would move by more than the contact's force is defined for.
+
+    The force of a rough contact grows as the exponential of the approach; beyond some hundred decay lengths, where the
+    range of separations ends, it has no meaning, and marching such a motion in time takes minutes.
+    """
+    voltage = rig.drive.voltage_peak_to_peak or 0.0
+    per_volt = float(np.abs(drive_receptance(rig.structure, frequency=np.array([rig.drive.frequency])))[0]) / 2
+    reach = rest_separation(rig) - separation_range(rig.contact)[0]
+    if per_volt * voltage <= reach:
+        return
+    free, most = format_si(per_volt * voltage, "m"), format_si(reach, "m")
+    raise OutsideRange(
+        f"drive.voltage_peak_to_peak {format_si(voltage, 'V')} would move the tip by {free} without"
+        f" contact, beyond the {most} for which the force of this contact is defined; take at most"
+        f" {format_si(reach / per_volt, 'V', digits=2)}"
+    )
 
 
 def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:

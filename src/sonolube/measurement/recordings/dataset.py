@@ -1,6 +1,6 @@
 """Assembly of a recording (xarray dataset) from raw columns: vocabulary names, SI units, one axis and provenance."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +17,7 @@ from sonolube.measurement.recordings.channel_choice import (
     name_and_unit,
     require_common_length,
 )
+from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
@@ -72,11 +73,25 @@ def recording_dataset(
     if not variables:
         raise InvalidInput(f"{path}: holds no channel beside its {quantity}")
     known = quantities()[quantity]
+    if not partial:
+        table = replace(table, caveats=(*table.caveats, *_damaged(variables, axis, quantity)))
     return xr.Dataset(
         variables,
         coords={quantity: (quantity, axis, {"units": known.unit or "1", "long_name": known.meaning})},
         attrs=_attributes(table, path, mapping, digest, axis if quantity == "time" else None),
     )
+
+
+def _damaged(
+    variables: Mapping[str, tuple[str, Floats, dict[str, str | float]]], axis: Floats, quantity: str
+) -> list[str]:
+    """Return the caveats on damaged samples of all channels."""
+    label = f"{quantity} [{unit_of(quantity) or '1'}]"
+    return [
+        caveat
+        for name, (_, values, attributes) in variables.items()
+        for caveat in damaged_sample_caveats(name, values, unit=str(attributes["units"]), axis=axis, axis_label=label)
+    ]
 
 
 def _selected(table: RawTable, mapping: RecordingMapping, path: Path) -> RawTable:
