@@ -10,7 +10,7 @@ from sonolube.checks import Floats
 from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats
 from sonolube.measurement.recordings.reader import read_recording
 
-TIME = np.arange(2000) * 0.01
+TIME: Floats = np.arange(2000, dtype=np.float64) * 0.01
 
 
 def caveats(values: Floats) -> tuple[str, ...]:

@@ -43,6 +43,6 @@ def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats
         return ()
     return tuple(
         f"{name} is {values[place]:.3g} {unit} at {axis_label} = {axis[place]:.6g}, {_REACH:g} times or more as far"
-        " from its median as every other sample: a damaged sample, which each mean contains; leave its line out of the file"
+        " from its median as every other sample: a damaged sample, which each mean contains; leave its line out"
         for place in known[np.sort(np.argsort(distance)[-count:])]
     )
