@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 RIVAL := .venv-surfalize
+LOWEST := .venv-lowest
 INSTALL := $(BIN)/uv pip install --quiet --compile-bytecode --python $(BIN)/python
 RUN := OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg
 # tests start the program some 200 times and import 400 files in each process, which is faster from byte code, also where
@@ -13,7 +14,7 @@ OUT := out
 export SURFALIZE_PYTHON ?= $(abspath $(wildcard $(RIVAL)/bin/python))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test surfalize lint docs bench reliability lock clean
+.PHONY: help demo test lowest surfalize lint docs bench reliability lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
@@ -27,6 +28,12 @@ test: $(VENV)/test ## lint and run every test, of types too
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(TEST)
+
+# warnings are of packages newer than the lowest, which the lowest ones call; the schema is written by the newest pydantic
+lowest: $(LOWEST)/installed ## run a part of the tests with the lowest versions that pyproject.toml allows
+	$(RUN) $(LOWEST)/bin/python -m pytest -q -n 2 --dist worksteal -W ignore::DeprecationWarning -k "not schema_in_the_docs" \
+	    tests/measurement/recordings tests/measurement/impedance tests/measurement/surface_files tests/test_units.py \
+	    tests/test_unit_grammar.py tests/rig/file tests/wear tests/protocol tests/cli/predict
 
 surfalize: $(RIVAL)/installed ## install surfalize beside sonolube, for the tests that compare with it
 
@@ -61,7 +68,7 @@ lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	    - -o requirements/surfalize.txt
 
 clean: ## remove the environment and everything generated
-	rm -rf $(VENV) $(RIVAL) $(OUT) .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
+	rm -rf $(VENV) $(RIVAL) $(LOWEST) $(OUT) .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # -- environments: one, which grows as targets ask for more
@@ -88,6 +95,12 @@ $(VENV)/test: $(VENV)/runtime requirements/test.txt
 $(RIVAL)/installed: $(VENV)/uv requirements/surfalize.txt
 	test -x $(RIVAL)/bin/python || $(PYTHON) -m venv $(RIVAL)
 	$(BIN)/uv pip install --quiet --python $(RIVAL)/bin/python --require-hashes -r requirements/surfalize.txt
+	@touch $@
+
+$(LOWEST)/installed: $(VENV)/uv pyproject.toml
+	$(PYTHON) -m venv --clear $(LOWEST)
+	$(BIN)/uv pip install --quiet --compile-bytecode --python $(LOWEST)/bin/python --resolution lowest-direct --editable .
+	$(BIN)/uv pip install --quiet --compile-bytecode --python $(LOWEST)/bin/python pytest pytest-xdist hypothesis
 	@touch $@
 
 $(VENV)/docs: $(VENV)/test requirements/docs.txt

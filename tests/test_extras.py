@@ -77,6 +77,18 @@ def test_a_part_is_installed_if_all_its_modules_are_found(monkeypatch: MonkeyPat
     assert not EXTRAS["fem"].is_installed
 
 
+def test_a_part_that_is_not_published_for_a_computer_says_so(monkeypatch: MonkeyPatch) -> None:
+    monkeypatch.setattr("platform.machine", lambda: "aarch64")
+    monkeypatch.setattr("platform.system", lambda: "Linux")
+    monkeypatch.setattr("sys.platform", "linux")
+    assert str(missing_package("fem")).endswith(
+        "need netgen-mesher, which is not published for Linux on aarch64: take macOS or x86_64"
+    )
+    assert EXTRAS["web"].obstacle == ""
+    monkeypatch.setattr("sys.platform", "darwin")
+    assert str(missing_package("fem")).endswith("which is not installed: pip install 'sonolube[fem]'")
+
+
 def test_the_error_of_a_missing_part_is_one_line_with_what_is_refused_and_another_way_out() -> None:
     line = "plate.sur: Interactive maps need Plotly, which is not installed: pip install 'sonolube[web]', or take PNG"
     assert str(missing_package("web", context="plate.sur", remedy="take PNG")) == line

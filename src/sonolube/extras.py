@@ -1,5 +1,7 @@
 """Optional parts of the installation: the packages that each brings, what needs them, and how it is installed."""
 
+import platform
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -22,12 +24,23 @@ class Extra:
         Modules that have to be found for the part to work.
     needed_by : str
         What needs it, at the beginning of a sentence.
+    machines : tuple of str
+        Processors for which the package is published, beside those of macOS; empty where it is for all.
     """
 
     name: str
     package: str
     modules: tuple[str, ...]
     needed_by: str
+    machines: tuple[str, ...] = ()
+
+    @property
+    def obstacle(self) -> str:
+        """Why it cannot be installed on this computer; empty where it can."""
+        machine = platform.machine()
+        if not self.machines or sys.platform == "darwin" or machine in self.machines:
+            return ""
+        return f"is not published for {platform.system()} on {machine}: take macOS or {self.machines[0]}"
 
     @property
     def command(self) -> str:
@@ -46,6 +59,7 @@ _ALL = (
         package="netgen-mesher",
         modules=("netgen",),
         needed_by="Bodies and their meshes, in modes, horn design and impedance compute,",
+        machines=("x86_64", "AMD64"),
     ),
     Extra(
         name="surfaces",
@@ -91,7 +105,7 @@ def missing_package(name: str, *, context: str = "", remedy: str = "") -> Missin
     MissingPackage
     """
     extra = EXTRAS[name]
-    line = f"{extra.needed_by} need {extra.package}, which is not installed: {extra.command}"
+    line = f"{extra.needed_by} need {extra.package}, which {extra.obstacle or f'is not installed: {extra.command}'}"
     line = f"{context}: {line}" if context else line[:1].lower() + line[1:]
     return MissingPackage(f"{line}, or {remedy}" if remedy else line)
 

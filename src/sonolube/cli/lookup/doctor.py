@@ -112,7 +112,11 @@ class Diagnosis(Answer):
             "processor_cores": os.cpu_count(),
             "packages": {name: found or None for name, found in self.packages.items()},
             "extras": {
-                name: {"installed": installed, "command": EXTRAS[name].command}
+                name: {
+                    "installed": installed,
+                    "command": EXTRAS[name].command,
+                    "obstacle": EXTRAS[name].obstacle or None,
+                }
                 for name, installed in self.extras.items()
             },
             "gpu": {"name": self.gpu or None, "reason": self.gpu_obstacle},
