@@ -21,6 +21,7 @@ from sonolube.identification.spectral_residual import (
     LOG_COMPLEX,
     RESIDUALS,
     caveats_of_spectrum,
+    inductive_caveats,
     residual_for,
     residual_named,
 )
@@ -42,7 +43,6 @@ _ROUNDING = 1e-9  # current of a branch over the total, below which it is roundi
 _MOST_CANDIDATES = 3  # fitted for the next branch
 _CORRELATED = 3.0  # residuals over independent ones, from which on a warning is given
 _POINTS_PER_BRANCH = 4
-_INDUCTIVE_SHARE = 0.05  # of the points
 _MOSTLY = 0.5  # of the points
 _LARGEST_LOGARITHM = 300.0  # of a parameter, so that its square does not overflow
 _LARGEST_ERROR = 0.5  # standard error of the logarithm of a parameter
@@ -203,7 +203,8 @@ def fit_circuit(
     if found.residual_correlation > _CORRELATED:
         others = _other_residuals(measured, chosen, has_phase=spectrum.has_phase)
         found = replace(found, intervals=_over_residuals(found, others))
-    of_spectrum = (*turned, *caveats_of_spectrum(spectrum, found.intervals), *_inductive(spectrum, found.circuit))
+    fitted = circuit_admittance(found.circuit, frequency=spectrum.frequency)
+    of_spectrum = (*turned, *caveats_of_spectrum(spectrum, found.intervals), *inductive_caveats(spectrum, fitted))
     return replace(found, caveats=(*of_spectrum, *found.caveats))
 
 
@@ -356,21 +357,6 @@ def _quantities(logarithms: Floats) -> dict[str, float]:
             f"coupling_factor_{index + 1}": float(found.coupling_factor[index]),
         }
     return named
-
-
-def _inductive(spectrum: ImpedanceSpectrum, circuit: ButterworthVanDyke) -> tuple[str, ...]:
-    """Warning about a part of the sweep in which the spectrum is inductive and the fitted circuit capacitive."""
-    f = spectrum.frequency
-    inductive = spectrum.admittance.imag < 0
-    apart = inductive & (circuit_admittance(circuit, frequency=f).imag > 0)
-    if np.mean(inductive) > _MOSTLY:
-        apart = inductive
-    if not np.mean(apart) > _INDUCTIVE_SHARE:
-        return ()
-    return (
-        f"the impedance is inductive at {np.mean(apart):.0%} of the points, from {f[apart][0]:.6g} to"
-        f" {f[apart][-1]:.6g} Hz, where a transducer is capacitive: leads or a coil in series, which the circuit lacks",
-    )
 
 
 def _circuit_fit(

@@ -10,6 +10,8 @@ from sonolube.errors import UnknownName
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
 
+_INDUCTIVE_SHARE = 0.05  # of the points
+_MOSTLY = 0.5  # of the points
 _HARDLY_DETERMINED = 4.0  # upper end of an interval over the lower
 
 LOG_COMPLEX = "log-complex"
@@ -51,6 +53,18 @@ def caveats_of_spectrum(spectrum: ImpedanceSpectrum, intervals: Mapping[str, Con
     if not spectrum.has_phase:
         return (f"the spectrum has no phase, so the fit is to the magnitude of the admittance alone; {named}",)
     return (f"{named}; the spectrum is not that of the model",) if loose else ()
+
+
+def inductive_caveats(spectrum: ImpedanceSpectrum, fitted: Complexes) -> tuple[str, ...]:
+    """Warning about a part of a spectrum that is inductive where the fitted admittance is capacitive."""
+    f, inductive = spectrum.frequency, spectrum.admittance.imag < 0
+    apart = inductive if np.mean(inductive) > _MOSTLY else inductive & (fitted.imag > 0)
+    if not np.mean(apart) > _INDUCTIVE_SHARE:
+        return ()
+    return (
+        f"the impedance is inductive at {np.mean(apart):.0%} of the points, from {f[apart][0]:.6g} to"
+        f" {f[apart][-1]:.6g} Hz, where a transducer is capacitive: leads or a coil in series, which the circuit lacks",
+    )
 
 
 def residual_named(name: str) -> Callable[[Complexes, Complexes], Floats]:
