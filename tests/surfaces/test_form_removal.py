@@ -110,3 +110,18 @@ def test_missing_pixels_stay_missing_and_have_a_form() -> None:
 def test_an_undetermined_form_is_refused(degree: int, reference: np.ndarray | None, message: str) -> None:
     with raises(InvalidInput, match=message):
         fit_form(surface(X), degree=degree, reference=reference)
+
+
+def test_the_robust_form_weighs_a_pixel_until_4_685_standard_deviations_and_no_further() -> None:
+    # heights of +-1 in a chessboard: the standard deviation by the median absolute residual is 1.4826, the reach 6.946
+    rows, columns = np.indices((60, 60))
+    board = np.where((rows + columns) % 2 == 0, 1.0, -1.0)
+
+    def lifted_by(height: float) -> float:
+        z = board.copy()
+        z[2, 2] = height
+        return float(fit_form(surface(1e-6 * z), robust=True).height[2, 2] / 1e-6)
+
+    without = lifted_by(1000.0)
+    assert lifted_by(7.1) == approx(without, abs=1e-6)
+    assert lifted_by(6.5) > without + 1e-5

@@ -184,3 +184,24 @@ def test_cutoffs_in_the_wrong_order_are_refused() -> None:
 def test_a_profile_without_a_measured_point_is_refused() -> None:
     with raises(InvalidInput, match="an array of profiles with a measured point"):
         profile_low_pass(height=[np.nan, np.nan], spacing_x=1e-6, cutoff_length=CUTOFF)
+
+
+def test_the_robust_filter_weighs_a_pixel_until_three_standard_deviations_and_no_further() -> None:
+    # heights of +-1 in a chessboard have the median absolute residual 1, so that ISO 16610-31's bisquare ends at 4.4478
+    rows, columns = np.indices((60, 60))
+    board = np.where((rows + columns) % 2 == 0, 1.0, -1.0)
+
+    def lifted_by(height: float) -> float:
+        z = board.copy()
+        z[30, 30] = height
+        z[30, 31] = -board[30, 31]  # so that the others have no mean
+        smooth = low_pass(surface(1e-6 * z, 2e-6, 2e-6), cutoff_length=60e-6, robust=True).height
+        return float(smooth[30, 30] / 1e-6)
+
+    def bend(*heights: float) -> float:
+        first, middle, last = map(lifted_by, heights)
+        return abs(first - 2 * middle + last)
+
+    # beyond the reach the height enters by the first smooth alone, which has no weights and is linear in it
+    assert bend(4.5, 5.0, 5.5) < 1e-7
+    assert bend(4.0, 4.4, 4.8) > 1e-5

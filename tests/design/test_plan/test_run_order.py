@@ -59,3 +59,22 @@ def test_states_on_specimens_of_their_own_begin_in_turn_so_that_a_drift_cancels_
         steps = [place if on else -place for place, (at, on) in enumerate(tests) if at == point]
         assert sum(steps) == 0  # a drift by one unit a test
     assert {run.specimens for run in runs if run.block == 2} == {(f"{n}b", f"{n}a") for n in (4, 5, 6)}
+
+
+def orders(seed: int) -> list[list[int]]:
+    """Points of each block in their order, six blocks of eight points."""
+    runs = randomised_runs(8, 6, blocking=BLOCKINGS["day"], specimens=1, seed=seed)
+    return [[run.point for run in runs if run.block == block] for block in range(1, 7)]
+
+
+def test_the_order_differs_between_blocks_and_seeds_and_is_kept_by_a_seed() -> None:
+    assert orders(1) == orders(1) != orders(2)
+    assert len(set(map(tuple, orders(1)))) == 6
+    assert list(range(8)) not in orders(1)[1:]
+
+
+def test_every_point_takes_every_place_of_a_later_block_equally_often() -> None:
+    places = np.array([order.index(0) for seed in range(200) for order in orders(seed)[1:]])
+    counted = np.bincount(places, minlength=8)
+    # 125 expected of 1000, standard deviation 10.5
+    assert np.all(np.abs(counted - 125) < 45)
