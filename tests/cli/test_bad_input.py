@@ -72,7 +72,7 @@ RIG_COMMANDS = {
     ("rig", "line"),
     [
         ("none.toml", "none.toml: no such file"),
-        ("examples", "examples: cannot be read: Is a directory"),
+        ("examples", "examples: cannot be read: is a folder, not a file"),
         ("garbage", "garbage: not UTF-8 text: byte 0x80 at 128"),
     ],
 )

@@ -27,7 +27,7 @@ def poisson_friction_ratio(
     horn: Horn,
     normal_load: Floats,
     axial_amplitude: float,
-    steel_yield_strength: float = STEEL_YIELD_STRENGTH,
+    yield_strength: float = STEEL_YIELD_STRENGTH,
 ) -> Floats:
     """Return the friction ratio at the centre of the waveguide by the cube over the separating half period, D 3.15. []
 
@@ -41,7 +41,7 @@ def poisson_friction_ratio(
         Force pressing the bodies together. [N]
     axial_amplitude : float
         Axial amplitude at the ends of the waveguide. [m]
-    steel_yield_strength : float
+    yield_strength : float
         Yield strength of steel on steel. [Pa]
 
     Returns
@@ -49,7 +49,7 @@ def poisson_friction_ratio(
     ndarray, shape of `normal_load`
     """
     waveguide = poisson_waveguide(horn, axial_amplitude=axial_amplitude, frequency=si_value("3.1.4-frequency"))
-    contact = poisson_contact(bodies=bodies, steel_yield_strength=steel_yield_strength)
+    contact = poisson_contact(bodies=bodies, yield_strength=yield_strength)
     return dong_2015_half_period_ratio(
         contact, normal_load=normal_load, vibration_amplitude=normal_amplitude(waveguide)
     )

@@ -29,14 +29,14 @@ RMS_OVER_ARITHMETIC_MEAN: Final = sqrt(pi / 2)
 Bodies = Literal["aluminium_steel", "steel_steel"]
 
 
-def poisson_contact(*, bodies: Bodies, steel_yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
+def poisson_contact(*, bodies: Bodies, yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
     """Return the contact of the Poisson-effect tests, Table 3.1.
 
     Parameters
     ----------
     bodies : str
         Pair in contact.
-    steel_yield_strength : float
+    yield_strength : float
         Yield strength of steel on steel. [Pa]
 
     Returns
@@ -51,9 +51,7 @@ def poisson_contact(*, bodies: Bodies, steel_yield_strength: float = STEEL_YIELD
         for metal in ("steel", "aluminium")
     )
     softer, strength = (
-        (steel, steel_yield_strength)
-        if bodies == "steel_steel"
-        else (aluminium, si_value("table-3.1-yield_strength-1"))
+        (steel, yield_strength) if bodies == "steel_steel" else (aluminium, si_value("table-3.1-yield_strength-1"))
     )
     return RoughContact(
         roughness=_roughness("3.1"),
@@ -79,30 +77,30 @@ def wear_contact() -> RoughContact:
     )
 
 
-def steel_on_steel_contact(*, nominal_area: float, steel_yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
+def steel_on_steel_contact(*, nominal_area: float, yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
     """Return the contact of two steel bodies with the roughness of Table 3.2.
 
     Parameters
     ----------
     nominal_area : float
         Nominal contact area. [m2]
-    steel_yield_strength : float
+    yield_strength : float
         Yield strength of the steel. [Pa]
 
     Returns
     -------
     RoughContact
     """
-    pressed = poisson_contact(bodies="steel_steel", steel_yield_strength=steel_yield_strength)
+    pressed = poisson_contact(bodies="steel_steel", yield_strength=yield_strength)
     return replace(pressed, roughness=_roughness("3.2"), nominal_area=nominal_area)
 
 
-def uncoated_plate_contact(*, steel_yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
+def uncoated_plate_contact(*, yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
     r"""Return the contact of the steel pin on the uncoated steel plates of section 4.1.
 
     Parameters
     ----------
-    steel_yield_strength : float
+    yield_strength : float
         Yield strength of the steel. [Pa]
 
     Returns
@@ -118,7 +116,7 @@ def uncoated_plate_contact(*, steel_yield_strength: float = STEEL_YIELD_STRENGTH
     is not printed. Summit radius and density are those of Table 3.2.
     """
     area = si_value("table-4.1-nominal_area-1")
-    rough = steel_on_steel_contact(nominal_area=area, steel_yield_strength=steel_yield_strength)
+    rough = steel_on_steel_contact(nominal_area=area, yield_strength=yield_strength)
     height = RMS_OVER_ARITHMETIC_MEAN * si_value("4.1.3-roughness-uncoated")
     return replace(rough, roughness=replace(rough.roughness, rms_height=height))
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+import numpy as np
+
 from sonolube.errors import InvalidInput
 from sonolube.input_files import require_file
 from sonolube.measurement.file_format import detect_format, read_head, refuse_unreadable
@@ -167,7 +169,9 @@ def _height_map(
         if max(step_x, step_y) > _LARGEST_SPACING:
             too_large = f"spacing must not exceed {_LARGEST_SPACING:g} m, got {max(step_x, step_y):g} m"
             raise InvalidInput(f"{too_large}; check its unit")
-        return HeightMap(height=unit * reading.height, spacing_x=step_x, spacing_y=step_y)
+        with np.errstate(over="ignore"):  # the height map refuses infinite heights
+            height = unit * reading.height
+        return HeightMap(height=height, spacing_x=step_x, spacing_y=step_y)
     except InvalidInput as failure:
         raise InvalidInput(f"{path}: {failure}") from None
 

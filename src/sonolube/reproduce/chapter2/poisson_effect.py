@@ -92,7 +92,7 @@ def _friction_reductions() -> Iterator[Row]:
             f"{100 * at_waveguide_amplitude:.1f} %.{remark}"
         )
         weakest, strongest = (
-            reduction("2.1.2-welder-amplitude", steel_yield_strength=strength) for strength in STEEL_YIELD_STRENGTHS
+            reduction("2.1.2-welder-amplitude", yield_strength=strength) for strength in STEEL_YIELD_STRENGTHS
         )
         yield comparison_row(
             published,
@@ -105,12 +105,7 @@ def _friction_reductions() -> Iterator[Row]:
 
 
 def _cube_reduction(
-    amplitude: str,
-    *,
-    bodies: Bodies,
-    horn: Horn,
-    normal_load: float,
-    steel_yield_strength: float = STEEL_YIELD_STRENGTH,
+    amplitude: str, *, bodies: Bodies, horn: Horn, normal_load: float, yield_strength: float = STEEL_YIELD_STRENGTH
 ) -> float:
     """Return the friction reduction by the cube at a published axial amplitude, given by its id. []"""
     ratio = poisson_friction_ratio(
@@ -118,7 +113,7 @@ def _cube_reduction(
         horn=horn,
         normal_load=np.asarray(normal_load),
         axial_amplitude=si_value(amplitude),
-        steel_yield_strength=steel_yield_strength,
+        yield_strength=yield_strength,
     )
     return 1 - float(ratio)
 

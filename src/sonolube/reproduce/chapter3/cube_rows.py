@@ -87,9 +87,7 @@ def _friction() -> Iterator[Row]:
         reductions = partial(_reductions, bodies=bodies, horn=horn)
         at_welder_amplitude = reductions("2.1.2-welder-amplitude")
         at_waveguide_amplitude = reductions("4.3.5-waveguide-amplitude")
-        possible = [
-            reductions("2.1.2-welder-amplitude", steel_yield_strength=strength) for strength in STEEL_YIELD_STRENGTHS
-        ]
+        possible = [reductions("2.1.2-welder-amplitude", yield_strength=strength) for strength in STEEL_YIELD_STRENGTHS]
         is_open = bodies == "steel_steel"
         note = (
             "Cube over the separating half period (D 3.15), mean over the loads at the 8.5 um of D 2.1.2, "
@@ -135,16 +133,14 @@ def _mean_error(reduction: Floats, published: str) -> float:
     return float(np.mean(np.abs(1 - reduction - test) / test))
 
 
-def _reductions(
-    amplitude: str, *, bodies: Bodies, horn: Horn, steel_yield_strength: float = STEEL_YIELD_STRENGTH
-) -> Floats:
+def _reductions(amplitude: str, *, bodies: Bodies, horn: Horn, yield_strength: float = STEEL_YIELD_STRENGTH) -> Floats:
     """Return the friction reduction by the cube at each load, at a published axial amplitude, given by its id. []"""
     return 1 - poisson_friction_ratio(
         bodies=bodies,
         horn=horn,
         normal_load=_loads(),
         axial_amplitude=si_value(amplitude),
-        steel_yield_strength=steel_yield_strength,
+        yield_strength=yield_strength,
     )
 
 

@@ -97,14 +97,14 @@ def example_points() -> tuple[ExamplePoint, ...]:
     )
 
 
-def cube_friction(*, voltage_peak_to_peak: ArrayLike, steel_yield_strength: float = STEEL_YIELD_STRENGTH) -> Floats:
+def cube_friction(*, voltage_peak_to_peak: ArrayLike, yield_strength: float = STEEL_YIELD_STRENGTH) -> Floats:
     """Return the friction of the example test by the cube over the separating half period, D 3.15. [N]
 
     Parameters
     ----------
     voltage_peak_to_peak : array_like, any shape
         Drive voltage, peak to peak. [V]
-    steel_yield_strength : float
+    yield_strength : float
         Yield strength of the plates. [Pa]
 
     Returns
@@ -113,7 +113,7 @@ def cube_friction(*, voltage_peak_to_peak: ArrayLike, steel_yield_strength: floa
     """
     test = example_test()
     ratio = dong_2015_half_period_ratio(
-        uncoated_plate_contact(steel_yield_strength=steel_yield_strength),
+        uncoated_plate_contact(yield_strength=yield_strength),
         normal_load=test["normal_load"],
         vibration_amplitude=vibration_amplitude(voltage_peak_to_peak=voltage_peak_to_peak),
     )

@@ -171,7 +171,7 @@ def _cube_friction(point: power_map.ExamplePoint) -> Row:
     volts = point.voltage_peak_to_peak
     friction = float(power_map.cube_friction(voltage_peak_to_peak=volts))
     weakest, strongest = (
-        float(power_map.cube_friction(voltage_peak_to_peak=volts, steel_yield_strength=strength))
+        float(power_map.cube_friction(voltage_peak_to_peak=volts, yield_strength=strength))
         for strength in STEEL_YIELD_STRENGTHS
     )
     note = (
