@@ -23,7 +23,6 @@ _MISSING = ([b"bad"], [b"no", b"data"])  # spellings of Wyko and Zygo; "nan" is 
 _REMOTE = 1000.0  # distance of one position from the others over their extent
 _FEWEST_POSITIONS = 3  # of which one can be remote
 _LEAST_FILLED = 0.05  # fraction of the grid
-_LARGEST_NUMBER = 1e18  # a coordinate of 1e6 m, the largest of a height map, in the smallest unit in use, pm
 # Texts that SurfaceTopography reads with the unit of their header: Hommel-Etamic's HFM, whose third column is a flag,
 # Dektak's export, and matrices with a comment such as "# Width: 12.34 um".
 _STATES_UNIT = re.compile(rb"X;Y;valid|Scan Parameters|Lateral um,|(?m:^#[^:\n]*:\s*[-+\d.,eE]+\s*\S{0,3}m\s*$)")
@@ -67,8 +66,7 @@ class XyzText:
         Raises
         ------
         InvalidInput
-            Naming the byte at which a line is no point or the point of which a number is beyond 1e18, or stating how
-            the points fail to form a grid.
+            Naming the byte at which a line is no point, or stating how the points fail to form a grid.
         """
         x, y, z = _points(stream, path)
         try:
@@ -153,20 +151,7 @@ def _points(stream: BinaryIO, path: Path) -> tuple[Floats, Floats, Floats]:
     if not values:
         raise InvalidInput(f"{path}: byte {offset}: " + ("no point x y z found" if offset else "the file is empty"))
     points = np.frombuffer(values, dtype=np.float64).reshape(-1, columns)
-    _require_lengths(points, path)
     return points[:, 0], points[:, 1] if columns == 3 else np.zeros(len(points)), points[:, -1]
-
-
-def _require_lengths(points: Floats, path: Path) -> None:
-    """Refuse points with a number that is no length in any unit, naming the first, of shape (n, 2) or (n, 3)."""
-    beyond = np.abs(points) > _LARGEST_NUMBER
-    if beyond.any():
-        row, column = np.argwhere(beyond)[0]
-        axis = ("x", "y", "z")[column] if points.shape[1] == 3 else ("x", "z")[column]
-        raise InvalidInput(
-            f"{path}: point {row + 1}: {axis} = {points[row, column]:g} is beyond {_LARGEST_NUMBER:g}, no length in any"
-            " unit; correct it, or write nan for a height that was not measured"
-        )
 
 
 def _point(line: bytes) -> tuple[float, ...] | None:
