@@ -150,6 +150,14 @@ def test_the_drive_voltage_oscillates_about_its_offset() -> None:
     assert volts[0] == approx(volts[-1], abs=1e-6)
 
 
+def test_a_drive_about_a_negative_offset_is_the_mirror_of_that_about_a_positive_one() -> None:
+    t = np.linspace(0, 1 / 22e3, 1001)
+    volts = drive_voltage(WAVEFORMS["sine"], voltage_offset=-75.0, voltage_peak_to_peak=150.0, frequency=22e3, time=t)
+    assert volts.min() == approx(-150.0, abs=0.01)
+    assert volts.max() == approx(0.0, abs=0.01)
+    assert volts.mean() == approx(-75.0, abs=0.1)
+
+
 @pytest.mark.parametrize("shape", ["linear", "cosine"])
 def test_a_ramp_rises_from_zero_to_one(shape: str) -> None:
     ramp = StartUpRamp(duration=0.02, shape=shape)

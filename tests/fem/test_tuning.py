@@ -26,6 +26,8 @@ STEEL = isotropic_medium(youngs_modulus=E, poisson_ratio=NU, density=RHO)
 
 SLIM = isotropic_medium(youngs_modulus=E, poisson_ratio=0.0, density=RHO)
 
+SPEED = float(np.sqrt(E / RHO))
+
 
 def bar(length: float, cells: int) -> Model:
     mesh = box_mesh(length=length, width=0.004, thickness=0.006, divisions=(cells, 1, 1))
@@ -36,13 +38,26 @@ def test_a_bar_is_tuned_to_half_a_wavelength_with_the_slope_of_bar_theory() -> N
     def model_at(length: float, element_size: float) -> Model:
         return bar(length, max(2, round(0.1 / element_size)))
 
-    speed = float(np.sqrt(E / RHO))
     found = tuned_mode(
         model_at, name="axial 1", axis="x", frequency=20e3, length=0.1, element_size=0.025, relative_tolerance=1e-3
     )
-    assert found.length == approx(speed / 40e3, rel=5e-4)
+    assert found.length == approx(SPEED / 40e3, rel=5e-4)
     assert found.mode.frequency == approx(20e3, rel=5e-4)
     assert found.frequency_per_length == approx(-20e3 / found.length, rel=0.01)
+
+
+@pytest.mark.parametrize("start", [0.012, 0.014])
+def test_a_frequency_that_bends_over_a_size_is_met_within_half_a_thousandth(start: float) -> None:
+    # f falls by 4e-3 (size / 20 mm)^2 of itself, so that one step along the slope misses the size where f is 20 kHz
+    def model_at(size: float, element_size: float) -> Model:
+        length = SPEED / 40e3 * (1 + 4e-3 * (size / 0.02) ** 2) / (1 + 4e-3)
+        return bar(length, max(2, round(0.1 / element_size)))
+
+    found = tuned_mode(
+        model_at, name="axial 1", axis="x", frequency=20e3, length=start, element_size=0.025, relative_tolerance=1e-4
+    )
+    assert found.mode.frequency == approx(20e3, rel=5e-4)
+    assert found.length == approx(0.02, rel=0.5 * 5e-4 / 4e-3 * 1.1)
 
 
 def test_a_tuned_horn_keeps_its_frequency_on_a_finer_mesh_of_another_order() -> None:
