@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from sonolube.contact import GaussianHeights, separation
-from sonolube.friction import sine_stick_slip_ratio
+from sonolube.models.contact import GaussianHeights, separation
+from sonolube.models.friction import sine_stick_slip_ratio
 from sonolube.validation.assessment import FITTED_SETS, assess_variant, leave_one_set_out_fits
 from sonolube.validation.comparison import compared_models
 from sonolube.validation.fitting import root_mean_square

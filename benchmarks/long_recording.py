@@ -19,10 +19,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from peak_memory import peak_memory  # type: ignore[import-not-found]
 
-from sonolube.lab import Block, Channel, Devices, DriveSetting, SamplesLost, run_protocol
-from sonolube.lab.block import quantity_of
-from sonolube.lab.records import new_run, read_raw_blocks
-from sonolube.protocol import read_protocol
+from sonolube.facts.protocol import read_protocol
+from sonolube.laboratory import Block, Channel, Devices, DriveSetting, SamplesLost, run_protocol
+from sonolube.laboratory.block import quantity_of
+from sonolube.laboratory.records import new_run, read_raw_blocks
 
 RATE, CHANNELS = 100_000, 8
 BUFFER = 1.0  # s

@@ -8,7 +8,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from sonolube.contact import (
+from sonolube.models.contact import (
     ASPERITY_LAWS,
     ContactPair,
     ExponentialHeights,
@@ -22,7 +22,7 @@ from sonolube.contact import (
     real_contact_area,
     separation,
 )
-from sonolube.surfaces import Roughness
+from sonolube.models.surfaces import Roughness
 
 CONTACT = RoughContact(
     roughness=Roughness(rms_height=0.1e-6, summit_radius=100e-6, summit_density=4.76e9),

@@ -23,7 +23,8 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from scipy import sparse
 
 from sonolube.checks import Floats
-from sonolube.fem import (
+from sonolube.facts.materials import piezo_ceramic
+from sonolube.models.fem import (
     Electrodes,
     Geometry,
     Medium,
@@ -48,15 +49,14 @@ from sonolube.fem import (
     ritz_frequencies,
     translate,
 )
-from sonolube.fem.solver.modes import spectral_shift
-from sonolube.fem.solver.system import (
+from sonolube.models.fem.solver.modes import spectral_shift
+from sonolube.models.fem.solver.system import (
     LinearSolver,
     SystemMatrices,
     assemble_system,
     shift_invert_solver,
     superlu_factor,
 )
-from sonolube.materials import piezo_ceramic
 
 MODES = 20
 LENGTH, WIDTH, THICKNESS = 0.127, 0.06096, 0.0254

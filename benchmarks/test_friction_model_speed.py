@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from sonolube.contact import (
+from sonolube.models.contact import (
     ASPERITY_LAWS,
     ContactPair,
     GapMotion,
@@ -12,8 +12,8 @@ from sonolube.contact import (
     load_balanced_motion,
     sinusoidal_motion,
 )
-from sonolube.friction import FRICTION_MODELS, AsperityStickSlip, sine_stick_slip_ratio
-from sonolube.surfaces import Roughness
+from sonolube.models.friction import FRICTION_MODELS, AsperityStickSlip, sine_stick_slip_ratio
+from sonolube.models.surfaces import Roughness
 
 CONTACT = RoughContact(
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),

@@ -7,8 +7,8 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import quad
 
-from sonolube.contact import ASPERITY_LAWS, ContactPair, RoughContact, separation
-from sonolube.friction import (
+from sonolube.models.contact import ASPERITY_LAWS, ContactPair, RoughContact, separation
+from sonolube.models.friction import (
     DahlFriction,
     LuGreFriction,
     dahl_friction_history,
@@ -16,8 +16,8 @@ from sonolube.friction import (
     dong_2015_half_period_ratio,
     lugre_friction_history,
 )
-from sonolube.surfaces import Roughness
-from sonolube.wear import vibrating_cube_wear_rate
+from sonolube.models.surfaces import Roughness
+from sonolube.models.wear import vibrating_cube_wear_rate
 
 POINTS = 1_000_000
 CONTACT = RoughContact(

@@ -17,13 +17,13 @@ import pytest
 from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from sonolube.contact import decay_length
-from sonolube.dynamics import ExponentialGap, StartUpRamp, drive_receptance, march
-from sonolube.dynamics.backend import device_name
-from sonolube.dynamics.first_order_modes import first_order_modes
-from sonolube.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution
-from sonolube.dynamics.harmonic_balance.receptance import pole_residue_model
-from sonolube.dynamics.time_marching.integrator import step_quadrature
+from sonolube.models.contact import decay_length
+from sonolube.models.dynamics import ExponentialGap, StartUpRamp, drive_receptance, march
+from sonolube.models.dynamics.backend import device_name
+from sonolube.models.dynamics.first_order_modes import first_order_modes
+from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution
+from sonolube.models.dynamics.harmonic_balance.receptance import pole_residue_model
+from sonolube.models.dynamics.time_marching.integrator import step_quadrature
 from sonolube.rig import read_rig
 
 RIG = read_rig(Path(__file__).parent.parent / "examples" / "rigs" / "tribometer.toml")
@@ -70,8 +70,8 @@ def operations_of_a_march(pairs: int, nodes: int) -> float:
 
 def nodes_of(solution: BatchSolution, omega: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the least number of quadrature nodes of each solved point's friction averages."""
-    from sonolube.dynamics.friction_average.elliptic_quadrature import node_table_row
-    from sonolube.dynamics.gpu.friction_average import node_tables
+    from sonolube.models.dynamics.friction_average.elliptic_quadrature import node_table_row
+    from sonolube.models.dynamics.gpu.friction_average import node_tables
 
     fastest = omega[solution.on_gpu] * np.abs(solution.harmonics[solution.on_gpu, 0])
     return np.asarray(node_tables(1e-7).sizes[0][node_table_row(SPEEDS[0] / fastest)], dtype=np.float64)
@@ -92,7 +92,7 @@ def limits() -> dict[str, float]:
 @pytest.mark.gpu
 @pytest.mark.skipif(not device_name("gpu"), reason="there is no NVIDIA GPU with numba-cuda here")
 def test_steady_states_with_friction_beside_the_limits_of_the_card(benchmark: BenchmarkFixture) -> None:
-    from sonolube.dynamics.gpu import solve_on_gpu
+    from sonolube.models.dynamics.gpu import solve_on_gpu
 
     assert RIG.structure is not None
     model, law, given = pole_residue_model(RIG.structure), ExponentialGap(decay_length=LENGTH), drawn(POINTS)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from sonolube.friction import (
+from sonolube.models.friction import (
     Holder,
     SpringContact,
     approximate_guided_ratio,

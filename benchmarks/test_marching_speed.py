@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import solve_ivp
 
-from sonolube.dynamics import ExponentialGap
-from sonolube.dynamics.structure import Structure
-from sonolube.dynamics.transient import march
-from sonolube.dynamics.waveform import StartUpRamp
+from sonolube.models.dynamics import ExponentialGap
+from sonolube.models.dynamics.structure import Structure
+from sonolube.models.dynamics.transient import march
+from sonolube.models.dynamics.waveform import StartUpRamp
 
 Array = NDArray[np.float64]
 FREQUENCY, LOAD, DECAY_LENGTH, PERIODS, RAMPED, POINTS = 22e3, 3.0, 2e-6, 2200, 220, 1000

@@ -9,7 +9,12 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from sonolube.checks import Floats
-from sonolube.friction import SpringContact, load_balanced_approach, normal_oscillation_ratio, sine_stick_slip_ratio
+from sonolube.models.friction import (
+    SpringContact,
+    load_balanced_approach,
+    normal_oscillation_ratio,
+    sine_stick_slip_ratio,
+)
 from sonolube.prediction import LivePrediction, predict
 from sonolube.prediction.closures import CLOSURES, Closure, Conditions
 from sonolube.rig import Rig, read_rig

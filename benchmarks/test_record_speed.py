@@ -11,8 +11,8 @@ import pytest
 from nptdms import ChannelObject, TdmsWriter
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from sonolube.lab import Block, Channel
-from sonolube.lab.records import new_run
+from sonolube.laboratory import Block, Channel
+from sonolube.laboratory.records import new_run
 
 CHANNELS = [Channel(name=f"channel{number}", quantity="temperature") for number in range(8)]
 RATE, SAMPLES, BLOCKS = 100_000.0, 1000, 1000

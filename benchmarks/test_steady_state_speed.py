@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import solve_ivp
 
-from sonolube.contact import decay_length
-from sonolube.dynamics import ExponentialGap, steady_state
-from sonolube.dynamics.friction_average.elliptic_quadrature import elliptic_nodes, node_table_row
-from sonolube.dynamics.kinematic_friction import friction_averages
-from sonolube.dynamics.structure import contact_receptance, drive_receptance
+from sonolube.models.contact import decay_length
+from sonolube.models.dynamics import ExponentialGap, steady_state
+from sonolube.models.dynamics.friction_average.elliptic_quadrature import elliptic_nodes, node_table_row
+from sonolube.models.dynamics.kinematic_friction import friction_averages
+from sonolube.models.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.rig import read_rig
 
 Array = NDArray[np.float64]
@@ -318,10 +318,10 @@ FIRST_CALL = """
 import time
 import numpy as np
 began = time.perf_counter()
-from sonolube.dynamics.kinematic_friction import friction_averages
-from sonolube.dynamics import steady_state
-from sonolube.dynamics import ExponentialGap
-from sonolube.dynamics.structure import Structure
+from sonolube.models.dynamics.kinematic_friction import friction_averages
+from sonolube.models.dynamics import steady_state
+from sonolube.models.dynamics import ExponentialGap
+from sonolube.models.dynamics.structure import Structure
 imported, worked = time.perf_counter(), time.process_time()
 structure = Structure(
     mass_matrix=np.diag([0.11, 2.5]), damping_matrix=30 * np.eye(2),

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from sonolube.surfaces import (
+from sonolube.models.surfaces import (
     SelfAffineSpectrum,
     areal_spectrum,
     autocorrelation,

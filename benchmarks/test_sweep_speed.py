@@ -18,9 +18,9 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import solve_ivp
 
-from sonolube.contact import decay_length
 from sonolube.design import compute_points, latin_hypercube_plan, sweep
-from sonolube.dynamics.structure import contact_receptance, drive_receptance
+from sonolube.models.contact import decay_length
+from sonolube.models.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.rig import read_rig
 
 RIG_FILE = Path(__file__).parent.parent / "examples" / "rigs" / "tribometer.toml"

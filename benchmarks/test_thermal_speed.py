@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from sonolube.friction import (
+from sonolube.models.friction import (
     BoundaryLubricant,
     StribeckCurve,
     acoustic_softening_ratio,
@@ -15,7 +15,7 @@ from sonolube.friction import (
     stribeck_coefficient,
     superposed_mean_stress,
 )
-from sonolube.thermal import (
+from sonolube.models.thermal import (
     EllipticSource,
     HeatedPin,
     ThermalSolid,

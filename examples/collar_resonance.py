@@ -8,7 +8,7 @@ from dataclasses import replace
 from sonolube.dong2015.collar_analysis import reduced_collar_model
 from sonolube.dong2015.collar_designs import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR
 from sonolube.dong2015.collar_tuning import main_resonance
-from sonolube.fem import harmonic_response
+from sonolube.models.fem import harmonic_response
 
 for case, changes in (("top closed", {}), ("top open", {"open_top": True}), ("base clamped", {"clamped": True})):
     model = reduced_collar_model(FINAL_COLLAR, **changes)

@@ -3,7 +3,7 @@
 Run: python examples/contact_of_two_surfaces.py
 """
 
-from sonolube.contact import (
+from sonolube.models.contact import (
     ASPERITY_LAWS,
     HEIGHT_DISTRIBUTIONS,
     ElasticBody,
@@ -12,7 +12,7 @@ from sonolube.contact import (
     real_contact_area,
     separation,
 )
-from sonolube.surfaces import Roughness
+from sonolube.models.surfaces import Roughness
 from sonolube.units import format_si
 
 steel = ElasticBody(youngs_modulus=200e9, poisson_ratio=0.29)

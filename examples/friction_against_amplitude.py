@@ -9,9 +9,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube.contact import separation
 from sonolube.figure import publication_style, write_figure
-from sonolube.friction import dong_2015_half_period_ratio
+from sonolube.models.contact import separation
+from sonolube.models.friction import dong_2015_half_period_ratio
 from sonolube.rig import read_rig
 from sonolube.vocabulary import quantity
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
-from sonolube.surfaces import SelfAffineSpectrum, gaussian_surface
+from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
+from sonolube.models.surfaces import SelfAffineSpectrum, gaussian_surface
 
 folder, rng = Path(sys.argv[1] if len(sys.argv) > 1 else "measured"), np.random.default_rng(1)
 folder.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,7 @@
 Run: python examples/stick_slip.py
 """
 
-from sonolube.friction import Holder, LuGreFriction, lugre_stick_slip
+from sonolube.models.friction import Holder, LuGreFriction, lugre_stick_slip
 
 # the published case of Canudas de Wit et al. (1995)
 law = LuGreFriction(

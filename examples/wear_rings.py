@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.surfaces import GrooveShape, GrooveTrack, synthetic_groove
+from sonolube.models.surfaces import GrooveShape, GrooveTrack, synthetic_groove
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "measured")
 for ring, depth in {"ring-off": 60e-6, "ring-on": 30e-6}.items():

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from sonolube.models.wear import cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.rig import read_rig, steady_vibration
-from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
 rig = read_rig(Path(__file__).parent / "rigs" / "tribometer.toml")
 loads = np.array([1.0, 2.0, 3.0, 4.0, 5.0])

@@ -27,7 +27,7 @@ ROOMS = {
 _OTHER_TESTS = (
     "tests/validation",
     "tests/rig",
-    "tests/reproduce",
+    "tests/reproduction",
     "tests/design",
     "tests/dong2015",
     "tests/measurement",

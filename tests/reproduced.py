@@ -5,8 +5,8 @@ from dataclasses import replace
 from functools import cache
 from unittest.mock import patch
 
-from sonolube.reproduce import SECTIONS, Reproduction, Row, chapters, reproduction
-from sonolube.reproduce.section import Section
+from sonolube.reproduction import SECTIONS, Reproduction, Row, chapters, reproduction
+from sonolube.reproduction.section import Section
 
 
 def _computed_once(section: Section) -> Section:

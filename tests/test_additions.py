@@ -21,7 +21,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from sonolube.friction.models.model import FrictionModel, parameter
+from sonolube.models.friction.models.model import FrictionModel, parameter
 
 
 @final
@@ -46,7 +46,7 @@ ASPERITY_LAW = '''
 
 from typing import ClassVar
 
-from sonolube.contact.asperity import ElasticAsperity
+from sonolube.models.contact.asperity import ElasticAsperity
 
 
 class DoubledAsperity(ElasticAsperity):
@@ -125,8 +125,8 @@ def with_friction_model(copied_package: Path) -> Path:
         models / "constant_ratio.py",
         FRICTION_MODEL,
         table=models / "__init__.py",
-        after='        "kinematic": "sonolube.friction.models.kinematic:Kinematic",\n',
-        line='        "constant_ratio": "sonolube.friction.models.constant_ratio:ConstantRatio",',
+        after='        "kinematic": "sonolube.models.friction.models.kinematic:Kinematic",\n',
+        line='        "constant_ratio": "sonolube.models.friction.models.constant_ratio:ConstantRatio",',
     )
     return copied_package.parent
 
@@ -165,7 +165,7 @@ def test_a_friction_model_is_one_file_and_one_line(with_friction_model: Path) ->
     script = (
         "import numpy as np, xarray as xr\n"
         "from pathlib import Path\n"
-        "from sonolube.friction import FRICTION_MODELS\n"
+        "from sonolube.models.friction import FRICTION_MODELS\n"
         "from sonolube.rig import friction_point, operating_points, read_rig\n"
         "with xr.open_dataset(next(Path('swept').rglob('*.nc'))) as swept: ratio = swept.friction_ratio.values\n"
         "print(float(np.ptp(ratio)), float(ratio.mean()))\n"
@@ -198,8 +198,8 @@ def test_an_asperity_law_is_one_file_and_one_line(copied_package: Path) -> None:
         contact / "asperity_laws" / "doubled.py",
         ASPERITY_LAW,
         table=contact / "asperity.py",
-        after='        "elastic": "sonolube.contact.asperity:ElasticAsperity",\n',
-        line='        "doubled": "sonolube.contact.asperity_laws.doubled:DoubledAsperity",',
+        after='        "elastic": "sonolube.models.contact.asperity:ElasticAsperity",\n',
+        line='        "doubled": "sonolube.models.contact.asperity_laws.doubled:DoubledAsperity",',
     )
     law = "contact.asperity_law"
 

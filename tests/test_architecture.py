@@ -81,7 +81,7 @@ def test_no_folder_holds_more_than_26_modules() -> None:
 
 
 def _faces() -> list[str]:
-    """Rooms whose face is a stub, such as sonolube.contact."""
+    """Rooms whose face is a stub, such as sonolube.models.contact."""
     stubs = (ROOT / "src").rglob("__init__.pyi")
     return sorted(".".join(stub.parent.relative_to(ROOT / "src").parts) for stub in stubs)
 

@@ -16,13 +16,13 @@ from pytest import approx
 from scipy.special import i0e, wrightomega
 
 from sonolube.compilation import few_points, kernel
-from sonolube.contact import GaussianHeights, normal_force
-from sonolube.contact.greenwood_williamson import log_normal_force_function
-from sonolube.contact.rough import summit_population
 from sonolube.design import grid_plan, sweep
-from sonolube.dynamics.harmonic_balance.bessel import wright_omega
-from sonolube.friction import sine_stick_slip_ratio
-from sonolube.friction.scaled_bessel import scaled_bessel_i0
+from sonolube.models.contact import GaussianHeights, normal_force
+from sonolube.models.contact.greenwood_williamson import log_normal_force_function
+from sonolube.models.contact.rough import summit_population
+from sonolube.models.dynamics.harmonic_balance.bessel import wright_omega
+from sonolube.models.friction import sine_stick_slip_ratio
+from sonolube.models.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.rig import read_rig, simulate
 from sonolube.rig.datasets import result_quantities
 from sonolube.threads import map_chunks

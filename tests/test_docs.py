@@ -140,15 +140,15 @@ def test_the_first_line_of_an_example_rig_points_at_the_schema(rig: Path) -> Non
 
 
 def test_every_verdict_is_explained() -> None:
-    from sonolube.reproduce import Verdict
+    from sonolube.reproduction import Verdict
 
     page = text_of(DOCS / "validation.md")
     assert all(f"\n`{verdict.value}`\n: " in page for verdict in Verdict)
 
 
 def test_the_theory_lists_every_choice_of_a_rig_file_from_its_record() -> None:
-    from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
-    from sonolube.friction import FRICTION_MODELS
+    from sonolube.models.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
+    from sonolube.models.friction import FRICTION_MODELS
 
     contact, friction = (text_of(DOCS / "theory" / page) for page in ("contact.md", "friction.md"))
     assert "\n<!-- table: asperity_laws -->\n" in contact

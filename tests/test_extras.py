@@ -13,8 +13,8 @@ from pytest import MonkeyPatch, raises
 
 from sonolube.errors import MissingPackage
 from sonolube.extras import EXTRAS, missing_package
+from sonolube.models.surfaces import HeightMap
 from sonolube.reference_solutions import boundary_element_contact
-from sonolube.surfaces import HeightMap
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

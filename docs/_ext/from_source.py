@@ -24,9 +24,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from sonolube.cli import main
-from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
-from sonolube.friction import FRICTION_MODELS
-from sonolube.materials import (
+from sonolube.facts.materials import (
     DryFriction,
     Material,
     SourcedValue,
@@ -37,21 +35,23 @@ from sonolube.materials import (
     material_families,
     material_names,
 )
+from sonolube.facts.published import errata
 from sonolube.measurement.file_format import FileFormat
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.measured_runs import RUN_COLUMNS
 from sonolube.measurement.recordings.formats import RECORDING_FORMATS
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
+from sonolube.models.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
+from sonolube.models.friction import FRICTION_MODELS
+from sonolube.models.surfaces import surface_finish, surface_finish_names
+from sonolube.models.wear import WEAR_MODELS
 from sonolube.prediction import Calibration, calibrations
 from sonolube.prediction.published_figures import blind_caption
 from sonolube.prediction.scores import PROBABILITIES
-from sonolube.published import errata
 from sonolube.rig import Rig, available_sources, read_rig, rig_schema
 from sonolube.rig.file.json_schema import tables_of
-from sonolube.surfaces import surface_finish, surface_finish_names
 from sonolube.units import format_si, unit_description
 from sonolube.vocabulary import quantities, quantity
-from sonolube.wear import WEAR_MODELS
 
 DOCS = Path(__file__).parents[1]
 RIGS = DOCS.parent / "examples" / "rigs"

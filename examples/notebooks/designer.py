@@ -12,12 +12,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import sonolube as sl
-from sonolube import fem
 from sonolube.design.horn import amplitude_limits, tuned_horn
 from sonolube.design.horn_figures import horn_axis_figure
 from sonolube.design.horn_shapes import horn_body
+from sonolube.facts.materials import material
 from sonolube.figure import publication_style
-from sonolube.materials import material
+from sonolube.models import fem
 
 titanium = material("titanium_6al4v")
 amplitude = 20e-6

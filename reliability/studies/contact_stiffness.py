@@ -7,9 +7,9 @@ import numpy as np
 
 from reliability import virtual_contact as virtual
 from reliability.study import Measure, Record, Study
-from sonolube.dynamics import Structure
 from sonolube.measurement.contact_stiffness.analysis import measured_contact_stiffness
 from sonolube.measurement.contact_stiffness.resonance_spectrum import vibration_spectrum
+from sonolube.models.dynamics import Structure
 
 _MASS_DEVIATION = 0.1  # of the logarithm of what the analysis is told over the truth
 _AMPLITUDE_DEVIATION = 0.05

@@ -8,7 +8,7 @@ import numpy as np
 from reliability.groove_maps import random_field
 from reliability.study import Measure, Record, Study
 from sonolube.errors import InvalidInput, NoGroove, SeveralGrooves
-from sonolube.surfaces import HeightMap, measure_groove, track_marks
+from sonolube.models.surfaces import HeightMap, measure_groove, track_marks
 
 _SHAPE, _PIXEL = (150, 200), 12e-6
 _RIGHT, _FALSE, _FOUND = 0.97, 0.01, 0.9

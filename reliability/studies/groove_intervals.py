@@ -7,7 +7,7 @@ import numpy as np
 from reliability.groove_maps import CLASSES, FAMILIES, drawn_groove, heights
 from reliability.study import Measure, Record, Study
 from sonolube.errors import SonolubeError
-from sonolube.surfaces import HeightMap, measure_groove
+from sonolube.models.surfaces import HeightMap, measure_groove
 
 _QUANTITIES = {"groove_width": "width", "groove_depth": "depth", "wear_volume": "volume"}
 _REPEATED = 4  # of so many trials one repeats its groove with another roughness

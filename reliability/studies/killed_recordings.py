@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from reliability.study import Measure, Record, Study
-from sonolube.lab.records import read_raw_blocks, read_run, recover_run, run_folders
+from sonolube.laboratory.records import read_raw_blocks, read_run, recover_run, run_folders
 from sonolube.measurement.recordings.reader import read_recording
 
 _WRITER = """
 import os, sys
 import numpy as np
 from pathlib import Path
-from sonolube.lab.block import Block, Channel
-from sonolube.lab.records import new_run
+from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.records import new_run
 parent, parts, blocks, samples = Path(sys.argv[1]), *map(int, sys.argv[2:])
 channels = [Channel(name=name, quantity=name) for name in ("friction_force", "temperature")]
 os.write(1, b"0 0\\n")

@@ -7,7 +7,7 @@ import numpy as np
 
 from reliability.study import Measure, Record, Study
 from sonolube.checks import Floats
-from sonolube.surfaces import evaluate_profile
+from sonolube.models.surfaces import evaluate_profile
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from reliability.study import Measure, Record, Study
 from sonolube.errors import ModelRangeWarning
-from sonolube.friction import FRICTION_MODELS
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
+from sonolube.models.friction import FRICTION_MODELS
+from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig import STATUSES, Rig, friction_point, operating_points, point_batch, read_rig
 
 _RIGS = Path(__file__).parents[2] / "examples" / "rigs"

@@ -1,7 +1,7 @@
 r"""Steady states of random rigs against their equations of motion, integrated by DOP853.
 
 The equations stand here: masses, springs, dampers, stack and contact are put together from the numbers of the rig's
-file, and nothing of `sonolube.dynamics` is imported. A periodic motion is taken to its coordinates by the linear
+file, and nothing of `sonolube.models.dynamics` is imported. A periodic motion is taken to its coordinates by the linear
 response to its own contact force; the state at phase zero is then integrated over one period, and so are small
 disturbances.
 """

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reliability.study import Measure, Record, Study
-from sonolube.lab import Block, Channel, run_protocol
-from sonolube.lab.virtual_tribometer import virtual_tribometer
+from sonolube.facts.protocol import protocol_by_name_or_file
+from sonolube.laboratory import Block, Channel, run_protocol
+from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.measurement.friction_analysis import analyse_voltage_steps
-from sonolube.protocol import protocol_by_name_or_file
 from sonolube.rig import Rig, read_rig
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 `import sonolube as sl` offers the main tasks by name, each loaded when it is first used: a rig from a file
 (`sl.read_rig`), the effect of vibration on it (`sl.predict`, `sl.simulate`, `sl.sweep`, `sl.map`), instrument files
 (`sl.measure`), the dissertation's data (`sl.published`), and the figure of each result (`sl.plot`). The rooms, such as
-`sonolube.contact` or `sonolube.friction`, hold the models themselves.
+`sonolube.models.contact` or `sonolube.models.friction`, hold the models themselves.
 """
 
 import lazy_loader as _lazy_loader

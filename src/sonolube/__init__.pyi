@@ -1,4 +1,5 @@
-from . import design as design, published as published
+from . import design as design
+from .facts import published as published
 from .measurement.measured_runs import read_runs as read_runs
 from .prediction.live_prediction import LivePrediction as LivePrediction, predict as predict
 from .rig.file.reader import read_rig as read_rig

@@ -12,8 +12,8 @@ Variant = TypeVar("Variant")
 class VariantTable(Mapping[str, Variant], Generic[Variant]):
     """Table of the variants of one kind by name, imported on first access.
 
-    A table maps names to places such as ``"sonolube.friction.models.kinematic:Kinematic"``; adding a variant takes its
-    file and one line of the table. Iterating over the names imports nothing.
+    A table maps names to places such as ``"sonolube.models.friction.models.kinematic:Kinematic"``; adding a variant
+    takes its file and one line of the table. Iterating over the names imports nothing.
 
     Parameters
     ----------

@@ -16,9 +16,9 @@ from sonolube.cli import main
 from sonolube.cli.console import answer, progress
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.compilation import Kernel
-from sonolube.fem import electromechanical_model, mode_files, tuning
-from sonolube.fem.solver import convergence
-from sonolube.fem.solver.model import Model
+from sonolube.models.fem import electromechanical_model, mode_files, tuning
+from sonolube.models.fem.solver import convergence
+from sonolube.models.fem.solver.model import Model
 from sonolube.targets import expect_target
 
 ROOT = Path(__file__).parents[2]

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from reliability import virtual_contact
 
-from sonolube.lab import Block, Channel
-from sonolube.lab.records import new_run
+from sonolube.laboratory import Block, Channel
+from sonolube.laboratory.records import new_run
 
 ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "examples" / "rigs"

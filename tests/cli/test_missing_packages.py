@@ -7,8 +7,8 @@ import pytest
 from pytest import MonkeyPatch
 from tests.cli.conftest import Program
 
-from sonolube.dynamics.backend import _gpu
 from sonolube.extras import EXTRAS
+from sonolube.models.dynamics.backend import _gpu
 
 RIG = str(Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml")
 DEVICES = str(Path(__file__).parents[2] / "examples" / "lab" / "devices.toml")

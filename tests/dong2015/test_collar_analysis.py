@@ -17,7 +17,7 @@ from sonolube.dong2015.collar_analysis import Parity, collar_media, collar_model
 from sonolube.dong2015.collar_designs import FINAL_COLLAR, FIRST_COLLAR, THIN_RING_COLLAR
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.errors import InvalidInput
-from sonolube.fem import (
+from sonolube.models.fem import (
     Electrodes,
     Model,
     Output,
@@ -27,7 +27,7 @@ from sonolube.fem import (
     natural_modes,
     reduce_model,
 )
-from sonolube.fem.solver.system import assemble_system
+from sonolube.models.fem.solver.system import assemble_system
 
 
 def test_quarters_of_all_parities_have_the_modes_of_the_whole() -> None:

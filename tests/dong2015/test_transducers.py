@@ -15,7 +15,7 @@ from sonolube.dong2015 import (
     cutter_head,
     tribometer_actuator,
 )
-from sonolube.fem import (
+from sonolube.models.fem import (
     TRANSDUCERS,
     converged_electromechanical_model,
     coupled_resonances,

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 from pytest import approx, fixture, mark, raises, skip
 
-from sonolube.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.identification.circuit_fit import fit_circuit
 from sonolube.identification.spectral_residual import RESIDUALS
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
 

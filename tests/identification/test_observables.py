@@ -7,22 +7,6 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.actuator import PiezoStack
-from sonolube.dynamics import (
-    GROUND,
-    Damper,
-    LumpedChain,
-    Structure,
-    chain_structure,
-    drive_receptance,
-    electrical_admittance,
-    modal_structure,
-    modes,
-    pin_on_disc_chain,
-    resonance_frequencies,
-    static_contact,
-    with_contact_spring,
-)
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.identification import (
     OBSERVABLES,
@@ -36,6 +20,22 @@ from sonolube.identification import (
     parametric_structure,
     reference_parameters,
     structure_model,
+)
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics import (
+    GROUND,
+    Damper,
+    LumpedChain,
+    Structure,
+    chain_structure,
+    drive_receptance,
+    electrical_admittance,
+    modal_structure,
+    modes,
+    pin_on_disc_chain,
+    resonance_frequencies,
+    static_contact,
+    with_contact_spring,
 )
 
 STACK = PiezoStack(free_capacitance=360e-9, free_stroke_per_volt=6e-9, stack_stiffness=2e9, stack_damping=30.0)

@@ -8,13 +8,13 @@ import pytest
 from pytest import approx, raises
 from scipy.linalg import expm
 
-from sonolube.actuator import PiezoStack
 from sonolube.checks import Floats
-from sonolube.dynamics.chain import chain_structure, pin_on_disc_chain
-from sonolube.dynamics.linear import poles
-from sonolube.dynamics.structure import Structure, drive_receptance, electrical_admittance, with_contact_spring
 from sonolube.errors import InvalidInput
 from sonolube.identification import Fact, PinOnDiscTest, identify, pin_on_disc_model
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics.chain import chain_structure, pin_on_disc_chain
+from sonolube.models.dynamics.linear import poles
+from sonolube.models.dynamics.structure import Structure, drive_receptance, electrical_admittance, with_contact_spring
 
 STACK = PiezoStack(
     free_capacitance=360e-9, free_stroke_per_volt=8.68e-9, stack_stiffness=2e9, stack_mass=0.07, stack_damping=30.0

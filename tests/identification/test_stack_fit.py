@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 from pytest import approx, mark
 
-from sonolube.actuator import PiezoStack
-from sonolube.dynamics.chain import chain_structure, pin_on_disc_chain
-from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.identification.stack_fit import fit_stack
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics.chain import chain_structure, pin_on_disc_chain
+from sonolube.models.dynamics.structure import Structure, electrical_admittance
 
 STACK = PiezoStack(
     free_capacitance=360e-9, free_stroke_per_volt=6e-9, stack_stiffness=2e9, stack_damping=300.0, stack_mass=0.05

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.actuator import PiezoStack
-from sonolube.dynamics import GROUND, Damper, LumpedChain, Spring, Structure, chain_structure, modal_structure
 from sonolube.errors import InvalidInput
 from sonolube.identification import StructureBuilder, parametric_structure, reference_parameters
 from sonolube.identification.structure_parametrisation import StructureMatrices
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics import GROUND, Damper, LumpedChain, Spring, Structure, chain_structure, modal_structure
 
 STACK = {
     "free_capacitance": 360e-9,

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 from pytest import approx
 
-from sonolube.actuator import PiezoStack
 from sonolube.checks import Floats
 from sonolube.identification import Fact, Identification, identify, rig_tables
+from sonolube.models.actuator import PiezoStack
 from sonolube.units import to_si
 from sonolube.vocabulary import unit_of
 

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 from pytest import approx, mark, skip
 
-from sonolube.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 from sonolube.checks import Complexes
 from sonolube.identification.circuit_fit import CircuitFit, fit_circuit
 from sonolube.identification.minimum_phase import minimum_phase_admittance
 from sonolube.measurement.impedance.passivity import passive_spectrum
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
 CIRCUIT = ButterworthVanDyke(

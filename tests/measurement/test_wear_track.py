@@ -13,7 +13,7 @@ from sonolube.measurement.wear_track import (
     wear_reduction_between_tracks,
     wear_track_from_grooves,
 )
-from sonolube.surfaces import (
+from sonolube.models.surfaces import (
     Groove,
     GrooveShape,
     GrooveTrack,

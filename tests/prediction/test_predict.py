@@ -13,9 +13,9 @@ from pytest import approx, mark, raises
 from scipy.stats import norm
 
 from sonolube.errors import InvalidInput
+from sonolube.facts.published import si_value
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.prediction import LivePrediction, interval, predict, prediction_figure
-from sonolube.published import si_value
 from sonolube.rig import Distribution, LogNormal, Rig, friction_point, read_rig
 from sonolube.workbench.first_rig import new_rig
 

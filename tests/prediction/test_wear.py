@@ -9,6 +9,7 @@ from pytest import approx, mark, raises
 from scipy.stats import multivariate_normal, norm
 
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.facts.published import si_value
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.wear import (
     WEAR_PRIOR,
@@ -18,7 +19,6 @@ from sonolube.prediction.wear import (
     published_wear,
     vibration_weight,
 )
-from sonolube.published import si_value
 from sonolube.rig import friction_point, read_rig, wear_point
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx, raises
 
-from sonolube.contact import SphereOnFlat, hertz_approach, hertz_contact_radius, hertz_peak_pressure
 from sonolube.errors import InvalidInput
+from sonolube.models.contact import SphereOnFlat, hertz_approach, hertz_contact_radius, hertz_peak_pressure
+from sonolube.models.surfaces import GaussianCorrelationSpectrum, HeightMap, gaussian_surface
 from sonolube.reference_solutions import boundary_element_contact, mirror_extension
-from sonolube.surfaces import GaussianCorrelationSpectrum, HeightMap, gaussian_surface
 
 E_STAR = 100e9
 

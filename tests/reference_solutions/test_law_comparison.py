@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from sonolube.models.surfaces import GaussianCorrelationSpectrum, HeightMap, gaussian_surface
 from sonolube.reference_solutions import compare_laws, comparison_table, deviation, validity_ranges
-from sonolube.surfaces import GaussianCorrelationSpectrum, HeightMap, gaussian_surface
 
 E_STAR = 100e9
 

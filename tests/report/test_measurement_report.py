@@ -14,6 +14,7 @@ from pytest import MonkeyPatch, approx, mark, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.figure import render_figure
+from sonolube.models.surfaces import GaussianCorrelationSpectrum, gaussian_surface
 from sonolube.report import (
     MeasurementReport,
     measurement_lines,
@@ -27,7 +28,6 @@ from sonolube.report.measured.friction_comparison import comparison_sheet
 from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
 from sonolube.report.measured.sheet import Sheet, Value, quantity_value
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
-from sonolube.surfaces import GaussianCorrelationSpectrum, gaussian_surface
 
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
 NPY = SurfaceSettings(spacing_x=1e-6, spacing_y=1e-6)

@@ -12,7 +12,7 @@ from tests.reproduced import reproduced
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.files import write_atomically
 from sonolube.report import summary_lines, validation_object, write_report
-from sonolube.reproduce import Verdict, reproduction
+from sonolube.reproduction import Verdict, reproduction
 
 KEYS = (
     "id",

@@ -12,7 +12,7 @@ from pytest import approx, raises
 from sonolube.design import MAPS, grid_plan, sweep
 from sonolube.design.control import computed_characteristic
 from sonolube.errors import InvalidInput
-from sonolube.friction import BoundaryLubricant
+from sonolube.models.friction import BoundaryLubricant
 from sonolube.rig import (
     Rig,
     available_sources,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.published import si_value
+from sonolube.facts.published import si_value
 from sonolube.rig import friction_point, read_rig
 from sonolube.validation.contacts import RMS_OVER_ARITHMETIC_MEAN
 

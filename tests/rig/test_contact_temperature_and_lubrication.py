@@ -6,8 +6,8 @@ import numpy as np
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, MissingProperty
-from sonolube.friction import BoundaryLubricant
-from sonolube.materials import material
+from sonolube.facts.materials import material
+from sonolube.models.friction import BoundaryLubricant
 from sonolube.rig import (
     Rig,
     TemperaturePoint,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import BoundaryLubricant
+from sonolube.models.friction import BoundaryLubricant
 from sonolube.rig import (
     Rig,
     frequency_grid,

@@ -8,9 +8,9 @@ from pytest import approx, raises
 from scipy.special import i0
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.friction import dong_2015_half_period_ratio, sine_stick_slip_ratio
+from sonolube.models.friction import dong_2015_half_period_ratio, sine_stick_slip_ratio
+from sonolube.models.wear import cube_wear_rate
 from sonolube.rig import Rig, friction_point, read_rig, simulate, steady_vibration
-from sonolube.wear import cube_wear_rate
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 

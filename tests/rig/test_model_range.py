@@ -11,7 +11,7 @@ from pytest import approx, raises
 
 from sonolube.design import grid_plan, propagate, sweep, velocity_stress_map
 from sonolube.errors import OutsideRange
-from sonolube.friction import FRICTION_MODELS, BoundaryLubricant
+from sonolube.models.friction import FRICTION_MODELS, BoundaryLubricant
 from sonolube.rig import (
     STATUSES,
     Rig,

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.actuator import catalogue_actuator
 from sonolube.errors import InvalidInput
-from sonolube.materials import material
+from sonolube.facts.materials import material
+from sonolube.models.actuator import catalogue_actuator
+from sonolube.models.surfaces import typical_summits
 from sonolube.rig import PUBLISHED_DECAY_LENGTH, Rig, friction_point, resolved_vibration, rig_from
 from sonolube.rig.new_rig.known_surface import finished_surface, scanned_surface, surfaces_in_contact
 from sonolube.rig.new_rig.pin_and_vibration import DrivenActuator, FlatPin, RoundPin, StatedAmplitude
 from sonolube.rig.new_rig.rig_text import KnownRig, least_known, new_rig_text
 from sonolube.rig.new_rig.stated_text import pin_shape, speed_of, surface_of
-from sonolube.surfaces import typical_summits
 
 GROUND = finished_surface("ground N6")
 KNOWN = KnownRig(

@@ -8,9 +8,9 @@ import pytest
 from pytest import approx
 from scipy.special import ellipk
 
-from sonolube.dynamics import drive_receptance
 from sonolube.errors import InvalidInput
-from sonolube.friction import FRICTION_MODELS
+from sonolube.models.dynamics import drive_receptance
+from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Rig, operating_points, read_rig, simulate, structure_in_contact
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"

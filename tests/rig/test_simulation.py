@@ -8,9 +8,9 @@ from pytest import approx
 from scipy.optimize import brentq
 from scipy.special import i0
 
-from sonolube.contact import normal_force, separation
 from sonolube.errors import InvalidInput
-from sonolube.friction import FRICTION_MODELS
+from sonolube.models.contact import normal_force, separation
+from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, simulate, start_up
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from pytest import approx
 
-from sonolube.published import si_value
+from sonolube.facts.published import si_value
 from sonolube.rig import friction_point, read_rig
 
 RIG = Path(__file__).parents[2] / "examples" / "rigs" / "cutter_head.toml"

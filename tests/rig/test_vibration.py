@@ -8,10 +8,16 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.dynamics import Status, contact_motion as vibration, steady_state, waveform_extremes, waveform_value
-from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.friction import FRICTION_MODELS
+from sonolube.models.dynamics import (
+    Status,
+    contact_motion as vibration,
+    steady_state,
+    waveform_extremes,
+    waveform_value,
+)
+from sonolube.models.dynamics.structure import contact_receptance, drive_receptance
+from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.excitation import voltage_range, waveform_of

@@ -11,8 +11,8 @@ from pytest import approx, raises
 from scipy.special import i0
 from scipy.stats import norm
 
-from sonolube.contact import GaussianHeights
 from sonolube.errors import InvalidInput
+from sonolube.models.contact import GaussianHeights
 from sonolube.rig import (
     PUBLISHED_DECAY_LENGTH,
     DecayLengthPopulation,

@@ -12,7 +12,7 @@ from pytest import approx
 from scipy.integrate import quad
 
 from sonolube.errors import ModelRangeWarning
-from sonolube.friction import (
+from sonolube.models.friction import (
     SpringContact,
     approximate_transverse_ratio,
     combined_oscillation_ratio,

@@ -10,7 +10,7 @@ import pytest
 from pytest import approx
 
 from sonolube.checks import Floats
-from sonolube.fem import Mesh, Model, box_mesh, isotropic_medium, natural_modes
+from sonolube.models.fem import Mesh, Model, box_mesh, isotropic_medium, natural_modes
 
 MODES = 10
 MODULUS, RATIO, DENSITY = 200e9, 0.29, 7900.0

@@ -11,9 +11,9 @@ import pytest
 from pytest import approx, raises
 from scipy.special import ellipk, i0
 
-from sonolube.contact import decay_length
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.friction import sine_stick_slip_ratio
+from sonolube.models.contact import decay_length
+from sonolube.models.friction import sine_stick_slip_ratio
 from sonolube.rig import read_rig, steady_vibration
 from sonolube.validation.assessment import FITTED_SETS
 from sonolube.validation.comparison import COMPARED_MODELS, ComparedFit, compare_models, compared_models, predict_rig

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from pytest import approx
 
-from sonolube.fem import (
+from sonolube.models.fem import (
     FaceSpring,
     FixedSupport,
     Medium,

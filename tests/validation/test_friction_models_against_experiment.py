@@ -8,8 +8,8 @@ from pytest import approx
 from scipy.optimize import minimize
 from scipy.special import i0
 
-from sonolube.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
-from sonolube.reproduce.friction_models.variant_predictions import reported_fits
+from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
+from sonolube.reproduction.friction_models.variant_predictions import reported_fits
 from sonolube.validation.assessment import (
     FITTED_SETS,
     SETS_WITHOUT_POWER_MAP,

@@ -11,7 +11,7 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, ModelRangeWarning
-from sonolube.friction import (
+from sonolube.models.friction import (
     Holder,
     SpringContact,
     approximate_guided_ratio,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, longitudinal_oscillation_ratio, longitudinal_static_ratio
+from sonolube.models.friction import SpringContact, longitudinal_oscillation_ratio, longitudinal_static_ratio
 
 STROKES = np.array([0.0, 0.05, 0.2, 0.5, 0.8, 0.99])
 

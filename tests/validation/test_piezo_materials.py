@@ -6,7 +6,7 @@ from pytest import approx
 from scipy.optimize import brentq
 from scipy.special import j0, j1
 
-from sonolube.materials import coupling_factors, material, piezo_ceramic
+from sonolube.facts.materials import coupling_factors, material, piezo_ceramic
 
 VACUUM = 8.8541878128e-12
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from pytest import approx, mark
 
-from sonolube.contact import (
+from sonolube.models.contact import (
     ASPERITY_LAWS,
     ElasticBody,
     RoughContact,
@@ -18,7 +18,7 @@ from sonolube.contact import (
     real_contact_area,
     separation,
 )
-from sonolube.surfaces import Roughness
+from sonolube.models.surfaces import Roughness
 
 ALUMINIUM = ElasticBody(youngs_modulus=73e9, poisson_ratio=0.33)
 STEEL = ElasticBody(youngs_modulus=200e9, poisson_ratio=0.29)

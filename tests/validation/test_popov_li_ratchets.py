@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, combined_oscillation_ratio
+from sonolube.models.friction import SpringContact, combined_oscillation_ratio
 
 SPEEDS = np.array([0.002, 0.05, 0.3, 1.0])  # over slip length times angular frequency
 

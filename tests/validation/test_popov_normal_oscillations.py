@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, approximate_normal_ratio, critical_speed, normal_oscillation_ratio
+from sonolube.models.friction import SpringContact, approximate_normal_ratio, critical_speed, normal_oscillation_ratio
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
 DEPTH = 1e-6

@@ -7,7 +7,7 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, ModelRangeWarning
-from sonolube.friction import (
+from sonolube.models.friction import (
     SpringContact,
     approximate_longitudinal_ratio,
     longitudinal_oscillation_ratio,

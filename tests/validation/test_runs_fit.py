@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from pytest import approx
 from scipy.special import ellipk, i0e
 
-from sonolube.contact import decay_length
 from sonolube.errors import InvalidInput
+from sonolube.models.contact import decay_length
 from sonolube.rig import read_rig
 from sonolube.rig.linear_response import rest_separation
 from sonolube.validation.comparison import compare_models, compared_models

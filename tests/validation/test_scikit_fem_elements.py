@@ -17,7 +17,8 @@ from skfem import Basis, BilinearForm, ElementTetP1, ElementTetP2, ElementVector
 from skfem.helpers import ddot, dot, eye, grad, sym_grad, trace
 
 from sonolube.checks import Integers
-from sonolube.fem import (
+from sonolube.facts.materials import piezo_ceramic
+from sonolube.models.fem import (
     Electrodes,
     Medium,
     Mesh,
@@ -30,8 +31,7 @@ from sonolube.fem import (
     transfer_field,
     transform_nodes,
 )
-from sonolube.fem.solver.assembly import POTENTIAL_SCALE, assemble_matrices
-from sonolube.materials import piezo_ceramic
+from sonolube.models.fem.solver.assembly import POTENTIAL_SCALE, assemble_matrices
 
 YOUNGS_MODULUS, POISSON_RATIO, DENSITY = 200e9, 0.29, 7900.0
 STEEL = isotropic_medium(youngs_modulus=YOUNGS_MODULUS, poisson_ratio=POISSON_RATIO, density=DENSITY)

@@ -11,11 +11,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sonolube.contact import decay_length
-from sonolube.dynamics import ExponentialGap, StartUpRamp, Status, SteadyStates, drive_receptance, march, steady_state
-from sonolube.dynamics.linear import poles
-from sonolube.dynamics.long_time_response import march_until_settled
-from sonolube.dynamics.structure import with_contact_spring
+from sonolube.models.contact import decay_length
+from sonolube.models.dynamics import (
+    ExponentialGap,
+    StartUpRamp,
+    Status,
+    SteadyStates,
+    drive_receptance,
+    march,
+    steady_state,
+)
+from sonolube.models.dynamics.linear import poles
+from sonolube.models.dynamics.long_time_response import march_until_settled
+from sonolube.models.dynamics.structure import with_contact_spring
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, combined_oscillation_ratio, critical_speed, normal_oscillation_ratio
+from sonolube.models.friction import SpringContact, combined_oscillation_ratio, critical_speed, normal_oscillation_ratio
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
 DEPTH, SLIP, FREQUENCY = 1e-6, 0.5e-6, 20e3

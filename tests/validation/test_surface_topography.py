@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.surfaces import (
+from sonolube.models.surfaces import (
     HeightMap,
     SelfAffineSpectrum,
     areal_spectrum,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.surfaces import (
+from sonolube.models.surfaces import (
     SelfAffineSpectrum,
     feature_parameters,
     functional_parameters,

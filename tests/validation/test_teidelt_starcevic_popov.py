@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, normal_oscillation_ratio, normal_static_ratio
+from sonolube.models.friction import SpringContact, normal_oscillation_ratio, normal_static_ratio
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
 SPHERE = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8, profile="parabolic")

@@ -13,7 +13,14 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from sonolube.checks import Floats
-from sonolube.thermal import EllipticSource, HertzianSource, ThermalSolid, flash_rise, high_peclet_rise, low_peclet_rise
+from sonolube.models.thermal import (
+    EllipticSource,
+    HertzianSource,
+    ThermalSolid,
+    flash_rise,
+    high_peclet_rise,
+    low_peclet_rise,
+)
 
 UNIT = ThermalSolid(thermal_conductivity=1.0, density=1.0, specific_heat_capacity=1.0)
 CIRCLE = EllipticSource(half_length=1.0, half_width=1.0)

@@ -6,9 +6,9 @@ import pytest
 from pytest import approx
 from tests.identified import identified_tribometer
 
-from sonolube.contact import decay_length
+from sonolube.facts.published import ComputedValue, PrintedNumber, propagate_rounding, published_number, si_value
 from sonolube.identification import Identification
-from sonolube.published import ComputedValue, PrintedNumber, propagate_rounding, published_number, si_value
+from sonolube.models.contact import decay_length
 from sonolube.validation.contacts import wear_contact
 from sonolube.validation.tribometer import IDENTIFIED, tribometer_problem, tribometer_stack, tribometer_test
 

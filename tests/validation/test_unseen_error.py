@@ -4,8 +4,8 @@ import numpy as np
 from pytest import approx
 from scipy.special import ellipk
 
-from sonolube.friction import AsperityStickSlip, Kinematic
-from sonolube.friction.models import FRICTION_MODELS
+from sonolube.models.friction import AsperityStickSlip, Kinematic
+from sonolube.models.friction.models import FRICTION_MODELS
 from sonolube.validation.assessment import unseen_error
 from sonolube.validation.comparison import compare_models, compared_models
 from sonolube.validation.published_tests import friction_tests

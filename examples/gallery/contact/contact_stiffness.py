@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import sonolube as sl
-from sonolube import contact
 from sonolube.figure import publication_style
+from sonolube.models import contact
 
 rig = sl.read_rig(Path(__file__).parents[2] / "rigs" / "tribometer.toml")
 load = np.geomspace(0.3, 30, 40)

@@ -7,8 +7,8 @@ load grows in proportion to the amplitude.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import contact
 from sonolube.figure import LINES, publication_style
+from sonolube.models import contact
 
 amplitude = np.linspace(0.2e-6, 5e-6, 60)
 with publication_style():

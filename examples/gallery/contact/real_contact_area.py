@@ -7,9 +7,9 @@ almost in proportion to the load. The laws of the single asperity differ by how 
 import matplotlib.pyplot as plt
 import numpy as np
 
-import sonolube.contact as contact
+import sonolube.models.contact as contact
 from sonolube.figure import LINES, publication_style
-from sonolube.surfaces import Roughness
+from sonolube.models.surfaces import Roughness
 
 steel = contact.ElasticBody(youngs_modulus=200e9, poisson_ratio=0.29)
 aluminium = contact.ElasticBody(youngs_modulus=73e9, poisson_ratio=0.33)

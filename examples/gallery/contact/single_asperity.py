@@ -8,7 +8,7 @@ the plastic zone.
 import matplotlib.pyplot as plt
 import numpy as np
 
-import sonolube.contact as contact
+import sonolube.models.contact as contact
 from sonolube.figure import LINES, publication_style
 
 pair = contact.ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8)

@@ -7,7 +7,7 @@ surface: that is where the material yields first.
 import matplotlib.pyplot as plt
 import numpy as np
 
-import sonolube.contact as contact
+import sonolube.models.contact as contact
 from sonolube.figure import LINES, publication_style
 
 ball = contact.SphereOnFlat(tip_radius=2.5e-3, effective_modulus=115e9)

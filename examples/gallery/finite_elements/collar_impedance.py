@@ -9,8 +9,8 @@ import numpy as np
 
 from sonolube.dong2015.collar_analysis import reduced_collar_model
 from sonolube.dong2015.collar_designs import FINAL_COLLAR
-from sonolube.fem import harmonic_response
 from sonolube.figure import publication_style
+from sonolube.models.fem import harmonic_response
 
 frequency = np.linspace(15e3, 45e3, 1500)
 with publication_style():

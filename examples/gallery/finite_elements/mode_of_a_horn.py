@@ -4,10 +4,10 @@ A stepped titanium horn in its first axial mode, coloured by displacement: the t
 lies near the step.
 """
 
-from sonolube import fem
-from sonolube.fem.figures import mode_figure, shaped_surface
+from sonolube.facts.materials import material
 from sonolube.figure import publication_style
-from sonolube.materials import material
+from sonolube.models import fem
+from sonolube.models.fem.figures import mode_figure, shaped_surface
 
 horn = fem.stepped_horn(radius=20e-3, end_radius=11.3e-3, length=0.0598, end_length=0.0634, edge_radius=8e-3)
 mesh = fem.generate_mesh(horn, element_size=12e-3)

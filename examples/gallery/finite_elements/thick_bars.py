@@ -7,9 +7,9 @@ and Love's correction for lateral inertia. A bar as thick as it is long is 9 % l
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import fem
+from sonolube.facts.materials import material
 from sonolube.figure import publication_style
-from sonolube.materials import material
+from sonolube.models import fem
 
 titanium = material("titanium_6al4v")
 modulus, density, poisson = (titanium.value(name) for name in ("youngs_modulus", "density", "poisson_ratio"))

@@ -7,8 +7,8 @@ the sliding; across, it falls at every velocity, and less.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import friction
 from sonolube.figure import LINES, publication_style
+from sonolube.models import friction
 
 ratio = np.linspace(0, 4, 200)  # peak vibration velocity over sliding speed
 with publication_style():

@@ -7,8 +7,8 @@ three discs. A disc that conducts well takes the heat away.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import thermal
 from sonolube.figure import LINES, publication_style
+from sonolube.models import thermal
 from sonolube.rig.contact_temperature import thermal_solid
 
 speed = np.geomspace(0.01, 5, 40)

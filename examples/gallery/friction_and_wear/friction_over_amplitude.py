@@ -7,8 +7,8 @@ stiffness changes by a factor e within 1 µm. Slow sliding gains most.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import friction
 from sonolube.figure import LINES, publication_style
+from sonolube.models import friction
 
 amplitude = np.linspace(0, 4e-6, 100)
 with publication_style():

@@ -7,8 +7,8 @@ ratio of friction to stiffness (here 1 µm) enclose the work that is lost.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import friction
 from sonolube.figure import LINES, publication_style
+from sonolube.models import friction
 
 law = friction.DahlFriction(contact_stiffness=1e6, coulomb_friction_force=1.0)
 time = np.linspace(0, 2, 4001)

@@ -7,8 +7,8 @@ lubricant helps where asperities carry little of the load; vibration helps at ev
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import friction
 from sonolube.figure import LINES, publication_style
+from sonolube.models import friction
 
 oil = friction.BoundaryLubricant(film_coefficient=0.08, full_asperity_pressure=10e6)
 pressure = np.geomspace(0.1e6, 50e6, 200)

@@ -6,8 +6,8 @@ overcomes static friction, jumps, and sticks again.
 
 import matplotlib.pyplot as plt
 
-from sonolube import friction
 from sonolube.figure import publication_style
+from sonolube.models import friction
 
 law = friction.LuGreFriction(
     coulomb_friction_force=1.0,

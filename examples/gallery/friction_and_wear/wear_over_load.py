@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import sonolube as sl
-from sonolube import wear
 from sonolube.figure import publication_style
+from sonolube.models import wear
 from sonolube.rig import steady_vibration
 
 rig = sl.read_rig(Path(__file__).parents[2] / "rigs" / "tribometer.toml")

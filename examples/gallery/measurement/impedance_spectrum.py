@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 import sonolube as sl
-from sonolube.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
+from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 
 branch = MotionalBranch(resistance=22.0, inductance=1.67e-3, capacitance=636e-12)
 frequency = np.linspace(120e3, 220e3, 401)

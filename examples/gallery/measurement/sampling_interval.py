@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from sonolube.figure import MARKERS, publication_style
-from sonolube.surfaces import SelfAffineSpectrum, gaussian_surface, sampling_dependence
+from sonolube.models.surfaces import SelfAffineSpectrum, gaussian_surface, sampling_dependence
 
 spectrum = SelfAffineSpectrum(
     hurst_exponent=0.8, longest_wavelength=200e-6, rolloff_wavelength=100e-6, shortest_wavelength=2e-6

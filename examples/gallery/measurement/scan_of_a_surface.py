@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 import sonolube as sl
+from sonolube.models.surfaces import SelfAffineSpectrum, gaussian_surface
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
-from sonolube.surfaces import SelfAffineSpectrum, gaussian_surface
 
 spectrum = SelfAffineSpectrum(
     hurst_exponent=0.8, longest_wavelength=100e-6, rolloff_wavelength=20e-6, shortest_wavelength=2e-6

@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 import sonolube as sl
+from sonolube.models.surfaces import GrooveShape, GrooveTrack, synthetic_groove
 from sonolube.report.measured.groove import groove_sheet
 from sonolube.report.measured.surface import SurfaceSettings
-from sonolube.surfaces import GrooveShape, GrooveTrack, synthetic_groove
 
 shape = GrooveShape(groove_width=0.6e-3, groove_depth=20e-6, pile_up_height=3e-6, pile_up_width=0.1e-3)
 track = GrooveTrack(track_direction=0.5, track_curvature=0.0, track_offset=5e-5)

@@ -7,8 +7,8 @@ normal to it: on ellipses, where the bulge lags by a quarter of a period.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import actuator
 from sonolube.figure import COLOURS, publication_style
+from sonolube.models import actuator
 
 bar = actuator.BarWaveguide(length=0.127, thickness=0.0254, poisson_ratio=0.3, axial_amplitude=5e-6, frequency=20e3)
 with publication_style():

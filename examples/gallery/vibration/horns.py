@@ -7,8 +7,8 @@ same ratio, and pays with stress at its step; theory of thin bars, without the r
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import actuator
 from sonolube.figure import publication_style
+from sonolube.models import actuator
 
 ratio = np.linspace(1.01, 3, 60)
 bar = {"radius": 20e-3, "frequency": 20e3, "wave_speed": 5060.0}

@@ -7,8 +7,8 @@ inductor brings the power factor to one at resonance, in a narrow band.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube import actuator
 from sonolube.figure import publication_style
+from sonolube.models import actuator
 
 branch = actuator.MotionalBranch(resistance=400.0, inductance=60e-3, capacitance=1.05e-9)
 circuit = actuator.ButterworthVanDyke(parallel_capacitance=20e-9, branches=(branch,))

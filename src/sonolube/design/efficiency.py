@@ -6,9 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.measurement.measured_runs import run_caveats
-from sonolube.measurement.run_selection import setting, with_columns
-from sonolube.metrics import (
+from sonolube.facts.metrics import (
     EfficiencyFit,
     PowerEstimate,
     efficiency_coefficient,
@@ -18,6 +16,8 @@ from sonolube.metrics import (
     power_estimate,
     require_fitted_speed,
 )
+from sonolube.measurement.measured_runs import run_caveats
+from sonolube.measurement.run_selection import setting, with_columns
 from sonolube.rig import Rig, dataset
 
 if TYPE_CHECKING:
@@ -104,7 +104,8 @@ def calibrate_efficiency(
 
     See Also
     --------
-    sonolube.metrics.efficiency_coefficient, sonolube.metrics.fit_efficiency, sonolube.metrics.power_estimate
+    sonolube.facts.metrics.efficiency_coefficient, sonolube.facts.metrics.fit_efficiency,
+    sonolube.facts.metrics.power_estimate
     """
     runs, skipped = with_columns(runs, "sliding_speed", "actuator_power")
     load = setting(runs, "normal_load", rig.normal_load)

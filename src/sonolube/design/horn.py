@@ -8,16 +8,16 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.design.horn_shapes import TunableBody
 from sonolube.errors import InvalidInput
-from sonolube.fem import Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
-from sonolube.fem.mass_loading import face_residual_compliance, mass_loaded_frequencies
-from sonolube.fem.solver.element_order import change_order
-from sonolube.fem.solver.mapping import determinant, jacobian_matrices
-from sonolube.fem.solver.model import DIRECTIONS
-from sonolube.fem.solver.modes import lanczos_modes, spectral_shift
-from sonolube.fem.solver.postprocessing import gauss_point_stress, nodal_average, von_mises_stress
-from sonolube.fem.solver.simplex import shape_functions, simplex_quadrature
-from sonolube.fem.solver.system import assemble_system, shift_invert_solver
-from sonolube.materials import Material
+from sonolube.facts.materials import Material
+from sonolube.models.fem import Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
+from sonolube.models.fem.mass_loading import face_residual_compliance, mass_loaded_frequencies
+from sonolube.models.fem.solver.element_order import change_order
+from sonolube.models.fem.solver.mapping import determinant, jacobian_matrices
+from sonolube.models.fem.solver.model import DIRECTIONS
+from sonolube.models.fem.solver.modes import lanczos_modes, spectral_shift
+from sonolube.models.fem.solver.postprocessing import gauss_point_stress, nodal_average, von_mises_stress
+from sonolube.models.fem.solver.simplex import shape_functions, simplex_quadrature
+from sonolube.models.fem.solver.system import assemble_system, shift_invert_solver
 
 _ELEMENTS_ACROSS = 2.5  # in the first mesh, over the edge of a cube with the volume of the horn
 _SLICES = 48  # normal to the axis, over each of which the motion is averaged

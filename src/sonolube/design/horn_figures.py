@@ -6,9 +6,9 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.design.horn import HornDesign, face_motion, nodal_stress, section_motion
-from sonolube.fem import face_triangulation
-from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.figure import COLOURS
+from sonolube.models.fem import face_triangulation
+from sonolube.models.fem.solver.model import DIRECTIONS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,11 +7,11 @@ from functools import partial
 
 from scipy.optimize import brentq
 
-from sonolube.actuator import ThinHorn, thin_conical_horn, thin_exponential_horn, thin_stepped_horn
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem import PARTS, Geometry, adjust_length
-from sonolube.fem.parts.length_adjustment import extent_along
+from sonolube.models.actuator import ThinHorn, thin_conical_horn, thin_exponential_horn, thin_stepped_horn
+from sonolube.models.fem import PARTS, Geometry, adjust_length
+from sonolube.models.fem.parts.length_adjustment import extent_along
 
 _SMALLEST_END = 0.1  # of the radius, of a working end that is chosen by the gain
 _RADIUS_RATIO = 0.08  # default radius over the wavelength; plane sections need it well below a quarter

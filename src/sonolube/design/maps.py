@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput
+from sonolube.models.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.rig import NUMBERS, STATUSES, Rig, amplitude_labels, gridded, point_batch
 from sonolube.rig.driven_rig import require_drive
 from sonolube.units import format_si

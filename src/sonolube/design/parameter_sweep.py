@@ -14,10 +14,10 @@ from sonolube.design.chunk_store import ChunkStore
 from sonolube.design.progress import ProgressCallback
 from sonolube.design.sweep_dataset import MemoryDatasetWriter, NetCDFDatasetWriter
 from sonolube.design.sweep_plan import OPERATING_CONDITIONS, SweepPlan
-from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.extras import EXTRAS, missing_package
-from sonolube.friction import SINE_TOLERANCE
+from sonolube.models.dynamics.backend import Backend, device_name, usable_backend
+from sonolube.models.friction import SINE_TOLERANCE
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
 from sonolube.rig.operating_vibrations import REFUSED
 from sonolube.threads import thread_pool

@@ -15,7 +15,7 @@ from sonolube.design.progress import ProgressCallback
 from sonolube.design.sobol import SUBSEQUENCES, saltelli_sample, sobol_sample
 from sonolube.design.sweep_plan import SweepPlan, list_plan
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
+from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig import NUMBERS, Rig, read_rig
 from sonolube.rig.datasets import labels
 from sonolube.rig.operating_point import COMPUTED, ContactPoint, FrictionPoint, WearPoint, contact_point

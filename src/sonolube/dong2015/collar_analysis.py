@@ -14,15 +14,15 @@ from sonolube.checks import Floats
 from sonolube.dong2015.bore import BoreMotion, bore_motion
 from sonolube.dong2015.collar import Collar, collar_geometry
 from sonolube.errors import InvalidInput
-from sonolube.fem.parts.stack_material import homogenised_stack, stack_ceramic
-from sonolube.fem.solver.assembly import scalar_mass_matrix
-from sonolube.fem.solver.medium import Medium, medium_from_material, poled_medium
-from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.meshing import generate_mesh
-from sonolube.fem.solver.model import Electrodes, FixedSupport, Model
-from sonolube.fem.solver.modes import natural_modes
-from sonolube.fem.solver.reduction import Output, ReducedModel, reduce_model
-from sonolube.materials import material
+from sonolube.facts.materials import material
+from sonolube.models.fem.parts.stack_material import homogenised_stack, stack_ceramic
+from sonolube.models.fem.solver.assembly import scalar_mass_matrix
+from sonolube.models.fem.solver.medium import Medium, medium_from_material, poled_medium
+from sonolube.models.fem.solver.mesh import Mesh
+from sonolube.models.fem.solver.meshing import generate_mesh
+from sonolube.models.fem.solver.model import Electrodes, FixedSupport, Model
+from sonolube.models.fem.solver.modes import natural_modes
+from sonolube.models.fem.solver.reduction import Output, ReducedModel, reduce_model
 
 _QUARTERS = 4
 ELEMENT_SIZE = 40e-3

@@ -6,9 +6,9 @@ from typing import Final
 from sonolube.dong2015.collar import collar_geometry, dimension_names
 from sonolube.dong2015.collar_analysis import collar_media
 from sonolube.dong2015.collar_designs import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR
-from sonolube.fem.parts.transducers import SourcedDimension, Transducer
-from sonolube.fem.solver.model import Electrodes, FixedSupport
-from sonolube.fem.solver.reduction import Output
+from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer
+from sonolube.models.fem.solver.model import Electrodes, FixedSupport
+from sonolube.models.fem.solver.reduction import Output
 
 COLLAR_DIMENSIONS: Final = tuple(
     SourcedDimension(

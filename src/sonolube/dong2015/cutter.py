@@ -8,11 +8,11 @@ from dataclasses import replace
 from typing import Final
 
 from sonolube.dong2015.tribometer import TRIBOMETER_ACTUATOR_DIMENSIONS
-from sonolube.fem.parts.tips import hub_disc
-from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
-from sonolube.fem.solver.cad import cad_kernel
-from sonolube.fem.solver.geometry import bond, single_body
-from sonolube.fem.solver.model import FixedSupport
+from sonolube.models.fem.parts.tips import hub_disc
+from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
+from sonolube.models.fem.solver.cad import cad_kernel
+from sonolube.models.fem.solver.geometry import bond, single_body
+from sonolube.models.fem.solver.model import FixedSupport
 
 _FAR: Final = 1e3  # mm, beyond all bodies
 

@@ -12,13 +12,13 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from sonolube.errors import UnknownName
-from sonolube.fem.parts.bodies import extruded_polygon
-from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
-from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel
-from sonolube.fem.solver.geometry import Geometry, single_body
-from sonolube.fem.solver.medium import Medium, isotropic_medium
-from sonolube.fem.solver.model import FixedSupport
-from sonolube.fem.solver.reduction import Output
+from sonolube.models.fem.parts.bodies import extruded_polygon
+from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
+from sonolube.models.fem.solver.cad import MILLIMETRE, cad_kernel
+from sonolube.models.fem.solver.geometry import Geometry, single_body
+from sonolube.models.fem.solver.medium import Medium, isotropic_medium
+from sonolube.models.fem.solver.model import FixedSupport
+from sonolube.models.fem.solver.reduction import Output
 
 _FAR: Final = 1e3  # mm, beyond any horn
 _PAD: Final = 5e-3  # m, half the edge of the patch that the block touches, 1 cm2 in the rigs

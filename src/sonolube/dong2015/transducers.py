@@ -8,7 +8,7 @@ from sonolube.dong2015.collar_transducer import collar_element
 from sonolube.dong2015.cutter import cutter_head
 from sonolube.dong2015.horn import poisson_horn
 from sonolube.dong2015.tribometer import tribometer_actuator
-from sonolube.fem.parts.transducers import Transducer, stack_transducer
+from sonolube.models.fem.parts.transducers import Transducer, stack_transducer
 
 DONG_2015_TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = MappingProxyType(
     {
@@ -27,4 +27,5 @@ DONG_2015_TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = MappingProxyTyp
         "tribometer_actuator": tribometer_actuator,
     }
 )
-"""The dissertation's transducers by name, each with default sizes; `sonolube.fem.TRANSDUCERS` has the general ones."""
+"""The dissertation's transducers by name, each with default sizes; `sonolube.models.fem.TRANSDUCERS` has the general
+ones."""

@@ -6,8 +6,8 @@ and capacitance of D Table 3.5.
 
 from dataclasses import replace
 
-from sonolube.fem.parts.tips import acorn_nut
-from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
+from sonolube.models.fem.parts.tips import acorn_nut
+from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
 
 TRIBOMETER_ACTUATOR_DIMENSIONS = (
     SourcedDimension(name="outer_radius", value=9.5e-3, source="360 nF and 62 layers of D Table 3.5 with PIC255"),

@@ -7,13 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import AAA
 
-from sonolube.actuator import (
-    ButterworthVanDyke,
-    CircuitResonances,
-    MotionalBranch,
-    circuit_admittance,
-    circuit_resonances,
-)
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
 from sonolube.identification.minimum_phase import admittance_with_phase
@@ -34,6 +27,13 @@ from sonolube.measurement.statistics.log_parameter_fit import (
     fit_log_parameters,
     residual_inefficiency,
     spanning_intervals,
+)
+from sonolube.models.actuator import (
+    ButterworthVanDyke,
+    CircuitResonances,
+    MotionalBranch,
+    circuit_admittance,
+    circuit_resonances,
 )
 
 _MOST_BRANCHES = 8

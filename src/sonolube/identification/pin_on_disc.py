@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from sonolube.actuator import PiezoStack
 from sonolube.checks import require_non_negative, require_positive
-from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.identification.fact import ForwardModel
 from sonolube.identification.observation import Observation, structure_model
 from sonolube.identification.small_vibration import Conditions
 from sonolube.identification.structure_parametrisation import parametric_structure
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics import Structure, chain_structure, pin_on_disc_chain
 
 _REFERENCE = {
     "tip_mass": 1.0,

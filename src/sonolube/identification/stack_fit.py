@@ -6,9 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import nnls
 
-from sonolube.actuator import PiezoStack
 from sonolube.checks import Complexes, Floats, require_within
-from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.errors import InvalidInput
 from sonolube.identification.minimum_phase import admittance_with_phase
 from sonolube.identification.spectral_residual import LOG_COMPLEX, caveats_of_spectrum, residual_for, residual_named
@@ -20,6 +18,8 @@ from sonolube.measurement.statistics.log_parameter_fit import (
     fit_log_parameters,
     residual_inefficiency,
 )
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics.structure import Structure, electrical_admittance
 
 _STIFFNESS_FACTORS = np.geomspace(1 / 30, 30, 121)
 _DAMPING_FACTORS = (0.1, 1.0, 10.0)

@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
 from sonolube.identification.fact import Bounds, parameter_unit
+from sonolube.models.dynamics import Structure
 
 StructureBuilder = Callable[[Mapping[str, float]], Structure]
 """Structure from the values of its free parameters in SI, by name."""
@@ -24,7 +24,7 @@ _MECHANICAL = {"kg": 1.0, "N/m": 1e6, "N s/m": 1e3}  # reference values by SI un
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class StructureMatrices:
-    """Matrices of n structures of k coordinates; see `sonolube.dynamics.Structure` for their equation of motion.
+    """Matrices of n structures of k coordinates; see `sonolube.models.dynamics.Structure` for their equation of motion.
 
     Parameters
     ----------

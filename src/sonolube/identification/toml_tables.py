@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 
-from sonolube.actuator import PiezoStack
 from sonolube.identification.fact import Fact, parameter_unit
 from sonolube.identification.result import Identification, ParameterEstimate
+from sonolube.models.actuator import PiezoStack
 
 _SHOWN_EXPONENT = 0.1  # least exponent of a direction that is written
 

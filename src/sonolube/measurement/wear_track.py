@@ -8,10 +8,10 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.facts.metrics import wear_rate, wear_reduction
 from sonolube.measurement.statistics.repeated_tests import mean_estimate, ratio_interval
-from sonolube.metrics import wear_rate, wear_reduction
-from sonolube.surfaces.grooves.groove import Groove, measure_groove
-from sonolube.surfaces.height_map import HeightMap
+from sonolube.models.surfaces.grooves.groove import Groove, measure_groove
+from sonolube.models.surfaces.height_map import HeightMap
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

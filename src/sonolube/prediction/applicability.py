@@ -95,7 +95,7 @@ def _soft(rig: Rig) -> str | None:
         return None
     return (
         f"{rig.title}: {why}, and all published tests behind a prediction are of hard bodies; use sonolube friction,"
-        " or the soft layers of sonolube.friction (exponential_layer_ratio, linear_layer_ratio)"
+        " or the soft layers of sonolube.models.friction (exponential_layer_ratio, linear_layer_ratio)"
     )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.materials import material
+from sonolube.facts.materials import material
 from sonolube.rig import Rig
 from sonolube.rig.file.derived import FROM_HARDNESS
 from sonolube.units import to_si

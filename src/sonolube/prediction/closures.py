@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
-from sonolube.friction import tabulated_spring_ratio, tabulated_stick_slip_ratio
+from sonolube.models.friction import tabulated_spring_ratio, tabulated_stick_slip_ratio
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from sonolube.errors import InvalidInput, MissingProperty
+from sonolube.models.thermal import EllipticSource, contact_rise
 from sonolube.rig import Rig, thermal_solid
-from sonolube.thermal import EllipticSource, contact_rise
 
 
 def contact_heating(rig: Rig, pin: str | None, disc: str | None) -> float | str:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.contact import decay_length, separation
+from sonolube.models.contact import decay_length, separation
 from sonolube.prediction.closures import Conditions, UncertainConditions
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.validation.published_tests import FrictionTest, friction_tests

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.dynamics import modes, with_contact_spring
 from sonolube.errors import InvalidInput
+from sonolube.models.dynamics import modes, with_contact_spring
 from sonolube.rig import Rig
 from sonolube.units import format_si
 

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from sonolube.contact import RoughContact, decay_length, separation
+from sonolube.models.contact import RoughContact, decay_length, separation
 from sonolube.rig import Rig
 from sonolube.validation.published_tests import friction_tests
 

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.published import si_value
+from sonolube.facts.published import si_value
 
 WEAR_HYPERPARAMETERS: Final = ("wear_rate_ratio", "pair_spread", "test_spread")
 """Their logarithms: mean M of ln ratio over pairs, its deviation T between pairs, and s between tests of a pair."""

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.extras import missing_package
-from sonolube.surfaces import HeightMap
+from sonolube.models.surfaces import HeightMap
 
 _PERIMETER_CORRECTION = (math.pi - 1 + math.log(2)) / 24  # area per pixel edge of the contact's outline, in pixels [2]
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sonolube import surfaces
 from sonolube.checks import Floats, require_positive
-from sonolube.contact import (
+from sonolube.errors import InvalidInput
+from sonolube.models import surfaces
+from sonolube.models.contact import (
     ASPERITY_LAWS,
     ContactPair,
     ExponentialHeights,
@@ -24,7 +25,6 @@ from sonolube.contact import (
     real_contact_area,
     separation,
 )
-from sonolube.errors import InvalidInput
 from sonolube.reference_solutions.boundary_element import boundary_element_contact
 
 QUANTITIES = ("separation", "real_contact_area", "normal_stiffness")

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from sonolube import __version__
+from sonolube.facts.published import errata
 from sonolube.files import write_atomically
-from sonolube.published import errata
 from sonolube.report.page import Advance, Drawing, drawn, embedded, html
 from sonolube.report.reproduction_text import KIND_NAMES, counts, counts_by_kind
-from sonolube.reproduce import Finding, Reproduction, Row
+from sonolube.reproduction import Finding, Reproduction, Row
 
 
 def reproduction_files(

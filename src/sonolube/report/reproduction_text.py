@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 from typing import Final
 
-from sonolube.reproduce import Reproduction, Row, RowKind, Verdict
+from sonolube.reproduction import Reproduction, Row, RowKind, Verdict
 
 KIND_NAMES: Final = {
     RowKind.PUBLISHED_FORMULA: "published formula, on published numbers",

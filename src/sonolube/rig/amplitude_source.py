@@ -6,10 +6,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from sonolube.actuator import Drive
-from sonolube.contact import RoughContact, separation
-from sonolube.dynamics import Status, Structure, steady_state
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.models.actuator import Drive
+from sonolube.models.contact import RoughContact, separation
+from sonolube.models.dynamics import Status, Structure, steady_state
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_harmonics
 from sonolube.rig.linear_response import gap_law_of

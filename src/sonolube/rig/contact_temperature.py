@@ -8,17 +8,24 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.materials import material
-from sonolube.rig.linear_response import rest_separation
-from sonolube.rig.record import Rig
-from sonolube.rig.simulation import vibrated_friction
-from sonolube.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid, contact_rise, peclet_number
-from sonolube.thermal.contact_history import (
+from sonolube.facts.materials import material
+from sonolube.models.thermal import (
+    EllipticSource,
+    HeatedContact,
+    ThermalNetwork,
+    ThermalSolid,
+    contact_rise,
+    peclet_number,
+)
+from sonolube.models.thermal.contact_history import (
     ContactTemperatureHistory,
     contact_temperature_history,
     frictional_heat_rate,
 )
-from sonolube.thermal.flash_models import FLASH_MODELS
+from sonolube.models.thermal.flash_models import FLASH_MODELS
+from sonolube.rig.linear_response import rest_separation
+from sonolube.rig.record import Rig
+from sonolube.rig.simulation import vibrated_friction
 
 _STEPS = 200
 
@@ -132,7 +139,7 @@ def temperature_point(
     friction_ratio : float, optional
         Friction with vibration over that without, instead of that of the friction model. []
     flash_model : str
-        Of `sonolube.thermal.flash_models.FLASH_MODELS`.
+        Of `sonolube.models.thermal.flash_models.FLASH_MODELS`.
 
     Returns
     -------

@@ -3,10 +3,10 @@
 from dataclasses import dataclass, fields
 from typing import final
 
-from sonolube.actuator import PiezoStack
-from sonolube.actuator.drive import Drive
-from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.actuator.drive import Drive
+from sonolube.models.dynamics import Structure
 from sonolube.rig.record import Rig
 
 

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.actuator.drive import Drive
-from sonolube.actuator.drive_power import linear_amplifier_power
 from sonolube.checks import Complexes, Floats, require_non_negative
-from sonolube.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform
-from sonolube.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
+from sonolube.models.actuator.drive import Drive
+from sonolube.models.actuator.drive_power import linear_amplifier_power
+from sonolube.models.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform
+from sonolube.models.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.record import Rig
 from sonolube.units import format_si

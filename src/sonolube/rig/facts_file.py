@@ -8,8 +8,6 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from sonolube.actuator import PiezoStack
-from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, UnknownName, suggestion
 from sonolube.identification import (
     Conditions,
@@ -21,6 +19,8 @@ from sonolube.identification import (
 )
 from sonolube.identification.fact import Bounds, Fact, ForwardModel, Relation, parameter_unit
 from sonolube.identification.observation import IdentificationProblem, Observation, observable_unit, structure_model
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics import Structure
 from sonolube.rig.file.contact_section import Text
 from sonolube.rig.file.plausible import plausible_si
 from sonolube.rig.file.reader import rig_content, rig_from

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.figure import COLOURS, LINES
-from sonolube.friction import LubricationMethod
+from sonolube.models.friction import LubricationMethod
 
 if TYPE_CHECKING:
     import xarray as xr

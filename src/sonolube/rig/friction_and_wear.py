@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
-from sonolube.contact import GapMotion, load_balanced_motion, separation, sinusoidal_motion
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.friction.models import MeanGap
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
+from sonolube.models.contact import GapMotion, load_balanced_motion, separation, sinusoidal_motion
+from sonolube.models.friction.models import MeanGap
+from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
+from sonolube.models.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.rig.record import Rig
 from sonolube.units import format_si
-from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
 ANY_FREQUENCY = 1.0
 """Frequency of a sine where nothing depends on it. [Hz]"""
@@ -170,7 +170,7 @@ def mean_wear(
     motions : tuple of GapMotion
         One after the other, each of its own duration.
     wear_model : str
-        Of `sonolube.wear.WEAR_MODELS`.
+        Of `sonolube.models.wear.WEAR_MODELS`.
     vibration_amplitude : float, optional
         Amplitude of a motion that is a sine; None for other motions. [m]
 
@@ -206,7 +206,7 @@ def rise_caveats(motions: tuple[GapMotion, ...], *, wear_model: str) -> tuple[st
     ----------
     motions : tuple of GapMotion
     wear_model : str
-        Of `sonolube.wear.WEAR_MODELS`.
+        Of `sonolube.models.wear.WEAR_MODELS`.
 
     Returns
     -------

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.contact import ExponentialHeights
-from sonolube.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
-from sonolube.dynamics import ExponentialGap, GapLaw, TabulatedGap, modes
-from sonolube.dynamics.structure import Structure, drive_receptance, electrical_admittance, with_contact_spring
 from sonolube.errors import OutsideRange
+from sonolube.models.contact import ExponentialHeights
+from sonolube.models.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
+from sonolube.models.dynamics import ExponentialGap, GapLaw, TabulatedGap, modes
+from sonolube.models.dynamics.structure import Structure, drive_receptance, electrical_admittance, with_contact_spring
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.record import Rig
 

@@ -7,18 +7,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import MissingProperty, UnknownName
-from sonolube.friction import (
+from sonolube.facts.materials import Material
+from sonolube.models.friction import (
     BoundaryLubricant,
     LubricationCoefficients,
     asperity_load_fraction,
     best_lubrication_method,
     lubrication_coefficients,
 )
-from sonolube.materials import Material
+from sonolube.models.wear import CrystalStructure, WearMechanismAssessment, WearPairBody, assess_wear_mechanism
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.rig.simulation import VibratedFriction, vibrated_friction
-from sonolube.wear import CrystalStructure, WearMechanismAssessment, WearPairBody, assess_wear_mechanism
 
 _SPAN = 10.0  # how far the map reaches to either side of the rig's point, as a factor
 _RESOLUTION = 121

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sonolube.actuator.drive import Drive
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.models.actuator.drive import Drive
 from sonolube.rig.friction_and_wear import ANY_FREQUENCY
 from sonolube.rig.record import Rig
 

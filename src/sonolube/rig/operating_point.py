@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass
 
-from sonolube.contact.rough import contact_count, normal_stiffness, real_contact_area
-from sonolube.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
+from sonolube.models.contact.rough import contact_count, normal_stiffness, real_contact_area
+from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
+from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
+from sonolube.models.wear import cube_wear_rate
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.worn_contact import resting_caveats
-from sonolube.wear import cube_wear_rate
 
 COMPUTED = "computed"
 """Status of a result within the range of its model."""
@@ -179,7 +179,7 @@ def contact_point(rig: Rig, *, tangential_stiffness_model: str = DEFAULT_TANGENT
     ----------
     rig : Rig
     tangential_stiffness_model : str
-        Model of the tangential stiffness, of `sonolube.contact.TANGENTIAL_STIFFNESSES`.
+        Model of the tangential stiffness, of `sonolube.models.contact.TANGENTIAL_STIFFNESSES`.
 
     Returns
     -------

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
-from sonolube.contact import GapMotionBatch, separation
-from sonolube.dynamics import Status, SteadyStates
-from sonolube.dynamics.backend import Backend
-from sonolube.dynamics.kernels.peak_velocity import peak_velocities
 from sonolube.errors import SonolubeError
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, checked_ratio
+from sonolube.models.contact import GapMotionBatch, separation
+from sonolube.models.dynamics import Status, SteadyStates
+from sonolube.models.dynamics.backend import Backend
+from sonolube.models.dynamics.kernels.peak_velocity import peak_velocities
+from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, checked_ratio
 from sonolube.rig.amplitude_source import resolved_vibration
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.excitation import voltage_range

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
-from sonolube.contact import separation
-from sonolube.dynamics import SteadyStates
-from sonolube.dynamics.backend import Backend
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
+from sonolube.models.contact import separation
+from sonolube.models.dynamics import SteadyStates
+from sonolube.models.dynamics.backend import Backend
+from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.amplitude_source import moved_rig, resolved_vibration
 from sonolube.rig.excitation import actuator_capacitance, amplifier_power
 from sonolube.rig.friction_and_wear import friction_at_speeds

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonolube.actuator.stack import require_allowed_voltage
 from sonolube.checks import Floats
-from sonolube.contact import GapMotion, separation
-from sonolube.dynamics import Status, SteadyStates, steady_state
-from sonolube.dynamics.backend import Backend
 from sonolube.errors import OutsideRange, SonolubeError
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
+from sonolube.models.actuator.stack import require_allowed_voltage
+from sonolube.models.contact import GapMotion, separation
+from sonolube.models.dynamics import Status, SteadyStates, steady_state
+from sonolube.models.dynamics.backend import Backend
+from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.amplitude_source import ResolvedVibration
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.excitation import NO_DISSIPATED_POWER, voltage_harmonics, voltage_range

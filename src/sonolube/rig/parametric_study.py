@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.dynamics import WAVEFORMS, Status, contact_motion, modes
 from sonolube.errors import InvalidInput
+from sonolube.models.dynamics import WAVEFORMS, Status, contact_motion, modes
 from sonolube.rig.amplitude_source import amplitude_labels, moved_rig
 from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig, require_drive

@@ -8,13 +8,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final, Literal, Protocol, get_args
 
-from sonolube.actuator import PiezoStack
-from sonolube.actuator.drive import Drive
 from sonolube.checks import require_non_negative, require_positive
-from sonolube.contact import ExponentialHeights, RoughContact, decay_length
-from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.friction.models import FRICTION_MODELS, FrictionModel
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.actuator.drive import Drive
+from sonolube.models.contact import ExponentialHeights, RoughContact, decay_length
+from sonolube.models.dynamics import Structure
+from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.distribution import Distribution
 from sonolube.units import format_si
 

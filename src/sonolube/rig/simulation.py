@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.actuator import stack_caveats
 from sonolube.errors import OutsideRange, SonolubeError
-from sonolube.friction.models import FRICTION_MODELS, FrictionModel
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
+from sonolube.models.actuator import stack_caveats
+from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
+from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
+from sonolube.models.wear import WEAR_MODELS
 from sonolube.rig.amplitude_source import ResolvedVibration, resolved_vibration, source_caveats
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.excitation import (
@@ -24,7 +25,6 @@ from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoi
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
 from sonolube.rig.worn_contact import resting_caveats
-from sonolube.wear import WEAR_MODELS
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 
 from sonolube.checks import require_positive
-from sonolube.dynamics.attractor import beat, settling_time
-from sonolube.dynamics.trajectories import Trajectory
-from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
+from sonolube.models.dynamics.attractor import beat, settling_time
+from sonolube.models.dynamics.trajectories import Trajectory
+from sonolube.models.dynamics.transient import march, trajectory
 from sonolube.rig.amplitude_source import moved_rig
 from sonolube.rig.excitation import drive_and_load
 from sonolube.rig.linear_response import gap_law_of, rest_separation

@@ -6,12 +6,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.actuator.drive import Drive
-from sonolube.contact import GapMotion, separation, separation_range
-from sonolube.dynamics import Status, SteadyStates, contact_motion, drive_receptance, steady_state
-from sonolube.dynamics.long_time_response import LongTimeResponse, march_until_settled
 from sonolube.errors import OutsideRange
-from sonolube.friction.models import MeanGap
+from sonolube.models.actuator.drive import Drive
+from sonolube.models.contact import GapMotion, separation, separation_range
+from sonolube.models.dynamics import Status, SteadyStates, contact_motion, drive_receptance, steady_state
+from sonolube.models.dynamics.long_time_response import LongTimeResponse, march_until_settled
+from sonolube.models.friction.models import MeanGap
 from sonolube.rig.amplitude_source import ResolvedVibration, resolved_vibration
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.excitation import drive_and_load, voltage_harmonics

@@ -5,8 +5,8 @@ from math import exp, isfinite
 from typing import Final
 
 from sonolube.checks import require_positive
-from sonolube.contact import ExponentialHeights, contact_caveats, decay_length
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.models.contact import ExponentialHeights, contact_caveats, decay_length
 from sonolube.rig.amplitude_source import resolved_vibration
 from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
 from sonolube.rig.linear_response import rest_separation

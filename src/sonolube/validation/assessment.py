@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from sonolube.friction import FrictionModel
+from sonolube.models.friction import FrictionModel
 from sonolube.validation.fitting import Fit, fit_variant, root_mean_square, select_tests
 from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
 from sonolube.validation.model_variant import ModelVariant, SeenSets

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.contact import RoughContact
+from sonolube.models.contact import RoughContact
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -4,7 +4,8 @@ from dataclasses import replace
 from math import pi, sqrt
 from typing import Final, Literal
 
-from sonolube.contact import (
+from sonolube.facts.published import si_value
+from sonolube.models.contact import (
     ASPERITY_LAWS,
     ContactPair,
     ElasticBody,
@@ -12,8 +13,7 @@ from sonolube.contact import (
     contact_pair,
     identical_materials_mindlin_ratio,
 )
-from sonolube.published import si_value
-from sonolube.surfaces import Roughness
+from sonolube.models.surfaces import Roughness
 
 STEEL_YIELD_STRENGTH: Final = 250e6
 """Yield strength of steel on steel. [Pa] Not printed; inferred from the separations stated in D 3.1.4."""

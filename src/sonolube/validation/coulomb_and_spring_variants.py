@@ -12,10 +12,10 @@ from functools import cache
 from math import pi
 from typing import Final
 
-from sonolube import friction
 from sonolube.checks import Floats
-from sonolube.contact import RoughContact, normal_stiffness, separation
 from sonolube.errors import ModelRangeWarning, OutsideRange
+from sonolube.models import friction
+from sonolube.models.contact import RoughContact, normal_stiffness, separation
 from sonolube.validation.condition_columns import ConditionColumns
 from sonolube.validation.free_parameters import (
     APPROACH,

@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from sonolube import friction
 from sonolube.checks import Floats
-from sonolube.contact import RoughContact, separation
+from sonolube.models import friction
+from sonolube.models.contact import RoughContact, separation
 from sonolube.validation.condition_columns import ConditionColumns
 from sonolube.validation.coulomb_and_spring_variants import (
     LONGITUDINAL_VIBRATION,

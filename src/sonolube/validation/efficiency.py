@@ -1,7 +1,7 @@
 """Efficiency of friction reduction by vibration: the line fitted in the dissertation to its own tests."""
 
-from sonolube.metrics import EfficiencyLine
-from sonolube.published import si_value
+from sonolube.facts.metrics import EfficiencyLine
+from sonolube.facts.published import si_value
 
 
 def efficiency_line() -> EfficiencyLine:

@@ -5,9 +5,16 @@ from functools import cache
 from math import pi
 from typing import Final
 
-from sonolube import friction
 from sonolube.checks import Floats
-from sonolube.contact import GapMotion, RoughContact, decay_length, load_balanced_motion, separation, sinusoidal_motion
+from sonolube.models import friction
+from sonolube.models.contact import (
+    GapMotion,
+    RoughContact,
+    decay_length,
+    load_balanced_motion,
+    separation,
+    sinusoidal_motion,
+)
 from sonolube.validation.condition_columns import ConditionColumns
 from sonolube.validation.free_parameters import (
     AMPLITUDE_FRACTION,
@@ -266,4 +273,4 @@ FRICTION_MODEL_VARIANTS: Final = (
         (*per_rig((HOLDER_COMPLIANCE,), *FITTED_RIGS), *_IN_PLANE_POWER_MAP),
     ),
 )
-"""Variants of the friction models of `sonolube.friction.models`."""
+"""Variants of the friction models of `sonolube.models.friction.models`."""

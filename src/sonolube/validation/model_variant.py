@@ -8,10 +8,10 @@ from typing import Any, Final, SupportsFloat
 
 import numpy as np
 
-from sonolube.contact import separation
 from sonolube.errors import OutsideRange
-from sonolube.friction import FrictionModel, MeanGap
-from sonolube.friction.models.range_check import checked_ratio
+from sonolube.models.contact import separation
+from sonolube.models.friction import FrictionModel, MeanGap
+from sonolube.models.friction.models.range_check import checked_ratio
 from sonolube.validation.condition_columns import condition_columns
 from sonolube.validation.free_parameters import FreeParameter
 from sonolube.validation.published_tests import Conditions

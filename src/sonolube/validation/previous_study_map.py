@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from sonolube.facts.published import PreviousStudy, PrintedNumber, previous_studies
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.published import PreviousStudy, PrintedNumber, previous_studies
 from sonolube.validation.published_tests import friction_tests
 
 if TYPE_CHECKING:

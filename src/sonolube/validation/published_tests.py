@@ -6,8 +6,8 @@ from functools import cache
 from math import hypot
 from typing import Final, Protocol
 
-from sonolube.contact import RoughContact
-from sonolube.published import PublishedValue, published_number, published_value, si_value
+from sonolube.facts.published import PublishedValue, published_number, published_value, si_value
+from sonolube.models.contact import RoughContact
 from sonolube.validation.contacts import steel_on_steel_contact, uncoated_plate_contact, wear_contact
 from sonolube.validation.roughness_inputs import printed_rms_height, roughness_spread
 

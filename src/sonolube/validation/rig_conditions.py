@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import inf, isfinite, pi
 
-from sonolube.contact import RoughContact
 from sonolube.errors import InvalidInput
+from sonolube.models.contact import RoughContact
 from sonolube.rig import Rig, steady_vibration
 
 _FIELDS_OF_RIG = ("contact", "normal_load", "friction_coefficient", "sliding_speed")

@@ -26,7 +26,7 @@ from functools import cache
 from math import hypot, log
 from typing import Final
 
-from sonolube.published import si_value
+from sonolube.facts.published import si_value
 from sonolube.validation.contacts import RMS_OVER_ARITHMETIC_MEAN, uncoated_plate_contact, wear_contact
 
 _GUESSED: Final = log(2)  # to the next grade of a comparison standard, which doubles; D 3.1.4

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.contact import RoughContact
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting
+from sonolube.models.contact import RoughContact
 from sonolube.rig import Rig, steady_vibration
 from sonolube.units import format_si
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.facts.published import PreviousStudy, previous_studies
 from sonolube.measurement.measured_runs import RUN_COLUMNS, read_runs, run_caveats
 from sonolube.measurement.run_selection import checked_ratios, setting
-from sonolube.published import PreviousStudy, previous_studies
 from sonolube.units import convert
 from sonolube.validation.previous_study_map import DIRECTIONS, StudyPoint, speed_range
 from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests

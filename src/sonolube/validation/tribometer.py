@@ -7,10 +7,10 @@ that the dissertation computed. Rank 3: statements in words and conclusions draw
 from pathlib import Path
 from typing import Final
 
-from sonolube.actuator.stack import PiezoStack
-from sonolube.contact import decay_length
+from sonolube.facts.published import si_value
 from sonolube.identification import Identification, IdentificationProblem, PinOnDiscTest, identify, pin_on_disc_model
-from sonolube.published import si_value
+from sonolube.models.actuator.stack import PiezoStack
+from sonolube.models.contact import decay_length
 from sonolube.rig.facts_file import read_facts
 from sonolube.validation.contacts import wear_contact
 

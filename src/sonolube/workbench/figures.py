@@ -9,9 +9,9 @@ import xarray as xr
 
 from sonolube.design import map_figure, sweep_figure
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem.figures import ShapedSurface, mode_figure
-from sonolube.fem.mode_files import frequency_text
 from sonolube.figure import fit_to_style, publication_style
+from sonolube.models.fem.figures import ShapedSurface, mode_figure
+from sonolube.models.fem.mode_files import frequency_text
 from sonolube.prediction.figures import prediction_figure
 from sonolube.report.measured.sheet import Sheet
 from sonolube.rig.figures import simulation_figure

@@ -1,6 +1,6 @@
 """New rig from what is known before a test, as `sonolube new` writes it."""
 
-from sonolube.materials import material
+from sonolube.facts.materials import material
 from sonolube.rig import Rig
 from sonolube.rig.new_rig.rig_text import KnownRig, rig_of_known
 from sonolube.rig.new_rig.stated_text import pin_shape, reader, speed_of, surface_of, vibration_of

@@ -10,7 +10,8 @@ import numpy as np
 
 from sonolube.dong2015.transducers import DONG_2015_TRANSDUCERS
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem import (
+from sonolube.facts.materials import material, piezo_ceramic_names
+from sonolube.models.fem import (
     PARTS,
     TRANSDUCERS,
     Geometry,
@@ -22,7 +23,6 @@ from sonolube.fem import (
     poled_part,
     read_step,
 )
-from sonolube.materials import material, piezo_ceramic_names
 from sonolube.units import to_si
 from sonolube.vocabulary import quantities
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.fem import (
+from sonolube.models.fem import (
     ConvergedModes,
     Electrodes,
     FixedSupport,
@@ -20,8 +20,8 @@ from sonolube.fem import (
     generate_mesh,
     mode_names,
 )
-from sonolube.fem.figures import shaped_surface
-from sonolube.fem.mode_files import elastic_rows
+from sonolube.models.fem.figures import shaped_surface
+from sonolube.models.fem.mode_files import elastic_rows
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 from sonolube.workbench.named_parts import (
@@ -176,7 +176,7 @@ def part_modes(
     tolerance : float
         Largest relative error of a frequency.
     advance : callable, optional
-        As of `sonolube.fem.converged_modes`.
+        As of `sonolube.models.fem.converged_modes`.
 
     Returns
     -------

@@ -11,7 +11,7 @@ from pytest import approx
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from sonolube.design.horn_shapes import horn_body
-from sonolube.fem import cylinder, stepped_horn
+from sonolube.models.fem import cylinder, stepped_horn
 
 Program = Callable[..., Any]
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from tests.cli.conftest import Program
 
+from sonolube.facts.protocol import duration, flattened, protocol_from, protocol_text, read_protocol
 from sonolube.measurement.measured_runs import read_runs
-from sonolube.protocol import duration, flattened, protocol_from, protocol_text, read_protocol
 
 pytestmark = pytest.mark.usefixtures("compiled_kernels")
 

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from pytest import approx
 
-from sonolube.dynamics.backend import device_name
+from sonolube.models.dynamics.backend import device_name
 
 Program = Callable[..., Any]
 VOLTS = "drive.voltage_peak_to_peak"

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from pytest import MonkeyPatch, approx
 from tests.cli.conftest import Program
-from tests.lab.daqmx_device import DaqmxDevice, install
-from tests.lab.rig_stand_ins import EXAMPLE, instrument_rig
+from tests.laboratory.daqmx_device import DaqmxDevice, install
+from tests.laboratory.rig_stand_ins import EXAMPLE, instrument_rig
 
 from sonolube.extras import EXTRAS
 

@@ -6,10 +6,10 @@ import pytest
 import xarray as xr
 from pytest import MonkeyPatch, approx
 from tests.cli.conftest import Program
-from tests.lab import rig_stand_ins
-from tests.lab.rig_stand_ins import instrument_rig
+from tests.laboratory import rig_stand_ins
+from tests.laboratory.rig_stand_ins import instrument_rig
 
-from sonolube.lab.records import read_run
+from sonolube.laboratory.records import read_run
 
 pytestmark = pytest.mark.usefixtures("compiled_kernels")
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from pytest import approx
 from tests.cli.conftest import ROOT, Program
-from tests.lab.catalogue.test_catalogue import run_of
-from tests.lab.records.recorded import begun, block_of, recorded
-from tests.lab.records.test_recovery import unfinished
+from tests.laboratory.catalogue.test_catalogue import run_of
+from tests.laboratory.records.recorded import begun, block_of, recorded
+from tests.laboratory.records.test_recovery import unfinished
 
 RIG = ROOT / "examples" / "rigs" / "tribometer.toml"
 

@@ -11,8 +11,8 @@ import xarray as xr
 from pytest import approx
 from tests.cli.lab.test_watch import LONG, folder_of, running
 
-from sonolube.lab.records import read_run
-from sonolube.protocol import protocol_names
+from sonolube.facts.protocol import protocol_names
+from sonolube.laboratory.records import read_run
 
 Program = Callable[..., Any]
 

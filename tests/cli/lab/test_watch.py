@@ -15,11 +15,11 @@ import pytest
 from pytest import MonkeyPatch, approx
 from tests.cli.conftest import Program
 from tests.cli.terminal import read_until, rest
-from tests.lab.records.recorded import begun, block_of, recorded
-from tests.lab.records.test_recovery import unfinished
+from tests.laboratory.records.recorded import begun, block_of, recorded
+from tests.laboratory.records.test_recovery import unfinished
 
 from sonolube.cli.lab import watch
-from sonolube.lab.records import read_run
+from sonolube.laboratory.records import read_run
 
 LONG = 3600.0  # s, of a run that a test ends
 PROGRAM = (
@@ -28,7 +28,7 @@ PROGRAM = (
 HELD = """
 import sys, time
 from pathlib import Path
-from sonolube.lab.virtual_tribometer import simulation
+from sonolube.laboratory.virtual_tribometer import simulation
 blocks, seen = 0, Path(sys.argv.pop())
 def hold(seconds):
     global blocks

@@ -115,7 +115,7 @@ def test_velocities_become_displacements_per_volt(tmp_path: Path, capsys: pytest
 def test_the_stack_of_a_rig_is_found_in_the_impedance_that_the_rig_computes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from sonolube.dynamics.structure import electrical_admittance
+    from sonolube.models.dynamics.structure import electrical_admittance
     from sonolube.rig import structure_by_stack
 
     rig = Path(__file__).parents[3] / "examples" / "rigs" / "tribometer.toml"
@@ -134,7 +134,7 @@ def test_the_stack_of_a_rig_is_found_in_the_impedance_that_the_rig_computes(
 def test_rings_of_known_depth_give_their_volume_and_the_reduction(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from sonolube.surfaces import GrooveShape, GrooveTrack, ScannedField, synthetic_groove
+    from sonolube.models.surfaces import GrooveShape, GrooveTrack, ScannedField, synthetic_groove
 
     field = ScannedField(field_shape=(160, 220), spacing_x=11e-6, spacing_y=11e-6)
     areas = {}

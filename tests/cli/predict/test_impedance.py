@@ -11,7 +11,7 @@ from pytest import approx
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
-from sonolube.materials import piezo_ceramic, piezo_ceramic_names
+from sonolube.facts.materials import piezo_ceramic, piezo_ceramic_names
 from sonolube.measurement.impedance.reader import read_impedance
 
 Program = Callable[..., Any]

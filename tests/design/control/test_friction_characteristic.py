@@ -14,7 +14,7 @@ from sonolube.design.control import (
     voltage_for_friction,
 )
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.metrics import EfficiencyLine, efficiency_coefficient
+from sonolube.facts.metrics import EfficiencyLine, efficiency_coefficient
 from sonolube.rig import friction_point, read_rig
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.excitation import amplifier_power

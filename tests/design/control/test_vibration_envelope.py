@@ -7,7 +7,6 @@ from pytest import approx
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from sonolube.contact import normal_stiffness, separation
 from sonolube.design.control import (
     FrictionCharacteristic,
     FrictionLoop,
@@ -19,7 +18,8 @@ from sonolube.design.control import (
     simulate_closed_loop,
     tuned_controller,
 )
-from sonolube.dynamics import LinearGap, electrical_admittance, march
+from sonolube.models.contact import normal_stiffness, separation
+from sonolube.models.dynamics import LinearGap, electrical_admittance, march
 from sonolube.rig import read_rig, structure_in_contact
 from sonolube.rig.driven_rig import driven_rig
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.actuator import PreloadBolt, catalogue_actuator, catalogue_names
 from sonolube.design.optimisation import (
     DEFAULT_MAXIMUM_SWING,
     Candidate,
@@ -30,6 +29,7 @@ from sonolube.design.optimisation import (
     swing_sensitivities,
 )
 from sonolube.errors import InvalidInput, OutsideRange, UnknownName
+from sonolube.models.actuator import PreloadBolt, catalogue_actuator, catalogue_names
 from sonolube.rig import Rig, least_power_study, point_batch, read_rig, rig_content, structure_entries
 from sonolube.rig.driven_rig import driven_rig
 

@@ -69,7 +69,7 @@ def test_a_zero_that_goes_off_by_a_third_of_the_friction_is_told_from_a_good_one
 
 def test_the_bias_of_a_zero_is_that_of_decay_lengths_with_and_without_it() -> None:
     # ratio 0.6 read as (0.6 - 0.3)/(1 - 0.3) = 0.429; sonolube friction gives both at 1.82 and 1.23 um
-    from sonolube.friction.models.asperity_stick_slip_sine import sine_stick_slip_ratio
+    from sonolube.models.friction.models.asperity_stick_slip_sine import sine_stick_slip_ratio
 
     lengths = 1e-6 * np.linspace(0.8, 2.5, 3401)
     ratios = sine_stick_slip_ratio(

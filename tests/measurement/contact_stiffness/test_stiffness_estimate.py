@@ -4,12 +4,12 @@ import numpy as np
 from pytest import approx, raises
 from reliability import virtual_contact as virtual
 
-from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
 from sonolube.measurement.contact_stiffness.analysis import MeasuredContactStiffness, measured_contact_stiffness
 from sonolube.measurement.contact_stiffness.resonance_fit import Resonance
 from sonolube.measurement.contact_stiffness.resonance_spectrum import ResonanceSpectrum, vibration_spectrum
 from sonolube.measurement.contact_stiffness.stiffness_estimate import ContactStiffness, contact_stiffness, single_mode
+from sonolube.models.dynamics import Structure
 
 MASS, FREE, LOAD = 0.105, 22e3, 3.0
 SLOW = np.linspace(70, 450, 381)

@@ -8,9 +8,9 @@ import pytest
 from pytest import approx, raises
 from scipy.special import i0
 
-from sonolube.contact import decay_length
 from sonolube.design import grid_plan, propagate
 from sonolube.errors import InvalidInput
+from sonolube.models.contact import decay_length
 from sonolube.rig import Rig, contact_point, friction_point, read_rig, rig_from
 
 FILE = """

@@ -9,7 +9,7 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.materials import yield_strength_from_hardness
+from sonolube.facts.materials import yield_strength_from_hardness
 from sonolube.rig import Rig, read_rig, rig_from
 from sonolube.units import to_si
 

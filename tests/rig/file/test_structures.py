@@ -9,8 +9,8 @@ import pytest
 from pytest import approx, raises
 from scipy.linalg import eigh
 
-from sonolube.dynamics import contact_receptance, drive_receptance, electrical_admittance
 from sonolube.errors import InvalidInput
+from sonolube.models.dynamics import contact_receptance, drive_receptance, electrical_admittance
 from sonolube.rig import load_study, read_rig, rig_content, rig_from, simulate
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 

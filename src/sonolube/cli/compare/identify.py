@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 import typer
 
-from sonolube.actuator import PiezoStack
 from sonolube.cli.console.answer import Answer, deliver, grid, si
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.outputs import OutputFile
@@ -15,6 +14,7 @@ from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.identification import Identification, rig_tables
 from sonolube.input_files import input_text
+from sonolube.models.actuator import PiezoStack
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identify_from_facts
 from sonolube.units import format_si

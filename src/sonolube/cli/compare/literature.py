@@ -12,7 +12,7 @@ from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, mea
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
-from sonolube.published import PreviousStudy, Statement, previous_studies
+from sonolube.facts.published import PreviousStudy, Statement, previous_studies
 from sonolube.report import Drawing
 from sonolube.rig import Rig, friction_point
 from sonolube.units import format_si

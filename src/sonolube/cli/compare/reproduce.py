@@ -11,7 +11,7 @@ from sonolube.cli.console.options import OUT, Json, Out
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.report import reproduction_files, summary_lines, validation_object
-from sonolube.reproduce import Reproduction, reproduction
+from sonolube.reproduction import Reproduction, reproduction
 
 
 def reproduce(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from sonolube.friction import FrictionModel
+    from sonolube.models.friction import FrictionModel
     from sonolube.prediction.friction_interval import FrictionInterval
     from sonolube.rig import Rig
     from sonolube.validation.assessment import ErrorStatistics

@@ -253,7 +253,7 @@ def measured_runs(path: Path) -> "xr.Dataset":
         As `sonolube.measurement.measured_runs.read_runs` returns them.
     """
     if str(path).startswith("catalogue:"):
-        from sonolube.lab.catalogue import catalogued_runs
+        from sonolube.laboratory.catalogue import catalogued_runs
 
         return catalogued_runs(str(path))
     from sonolube.measurement.measured_runs import read_runs

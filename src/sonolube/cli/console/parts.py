@@ -10,8 +10,8 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.cli.console.number_table import number_table
 from sonolube.errors import InvalidInput
-from sonolube.fem import generate_mesh
-from sonolube.materials import Material
+from sonolube.facts.materials import Material
+from sonolube.models.fem import generate_mesh
 from sonolube.units import to_si
 from sonolube.workbench.named_parts import ALL_TRANSDUCERS, PART_WIRING, is_step, longest_axis, step_part
 

@@ -46,7 +46,7 @@ from sonolube.design.control import (
 from sonolube.design.control.run_results import control_dataset, final_state, lost_resonance
 from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_suppression
 from sonolube.errors import InvalidInput
-from sonolube.metrics import EfficiencyLine
+from sonolube.facts.metrics import EfficiencyLine
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si

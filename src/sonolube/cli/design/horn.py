@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from sonolube import materials
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, TypedNumber, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
@@ -15,9 +14,10 @@ from sonolube.cli.console.parts import named_horn
 from sonolube.cli.console.progress import progress
 from sonolube.design.horn import HornDesign, amplitude_limits, loaded_frequency, tuned_horn
 from sonolube.design.horn_figures import horn_axis_figure
-from sonolube.fem import medium_from_material
-from sonolube.fem.figures import mode_figure, shaped_surface
-from sonolube.materials import Material
+from sonolube.facts import materials
+from sonolube.facts.materials import Material
+from sonolube.models.fem import medium_from_material
+from sonolube.models.fem.figures import mode_figure, shaped_surface
 from sonolube.report import Drawing
 from sonolube.units import format_si
 from sonolube.workbench.named_parts import is_step

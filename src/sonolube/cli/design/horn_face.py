@@ -12,12 +12,12 @@ from sonolube.cli.console.options import OUT, Json, Out, TypedNumber, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.published import si_value
+from sonolube.facts.published import si_value
 from sonolube.report import Drawing
-from sonolube.reproduce.chapter2.horn_figures import face_friction_figure
-from sonolube.reproduce.chapter2.horn_friction import FACE_END, FaceFriction, friction_on_face, transition_region
-from sonolube.reproduce.chapter2.horn_rows import REGION_ROWS
-from sonolube.reproduce.cube import HORNS, Horn
+from sonolube.reproduction.chapter2.horn_figures import face_friction_figure
+from sonolube.reproduction.chapter2.horn_friction import FACE_END, FaceFriction, friction_on_face, transition_region
+from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS
+from sonolube.reproduction.cube import HORNS, Horn
 from sonolube.units import format_like
 
 if TYPE_CHECKING:

@@ -35,8 +35,8 @@ from sonolube.design.maps import default_axes, panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
-from sonolube.friction.models.range_check import ratio_caveats
 from sonolube.measurement.measured_runs import runs_help
+from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si

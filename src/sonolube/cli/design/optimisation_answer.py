@@ -6,7 +6,6 @@ from math import log
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sonolube.actuator import MatchingNetwork
 from sonolube.cli.console.answer import Answer, aligned, grid, si
 from sonolube.cli.console.rig_text import operating_point, rig_settings
 from sonolube.cli.design.status_tables import count_table
@@ -23,6 +22,7 @@ from sonolube.design.optimisation import (
 from sonolube.design.optimisation.designs_dataset import design_counts, designs_dataset
 from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.input_files import input_text
+from sonolube.models.actuator import MatchingNetwork
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity

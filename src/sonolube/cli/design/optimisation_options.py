@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from sonolube.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
 from sonolube.cli.console.options import friction_force
 from sonolube.cli.console.ranges import ends_by_key, values_by_key
 from sonolube.design.optimisation import OWN_ACTUATOR, DesignSpace, HalfWaveHorn
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.materials import material
+from sonolube.facts.materials import material
+from sonolube.models.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
 from sonolube.rig import Rig, structure_entries
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.units import format_si, to_si

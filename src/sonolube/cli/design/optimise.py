@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from sonolube.actuator import read_catalogue
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import (
@@ -28,6 +27,7 @@ from sonolube.cli.design.optimisation_answer import OptimisationAnswer
 from sonolube.compilation import few_points
 from sonolube.design import optimisation
 from sonolube.errors import InvalidInput
+from sonolube.models.actuator import read_catalogue
 from sonolube.rig import read_rig, rig_content
 
 

@@ -16,7 +16,7 @@ from sonolube.cli.console.progress import progress
 from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, friction_model_text
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts
 from sonolube.errors import InvalidInput
-from sonolube.friction.models.range_check import ratio_caveats
+from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing
 from sonolube.rig import (
     STUDY_FIGURES,

@@ -12,7 +12,7 @@ from sonolube.design.test_plan.plan import TestPlan
 from sonolube.design.test_plan.run_order import RunState
 from sonolube.design.test_plan.run_protocols import run_protocols
 from sonolube.design.test_plan.run_table import run_table
-from sonolube.protocol import Protocol, protocol_text
+from sonolube.facts.protocol import Protocol, protocol_text
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.report.pin_on_disc_sheet import pin_on_disc_checklist
 from sonolube.rig import Rig

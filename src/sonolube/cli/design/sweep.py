@@ -32,10 +32,10 @@ from sonolube.cli.design.status_tables import status_tables
 from sonolube.compilation import few_points
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_figure, swept_variables
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
-from sonolube.dynamics.backend import usable_backend
 from sonolube.errors import InvalidInput
 from sonolube.files import expect_files
-from sonolube.friction.models.range_check import ratio_caveats
+from sonolube.models.dynamics.backend import usable_backend
+from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
 from sonolube.rig import Rig, energy_balance, operating_caveats
 from sonolube.units import format_quantity

@@ -41,7 +41,7 @@ from sonolube.design.uncertainty_summary import (
     ranked_entries,
 )
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.friction.models.range_check import ratio_caveats
+from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats, read_rig, steady_vibration

@@ -10,8 +10,8 @@ import typer
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import Json
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.lab.drivers import DeviceMap, first_block, missing_parts, read_device_map, unfulfilled
-from sonolube.protocol import protocol_by_name_or_file
+from sonolube.facts.protocol import protocol_by_name_or_file
+from sonolube.laboratory.drivers import DeviceMap, first_block, missing_parts, read_device_map, unfulfilled
 from sonolube.units import format_si
 
 _SAMPLE_RATE = 1000.0  # Hz, of the first look

@@ -11,7 +11,7 @@ import typer
 from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Json
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.lab.records import export_run
+from sonolube.laboratory.records import export_run
 
 
 class ExportFormat(StrEnum):

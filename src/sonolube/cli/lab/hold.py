@@ -26,7 +26,8 @@ from sonolube.cli.lab.running import RunPlan, begin_record, instruments
 from sonolube.compilation import few_points
 from sonolube.design.control import Amplifier, ControlDesign, ControlSettings, assumed_mode, design_control
 from sonolube.errors import InvalidInput
-from sonolube.lab.closed_loop import (
+from sonolube.facts.protocol import Limits, exact_text
+from sonolube.laboratory.closed_loop import (
     FrictionHold,
     HeldFriction,
     HoldMetrics,
@@ -38,9 +39,8 @@ from sonolube.lab.closed_loop import (
     hold_protocol,
     require_holdable,
 )
-from sonolube.lab.records import Run, read_run
-from sonolube.lab.virtual_tribometer import virtual_tribometer
-from sonolube.protocol import Limits, exact_text
+from sonolube.laboratory.records import Run, read_run
+from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.units import format_si, to_si

@@ -11,7 +11,7 @@ from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.outputs import ContinuedFolder
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.lab.records import Recovery, recover_run, run_folders
+from sonolube.laboratory.records import Recovery, recover_run, run_folders
 from sonolube.printable_text import printable
 
 

@@ -10,8 +10,8 @@ import typer
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import Json, refuse_unused
 from sonolube.cli.lab.running import RunPlan, exit_as, instruments, run_and_record, virtual_rig
-from sonolube.lab.dry_run import DryRun, dry_run, dry_run_lines
-from sonolube.protocol import Protocol, protocol_by_name_or_file
+from sonolube.facts.protocol import Protocol, protocol_by_name_or_file
+from sonolube.laboratory.dry_run import DryRun, dry_run, dry_run_lines
 from sonolube.rig import Rig, read_rig
 
 RUNS = Path("runs")

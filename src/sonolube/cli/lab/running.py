@@ -14,14 +14,14 @@ from sonolube.cli.console.answer import Answer, aligned, si
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.questions import is_terminal
 from sonolube.errors import InvalidInput
+from sonolube.facts.protocol import Prompt, Protocol, flattened, protocol_text
 from sonolube.input_files import input_text
-from sonolube.lab import RunControl, RunResult, State, require_possible, run_protocol
-from sonolube.lab.devices import Devices
-from sonolube.lab.drivers import missing_parts, read_device_map
-from sonolube.lab.records import Run, RunRecorder, new_run, read_run
-from sonolube.lab.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
+from sonolube.laboratory import RunControl, RunResult, State, require_possible, run_protocol
+from sonolube.laboratory.devices import Devices
+from sonolube.laboratory.drivers import missing_parts, read_device_map
+from sonolube.laboratory.records import Run, RunRecorder, new_run, read_run
+from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
 from sonolube.printable_text import printable
-from sonolube.protocol import Prompt, Protocol, flattened, protocol_text
 from sonolube.rig import Rig
 from sonolube.units import format_si
 

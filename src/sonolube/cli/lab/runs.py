@@ -10,7 +10,7 @@ import typer
 from sonolube.cli.console.answer import Answer, deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.errors import InvalidInput
-from sonolube.lab.catalogue import CatalogueEntry, FoundRuns, query_from, query_runs, take_in
+from sonolube.laboratory.catalogue import CatalogueEntry, FoundRuns, query_from, query_runs, take_in
 from sonolube.units import format_si
 
 Texts = list[str] | None

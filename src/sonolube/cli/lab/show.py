@@ -10,7 +10,7 @@ import typer
 from sonolube.cli.console.answer import Answer, aligned, deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.lab.records import Note, Run, read_run
+from sonolube.laboratory.records import Note, Run, read_run
 from sonolube.units import format_si
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from sonolube.cli.console.options import Json
 from sonolube.cli.lab.run import RUNS
 from sonolube.cli.lab.running import RunPlan, exit_as, run_and_record, virtual_rig
 from sonolube.errors import UnknownName
-from sonolube.lab.records import EXPORT_FORMATS, export_run
-from sonolube.protocol import protocol_by_name_or_file
+from sonolube.facts.protocol import protocol_by_name_or_file
+from sonolube.laboratory.records import EXPORT_FORMATS, export_run
 from sonolube.rig import read_rig
 
 

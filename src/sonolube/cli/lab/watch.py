@@ -15,7 +15,7 @@ import typer
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import Json
 from sonolube.interruption import asked_by_signal
-from sonolube.lab.records import Observation, RunObserver, run_to_watch
+from sonolube.laboratory.records import Observation, RunObserver, run_to_watch
 from sonolube.printable_text import printable
 from sonolube.units import format_si
 from sonolube.vocabulary import unit_of

@@ -5,10 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
-from sonolube.actuator import CatalogueActuator, catalogue_actuator, catalogue_names
 from sonolube.cli.console.answer import aligned, deliver, grid, si
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
+from sonolube.models.actuator import CatalogueActuator, catalogue_actuator, catalogue_names
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 

@@ -18,9 +18,9 @@ from sonolube.cli.console.answer import Answer, aligned, deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.progress import progress
 from sonolube.cli.lookup.self_checks import SELF_CHECKS
-from sonolube.dynamics.backend import device_name, gpu_obstacle
-from sonolube.dynamics.warm_up import compiled_code_folder, is_compiled
 from sonolube.extras import EXTRAS
+from sonolube.models.dynamics.backend import device_name, gpu_obstacle
+from sonolube.models.dynamics.warm_up import compiled_code_folder, is_compiled
 
 _PROGRAMS = {  # names of each program, and what it is for
     "C compiler": (("cc", "gcc", "clang"), "compiles what control exports", "apt-get install gcc libc6-dev"),

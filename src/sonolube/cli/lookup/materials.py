@@ -10,7 +10,14 @@ import typer
 from sonolube.cli.console.answer import aligned, deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
-from sonolube.materials import Material, SourcedValue, material, material_classes, material_families, material_names
+from sonolube.facts.materials import (
+    Material,
+    SourcedValue,
+    material,
+    material_classes,
+    material_families,
+    material_names,
+)
 from sonolube.units import format_si
 
 _HEADS = ("name", "Young's modulus", "hardness", "yield strength", "title")

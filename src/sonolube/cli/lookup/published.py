@@ -5,11 +5,11 @@ from typing import Annotated, Any
 
 import typer
 
-from sonolube import published as data
 from sonolube.cli.console.answer import deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
-from sonolube.published import Column, Table
+from sonolube.facts import published as data
+from sonolube.facts.published import Column, Table
 
 
 def published(

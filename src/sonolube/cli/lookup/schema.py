@@ -9,8 +9,8 @@ import typer
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
-from sonolube.lab.drivers import device_map_schema
-from sonolube.protocol import protocol_schema
+from sonolube.facts.protocol import protocol_schema
+from sonolube.laboratory.drivers import device_map_schema
 from sonolube.rig import rig_schema
 
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from sonolube.contact import SphereOnFlat, hertz_contact_radius
-from sonolube.dynamics import LinearGap, Status, Structure, modes, steady_state
-from sonolube.friction import oblique_vibration_ratio, parallel_vibration_ratio
+from sonolube.models.contact import SphereOnFlat, hertz_contact_radius
+from sonolube.models.dynamics import LinearGap, Status, Structure, modes, steady_state
+from sonolube.models.friction import oblique_vibration_ratio, parallel_vibration_ratio
 from sonolube.units import to_si
 
 

@@ -12,10 +12,10 @@ from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_she
 from sonolube.cli.measure.surface import Spacing, Unit
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.measurement.wear_track import WearTrack
+from sonolube.models.surfaces.grooves.groove import Groove
 from sonolube.report.measured.groove import RingSettings, cap_sheet, groove_sheet, ring_sheet, wear_reduction_sheet
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.surface import SurfaceSettings, spacings
-from sonolube.surfaces.grooves.groove import Groove
 
 
 def groove(

@@ -8,7 +8,7 @@ from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.compilation import few_points
-from sonolube.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
+from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.rig import contact_point
 
 _MODEL_HELP = f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}."

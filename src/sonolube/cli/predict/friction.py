@@ -10,7 +10,7 @@ from sonolube.cli.console.options import Amplitude, Changes, Json, Load, RigPath
 from sonolube.cli.predict.measured import measured_on
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.compilation import few_points
-from sonolube.friction import FRICTION_MODELS, FrictionModel
+from sonolube.models.friction import FRICTION_MODELS, FrictionModel
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.rig import friction_point
 from sonolube.rig.simulation import friction_model_named

@@ -15,11 +15,16 @@ from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.parts import SIZE_ENTRY, ceramic_of, sizes_by_name
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
-from sonolube.fem import Transducer
-from sonolube.fem.figures import impedance_figure
-from sonolube.fem.impedance_spectra import SupportedSpectrum, coupled_modes_grid, spectrum_table, supported_spectra
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.models.fem import Transducer
+from sonolube.models.fem.figures import impedance_figure
+from sonolube.models.fem.impedance_spectra import (
+    SupportedSpectrum,
+    coupled_modes_grid,
+    spectrum_table,
+    supported_spectra,
+)
 from sonolube.report import Drawing
 from sonolube.rig.datasets import labelled
 from sonolube.rig.labelled_arrays import LabelledArrays

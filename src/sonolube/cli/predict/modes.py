@@ -16,9 +16,9 @@ from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, ref
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem import ConvergedModes
-from sonolube.fem.figures import ShapedSurface, mode_figure, shaped_surface
-from sonolube.fem.mode_files import (
+from sonolube.models.fem import ConvergedModes
+from sonolube.models.fem.figures import ShapedSurface, mode_figure, shaped_surface
+from sonolube.models.fem.mode_files import (
     SupportedBody,
     elastic_rows,
     frequency_text,

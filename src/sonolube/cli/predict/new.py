@@ -14,7 +14,7 @@ from sonolube.cli.console.options import Json
 from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.questions import Question, ask, is_terminal
 from sonolube.errors import InvalidInput
-from sonolube.materials import material
+from sonolube.facts.materials import material
 from sonolube.rig import Rig, rig_from
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text
 from sonolube.rig.new_rig.stated_text import (

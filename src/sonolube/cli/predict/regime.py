@@ -11,14 +11,14 @@ from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, Rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
-from sonolube.friction import BoundaryLubricant
-from sonolube.materials import material
+from sonolube.facts.materials import material
+from sonolube.models.friction import BoundaryLubricant
+from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report import Drawing
 from sonolube.rig import LubricationMap, LubricationPoint, Rig, lubrication_map, lubrication_point, wear_of_materials
 from sonolube.rig.figures import lubrication_figure
 from sonolube.rig.file.plausible import plausible_si, require_plausible
 from sonolube.units import format_si
-from sonolube.wear import WearMechanismAssessment
 
 _QUANTITIES = ("vibration_amplitude", "sliding_speed", "nominal_pressure", "asperity_load_fraction")
 

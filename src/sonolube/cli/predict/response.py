@@ -8,8 +8,8 @@ from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.dynamics import modes
 from sonolube.errors import InvalidInput
+from sonolube.models.dynamics import modes
 from sonolube.report import Drawing
 from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, read_rig, structure_in_contact
 from sonolube.rig.figures import response_figure

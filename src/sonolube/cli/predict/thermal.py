@@ -10,11 +10,11 @@ from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
+from sonolube.models.thermal.flash_models import FLASH_MODELS
 from sonolube.report import Drawing
 from sonolube.rig import temperature_point, thermal_solid
 from sonolube.rig.figures import temperature_figure
 from sonolube.rig.file.plausible import plausible_si
-from sonolube.thermal.flash_models import FLASH_MODELS
 
 
 @few_points()

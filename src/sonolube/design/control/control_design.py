@@ -31,7 +31,7 @@ from sonolube.design.control.process import Process, StabilityMargins, stability
 from sonolube.design.control.resonance_tracking import FrequencyTracker, tuned_tracker
 from sonolube.design.control.vibration_envelope import VibrationMode, mode_admittance, mode_at_drive
 from sonolube.errors import InvalidInput, OutsideRange, UnknownName
-from sonolube.metrics import EfficiencyLine
+from sonolube.facts.metrics import EfficiencyLine
 from sonolube.rig import Rig
 
 FEED_FORWARD = ("model", "efficiency", "none")

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.metrics import EfficiencyLine, friction_at_power, power_for_friction
+from sonolube.facts.metrics import EfficiencyLine, friction_at_power, power_for_friction
 from sonolube.rig import Rig, operating_points
 from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.excitation import amplifier_power

@@ -7,8 +7,8 @@ from math import inf, pi
 import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive, require_within
-from sonolube.dynamics import electrical_admittance, modes
 from sonolube.errors import InvalidInput
+from sonolube.models.dynamics import electrical_admittance, modes
 from sonolube.rig import Rig, structure_in_contact
 from sonolube.rig.driven_rig import require_drive
 

@@ -4,7 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonolube.actuator import (
+from sonolube.checks import Complexes, Floats
+from sonolube.design.optimisation.gradient_search import DesignPoint, rig_at_design_point
+from sonolube.design.optimisation.screening import DesignProblem
+from sonolube.design.optimisation.space import candidate_rig
+from sonolube.errors import InvalidInput
+from sonolube.models.actuator import (
     AmplifierRequirements,
     MatchingNetwork,
     amplifier_requirements,
@@ -15,12 +20,7 @@ from sonolube.actuator import (
     series_inductor,
     voltage_gain,
 )
-from sonolube.checks import Complexes, Floats
-from sonolube.design.optimisation.gradient_search import DesignPoint, rig_at_design_point
-from sonolube.design.optimisation.screening import DesignProblem
-from sonolube.design.optimisation.space import candidate_rig
-from sonolube.dynamics import electrical_admittance
-from sonolube.errors import InvalidInput
+from sonolube.models.dynamics import electrical_admittance
 from sonolube.rig import steady_states, structure_in_contact
 from sonolube.rig.driven_rig import DrivenRig
 

@@ -7,12 +7,12 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.actuator import PreloadBolt, bolt_stresses
-from sonolube.actuator.stack import PiezoStack
 from sonolube.checks import Complexes, Floats
-from sonolube.contact import separation
 from sonolube.design.optimisation.requirements import Limits
-from sonolube.dynamics import Status, SteadyStates
+from sonolube.models.actuator import PreloadBolt, bolt_stresses
+from sonolube.models.actuator.stack import PiezoStack
+from sonolube.models.contact import separation
+from sonolube.models.dynamics import Status, SteadyStates
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_range
 from sonolube.rig.operating_conditions import OperatingConditions

@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.actuator import matched_power_factor
 from sonolube.checks import Floats
 from sonolube.design.optimisation.drive_electronics import (
     CAPACITANCE_TOLERANCE,
@@ -17,6 +16,7 @@ from sonolube.design.optimisation.gradient_search import DesignPoint
 from sonolube.design.optimisation.optimum import Optimum
 from sonolube.design.optimisation.space import OWN_ACTUATOR, Candidate
 from sonolube.figure import COLOURS
+from sonolube.models.actuator import matched_power_factor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,8 +10,8 @@ from sonolube.design.optimisation.evaluation import Evaluation, evaluate
 from sonolube.design.optimisation.required_voltage import maximum_swing, refine_swing
 from sonolube.design.optimisation.screening import DesignProblem
 from sonolube.design.optimisation.space import Candidate, candidate_rig, candidate_stack, candidate_structure
-from sonolube.dynamics import Status
-from sonolube.dynamics.sensitivities import StructureChange, steady_state_sensitivities
+from sonolube.models.dynamics import Status
+from sonolube.models.dynamics.sensitivities import StructureChange, steady_state_sensitivities
 from sonolube.rig import steady_states
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine

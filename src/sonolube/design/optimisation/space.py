@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 
-from sonolube.actuator import CatalogueActuator, PiezoStack, PreloadBolt, bolted_stack, catalogue_stack
 from sonolube.checks import require_positive
 from sonolube.design.optimisation.tolerance import NOMINAL, Deviation
-from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.models.actuator import CatalogueActuator, PiezoStack, PreloadBolt, bolted_stack, catalogue_stack
+from sonolube.models.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.rig.driven_rig import DrivenRig
 
 OWN_ACTUATOR = "own"

@@ -9,9 +9,9 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.models.thermal import EllipticSource, contact_rise
 from sonolube.prediction.inputs import RigInputs
 from sonolube.rig import Rig, friction_point, thermal_solid
-from sonolube.thermal import EllipticSource, contact_rise
 from sonolube.units import format_si
 
 MOST_CANDIDATES: Final = 200

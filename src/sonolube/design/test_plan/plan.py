@@ -15,12 +15,12 @@ from sonolube.design.test_plan.information import Batch, best_batch, mutual_info
 from sonolube.design.test_plan.run_order import BLOCKINGS, Blocking, PlannedRun, RunPart, RunState, randomised_runs
 from sonolube.design.test_plan.scatter import Scatter, assumed_scatter, published_scatter, scatter_of_runs
 from sonolube.errors import InvalidInput
+from sonolube.facts.published import column_numbers
 from sonolube.prediction.inputs import RigInputs, rig_inputs
 from sonolube.prediction.own_runs import own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import rig_prediction
 from sonolube.prediction.scores import central_interval
-from sonolube.published import column_numbers
 from sonolube.rig import Rig
 from sonolube.units import format_si
 

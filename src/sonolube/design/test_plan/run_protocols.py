@@ -6,8 +6,8 @@ from typing import Any, Final
 from sonolube.design.test_plan.plan import TestPlan
 from sonolube.design.test_plan.run_order import PlannedRun, RunPart, RunState
 from sonolube.design.test_plan.run_table import has_voltage
-from sonolube.protocol import Protocol, protocol_from
-from sonolube.protocol.quantity_text import exact_text
+from sonolube.facts.protocol import Protocol, protocol_from
+from sonolube.facts.protocol.quantity_text import exact_text
 from sonolube.units import format_si
 
 _REST: Final = 0.5  # s, for the zero of the force, as in D 4.1.2

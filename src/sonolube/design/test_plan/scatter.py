@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats, Integers
-from sonolube.published import column_numbers
+from sonolube.facts.published import column_numbers
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -27,11 +27,11 @@ from typing import Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
 from sonolube.identification.decay_length.channel_noise import noise_covariance, relaxation
 from sonolube.identification.decay_length.conditions import LONG_DECAY_LENGTH, SHORT_DECAY_LENGTH, SwitchConditions
 from sonolube.identification.decay_length.stick_slip_table import interpolated_ratio
 from sonolube.identification.decay_length.switch_table import SwitchTable
+from sonolube.models.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
 
 DIFFERENCE: Final = float(np.log(LONG_DECAY_LENGTH / SHORT_DECAY_LENGTH))
 """Logarithm of the ratio of the two decay lengths that the published sets ask for."""

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.friction.models.asperity_stick_slip_sine import sine_stick_slip_ratio
+from sonolube.models.friction.models.asperity_stick_slip_sine import sine_stick_slip_ratio
 
 _BETA = (0.02, 60.0)  # amplitude over decay length
 _SPEED = (1e-3, 1.0)  # sliding speed over that from which the ratio is 1

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
 from sonolube.measurement.contact_stiffness.resonance_fit import Resonance, ResonanceFit, fit_resonances
 from sonolube.measurement.contact_stiffness.resonance_spectrum import ResonanceSpectrum
 from sonolube.measurement.contact_stiffness.stiffness_estimate import ContactStiffness, contact_stiffness, single_mode
+from sonolube.models.dynamics import Structure
 
 _WITHIN = 2.0  # factor about a stated frequency within which a spectrum is fitted
 

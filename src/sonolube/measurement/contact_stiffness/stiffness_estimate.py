@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.dynamics import Structure, contact_resonances, modes, stiffness_at_resonance
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.measurement.contact_stiffness.large_vibration import decay_length_from_ratio, log_ratio_slope
 from sonolube.measurement.contact_stiffness.resonance_fit import Resonance
+from sonolube.models.dynamics import Structure, contact_resonances, modes, stiffness_at_resonance
 
 _RESOLVED = 3.0  # shift over its standard uncertainty from which on it gives a number
 _NORMAL_95 = 1.959964

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.metrics import friction_from_current
+from sonolube.facts.metrics import friction_from_current
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

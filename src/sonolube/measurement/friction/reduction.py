@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sonolube.facts.metrics import friction_reduction
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
-from sonolube.metrics import friction_reduction
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,9 +9,9 @@ from scipy.signal import find_peaks
 
 from sonolube.checks import Floats, require_finite, require_positive, require_within
 from sonolube.errors import InvalidInput
+from sonolube.facts.metrics import linear_speed
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import require_time_series
-from sonolube.metrics import linear_speed
 
 _MULTIPLE_TOLERANCE = 0.25  # relative deviation of an interval with missing pulses from a multiple of its neighbours
 _MOST_MISSING = 5  # consecutive pulses

@@ -10,6 +10,7 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.facts.metrics import friction_reduction
 from sonolube.measurement.friction.step_means import (
     SampledParts,
     StepMeans,
@@ -20,7 +21,6 @@ from sonolube.measurement.friction.step_means import (
 )
 from sonolube.measurement.friction.stick_slip import StickSlipEstimate, not_detected, stick_slip_of_parts
 from sonolube.measurement.time_series import require_equal_length, require_time_series, uniform_sample_interval
-from sonolube.metrics import friction_reduction
 
 _SECTIONS_PER_STEP = 10  # sections of the shortest step, by whose medians steps are separated
 _ONSET_SECTIONS = 200  # of the first step, by whose medians the begin of sliding is found

@@ -13,7 +13,7 @@ from sonolube.measurement.file_format import detect_format, read_head, refuse_un
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.measurement.surface_files.plausible_size import size_caveats
 from sonolube.measurement.surface_files.surface_reading import ASSUMED_METRES, GIVEN_BY_USER, SurfaceReading
-from sonolube.surfaces import HeightMap
+from sonolube.models.surfaces import HeightMap
 from sonolube.units import convert
 
 _LARGEST_SPACING = 1e6  # m, beyond which areas and slopes lose their digits

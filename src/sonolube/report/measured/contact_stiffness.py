@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.dynamics import Structure
 from sonolube.measurement.contact_stiffness.analysis import measured_contact_stiffness
 from sonolube.measurement.contact_stiffness.resonance_spectrum import read_resonance_spectrum
 from sonolube.measurement.contact_stiffness.stiffness_estimate import ContactStiffness, LogEstimate
+from sonolube.models.dynamics import Structure
 from sonolube.report.measured import contact_stiffness_figures as figures, sheet
 
 

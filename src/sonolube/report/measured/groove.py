@@ -13,11 +13,11 @@ from sonolube.measurement.wear_track import (
     wear_reduction_between_tracks,
     wear_track_from_grooves,
 )
+from sonolube.models.surfaces import disc_volume_loss, material_ratio_curve, measure_groove, track_marks, wear_scar
+from sonolube.models.surfaces.grooves.groove import Groove
 from sonolube.report.measured import groove_figures as figures, sheet
 from sonolube.report.measured.surface import SurfaceSettings, surface_file, surface_source
 from sonolube.report.measured.surface_figures import abbott
-from sonolube.surfaces import disc_volume_loss, material_ratio_curve, measure_groove, track_marks, wear_scar
-from sonolube.surfaces.grooves.groove import Groove
 
 _STRAIGHT = 100  # lengths of track, beyond which a diameter is not determined by the scan
 

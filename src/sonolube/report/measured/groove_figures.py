@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
 from sonolube.measurement.wear_track import WearTrack
+from sonolube.models.surfaces import HeightMap
+from sonolube.models.surfaces.grooves.groove import Groove
+from sonolube.models.surfaces.grooves.track_marks import TrackMarks
 from sonolube.report.measured.sheet import captioned
 from sonolube.report.measured.surface_figures import length_scale, show_map
-from sonolube.surfaces import HeightMap
-from sonolube.surfaces.grooves.groove import Groove
-from sonolube.surfaces.grooves.track_marks import TrackMarks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

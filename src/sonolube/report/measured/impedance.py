@@ -5,8 +5,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from sonolube.actuator import PiezoStack
-from sonolube.dynamics import Structure
 from sonolube.identification.circuit_fit import fit_circuit
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_for
 from sonolube.identification.stack_fit import fit_stack
@@ -14,6 +12,8 @@ from sonolube.measurement.impedance.passivity import passive_spectrum
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics import Structure
 from sonolube.report.measured import impedance_figures as figures, sheet
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities

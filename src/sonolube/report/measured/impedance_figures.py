@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.actuator import ButterworthVanDyke, circuit_admittance
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.figure import COLOURS
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.models.actuator import ButterworthVanDyke, circuit_admittance
+from sonolube.models.dynamics.structure import Structure, electrical_admittance
 from sonolube.report.measured.sheet import captioned
 
 if TYPE_CHECKING:

@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from sonolube import surfaces
 from sonolube.measurement.surface_files.reader import SurfaceFile
+from sonolube.models import surfaces
+from sonolube.models.surfaces import HeightMap, ProfileEvaluation
 from sonolube.report.measured import profile_figures as figures, sheet
-from sonolube.surfaces import HeightMap, ProfileEvaluation
 
 _LABELS = {
     "arithmetic_mean_height": "a, arithmetic mean height",

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.figure import COLOURS, LINES
+from sonolube.models.surfaces import ProfileEvaluation, ProfileSpectrum
 from sonolube.report.measured.sheet import captioned
 from sonolube.report.measured.surface_figures import length_scale, wavelength
-from sonolube.surfaces import ProfileEvaluation, ProfileSpectrum
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,9 +5,9 @@ from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 
-from sonolube import surfaces
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
+from sonolube.models import surfaces
 from sonolube.report.measured import sheet, surface_figures as figures
 from sonolube.report.measured.profile import is_profile, profile_sheet
 from sonolube.units import format_si, to_si

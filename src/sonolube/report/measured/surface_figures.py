@@ -7,8 +7,14 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.figure import COLOURS, LINES
+from sonolube.models.surfaces import (
+    Autocorrelation,
+    HeightMap,
+    MaterialRatioCurve,
+    RadialSpectrum,
+    functional_parameters,
+)
 from sonolube.report.measured.sheet import captioned
-from sonolube.surfaces import Autocorrelation, HeightMap, MaterialRatioCurve, RadialSpectrum, functional_parameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

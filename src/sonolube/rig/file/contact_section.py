@@ -5,15 +5,15 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from sonolube.checks import require_positive
-from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS, RoughContact
-from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair, identical_materials_mindlin_ratio
 from sonolube.errors import InvalidInput, MissingProperty
-from sonolube.materials import material, yield_strength_from_hardness
+from sonolube.facts.materials import material, yield_strength_from_hardness
+from sonolube.models.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS, RoughContact
+from sonolube.models.contact.pair import ContactPair, ElasticBody, contact_pair, identical_materials_mindlin_ratio
+from sonolube.models.surfaces import Roughness
 from sonolube.rig.file.plausible import DECAY_LENGTHS
 from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.stated_surface import height_of_finish
 from sonolube.rig.record import DecayLengthOrigin
-from sonolube.surfaces import Roughness
 from sonolube.units import format_si
 
 Text = Annotated[str, Field(min_length=1, max_length=1000)]

@@ -5,7 +5,8 @@ from math import exp
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.materials import yield_strength_from_hardness
+from sonolube.facts.materials import yield_strength_from_hardness
+from sonolube.models.surfaces import typical_summits
 from sonolube.rig.file.contact_section import STATED_HEIGHTS, BodySection, StatedRoughnessSection
 from sonolube.rig.file.sections import RigFile
 from sonolube.rig.file.stated_surface import (
@@ -15,7 +16,6 @@ from sonolube.rig.file.stated_surface import (
     height_from_roughness_average,
     height_of_finish,
 )
-from sonolube.surfaces import typical_summits
 
 ROUGHNESS: Final = "contact.roughness"
 """Table of the roughness."""

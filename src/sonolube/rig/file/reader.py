@@ -7,11 +7,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sonolube.actuator import PiezoStack
-from sonolube.actuator.drive import Drive
-from sonolube.actuator.waveguide import BarWaveguide, normal_amplitude
-from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.actuator.drive import Drive
+from sonolube.models.actuator.waveguide import BarWaveguide, normal_amplitude
+from sonolube.models.dynamics import Structure
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.file.contact_section import RoughnessSection
 from sonolube.rig.file.derived import ALTERNATIVES, REPLACED, with_derived

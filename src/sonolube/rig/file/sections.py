@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, create_model, field_validator, model_validator
 
-from sonolube.actuator import PiezoStack
-from sonolube.actuator.drive import Drive
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.friction.models import FRICTION_MODELS, FrictionModel
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.actuator.drive import Drive
+from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.excitation import waveform_of
 from sonolube.rig.file.contact_section import ContactSection, Text
 from sonolube.rig.file.section import NameIn, Section

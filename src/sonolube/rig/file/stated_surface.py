@@ -6,7 +6,7 @@ from math import exp, hypot, log
 from typing import Final
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.surfaces import (
+from sonolube.models.surfaces import (
     RmsHeightEstimate,
     SurfaceFinish,
     rms_height_from_maximum_height,

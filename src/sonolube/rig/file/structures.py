@@ -6,10 +6,17 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
-from sonolube.actuator import PiezoStack
-from sonolube.dynamics import Structure
-from sonolube.dynamics.chain import Damper, LumpedChain, Spring, chain_structure, modal_structure, pin_on_disc_chain
 from sonolube.errors import InvalidInput
+from sonolube.models.actuator import PiezoStack
+from sonolube.models.dynamics import Structure
+from sonolube.models.dynamics.chain import (
+    Damper,
+    LumpedChain,
+    Spring,
+    chain_structure,
+    modal_structure,
+    pin_on_disc_chain,
+)
 from sonolube.rig.file.section import Section, quantity_in_si
 
 Name = Annotated[str, Field(min_length=1)]

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from math import hypot
 from typing import Final
 
-from sonolube.contact import ElasticBody
 from sonolube.errors import MissingProperty
-from sonolube.materials import Material, SourcedValue, material, material_classes, yield_strength_from_hardness
+from sonolube.facts.materials import Material, SourcedValue, material, material_classes, yield_strength_from_hardness
+from sonolube.models.contact import ElasticBody
 from sonolube.rig.file.stated_surface import deviation_of_range
 from sonolube.rig.new_rig.known_surface import lognormal_text
 from sonolube.rig.new_rig.pin_and_vibration import Entries, toml_text

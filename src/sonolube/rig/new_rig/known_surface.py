@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from sonolube.measurement.surface_files.reader import read_height_map
-from sonolube.rig.file.stated_surface import height_of_finish
-from sonolube.surfaces import (
+from sonolube.models.surfaces import (
     Roughness,
     combined_roughness,
     contact_roughness,
@@ -15,6 +14,7 @@ from sonolube.surfaces import (
     remove_form,
     typical_summits,
 )
+from sonolube.rig.file.stated_surface import height_of_finish
 
 _SCAN_DEVIATION: Final = 0.1
 _SCANNED_SUMMITS_DEVIATION: Final = 0.4

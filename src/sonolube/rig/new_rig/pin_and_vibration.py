@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from math import pi
 from typing import Final, Protocol
 
-from sonolube.actuator import CatalogueActuator
 from sonolube.checks import require_positive
-from sonolube.contact import SphereOnFlat, hertz_contact_radius
 from sonolube.errors import InvalidInput
+from sonolube.models.actuator import CatalogueActuator
+from sonolube.models.contact import SphereOnFlat, hertz_contact_radius
 from sonolube.rig.record import STATED
 from sonolube.units import format_si
 

@@ -11,9 +11,9 @@ from math import isclose, log
 from typing import Final
 
 from sonolube.checks import require_positive
-from sonolube.contact import contact_pair
 from sonolube.errors import SonolubeError
-from sonolube.materials import dry_friction, material
+from sonolube.facts.materials import dry_friction, material
+from sonolube.models.contact import contact_pair
 from sonolube.rig.file.entries import FileEntries, with_entries
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.reader import rig_from

@@ -7,8 +7,8 @@ from math import pi
 from pathlib import Path
 from typing import Final
 
-from sonolube.actuator import catalogue_actuator
 from sonolube.errors import InvalidInput
+from sonolube.models.actuator import catalogue_actuator
 from sonolube.rig.file.plausible import plausible_si, require_plausible
 from sonolube.rig.file.stated_surface import is_roughness
 from sonolube.rig.new_rig.known_surface import KnownSurface, finished_surface, scanned_surface

@@ -1,0 +1,1 @@
+"""Facts: materials, the published data, measures used in experiments, and test protocols."""

@@ -1,0 +1,146 @@
+"""Ranges of the coefficient of dry friction by pair of materials, each with its source."""
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from sonolube.facts.materials.catalogue import material
+from sonolube.facts.materials.records import Material
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DryFriction:
+    """Range of the coefficient of dry friction between two materials.
+
+    Parameters
+    ----------
+    low, high : float
+        Range of the coefficient of sliding friction, unlubricated in air; a pure number.
+    source : str
+        Tables or papers from which it was read.
+    condition : str
+        Surfaces, loads and speeds for which it holds; empty where the source does not state any.
+    note : str
+        Further remarks, such as how the range was widened.
+    pair_class : str
+        Class of pairs that the range is of, such as "metal on ceramic"; empty for the range of a pair.
+    """
+
+    low: float
+    high: float
+    source: str
+    condition: str = ""
+    note: str = ""
+    pair_class: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionPair:
+    """One entry of the table of dry friction.
+
+    Parameters
+    ----------
+    sides : tuple of two frozensets of str
+        Names of materials or families on each side.
+    friction : DryFriction
+        Friction between any of the one side and any of the other.
+    alike : bool
+        Whether it holds for two materials of one family only.
+    """
+
+    sides: tuple[frozenset[str], frozenset[str]]
+    friction: DryFriction
+    alike: bool = False
+
+
+def dry_friction(first: str, second: str) -> DryFriction:
+    """Return the range of the coefficient of dry friction of a pair of materials.
+
+    Parameters
+    ----------
+    first, second : str
+        Names or aliases of materials, in any order.
+
+    Returns
+    -------
+    DryFriction
+        Of the two materials where a source has them, else of one material and the family of the other, else of both
+        families, else of their class of pairs, such as metal on ceramic.
+
+    Raises
+    ------
+    UnknownName
+        If the catalogue has no such material.
+    """
+    one, other = material(first), material(second)
+    known = [(_specificity(pair, one, other), pair) for pair in dry_friction_pairs()]
+    specificity, best = max(known, key=lambda each: each[0])
+    if specificity:
+        return best.friction
+    return next(pair.friction for pair in dry_friction_classes() if _specificity(pair, one, other))
+
+
+@cache
+def dry_friction_pairs() -> tuple[FrictionPair, ...]:
+    """Return all entries of the table of dry friction that name materials or families."""
+    content = _content()
+    return tuple(_pair(entry, entry["first"], entry["second"], content["sources"]) for entry in content["pair"])
+
+
+@cache
+def dry_friction_classes() -> tuple[FrictionPair, ...]:
+    """Return the entries for classes of pairs, such as metal on ceramic, of which the first that fits holds."""
+    content = _content()
+    kinds: Mapping[str, Sequence[str]] = content["kinds"]
+    kinds = {**kinds, "any": [family for families in kinds.values() for family in families]}
+    return tuple(
+        _pair(
+            {**entry, "pair_class": _class_title(entry)},
+            kinds[entry["first"]],
+            kinds[entry["second"]],
+            content["sources"],
+        )
+        for entry in content["class"]
+    )
+
+
+@cache
+def _content() -> Mapping[str, Any]:
+    """Return the content of the file of dry friction."""
+    return tomllib.loads(files("sonolube.facts.materials").joinpath("dry_friction.toml").read_text(encoding="utf-8"))
+
+
+def _class_title(entry: Mapping[str, Any]) -> str:
+    """Return the class of pairs of an entry in words."""
+    second = "one of its own family" if entry.get("alike") else {"any": "any material"}.get(entry["second"])
+    return f"{entry['first']} on {second or entry['second']}"
+
+
+def _pair(
+    entry: Mapping[str, Any], first: Sequence[str], second: Sequence[str], sources: Mapping[str, str]
+) -> FrictionPair:
+    """Return one entry of the table with its sources spelt out."""
+    numbers = {key: value for key, value in entry.items() if key not in ("first", "second", "source", "alike")}
+    return FrictionPair(
+        sides=(frozenset(first), frozenset(second)),
+        friction=DryFriction(source="; ".join(sources[key] for key in entry["source"]), **numbers),
+        alike=entry.get("alike", False),
+    )
+
+
+def _specificity(pair: FrictionPair, one: Material, other: Material) -> int:
+    """Return 0 where an entry is not of two materials, else more the more of both it names."""
+    if pair.alike and one.family != other.family:
+        return 0
+    left, right = pair.sides
+    return max(_match(left, one) * _match(right, other), _match(left, other) * _match(right, one))
+
+
+def _match(side: frozenset[str], body: Material) -> int:
+    """Return 2 where a side names a material, 1 where it names its family, 0 where neither."""
+    if body.name in side and body.name != body.family:
+        return 2
+    return int(body.family in side)

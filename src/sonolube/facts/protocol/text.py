@@ -1,0 +1,175 @@
+"""Protocols as TOML text: read with every fault and its place, written, and the JSON schema."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from pydantic import ValidationError
+
+from sonolube.errors import InvalidInput
+from sonolube.facts.protocol.record import Protocol
+from sonolube.facts.protocol.steps import STEP_KINDS
+from sonolube.facts.protocol.time_line import flattened
+from sonolube.toml_text import read_toml, require_plain_content
+from sonolube.units import format_si
+
+_MOST_FAULTS: Final = 10  # that one refusal names
+_LONGEST_FAULT: Final = 300  # characters
+
+
+def read_protocol(path: str | Path) -> Protocol:
+    """Read a protocol from a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    Protocol
+
+    Raises
+    ------
+    InvalidInput
+        In one line with the file, and every fault with its step and key.
+    """
+    path = Path(path)
+    try:
+        return protocol_from(read_toml(path, kind="a protocol"))
+    except InvalidInput as refusal:
+        raise InvalidInput(f"{path}: {refusal}") from None
+
+
+def protocol_from(content: Mapping[str, Any]) -> Protocol:
+    """Protocol of the content of its file.
+
+    Parameters
+    ----------
+    content : mapping
+        As TOML gives it: quantities as text with units.
+
+    Returns
+    -------
+    Protocol
+
+    Raises
+    ------
+    InvalidInput
+        In one line with every fault, its step and key; also where set points lie beyond the limits.
+    """
+    require_plain_content(content)
+    try:
+        protocol = Protocol.model_validate(content)
+    except ValidationError as refusal:
+        raise InvalidInput(_faults(refusal)) from None
+    _require_within_limits(protocol)
+    return protocol
+
+
+def protocol_schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) that every protocol follows.
+
+    Returns
+    -------
+    dict
+    """
+    content = {key: value for key, value in Protocol.model_json_schema().items() if key != "title"}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "sonolube protocol"} | content
+
+
+def protocol_text(protocol: Protocol) -> str:
+    """TOML text of a protocol, which reads back as the same record.
+
+    Parameters
+    ----------
+    protocol : Protocol
+
+    Returns
+    -------
+    str
+    """
+    content = protocol.model_dump(mode="json", exclude_none=True)
+    steps = content.pop("steps")
+    lines = [*_entries(content)]
+    for name in ("limits", "metadata"):
+        entries = {key: value for key, value in content[name].items() if value != ""}
+        lines += ["", f"[{name}]", *_entries(entries)]
+    return "\n".join([*lines, *_step_lines(steps, "steps")]) + "\n"
+
+
+def _step_lines(steps: Sequence[Mapping[str, Any]], name: str) -> Iterator[str]:
+    """Lines of steps as an array of tables, the steps of a repeat below it."""
+    for step in steps:
+        yield from ("", f"[[{name}]]", *_entries({key: value for key, value in step.items() if value != ""}))
+        yield from _step_lines(step.get("steps", ()), f"{name}.steps")
+
+
+def _entries(table: Mapping[str, Any]) -> Iterator[str]:
+    """Lines of the keys of a table that are no tables."""
+    for key, value in table.items():
+        if key != "steps" and not isinstance(value, dict):
+            yield f"{key} = {json.dumps(value, ensure_ascii=False)}"
+
+
+def _faults(refusal: ValidationError) -> str:
+    """All faults in one line, each with its place."""
+    complaints = refusal.errors(include_url=False, include_context=False, include_input=False)
+    places = [each["loc"] for each in complaints]
+    told = [
+        f"{_place(each['loc'])}{_reason(each['type'], each['msg'])}"[:_LONGEST_FAULT]
+        for each in complaints
+        if not (each["type"] == "too_short" and any(_is_below(place, each["loc"]) for place in places))
+    ]
+    more = [f"and {len(told) - _MOST_FAULTS} more"] if len(told) > _MOST_FAULTS else []
+    return "; ".join([*told[:_MOST_FAULTS], *more])
+
+
+def _is_below(place: Sequence[str | int], other: Sequence[str | int]) -> bool:
+    """Whether a place lies within another: a list without its faulty items is no shorter for that."""
+    return len(place) > len(other) and tuple(place[: len(other)]) == tuple(other)
+
+
+def _place(parts: Sequence[str | int]) -> str:
+    """Step and key of a fault, such as "step 4.2: duration: "."""
+    numbers: list[str] = []
+    keys: list[str] = []
+    inside = False  # of a list of steps
+    for part in parts:
+        if isinstance(part, int) and inside:
+            numbers.append(str(part + 1))
+            inside = False
+        elif part == "steps" and not keys:
+            inside = True
+        elif isinstance(part, int):
+            keys[-1] += f"[{part + 1}]"
+        elif not (numbers and not keys and part in STEP_KINDS):
+            keys.append(part)
+    whole = ["steps"] if inside else []
+    step = [f"step {'.'.join(numbers)}"] if numbers else []
+    return "".join(f"{each}: " for each in (*step, *keys, *whole))
+
+
+def _reason(kind: str, message: str) -> str:
+    """Reason of a fault in plain words."""
+    known = {
+        "extra_forbidden": "unknown key",
+        "missing": "missing",
+        "too_short": "needs at least one entry",
+        "union_tag_invalid": f"kind must be one of {', '.join(STEP_KINDS)}",
+        "union_tag_not_found": f"kind is missing; one of {', '.join(STEP_KINDS)}",
+    }
+    return known.get(kind, message.removeprefix("Value error, ").strip())
+
+
+def _require_within_limits(protocol: Protocol) -> None:
+    """Raise where a set point lies beyond the limits of the protocol."""
+    points, limits = flattened(protocol), protocol.limits
+    for point in points:
+        if point.voltage_maximum > limits.voltage_maximum * (1 + 1e-9):
+            reached, allowed = format_si(point.voltage_maximum, "V"), format_si(limits.voltage_maximum, "V")
+            raise InvalidInput(f"step {point.step}: the drive reaches {reached}; limits.voltage_maximum is {allowed}")
+    total = points[-1].time
+    if total > limits.duration_maximum * (1 + 1e-9):
+        lasts, allowed = format_si(total, "s"), format_si(limits.duration_maximum, "s")
+        raise InvalidInput(f"steps: the test lasts {lasts}; limits.duration_maximum is {allowed}")

@@ -1,0 +1,237 @@
+"""Time line of a protocol: set points of motor, drive and recording over time."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+from sonolube.errors import InvalidInput
+from sonolube.facts.protocol.record import Protocol
+from sonolube.facts.protocol.steps import Acquire, Drive, MotorSpeed, Repeat, Step, Sweep, VoltageSteps, Wait
+from sonolube.units import format_si
+
+MOST_SET_POINTS: Final = 10_000
+"""Number of set points of a protocol, repeats included."""
+
+_DEEPEST: Final = 8  # repeats within each other
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SetPoint:
+    """State of the rig from a time on.
+
+    Parameters
+    ----------
+    time : float
+        Since the start, without prompts. [s]
+    step : str
+        Place of the step, such as "4" or "4.2" for the second step of a repeat.
+    kind : str
+        Kind of the step; "end" for the last set point, which switches everything off.
+    sliding_speed : float or None
+        None where the speed of the disc is set. [m/s]
+    rotation_speed : float or None
+        None where the speed of the contact is set. [1/s]
+    voltage_peak_to_peak : float
+        0 while the actuator is off. [V]
+    voltage_offset : float
+        [V]
+    frequency : float or None
+        None while the actuator is off. [Hz]
+    waveform : str
+    channels : tuple of str
+        Channels that are recorded.
+    sample_rate : float or None
+        Of the recording. [Hz]
+    recorded_until : float or None
+        Time at which the recording ends, in s.
+    """
+
+    time: float
+    step: str
+    kind: str
+    sliding_speed: float | None = 0.0
+    rotation_speed: float | None = None
+    voltage_peak_to_peak: float = 0.0
+    voltage_offset: float = 0.0
+    frequency: float | None = None
+    waveform: str = "sine"
+    channels: tuple[str, ...] = ()
+    sample_rate: float | None = None
+    recorded_until: float | None = None
+
+    @property
+    def voltage_maximum(self) -> float:
+        """Greatest magnitude of the voltage, its offset included. [V]"""
+        return abs(self.voltage_offset) + self.voltage_peak_to_peak / 2
+
+
+@dataclass(frozen=True, slots=True)
+class _Move:
+    """Change of set points by a step, and how long it lasts."""
+
+    step: str
+    kind: str
+    lasts: float
+    changes: dict[str, Any]
+    records: Acquire | None = None
+
+
+def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
+    """Set points of a protocol in the order of time, repeats written out.
+
+    Parameters
+    ----------
+    protocol : Protocol
+
+    Returns
+    -------
+    tuple of SetPoint
+        One a step, one a voltage of voltage steps, one a frequency of a sweep, and "end" at the duration. Checks and
+        prompts take no time.
+
+    Raises
+    ------
+    InvalidInput
+        If there are more than `MOST_SET_POINTS`, or a recording starts while another lasts.
+    """
+    _require_bounded(protocol.steps)
+    now, until = 0.0, 0.0
+    state = SetPoint(time=0.0, step="", kind="")
+    points = []
+    for move in _moves(protocol.steps, ""):
+        if move.records is not None:
+            if now < until:
+                start, end = format_si(now, "s"), format_si(until, "s")
+                raise InvalidInput(f"step {move.step}: starts to record at {start}, while another lasts until {end}")
+            until = now + move.records.duration
+            state = replace(state, sample_rate=move.records.sample_rate, recorded_until=until)
+        elif state.channels and now >= until:
+            state = replace(state, channels=(), sample_rate=None, recorded_until=None)
+        state = replace(state, time=now, step=move.step, kind=move.kind, **move.changes)
+        points.append(state)
+        now += move.lasts
+    return (*points, SetPoint(time=max(now, until), step="", kind="end"))
+
+
+def step_at(protocol: Protocol, place: str) -> Step:
+    """Step of a protocol by its place.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    place : str
+        As in `SetPoint.step`, such as "4.2" for the second step of a repeat.
+
+    Returns
+    -------
+    step
+    """
+    first, *rest = (int(number) - 1 for number in place.split("."))
+    step = protocol.steps[first]
+    for number in rest:
+        assert isinstance(step, Repeat)
+        step = step.steps[number]
+    return step
+
+
+def duration(protocol: Protocol) -> float:
+    """Time of a protocol without prompts, until steps and recordings have ended. [s]
+
+    Parameters
+    ----------
+    protocol : Protocol
+
+    Returns
+    -------
+    float
+    """
+    return flattened(protocol)[-1].time
+
+
+def _require_bounded(steps: Sequence[Step]) -> None:
+    """Raise where steps, written out, are too many or too deep; without writing them out."""
+    count = _set_points(steps, depth=0)
+    if count > MOST_SET_POINTS:
+        raise InvalidInput(f"steps: {count:.6g} set points with all repeats; at most {MOST_SET_POINTS}")
+
+
+def _set_points(steps: Sequence[Step], *, depth: int) -> int:
+    """Number of set points of steps."""
+    if depth > _DEEPEST:
+        raise InvalidInput(f"steps: repeats are nested more than {_DEEPEST} deep")
+    total = 0
+    for step in steps:
+        match step:
+            case Repeat():
+                total += step.count * _set_points(step.steps, depth=depth + 1)
+            case VoltageSteps():
+                total += len(step.voltages)
+            case Sweep():
+                total += step.points
+            case _:
+                total += 1
+    return total
+
+
+def _moves(steps: Sequence[Step], prefix: str) -> Iterator[_Move]:
+    """Changes of set points by steps, repeats written out."""
+    for number, step in enumerate(steps, 1):
+        place = f"{prefix}{number}"
+        match step:
+            case Repeat():
+                for _ in range(step.count):
+                    yield from _moves(step.steps, f"{place}.")
+            case VoltageSteps():
+                yield from _voltages(step, place)
+            case Sweep():
+                yield from _frequencies(step, place)
+            case _:
+                yield _single(step, place)
+
+
+def _single(step: Step, place: str) -> _Move:
+    """Change of set points by a step that makes one."""
+    match step:
+        case Wait():
+            return _Move(place, step.kind, step.duration, {})
+        case MotorSpeed():
+            speeds = {"sliding_speed": step.sliding_speed, "rotation_speed": step.rotation_speed}
+            return _Move(place, step.kind, 0.0, speeds)
+        case Drive():
+            changes = {
+                "voltage_peak_to_peak": step.voltage_peak_to_peak,
+                "voltage_offset": step.voltage_offset,
+                "frequency": step.frequency if step.voltage_peak_to_peak > 0 else None,
+                "waveform": step.waveform,
+            }
+            return _Move(place, step.kind, 0.0, changes)
+        case Acquire():
+            return _Move(place, step.kind, 0.0, {"channels": step.channels}, step)
+    return _Move(place, step.kind, 0.0, {})
+
+
+def _voltages(step: VoltageSteps, place: str) -> Iterator[_Move]:
+    """Changes of set points by voltages in turn."""
+    for voltage in step.voltages:
+        changes = {
+            "voltage_peak_to_peak": voltage,
+            "voltage_offset": voltage / 2 if step.unipolar else 0.0,
+            "frequency": step.frequency if voltage > 0 else None,
+            "waveform": step.waveform,
+        }
+        yield _Move(place, step.kind, step.step_duration, changes)
+
+
+def _frequencies(step: Sweep, place: str) -> Iterator[_Move]:
+    """Changes of set points by frequencies in turn."""
+    first, last = step.first_frequency, step.last_frequency
+    for index in range(step.points):
+        share = index / (step.points - 1)
+        frequency = first * (last / first) ** share if step.scale == "log" else first + (last - first) * share
+        changes = {
+            "voltage_peak_to_peak": step.voltage_peak_to_peak,
+            "voltage_offset": step.voltage_offset,
+            "frequency": frequency,
+            "waveform": step.waveform,
+        }
+        yield _Move(place, step.kind, step.duration / step.points, changes)

@@ -1,0 +1,209 @@
+"""Index of runs in a database beside their folders; the folders are the truth, and the index is rebuilt from them."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from sonolube.errors import InvalidInput
+from sonolube.files import is_locked
+from sonolube.growing_files import database, set_database_aside
+from sonolube.laboratory.catalogue.entry import CatalogueEntry, catalogue_entry
+from sonolube.laboratory.catalogue.query import RunQuery
+from sonolube.laboratory.records import RunSummary, run_folders
+
+if TYPE_CHECKING:
+    from sonolube.growing_files import Connection
+
+CATALOGUE: Final = "catalogue.sqlite"
+"""Name of the index beside the folders of runs."""
+
+_FORMAT: Final = 1
+_OWN: Final = 0x534C4C42  # application number of the database
+_SCHEMA: Final = """
+CREATE TABLE runs (
+    folder TEXT PRIMARY KEY, stamp TEXT, begun REAL, outcome TEXT, pin TEXT, disc TEXT, load REAL, speed REAL,
+    tags TEXT, text TEXT, entry TEXT
+);
+CREATE INDEX by_time ON runs (begun);
+"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FoundRuns:
+    """Runs that a query has found.
+
+    Parameters
+    ----------
+    entries : tuple of CatalogueEntry
+        The oldest first.
+    of : int
+        Number of all runs in the folder.
+    caveats : tuple of str
+        Runs that cannot be read, and what was done to the index.
+    """
+
+    entries: tuple[CatalogueEntry, ...]
+    of: int
+    caveats: tuple[str, ...]
+
+
+def query_runs(parent: Path, query: RunQuery | None = None) -> FoundRuns:
+    """Runs in a folder that meet a query; the index is brought up to date first.
+
+    Parameters
+    ----------
+    parent : Path
+    query : RunQuery, optional
+        All runs without it.
+
+    Returns
+    -------
+    FoundRuns
+
+    Raises
+    ------
+    InvalidInput
+        If the folder cannot be read.
+    """
+    folders = run_folders(parent)
+    caveats: list[str] = []
+    condition, values = _condition(query or RunQuery())
+    with _opened(parent / CATALOGUE, caveats) as connection:
+        _refresh(connection, folders, caveats)
+        (total,) = connection.execute("SELECT count(*) FROM runs").fetchone()
+        rows = connection.execute(f"SELECT entry FROM runs{condition} ORDER BY begun, folder", values).fetchall()
+    return FoundRuns(entries=tuple(_entry(parent, row[0]) for row in rows), of=total, caveats=tuple(caveats))
+
+
+@contextmanager
+def _opened(path: Path, caveats: list[str]) -> "Iterator[Connection]":
+    """Provide the index, rebuilt where it is damaged or old, in memory where none can be written."""
+    place: Path | None = path
+    try:
+        is_whole = _is_current(path)
+        if not is_whole:
+            caveats.append(f"{path.name} was damaged or of another version, and is built anew")
+            set_database_aside(path)
+    except InvalidInput:
+        place = None
+    with database(place) as connection:
+        if connection.execute("PRAGMA user_version").fetchone()[0] != _FORMAT:
+            connection.executescript(_SCHEMA)
+            connection.execute(f"PRAGMA application_id={_OWN}")
+            connection.execute(f"PRAGMA user_version={_FORMAT}")
+        yield connection
+
+
+def _is_current(path: Path) -> bool:
+    """Whether an index is whole and of this version, or none exists but can be made.
+
+    Raises
+    ------
+    InvalidInput
+        If it cannot be written, or is somebody else's.
+    """
+    exists = path.exists()
+    try:
+        with database(path) as connection:
+            own, version = (
+                connection.execute(f"PRAGMA {name}").fetchone()[0] for name in ("application_id", "user_version")
+            )
+            if own == _OWN and version == _FORMAT:
+                connection.execute("SELECT folder, stamp, begun, entry FROM runs").fetchone()
+                return bool(connection.execute("PRAGMA quick_check").fetchone()[0] == "ok")
+            if own == 0 and version == 0 and not connection.execute("SELECT 1 FROM sqlite_master").fetchone():
+                return True  # just made
+            if own != _OWN:
+                raise _Foreign
+            return False
+    except _Foreign:
+        raise InvalidInput(f"{path}: is a database of another program") from None
+    except InvalidInput:
+        if exists and path.is_file():
+            return False
+        raise
+
+
+class _Foreign(Exception):
+    """A database of another program."""
+
+
+def _refresh(connection: "Connection", folders: list[Path], caveats: list[str]) -> None:
+    """Bring the index up to date with the folders."""
+    known = dict(connection.execute("SELECT folder, stamp FROM runs").fetchall())
+    for name in known.keys() - {folder.name for folder in folders}:
+        connection.execute("DELETE FROM runs WHERE folder = ?", (name,))
+    for folder in folders:
+        stamp = _stamp(folder)
+        if known.get(folder.name) == stamp:
+            continue
+        connection.execute("DELETE FROM runs WHERE folder = ?", (folder.name,))
+        try:
+            entry = catalogue_entry(folder)
+        except InvalidInput as failure:
+            caveats.append(str(failure))
+            continue
+        connection.execute(f"INSERT INTO runs VALUES ({', '.join('?' * 11)})", _row(folder.name, stamp, entry))
+
+
+def _stamp(folder: Path) -> str:
+    """Text that changes where the record of a run changes."""
+    marks = []
+    for name in ("run.json", "documents.jsonl", "protocol.toml"):
+        try:
+            found = (folder / name).stat()
+            marks.append(f"{found.st_mtime_ns}-{found.st_size}-{found.st_ino}")
+        except OSError:
+            marks.append("-")
+    return " ".join([*marks, str(is_locked(folder))])
+
+
+def _row(name: str, stamp: str, entry: CatalogueEntry) -> tuple[Any, ...]:
+    """Row of a run."""
+    summary = entry.summary
+    content = {field: getattr(entry, field) for field in CatalogueEntry.__slots__ if field not in ("summary", "text")}
+    content |= {field: getattr(summary, field) for field in RunSummary.__slots__ if field != "folder"}
+    tags = "".join(f",{tag.casefold()}" for tag in entry.tags) + ","
+    return (
+        *(name, stamp, summary.begun, summary.outcome, entry.pin_material.casefold(), entry.disc_material.casefold()),
+        *(entry.normal_load, entry.sliding_speed, tags, entry.text.casefold()),
+        json.dumps({"folder": name, **content}),
+    )
+
+
+def _entry(parent: Path, text: str) -> CatalogueEntry:
+    """Entry of a row."""
+    content = json.loads(text)
+    summary = {field: content.pop(field) for field in RunSummary.__slots__}
+    summary |= {"folder": parent / summary["folder"], "channels": tuple(summary["channels"])}
+    return CatalogueEntry(**content | {"tags": tuple(content["tags"])}, summary=RunSummary(**summary), text="")
+
+
+def _condition(query: RunQuery) -> tuple[str, list[Any]]:
+    """Condition of SQL with its values."""
+    terms: list[str] = []
+    values: list[Any] = []
+    for material in query.materials:
+        terms.append("(instr(pin, ?) OR instr(disc, ?))")
+        values += [material.casefold()] * 2
+    for column, limits in (("load", query.normal_load), ("speed", query.sliding_speed)):
+        if limits is not None:
+            terms.append(f"{column} BETWEEN ? AND ?")
+            values += limits
+    for comparison, moment in (("begun >= ?", query.since), ("begun < ?", query.until)):
+        if moment is not None:
+            terms.append(comparison)
+            values.append(moment)
+    for tag in query.tags:
+        terms.append("instr(tags, ?)")
+        values.append(f",{tag.strip().casefold()},")
+    for words in query.texts:
+        terms.append("instr(text, ?)")
+        values.append(words.casefold())
+    if query.outcome:
+        terms.append("outcome = ?")
+        values.append(query.outcome)
+    return (" WHERE " + " AND ".join(terms) if terms else ""), values

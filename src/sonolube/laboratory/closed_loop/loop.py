@@ -1,0 +1,291 @@
+"""Loop: blocks of one control interval are read, the voltage computed and set; however it ends, all is off."""
+
+from math import ceil, nan, pi
+from typing import Final
+
+import numpy as np
+
+from sonolube.design.control import initial_state, next_voltage
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.interruption import asked_by_signal, undone_at_signal
+from sonolube.laboratory.block import Block
+from sonolube.laboratory.closed_loop.plan import recorded_channels
+from sonolube.laboratory.closed_loop.record import FrictionHold, HeldFriction
+from sonolube.laboratory.devices import (
+    DeviceError,
+    Devices,
+    DriveSetting,
+    SamplesLost,
+    connect_devices,
+    switch_outputs_off,
+)
+from sonolube.laboratory.ending import RunEnded, ending, release_devices
+from sonolube.laboratory.interlocks import first_trip, interlocks_for
+from sonolube.laboratory.runner import Advance, RunControl
+from sonolube.laboratory.sampling import Recorder
+from sonolube.laboratory.states import Event, RunState, State, after
+from sonolube.units import format_si
+
+_FRICTION: Final = "friction_force"
+
+
+def hold_friction(
+    hold: FrictionHold,
+    devices: Devices,
+    *,
+    recorder: Recorder | None = None,
+    control: RunControl | None = None,
+    advance: Advance | None = None,
+) -> HeldFriction:
+    """Hold friction at a reference on devices, by the controller that `sonolube control` designs.
+
+    Parameters
+    ----------
+    hold : FrictionHold
+    devices : Devices
+        Not yet connected; released at the end.
+    recorder : Recorder, optional
+        Of a new run; finished at the end.
+    control : RunControl, optional
+        Requests of others to stop.
+    advance : callable, optional
+        Reports progress.
+
+    Returns
+    -------
+    HeldFriction
+        Also where a device, a limit or the disk has ended the loop, with what was measured until then.
+
+    Raises
+    ------
+    InvalidInput
+        If the devices cannot do what is wanted; then nothing was connected.
+
+    Notes
+    -----
+    In interval n the voltage follows by `sonolube.design.control.next_voltage` from the friction of interval n - 1. The
+    loop is then that of `sonolube.design.control.stability_margins` where the friction at the end of an interval is
+    that of its voltage; a mean over the whole interval delays the measurement by up to half of it.
+    """
+    require_holdable(hold, devices)
+    control = control or RunControl()
+    loop = _Loop(hold, devices, recorder, control)
+    with undone_at_signal(loop.switch_off), asked_by_signal(control.stop):
+        return loop.complete(advance)
+
+
+class _Loop:
+    """One loop on devices."""
+
+    def __init__(self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
+        self._hold, self._devices, self._recorder, self._control = hold, devices, recorder, control
+        channels = devices.acquisition.channels
+        self._locks = interlocks_for(hold.limits, channels)
+        self._names = list(recorded_channels(hold, channels))
+        self._present, self._is_recording = RunState(), False
+        self._next_sample, self._rate, self._count = 0, 0.0, 0
+        self._rows: list[tuple[float, float, float, float]] = []
+        self._run_in_means: list[float] = []
+
+    def complete(self, advance: Advance | None) -> HeldFriction:
+        """Run the loop to its end, whatever that is."""
+        try:
+            self._happens(Event.START)
+            connect_devices(self._devices)
+            self._happens(Event.PREPARED)
+            self._sample()
+            self._control_friction(self._running_in(), advance)
+            self._end_recording()
+            self._happens(Event.COMPLETED)
+        except BaseException as failure:
+            self._happens(*ending(failure))
+            if not isinstance(failure, SonolubeError):
+                raise
+        finally:
+            self._close()
+        return self._result()
+
+    def switch_off(self) -> list[str]:
+        """Switch drive and motor off, and return what failed; never raises."""
+        return switch_outputs_off(self._devices)
+
+    def _happens(self, event: Event, reason: str = "") -> None:
+        """Take an event into the state of the loop, and note it."""
+        self._present, _ = after(self._present, event, reason=reason)
+        if event is not Event.START:
+            self._note(event.value, reason=reason, state=self._present.state.value)
+
+    def _note(self, kind: str, **facts: str | float) -> None:
+        """Note what happened; while the loop ends, a record that cannot be written is no hindrance."""
+        if self._recorder is None:
+            return
+        sample, time = (self._next_sample, self._next_sample / self._rate) if self._rate else (None, 0.0)
+        try:
+            self._recorder.note(kind, sample=sample, protocol_time=time, **facts)
+        except SonolubeError:
+            if self._present.state is State.RUNNING:
+                raise
+
+    def _sample(self) -> None:
+        """Start to sample and to record."""
+        acquisition = self._devices.acquisition
+        self._rate = acquisition.start(self._names, sample_rate=self._hold.sample_rate)
+        try:
+            self._count = self._hold.samples_per_interval(self._rate)
+        except InvalidInput as refusal:
+            raise DeviceError(f"{acquisition.name}: {refusal}") from None
+        if self._recorder is not None:
+            self._recorder.begin([acquisition.channels[name] for name in self._names], sample_rate=self._rate)
+            self._is_recording = True
+
+    def _running_in(self) -> float:
+        """Slide without vibration, and return the friction of the last interval. [N]"""
+        self._turn(self._hold.speeds[0].sliding_speed)
+        intervals = max(1, ceil(self._hold.run_in / self._interval - 1e-9))
+        self._run_in_means = [self._measure()[0] for _ in range(intervals)]
+        return self._run_in_means[-1]
+
+    def _control_friction(self, measured: float, advance: Advance | None) -> None:
+        """Compute, set and measure, interval by interval."""
+        hold, state = self._hold, initial_state(self._hold.controller)
+        coming = list(hold.speeds[1:])
+        speed = hold.speeds[0].sliding_speed
+        intervals = round(hold.duration / self._interval)
+        for number in range(intervals):
+            now = number * self._interval
+            while coming and now >= coming[0].time - 1e-9:
+                speed = coming.pop(0).sliding_speed
+                self._turn(speed)
+            voltage = next_voltage(hold.controller, state, hold.friction_force, measured)
+            self._drive(voltage)
+            measured, deviation = self._measure()
+            self._rows.append((measured, deviation, voltage, speed))
+            if advance is not None:
+                doing = f"{format_si(measured, 'N', digits=3)}, {format_si(voltage, 'V', digits=3)}"
+                advance(doing, round(1e3 * now), round(1e3 * hold.duration))
+
+    @property
+    def _interval(self) -> float:
+        """Interval of the controller by the clock of the acquisition. [s]"""
+        return self._count / self._rate
+
+    def _turn(self, speed: float) -> None:
+        """Set the speed of the disc for a sliding speed."""
+        self._devices.motor.turn(speed / (pi * _groove_diameter(self._hold, self._devices)))
+        self._note("motor", sliding_speed=speed)
+
+    def _drive(self, voltage: float) -> None:
+        """Set the drive to a peak-to-peak voltage."""
+        if voltage <= 0:
+            self._devices.drive.off()
+            return
+        self._devices.drive.drive(
+            DriveSetting(
+                voltage_peak_to_peak=voltage,
+                voltage_offset=self._hold.offset_ratio * voltage,
+                frequency=self._hold.frequency,
+            )
+        )
+
+    def _measure(self) -> tuple[float, float]:
+        """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""
+        if self._control.stop_reason:
+            raise RunEnded(Event.STOP, self._control.stop_reason)
+        block = self._devices.acquisition.read(self._count)
+        self._keep(block)
+        trip = first_trip(block, self._names, self._locks)
+        if trip is not None:
+            raise RunEnded(Event.TRIP, trip.reason)
+        samples = block.values[:, self._names.index(_FRICTION)]
+        samples = samples[-max(1, round(self._hold.averaging * samples.size)) :]
+        mean = float(np.mean(samples))
+        if not np.isfinite(mean):
+            raise RunEnded(Event.TRIP, f"channel {_FRICTION} gives no number")
+        return mean, float(np.std(samples))
+
+    def _keep(self, block: Block) -> None:
+        """Hold a block to the counter, and record it."""
+        if block.first_sample != self._next_sample:
+            lost = block.first_sample - self._next_sample
+            name = self._devices.acquisition.name
+            raise SamplesLost(f"{name}: {lost} samples are missing after sample {self._next_sample}")
+        self._next_sample = block.next_sample
+        if self._recorder is not None:
+            self._recorder.append(block)
+
+    def _end_recording(self) -> None:
+        """Record no more."""
+        if self._recorder is not None and self._is_recording:
+            self._is_recording = False
+            self._recorder.end()
+
+    def _close(self) -> None:
+        """Switch everything off, release the devices and close the record."""
+        failures, devices = self.switch_off(), self._devices
+        for reason in release_devices(devices, self._end_recording, devices.acquisition.stop):
+            self._happens(Event.DEVICE_ERROR, reason)
+        self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
+        if self._recorder is not None:
+            self._recorder.finish(self._present.outcome, reason=self._present.reason)
+
+    def _result(self) -> HeldFriction:
+        """What was measured and set."""
+        rows = np.array(self._rows, dtype=np.float64).reshape(-1, 4)
+        run_in = self._run_in_means
+        return HeldFriction(
+            hold=self._hold,
+            time=np.arange(rows.shape[0], dtype=np.float64) * (self._interval if self._rate else nan),
+            setpoint=np.full(rows.shape[0], self._hold.friction_force),
+            friction_force=rows[:, 0],
+            friction_force_deviation=rows[:, 1],
+            voltage_peak_to_peak=rows[:, 2],
+            sliding_speed=rows[:, 3],
+            intrinsic_friction_force=float(np.mean(run_in)) if run_in else nan,
+            outcome=self._present.outcome,
+            reason=self._present.reason,
+            is_safe=self._present.state is State.SAFE,
+        )
+
+
+def _groove_diameter(hold: FrictionHold, devices: Devices) -> float:
+    """Diameter of the circle under the pin. [m]"""
+    return hold.groove_diameter or devices.groove_diameter
+
+
+def require_holdable(hold: FrictionHold, devices: Devices) -> None:
+    """Raise where devices or limits do not allow what a loop may do, before anything is connected.
+
+    Parameters
+    ----------
+    hold : FrictionHold
+    devices : Devices
+
+    Raises
+    ------
+    InvalidInput
+        Naming what is asked for, and the device or limit that forbids it.
+    """
+    interlocks_for(hold.limits, devices.acquisition.channels)
+    if _FRICTION not in devices.acquisition.channels:
+        raise InvalidInput(f"{devices.acquisition.name} has no channel {_FRICTION}, which the loop needs")
+    reached = format_si(hold.voltage_maximum, "V")
+    for owner, most in (
+        (devices.drive.name, devices.drive.voltage_maximum),
+        ("limits.voltage_maximum", hold.limits.voltage_maximum),
+    ):
+        if hold.voltage_maximum > most * (1 + 1e-9):
+            allowed = format_si(most, "V")
+            raise InvalidInput(
+                f"the controller may command {reached}, its offset included; {owner} allows {allowed}: design it with a"
+                " lower voltage"
+            )
+    fastest = max(step.sliding_speed for step in hold.speeds) / (pi * _groove_diameter(hold, devices))
+    if fastest > devices.motor.rotation_speed_maximum * (1 + 1e-9):
+        most_turns = format_si(devices.motor.rotation_speed_maximum, "1/s")
+        raise InvalidInput(
+            f"speeds need {format_si(fastest, '1/s')}; {devices.motor.name} turns at most at {most_turns}"
+        )
+    total = hold.run_in + hold.duration
+    if total > hold.limits.duration_maximum * (1 + 1e-9):
+        lasts, allowed = format_si(total, "s"), format_si(hold.limits.duration_maximum, "s")
+        raise InvalidInput(f"duration: the test lasts {lasts}; limits.duration_maximum is {allowed}")

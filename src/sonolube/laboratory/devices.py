@@ -1,0 +1,185 @@
+"""Devices of a test rig: an acquisition, a source of the drive voltage and a motor, as protocols of a few methods.
+
+A device answers in SI and raises `DeviceError` alone. What it measures comes in blocks that its own clock has timed;
+the program never polls single samples.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from sonolube.errors import SonolubeError
+from sonolube.laboratory.block import Block, Channel
+
+
+class DeviceError(SonolubeError):
+    """A device that does not do what it was told; the text names the device and the remedy."""
+
+
+class DeviceLost(DeviceError):
+    """A device that answers no more."""
+
+
+class SamplesLost(DeviceError):
+    """Samples that the hardware has taken and nobody has read in time, or whose counter is not the expected one."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DriveSetting:
+    """Output of the source of the drive voltage; the voltage is that at the actuator.
+
+    Parameters
+    ----------
+    voltage_peak_to_peak : float
+        0 switches the output off. [V]
+    voltage_offset : float
+        [V]
+    frequency : float
+        [Hz]
+    waveform : str
+        sine, square, triangle or sawtooth.
+    """
+
+    voltage_peak_to_peak: float
+    frequency: float
+    voltage_offset: float = 0.0
+    waveform: str = "sine"
+
+
+class Acquisition(Protocol):
+    """Analogue inputs with one hardware clock."""
+
+    name: str
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        """Channels that can be recorded, by name."""
+
+    def connect(self) -> None:
+        """Reserve the hardware; harmless where that was done before."""
+
+    def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
+        """Start to sample from sample 0 on, and return the sample rate that the hardware has chosen. [Hz]"""
+
+    def read(self, samples: int) -> Block:
+        """Wait for the next samples of all channels, and return them.
+
+        Raises
+        ------
+        DeviceLost
+            If they do not come within twice their time and two seconds.
+        SamplesLost
+            If the hardware has dropped samples.
+        """
+
+    def stop(self) -> None:
+        """Stop to sample; harmless where nothing runs."""
+
+    def close(self) -> None:
+        """Release the hardware; harmless where that was done before."""
+
+
+class DriveSource(Protocol):
+    """Function generator with amplifier, or an amplifier with an input of its own."""
+
+    name: str
+    voltage_maximum: float
+    """Magnitude of the voltage at the actuator, offset included, that it can give. [V]"""
+
+    def connect(self) -> None:
+        """Open the connection with the output off."""
+
+    def drive(self, setting: DriveSetting) -> None:
+        """Set the output, which follows within a few periods."""
+
+    def off(self) -> None:
+        """Switch the output off; safe to call at any time after `connect`."""
+
+    def close(self) -> None:
+        """Release the hardware with the output off; harmless where that was done before."""
+
+
+class Motor(Protocol):
+    """Motor of the disc."""
+
+    name: str
+    rotation_speed_maximum: float
+    """Speed that it can give. [1/s]"""
+
+    def connect(self) -> None:
+        """Open the connection with the motor at rest."""
+
+    def turn(self, rotation_speed: float) -> None:
+        """Set the speed of the disc, 0 to stop. [1/s]"""
+
+    def off(self) -> None:
+        """Stop; safe to call at any time after `connect`."""
+
+    def close(self) -> None:
+        """Release the hardware with the motor at rest; harmless where that was done before."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Devices:
+    """Devices of one rig.
+
+    Parameters
+    ----------
+    acquisition : Acquisition
+    drive : DriveSource
+    motor : Motor
+    description : mapping of str to str
+        Kind, serial number and settings of each, for the record of a run.
+    simulated : bool
+        Whether no hardware moves.
+    groove_diameter : float
+        Of the circle under the pin, which turns sliding speeds into those of the disc. [m]
+    prepare : callable or None
+        Works out what the devices need for a drive setting (None for off) at a speed of the disc, in 1/s. It is called
+        for every set point before anything is connected; None where no set point takes the devices time.
+    """
+
+    acquisition: Acquisition
+    drive: DriveSource
+    motor: Motor
+    description: Mapping[str, str]
+    groove_diameter: float
+    simulated: bool = False
+    prepare: Callable[[DriveSetting | None, float], None] | None = None
+
+
+def connect_devices(devices: Devices) -> None:
+    """Connect all devices, outputs off; drive and motor first, so that what ran before is off.
+
+    Parameters
+    ----------
+    devices : Devices
+
+    Raises
+    ------
+    DeviceError
+        If a device does not answer.
+    """
+    for device in (devices.drive, devices.motor, devices.acquisition):
+        device.connect()
+
+
+def switch_outputs_off(devices: Devices) -> list[str]:
+    """Switch drive and motor off, each whatever becomes of the other; never raises.
+
+    Parameters
+    ----------
+    devices : Devices
+
+    Returns
+    -------
+    list of str
+        Outputs that did not confirm to be off, with the reason.
+    """
+    failures = []
+    for device in (devices.drive, devices.motor):
+        try:
+            device.off()
+        except Exception as failure:  # whatever a driver raises, the next device must be switched off
+            failures.append(f"{device.name}: {failure}")
+    return failures

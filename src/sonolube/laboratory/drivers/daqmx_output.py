@@ -1,0 +1,245 @@
+"""Analogue outputs by NI-DAQmx: a drive source from a repeated buffer, and a motor set by a steady voltage."""
+
+from collections.abc import Mapping
+from contextlib import suppress
+from fractions import Fraction
+from math import ceil
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.laboratory.devices import DeviceError, DriveSetting
+from sonolube.laboratory.drivers.daqmx_library import daqmx_errors, daqmx_library, require_device
+from sonolube.laboratory.drivers.output_limits import DriveLimits, require_speed
+from sonolube.units import format_si
+
+SAMPLES_PER_PERIOD: Final = 20
+"""Least number of samples of one period of the drive."""
+
+_LONGEST_BUFFER: Final = 100_000  # samples
+_SHORTEST_BUFFER: Final = 1000  # samples, so that the driver refills it seldom
+_FREQUENCY_ERROR: Final = 1e-5  # a fifth of that of the clocks of such devices
+
+_SHAPES: Final[Mapping[str, Any]] = MappingProxyType(
+    {  # of a phase in periods, between -1 and 1
+        "sine": lambda phase: np.sin(2 * np.pi * phase),
+        "square": lambda phase: np.where(phase % 1 < 0.5, 1.0, -1.0),
+        "triangle": lambda phase: 1 - 4 * np.abs((phase + 0.25) % 1 - 0.5),
+        "sawtooth": lambda phase: 2 * ((phase + 0.5) % 1) - 1,
+    }
+)
+
+
+class DaqmxOutput:
+    """One analogue output.
+
+    Parameters
+    ----------
+    terminal : str
+        Such as Dev1/ao0.
+    voltage_range : float
+        Magnitude that it can give, in V.
+    """
+
+    def __init__(self, *, terminal: str, voltage_range: float) -> None:
+        self.name = f"NI-DAQmx {terminal}"
+        self._terminal, self._range = terminal, voltage_range
+        self._library: Any = None
+        self._task: Any = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether device and driver were found."""
+        return self._library is not None
+
+    def open(self) -> None:
+        """Find driver and device, and give 0 V."""
+        if self._library is not None:
+            return
+        library = daqmx_library()
+        require_device(library, self._terminal.partition("/")[0], name=self.name)
+        self._library = library
+        try:
+            self.hold(0.0)
+        except BaseException:
+            self.close()
+            raise
+
+    def hold(self, voltage: float) -> None:
+        """Give a steady voltage. [V]"""
+        self._release()
+        with daqmx_errors(self.name), self._library.Task() as task:
+            self._add_channel(task)
+            task.write(voltage, auto_start=True)
+
+    def repeat(self, setting: DriveSetting, *, amplitude: float, offset: float, sample_rate: float) -> None:
+        """Give a waveform over and over; amplitude peak to peak and offset in V, rate of the output in Hz."""
+        self._release()
+        continuous = self._library.constants.AcquisitionType.CONTINUOUS
+        with daqmx_errors(self.name):
+            self._task = task = self._library.Task()
+            self._add_channel(task)
+            task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=_SHORTEST_BUFFER)
+            rate = float(task.timing.samp_clk_rate)
+            periods, samples = whole_periods(frequency=setting.frequency, sample_rate=rate, device=self.name)
+            volts = offset + amplitude / 2 * waveform_samples(setting.waveform, periods=periods, samples=samples)
+            task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=samples)
+            task.write(volts, auto_start=False)
+            task.start()
+
+    def close(self) -> None:
+        """Release the device."""
+        self._release()
+        self._library = None
+
+    def _add_channel(self, task: Any) -> None:
+        """Add the output to a task."""
+        task.ao_channels.add_ao_voltage_chan(self._terminal, min_val=-self._range, max_val=self._range)
+
+    def _release(self) -> None:
+        """End the waveform; the output stays at its last voltage until it is given another."""
+        task, self._task = self._task, None
+        if task is not None:
+            with suppress(DeviceError), daqmx_errors(self.name):  # what follows fails too where that matters
+                task.close()
+
+
+class DaqmxDrive:
+    """Source of the drive voltage: an analogue output with an amplifier behind it.
+
+    Parameters
+    ----------
+    terminal : str
+        Such as Dev1/ao0.
+    sample_rate : float
+        Of the output. [Hz]
+    limits : DriveLimits
+    """
+
+    def __init__(self, *, terminal: str, sample_rate: float, limits: DriveLimits) -> None:
+        self._output = DaqmxOutput(terminal=terminal, voltage_range=limits.output_voltage)
+        self.name = self._output.name
+        self.voltage_maximum = limits.voltage_maximum
+        self._limits, self._sample_rate = limits, sample_rate
+
+    def connect(self) -> None:
+        """Find the device, and set the output to 0 V."""
+        self._output.open()
+
+    def drive(self, setting: DriveSetting) -> None:
+        """Set the output, which rests for some ms between two settings."""
+        amplitude, offset = self._limits.output_of(setting, device=self.name)
+        if not self._output.is_open:
+            raise DeviceError(f"{self.name}: connect it before driving")
+        if setting.voltage_peak_to_peak == 0:
+            self.off()
+        else:
+            try:
+                self._output.repeat(setting, amplitude=amplitude, offset=offset, sample_rate=self._sample_rate)
+            except DeviceError:
+                with suppress(DeviceError):
+                    self.off()
+                raise
+
+    def off(self) -> None:
+        """Set the output to 0 V."""
+        if self._output.is_open:
+            self._output.hold(0.0)
+
+    def close(self) -> None:
+        """Set the output to 0 V and release the device."""
+        with suppress(DeviceError):
+            self.off()
+        self._output.close()
+
+
+class DaqmxMotor:
+    """Motor whose controller takes its speed as a voltage.
+
+    Parameters
+    ----------
+    terminal : str
+        Such as Dev1/ao1.
+    rotation_speed_maximum : float
+        Of the disc, in 1/s.
+    voltage_at_maximum : float
+        At which the disc turns at that speed; 0 V is rest; in V.
+    """
+
+    def __init__(self, *, terminal: str, rotation_speed_maximum: float, voltage_at_maximum: float) -> None:
+        self._output = DaqmxOutput(terminal=terminal, voltage_range=abs(voltage_at_maximum))
+        self.name = self._output.name
+        self.rotation_speed_maximum = rotation_speed_maximum
+        self._voltage_at_maximum = voltage_at_maximum
+
+    def connect(self) -> None:
+        """Find the device, and let the motor rest."""
+        self._output.open()
+
+    def turn(self, rotation_speed: float) -> None:
+        """Set the speed of the disc, 0 to stop. [1/s]"""
+        require_speed(rotation_speed=rotation_speed, highest=self.rotation_speed_maximum, device=self.name)
+        if not self._output.is_open:
+            raise DeviceError(f"{self.name}: connect it before turning")
+        share = min(rotation_speed / self.rotation_speed_maximum, 1.0)
+        self._output.hold(share * self._voltage_at_maximum)
+
+    def off(self) -> None:
+        """Set the output to 0 V."""
+        if self._output.is_open:
+            self._output.hold(0.0)
+
+    def close(self) -> None:
+        """Set the output to 0 V and release the device."""
+        with suppress(DeviceError):
+            self.off()
+        self._output.close()
+
+
+def whole_periods(*, frequency: float, sample_rate: float, device: str) -> tuple[int, int]:
+    """Numbers of periods and of samples of a buffer that can be repeated without a step.
+
+    Parameters
+    ----------
+    frequency, sample_rate : float
+        [Hz]
+    device : str
+        Name in errors.
+
+    Returns
+    -------
+    tuple of int
+
+    Raises
+    ------
+    DeviceError
+        If a period has fewer than 20 samples, or no buffer meets the frequency within 10 ppm.
+    """
+    if frequency * SAMPLES_PER_PERIOD > sample_rate * (1 + 1e-9):
+        most = format_si(sample_rate / SAMPLES_PER_PERIOD, "Hz")
+        raise DeviceError(f"{device}: {format_si(frequency, 'Hz')} refused; its sample rate allows up to {most}")
+    share = Fraction(frequency / sample_rate).limit_denominator(_LONGEST_BUFFER)
+    if abs(share * Fraction(sample_rate / frequency) - 1) > _FREQUENCY_ERROR:
+        least = format_si(sample_rate / _LONGEST_BUFFER, "Hz")
+        raise DeviceError(f"{device}: {format_si(frequency, 'Hz')} refused; its buffer takes frequencies from {least}")
+    times = ceil(_SHORTEST_BUFFER / share.denominator)
+    return share.numerator * times, share.denominator * times
+
+
+def waveform_samples(waveform: str, *, periods: int, samples: int) -> NDArray[np.float64]:
+    """Samples of whole periods of a waveform between -1 and 1.
+
+    Parameters
+    ----------
+    waveform : str
+        sine, square, triangle or sawtooth.
+    periods, samples : int
+
+    Returns
+    -------
+    ndarray, shape (samples,)
+    """
+    shape = _SHAPES[waveform](np.arange(samples) * periods % samples / samples)
+    return np.asarray(shape, dtype=np.float64)

@@ -1,0 +1,139 @@
+"""Function generators of the Agilent and Keysight 33500 family by SCPI, with an amplifier behind their output."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+from sonolube.laboratory.devices import DeviceError, DriveSetting
+from sonolube.laboratory.drivers.output_limits import DriveLimits
+from sonolube.laboratory.drivers.switched_line import SwitchedLine
+from sonolube.laboratory.drivers.visa_connection import VisaConnection
+from sonolube.units import format_si
+
+OUTPUT_MAXIMUM: Final = 10.0
+"""Magnitude of the voltage into a high impedance. [V]"""
+
+LEAST_AMPLITUDE: Final = 2e-3
+"""Peak to peak, into a high impedance. [V]"""
+
+RAMP_FREQUENCY_MAXIMUM: Final = 200e3
+"""Of triangle and sawtooth. [Hz]"""
+
+_FUNCTIONS: Final[Mapping[str, str]] = MappingProxyType(
+    {"sine": "SIN", "square": "SQU", "triangle": "TRI", "sawtooth": "RAMP"}
+)
+_RAMPS: Final = ("triangle", "sawtooth")
+_MODULATIONS: Final = ("AM", "FM", "PM", "FSK", "SWE", "BURS")
+_ERRORS: Final = "SYST:ERR?"
+_MOST_ERRORS: Final = 20  # that the queue of these generators holds
+_KNOWN: Final = ("335", "336")  # beginnings of models
+
+
+class FunctionGenerator:
+    """Source of the drive voltage.
+
+    Parameters
+    ----------
+    connection : VisaConnection
+    output : int
+        1 or 2.
+    limits : DriveLimits
+    """
+
+    def __init__(self, connection: VisaConnection, *, output: int, limits: DriveLimits) -> None:
+        self.name = connection.name
+        self.voltage_maximum = limits.voltage_maximum
+        self._line, self._limits = connection, limits
+        self._output, self._source = f"OUTP{output}", f"SOUR{output}"
+        self._switch = SwitchedLine(connection, set_up=self._set_up, switch_off=self._switch_off)
+        self._set: dict[str, float | str] = {}  # as the generator has it since it was set up
+
+    def connect(self) -> None:
+        """Open the connection, and set the generator up with its output off."""
+        self._switch.connect()
+
+    def drive(self, setting: DriveSetting) -> None:
+        """Set the output; where the generator refuses, it ends off."""
+        amplitude, offset = self._limits.output_of(setting, device=self.name)
+        if setting.waveform in _RAMPS and setting.frequency > RAMP_FREQUENCY_MAXIMUM:
+            most = format_si(RAMP_FREQUENCY_MAXIMUM, "Hz")
+            raise DeviceError(f"{self.name}: {format_si(setting.frequency, 'Hz')} refused; a ramp has at most {most}")
+        if 0 < amplitude < LEAST_AMPLITUDE:
+            least = format_si(LEAST_AMPLITUDE * self._limits.amplifier_gain, "V")
+            raise DeviceError(f"{self.name}: less than {least} peak to peak at the actuator refused; it gives no less")
+        self._switch.require_connected(before="driving")
+        if amplitude == 0:
+            self.off()
+            return
+        with self._switch.setting():
+            self._send_setting(setting, amplitude=amplitude, offset=offset)
+
+    def off(self) -> None:
+        """Switch the output off, over a new connection where the present one is lost, and wait for the confirmation."""
+        self._switch.off()
+
+    def close(self) -> None:
+        """Switch the output off and close the connection."""
+        self._switch.close()
+
+    def _switch_off(self) -> None:
+        """Switch the output off and have that confirmed."""
+        self._set.pop("output", None)
+        self._line.ask_for(f"{self._output} OFF;:{self._output}?", "0", "OFF")
+
+    def _set_up(self) -> None:
+        """Switch the output off, and set load, unit, smallest signal, limits and no modulation."""
+        self._switch_off()
+        self._line.write("*CLS")
+        identity = self._line.ask("*IDN?")
+        maker_and_model = identity.split(",")
+        if len(maker_and_model) < 2 or not maker_and_model[1].strip().startswith(_KNOWN):
+            raise DeviceError(
+                f"{self.name}: answers as {identity[:80]!r}; the driver is for generators 33500 and 33600"
+            )
+        limit = self._limits.voltage_maximum / self._limits.amplifier_gain
+        source = self._source
+        self._command(f"{self._output}:LOAD INF")
+        for modulation in _MODULATIONS:
+            self._command(f"{source}:{modulation}:STAT OFF")
+        first = ("VOLT:LIM:STAT OFF", "FUNC SIN", "FREQ 1000", "FUNC:RAMP:SYMM 100", "FUNC:SQU:DCYC 50")
+        for command in (*first, "VOLT:UNIT VPP", "VOLT:OFFS 0", "VOLT MIN"):
+            self._command(f"{source}:{command}")
+        self._command(f"{source}:VOLT:LIM:HIGH {limit:.9g}")
+        self._command(f"{source}:VOLT:LIM:LOW {-limit:.9g}")
+        self._command(f"{source}:VOLT:LIM:STAT ON")
+        self._set = {"VOLT": 0.0, "VOLT:OFFS": 0.0, "FUNC": "SIN", "FREQ": 1000.0}
+
+    def _send_setting(self, setting: DriveSetting, *, amplitude: float, offset: float) -> None:
+        """Send what has changed, in an order in which no state between exceeds a limit."""
+        function = _FUNCTIONS[setting.waveform]
+        voltages = [("VOLT", amplitude), ("VOLT:OFFS", offset)]
+        if amplitude > float(self._set["VOLT"]):
+            voltages.reverse()
+        shape: list[tuple[str, float | str]] = [("FREQ", setting.frequency), ("FUNC", function)]
+        if setting.frequency > float(self._set["FREQ"]):
+            shape.reverse()
+        for key, value in [*shape, *voltages]:
+            if self._set[key] != value:
+                number = value if isinstance(value, str) else f"{value:.9g}"
+                self._require_accepted(f"{self._source}:{key} {number}", f"{self._source}:{key} {number};:{_ERRORS}")
+                self._set[key] = value
+        if self._set.get("output") != "on":
+            self._require_accepted(f"{self._output} ON", f"{self._output} ON;:{_ERRORS}")
+            self._set["output"] = "on"
+
+    def _command(self, text: str) -> None:
+        """Send a command that the generator may not know, and then ask for errors: it drops the rest of such a line."""
+        self._line.write(text)
+        self._require_accepted(text, _ERRORS)
+
+    def _require_accepted(self, command: str, line: str) -> None:
+        """Send a line that ends with the query of the error queue, and raise where the queue holds errors."""
+        complaints: list[str] = []
+        while len(complaints) < _MOST_ERRORS:
+            answer = self._line.ask(_ERRORS if complaints else line)
+            if answer.partition(",")[0] in ("0", "+0"):
+                break
+            complaints.append(answer[:80])
+        if complaints:
+            raise DeviceError(f"{self.name}: refuses {command!r}: {'; '.join(complaints[:3])}")

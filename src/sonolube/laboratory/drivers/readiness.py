@@ -1,0 +1,115 @@
+"""Readiness of a device map: packages and drivers missing, demands of a protocol beyond it, a first block read."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from math import ceil
+
+from sonolube.extras import EXTRAS
+from sonolube.facts.protocol import Protocol, SetPoint, flattened
+from sonolube.laboratory.block import Block
+from sonolube.laboratory.devices import DeviceError, Devices
+from sonolube.laboratory.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
+from sonolube.laboratory.drivers.device_map import DeviceMap
+from sonolube.laboratory.set_points import impossibilities
+from sonolube.units import format_si
+
+BLOCK_DURATION = 0.1
+"""Of the first look. [s]"""
+
+_DRIVING = ("drive", "voltage_steps", "sweep")
+
+
+def missing_parts(device_map: DeviceMap) -> tuple[str, ...]:
+    """Packages and drivers that a device map needs and that are not installed, each with its remedy.
+
+    Parameters
+    ----------
+    device_map : DeviceMap
+
+    Returns
+    -------
+    tuple of str
+    """
+    missing = [
+        f"{EXTRAS[name].package} is not installed: {EXTRAS[name].command}"
+        for name in device_map.extras
+        if not EXTRAS[name].is_installed
+    ]
+    if "daqmx" in device_map.extras and EXTRAS["daqmx"].is_installed and not _has_daqmx_driver():
+        missing.append(f"the driver NI-DAQmx is not installed: {DRIVER_REMEDY}")
+    return tuple(missing)
+
+
+def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
+    """What a protocol asks for and the devices of a map cannot give.
+
+    Parameters
+    ----------
+    device_map : DeviceMap
+    protocol : Protocol
+
+    Returns
+    -------
+    tuple of str
+        All of them, each with its step.
+    """
+    faults: dict[tuple[str, str], tuple[float, str]] = {}
+    for place, kind, value, text in _beyond(device_map, flattened(protocol)):
+        known = faults.get((place, kind))
+        if known is None or value > known[0]:
+            faults[place, kind] = (value, text)
+    return (*impossibilities(protocol, device_map.devices()), *(text for _, text in faults.values()))
+
+
+def _beyond(device_map: DeviceMap, points: Sequence[SetPoint]) -> Iterator[tuple[str, str, float, str]]:
+    """Step, kind, value and text of frequencies and sample rates beyond the devices of a map."""
+    highest = device_map.frequency_maximum
+    total = device_map.entries.acquisition.sample_rate_maximum
+    for point in points:
+        place, frequency, rate = f"step {point.step}", point.frequency, point.sample_rate
+        if frequency is not None and frequency > highest * (1 + 1e-9) and point.kind in _DRIVING:
+            wanted, most = format_si(frequency, "Hz"), format_si(highest, "Hz")
+            yield point.step, "frequency", frequency, f"{place}: drives at {wanted}; the drive gives at most {most}"
+        if rate is not None and rate * len(point.channels) > total * (1 + 1e-9) and point.kind == "acquire":
+            wanted = f"{len(point.channels)} channels at {format_si(rate, 'Hz')}"
+            text = f"{place}: records {wanted}; the device takes {format_si(total, 'Hz')} in all"
+            yield point.step, "rate", rate, text
+
+
+def first_block(devices: Devices, *, sample_rate: float) -> Block:
+    """Connect all devices, read one block of all channels with motor and drive off, and release the devices.
+
+    Parameters
+    ----------
+    devices : Devices
+    sample_rate : float
+        Of each channel. [Hz]
+
+    Returns
+    -------
+    Block
+
+    Raises
+    ------
+    DeviceError
+        If a device is missing or does not answer; the others are off and released then.
+    """
+    with ExitStack() as after:
+        for device in (devices.acquisition, devices.drive, devices.motor):
+            after.callback(device.close)
+            device.connect()
+        devices.drive.off()
+        devices.motor.off()
+        rate = devices.acquisition.start(list(devices.acquisition.channels), sample_rate=sample_rate)
+        return devices.acquisition.read(max(ceil(BLOCK_DURATION * rate), 1))
+
+
+def _has_daqmx_driver() -> bool:
+    """Whether the driver of NI-DAQmx answers."""
+    try:
+        library = daqmx_library()
+        with daqmx_errors("NI-DAQmx"):
+            library.system.System.local().driver_version  # noqa: B018
+    except (DeviceError, ImportError):
+        return False
+    return True

@@ -1,0 +1,273 @@
+"""Dry run: a protocol gone through without devices, with the rig that it is meant for."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import isnan, pi
+
+import numpy as np
+
+from sonolube.design.control import Amplifier
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.facts.protocol import Check, Metadata, Prompt, Protocol, SetPoint, Wait, flattened, step_at
+from sonolube.laboratory.dry_run.amplifier_load import OFF, DriveLoad, drive_load
+from sonolube.laboratory.dry_run.findings import caveats_of, refusals_of
+from sonolube.laboratory.dry_run.heating import HeatedInterval, Heating, HeatingAssumptions, RubbedBodies, heating_over
+from sonolube.laboratory.dry_run.record import PROMPT_DURATIONS, DryRun, PlannedPoint, PlannedRecording
+from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
+from sonolube.rig.excitation import actuator_capacitance
+from sonolube.units import format_si
+
+
+def dry_run(
+    protocol: Protocol,
+    *,
+    rig: Rig | None,
+    amplifier: Amplifier | None = None,
+    heating: HeatingAssumptions | None = None,
+    prompt_durations: Mapping[str, float] = PROMPT_DURATIONS,
+) -> DryRun:
+    """What a protocol will do, how long, how much it records, and what drive and heat stand against it.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    rig : Rig or None
+        None leaves out amplitude, friction, drive and heat.
+    amplifier : Amplifier, optional
+        Limits of the amplifier; without it only those of the protocol are held against the drive.
+    heating : HeatingAssumptions, optional
+        Thermal properties that a rig file does not hold.
+    prompt_durations : mapping of str to float
+        Time that an operator needs, by the task of a prompt, in s.
+
+    Returns
+    -------
+    DryRun
+        Also where the test is impossible: `refusals` says why.
+
+    Notes
+    -----
+    Friction and amplitude are steady values of `sonolube.rig.operating_points`, heat is friction force times sliding
+    speed and the loss of the actuator, bodies have one temperature each (first order), and the flash rise of the
+    contact follows without delay. Prompts take no time in the temperatures: what cools meanwhile stays out.
+    """
+    settings = flattened(protocol)
+    assumed, notes = heating or HeatingAssumptions(), _Notes(caveats=[], refusals=[])
+    points = tuple(
+        PlannedPoint(
+            setting=point,
+            duration=following.time - point.time,
+            content=_content(protocol, point),
+            sliding_speed=_sliding_speed(point, protocol.metadata),
+        )
+        for point, following in pairwise((*settings, settings[-1]))
+    )
+    heated = None
+    if rig is not None:
+        points = _with_vibration(points, rig, protocol.metadata, notes)
+        points = _with_loads(points, actuator_capacitance(rig), notes)
+        heated = _heating(points, rig, protocol.metadata, assumed, notes)
+    prompts = [step for step in (step_at(protocol, each.step) for each in settings[:-1]) if isinstance(step, Prompt)]
+    found = DryRun(
+        protocol=protocol,
+        rig_title="" if rig is None else rig.title,
+        points=points,
+        recordings=_recordings(settings),
+        duration=settings[-1].time,
+        prompt_time=sum(prompt_durations[prompt.task] for prompt in prompts),
+        heating=heated,
+        assumptions=_assumptions(assumed, rig, prompts, prompt_durations),
+    )
+    return replace(
+        found, refusals=(*notes.refusals, *refusals_of(found, amplifier)), caveats=(*notes.caveats, *caveats_of(found))
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Notes:
+    """Lines that are found on the way.
+
+    Parameters
+    ----------
+    caveats, refusals : list of str
+    """
+
+    caveats: list[str]
+    refusals: list[str]
+
+
+def _content(protocol: Protocol, point: SetPoint) -> str:
+    """What a step says in words."""
+    if not point.step:
+        return "motor and drive off"
+    match step_at(protocol, point.step):
+        case Prompt() as prompt:
+            return f"{prompt.task}: {prompt.text}"
+        case Check() as check:
+            low, high = check.lowest or "any", check.highest or "any"
+            return f"{check.quantity} from {low} to {high}, else {check.otherwise}"
+        case Wait() as waiting:
+            return waiting.reason
+    return ""
+
+
+def _sliding_speed(point: SetPoint, metadata: Metadata) -> float | None:
+    """Sliding speed of a set point; None where the disc's groove is unknown. [m/s]"""
+    if point.rotation_speed is None:
+        return point.sliding_speed or 0.0
+    if point.rotation_speed == 0:
+        return 0.0
+    return None if metadata.groove_diameter is None else pi * metadata.groove_diameter * point.rotation_speed
+
+
+def _recordings(settings: Sequence[SetPoint]) -> tuple[PlannedRecording, ...]:
+    """Recordings in the order of time."""
+    return tuple(
+        PlannedRecording(
+            step=point.step,
+            start=point.time,
+            duration=(point.recorded_until or point.time) - point.time,
+            sample_rate=point.sample_rate or 0.0,
+            channels=point.channels,
+        )
+        for point in settings
+        if point.kind == "acquire"
+    )
+
+
+def _with_vibration(
+    points: Sequence[PlannedPoint], rig: Rig, metadata: Metadata, notes: _Notes
+) -> tuple[PlannedPoint, ...]:
+    """Points with amplitude and friction force of the rig."""
+    load = metadata.normal_load or rig.normal_load
+    if metadata.normal_load is None:
+        notes.caveats.append(f"the protocol states no load; taken is the rig's, {format_si(load, 'N')}")
+    if any(point.sliding_speed is None for point in points):
+        notes.caveats.append("metadata.groove_diameter is missing: speeds of the disc are no sliding speeds, no heat")
+    intrinsic = rig.friction_coefficient * load
+    still = [
+        replace(
+            point,
+            vibration_amplitude=0.0 if point.setting.frequency is None else None,
+            friction_force=intrinsic if point.sliding_speed else 0.0,
+        )
+        for point in points
+    ]
+    driven = [index for index, point in enumerate(points) if point.setting.frequency is not None]
+    if not driven:
+        return tuple(still)
+    try:
+        found, rows = _vibrated([points[index] for index in driven], rig, load)
+    except SonolubeError as refusal:
+        notes.caveats.append(f"amplitude and friction under vibration are left out: {refusal}")
+        return tuple(still)
+    for index, row in zip(driven, rows, strict=True):
+        still[index] = _vibrating(still[index], found, int(row), notes)
+    notes.caveats.append(f"amplitude {found.amplitude_origin}; friction by {rig.friction_model.name}")
+    return tuple(still)
+
+
+def _vibrated(points: Sequence[PlannedPoint], rig: Rig, load: float) -> tuple[OperatingPoints, Sequence[int]]:
+    """Operating points of the distinct settings, and that of each point."""
+    at_rest = rig.sliding_speed  # the amplitude is the same, and friction is not asked for
+    settings = [
+        (each.setting.voltage_peak_to_peak, each.setting.voltage_offset, each.setting.frequency, speed)
+        for each in points
+        for speed in [each.sliding_speed or at_rest]
+    ]
+    distinct, rows = np.unique(np.array(settings, dtype=np.float64), axis=0, return_inverse=True)
+    volts, offset, frequency, speed = distinct.T
+    found = operating_points(
+        rig,
+        voltage_peak_to_peak=volts,
+        voltage_offset=offset,
+        frequency=frequency,
+        normal_load=load,
+        sliding_speed=speed,
+    )
+    return found, rows.ravel().tolist()
+
+
+def _vibrating(point: PlannedPoint, found: OperatingPoints, row: int, notes: _Notes) -> PlannedPoint:
+    """Point with amplitude and friction under vibration, and what its status says."""
+    amplitude, force = float(found.vibration_amplitude[row]), float(found.friction_force[row])
+    status, moving = str(found.status[row]), bool(point.sliding_speed)
+    if status == "refused" or (moving and isnan(force)):
+        line = f"step {point.setting.step}: {found.reason[row]}"
+        lines = notes.refusals if status == "refused" else notes.caveats
+        if line not in lines:
+            lines.append(line)
+    return replace(
+        point,
+        vibration_amplitude=None if isnan(amplitude) else amplitude,
+        friction_force=force if moving and not isnan(force) else point.friction_force,
+    )
+
+
+def _with_loads(points: Sequence[PlannedPoint], capacitance: float | None, notes: _Notes) -> tuple[PlannedPoint, ...]:
+    """Points with the load of their drive."""
+    if capacitance is None:
+        notes.caveats.append("actuator.capacitance is missing in the rig file: current, power and heat are left out")
+        return tuple(points)
+    known: dict[tuple[object, ...], DriveLoad] = {}
+    loaded = []
+    for point in points:
+        at = point.setting
+        key = (at.voltage_peak_to_peak, at.voltage_offset, at.frequency, at.waveform)
+        if key not in known:
+            known[key] = OFF if at.frequency is None else drive_load(at, capacitance=capacitance)
+        loaded.append(replace(point, load=known[key]))
+    return tuple(loaded)
+
+
+def _heating(
+    points: Sequence[PlannedPoint], rig: Rig, metadata: Metadata, assumed: HeatingAssumptions, notes: _Notes
+) -> Heating | None:
+    """Temperatures over the time line."""
+    intervals = [
+        HeatedInterval(
+            duration=point.duration,
+            sliding_speed=point.sliding_speed or 0.0,
+            friction_force=point.friction_force or 0.0,
+            actuator_heat_rate=assumed.loss_factor * (point.load.capacitive_power if point.load else 0.0),
+        )
+        for point in points
+    ]
+    try:
+        bodies = RubbedBodies(
+            pin=thermal_solid(_material(assumed.pin_material or rig.pin_material, metadata.pin_material, "pin")),
+            disc=thermal_solid(_material(assumed.disc_material or rig.disc_material, metadata.disc_material, "disc")),
+            nominal_area=rig.contact.nominal_area,
+        )
+    except SonolubeError as refusal:
+        notes.caveats.append(f"temperature of the contact is left out: {refusal}")
+        bodies = None
+    return heating_over(intervals, bodies=bodies, assumed=assumed)
+
+
+def _material(known: str | None, of_protocol: str, role: str) -> str:
+    """Name of a material of the catalogue: the known one, else that of the protocol."""
+    name = known or of_protocol.strip().lower().replace(" ", "_")
+    if not name:
+        raise InvalidInput(f"the material of the {role} is not known; give metadata.{role}_material")
+    return name
+
+
+def _assumptions(
+    assumed: HeatingAssumptions, rig: Rig | None, prompts: Sequence[Prompt], times: Mapping[str, float]
+) -> dict[str, str]:
+    """What is assumed, by what it concerns."""
+    found = {}
+    if prompts:
+        tasks = dict.fromkeys(prompt.task for prompt in prompts)
+        found["prompts"] = ", ".join(f"{task} {times[task] / 60:g} min" for task in tasks)
+    if rig is not None:
+        found["pin"] = f"one temperature, {assumed.pin_heat_capacity:g} J/K, loses {assumed.pin_conductance:g} W/K"
+        found["actuator"] = (
+            f"one temperature, {assumed.actuator_heat_capacity:g} J/K, loses {assumed.actuator_conductance:g} W/K"
+            f" (time constant {assumed.actuator_heat_capacity / assumed.actuator_conductance:.3g} s);"
+            f" {assumed.loss_factor:g} of its reactive power becomes heat, the 10 K of D Table 2.2 under cooling air"
+        )
+        found["start"] = f"all at {assumed.ambient_temperature - 273.15:.3g} degC; prompts take no time"
+    return found

@@ -1,0 +1,145 @@
+"""Parts of a recording as files, streamed: netCDF as `sonolube measure` reads it, LabVIEW's TDMS, and CSV."""
+
+import io
+import json
+from collections.abc import Mapping
+from contextlib import ExitStack
+from datetime import UTC, datetime
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, Self
+
+import numpy as np
+
+from sonolube.files import unfinished_file
+from sonolube.laboratory.records.recorded_part import Floats, RecordedPart
+from sonolube.laboratory.records.run_folder import RunFacts
+from sonolube.vocabulary import quantity
+
+_CSV_DIGITS: Final = "%.17g"  # what 64-bit floats hold
+
+
+def write_netcdf_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path:
+    """Write a part of a recording as netCDF, whole or not at all.
+
+    Parameters
+    ----------
+    part : RecordedPart
+    known : RunFacts
+        Title and facts, which become attributes.
+    path : Path
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be written.
+    """
+    with _NetCdfRecording(part, known, path) as file:
+        for time, columns in part.pieces():
+            file.write(time, columns)
+        file.complete()
+    return path
+
+
+def write_tdms_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path:
+    """Write a part of a recording as TDMS, as `write_netcdf_recording`; with a channel `time` where samples lack."""
+    from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
+
+    quantities = part.variables
+    root = RootObject(properties={"name": known.title, "DateTime": _start(part)})
+    with unfinished_file(path) as file, TdmsWriter(file) as writer:
+        for time, columns in part.pieces():
+            named = dict(zip(quantities, columns, strict=True)) | ({"time": time} if part.raw.missing else {})
+            channels = [
+                ChannelObject("recording", name, values, properties=_waveform(part, quantities.get(name, "time")))
+                for name, values in named.items()
+            ]
+            writer.write_segment([root, GroupObject("recording"), *channels])
+            file.check()
+        file.complete()
+    return path
+
+
+def write_csv_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path:
+    """Write a part of a recording as CSV with the units in its first line, as `write_netcdf_recording`."""
+    heads = ["time [s]", *(f"{name} [{quantity(of).unit or '1'}]" for name, of in part.variables.items())]
+    with unfinished_file(path) as file:
+        file.write((",".join(heads) + "\n").encode())
+        for time, columns in part.pieces():
+            np.savetxt(text := io.BytesIO(), np.stack([time, *columns], 1), fmt=_CSV_DIGITS, delimiter=",")
+            file.write(text.getvalue())
+            file.check()
+        file.complete()
+    return path
+
+
+class _NetCdfRecording:
+    """Recording that is being written as netCDF."""
+
+    def __init__(self, part: RecordedPart, known: RunFacts, path: Path) -> None:
+        self._part, self._known, self._path, self._rows = part, known, path, 0
+
+    def __enter__(self) -> Self:
+        import h5netcdf
+
+        with ExitStack() as stack:
+            self._unfinished = stack.enter_context(unfinished_file(self._path))
+            self._file: Any = stack.enter_context(h5netcdf.File(self._unfinished, "w"))
+            self._file.dimensions = {"time": self._part.raw.samples}
+            self._file.attrs.update(_attributes(self._part, self._known))
+            for name, of in {"time": "time", **self._part.variables}.items():
+                known = quantity(of)
+                variable = self._file.create_variable(name, ("time",), np.float64)
+                variable.attrs.update({"units": known.unit or "1", "long_name": known.meaning})
+            self._open = stack.pop_all()
+        return self
+
+    def __exit__(self, kind: type | None, value: BaseException | None, trace: TracebackType | None) -> None:
+        try:
+            self._open.close()
+        finally:
+            self._unfinished.check()  # tells more than what HDF5 makes of it
+
+    def write(self, time: Floats, columns: list[Floats]) -> None:
+        """Write rows behind those before."""
+        rows = slice(self._rows, self._rows + time.size)
+        try:
+            for name, values in zip(("time", *self._part.variables), (time, *columns), strict=True):
+                self._file[name][rows] = values
+        finally:
+            self._unfinished.check()
+        self._rows = rows.stop
+
+    def complete(self) -> None:
+        """Replace the file by what was written."""
+        self._file.close()
+        self._unfinished.complete()
+
+
+def _attributes(part: RecordedPart, known: RunFacts) -> dict[str, str | float]:
+    """Attributes of the file: origin, sample rate and caveats."""
+    found: dict[str, str | float] = {
+        "title": known.title,
+        "source": f"sonolube {known.versions.get('sonolube', '')}".strip(),
+        "sample_rate": part.raw.sample_rate,
+        "begun": _start(part).astype(datetime).strftime("%Y-%m-%d %H:%M:%S.%f"),
+        "facts": json.dumps(dict(known.facts)),
+    }
+    return found | ({"caveats": "\n".join(part.caveats)} if part.caveats else {})
+
+
+def _waveform(part: RecordedPart, of: str) -> Mapping[str, Any]:
+    """Properties of a channel of TDMS."""
+    common = {"unit_string": quantity(of).unit or "1"}
+    if part.raw.missing:
+        return common
+    return common | {"wf_start_time": _start(part), "wf_start_offset": 0.0, "wf_increment": 1 / part.raw.sample_rate}
+
+
+def _start(part: RecordedPart) -> np.datetime64:
+    """Time of the first sample in UTC."""
+    return np.datetime64(datetime.fromtimestamp(part.raw.begun, UTC).replace(tzinfo=None), "us")

@@ -1,0 +1,358 @@
+"""Runner: a protocol on the devices of a rig, recorded block by block; however it ends, motor and drive are off."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import pi
+from threading import Event as Signal
+from typing import Final
+
+from sonolube.errors import SonolubeError
+from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
+from sonolube.interruption import asked_by_signal, undone_at_signal
+from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, connect_devices, switch_outputs_off
+from sonolube.laboratory.ending import RunEnded, ending, release_devices
+from sonolube.laboratory.interlocks import Trip, interlocks_for
+from sonolube.laboratory.sampling import BLOCK_DURATION, Recorder, Sampling
+from sonolube.laboratory.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
+from sonolube.laboratory.states import Event, RunState, State, after
+from sonolube.units import format_si
+from sonolube.vocabulary import unit_of
+
+_POLL: Final = 0.1  # s, between two looks at requests while a run is paused
+
+Operator = Callable[[Prompt], bool]
+"""Shows a prompt, and returns whether the operator has confirmed it; False ends the run."""
+
+Advance = Callable[[str, int, int], None]
+"""Takes what happens now, the time done and the whole time, in ms."""
+
+
+@dataclass(slots=True)
+class RunControl:
+    """Requests to a running protocol, from other threads and from signals.
+
+    Parameters
+    ----------
+    stop_reason : str
+        Why the run is to end; empty while it is not.
+    """
+
+    stop_reason: str = ""
+    _pause: Signal = field(default_factory=Signal)
+
+    def stop(self, reason: str) -> None:
+        """End the run after the present block."""
+        self.stop_reason = self.stop_reason or reason
+
+    def pause(self) -> None:
+        """Switch motor and drive off after the present block, and let the clock stand."""
+        self._pause.set()
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        self._pause.clear()
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether a pause is wanted."""
+        return self._pause.is_set()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunResult:
+    """How a run ended.
+
+    Parameters
+    ----------
+    state : State
+        SAFE, or FAILED where motor or drive may be on.
+    outcome : str
+        completed, stopped or failed.
+    reason : str
+        Why it ended before its protocol.
+    """
+
+    state: State
+    outcome: str
+    reason: str
+
+
+def run_protocol(
+    protocol: Protocol,
+    devices: Devices,
+    recorder: Recorder,
+    *,
+    operator: Operator,
+    control: RunControl | None = None,
+    advance: Advance | None = None,
+) -> RunResult:
+    """Run a protocol on devices and record it.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    devices : Devices
+        Not yet connected; released at the end.
+    recorder : Recorder
+        Of a new run; finished at the end.
+    operator : callable
+        Confirms prompts.
+    control : RunControl, optional
+        Requests of others.
+    advance : callable, optional
+        Reports progress.
+
+    Returns
+    -------
+    RunResult
+        Also where a device, a limit, the disk or the operator has ended the run.
+
+    Raises
+    ------
+    InvalidInput
+        If the devices cannot do what the protocol says; then nothing was connected.
+
+    Notes
+    -----
+    The clock of the protocol is the sample counter of the acquisition, which samples from the first step to the last,
+    recorded or not: so the limits are watched all the time. Blocks end where a set point changes. While an operator is
+    asked, motor and drive are off, and the clock stands.
+    """
+    require_possible(protocol, devices)
+    control = control or RunControl()
+    run = _Run(protocol, devices, recorder, operator, control)
+    with undone_at_signal(run.switch_off), asked_by_signal(control.stop):
+        return run.complete(advance)
+
+
+class _Run:
+    """One run: the only place where states, devices and record meet."""
+
+    def __init__(
+        self, protocol: Protocol, devices: Devices, recorder: Recorder, operator: Operator, control: RunControl
+    ) -> None:
+        self._protocol, self._devices, self._recorder = protocol, devices, recorder
+        self._operator, self._control = operator, control
+        self._points = flattened(protocol)
+        self._point = self._points[0]
+        self._diameter = groove_diameter(protocol, devices)
+        locks = interlocks_for(protocol.limits, devices.acquisition.channels)
+        self._sampling = Sampling(devices.acquisition, recorder, locks)
+        self._present = RunState()
+        self._drive: DriveSetting | None = None
+        self._turns = 0.0
+
+    def complete(self, advance: Advance | None) -> RunResult:
+        """Follow the protocol to its end, whatever that is."""
+        try:
+            self._happens(Event.START)
+            self._prepare(advance)
+            connect_devices(self._devices)
+            self._happens(Event.PREPARED)
+            for point, following in pairwise(self._points):
+                self._reach(point)
+                self._run_until(following.time, advance)
+            self._happens(Event.COMPLETED)
+        except BaseException as failure:
+            self._happens(*ending(failure))
+            if not isinstance(failure, SonolubeError):
+                self._close()
+                raise
+        return self._close()
+
+    def switch_off(self) -> list[str]:
+        """Switch drive and motor off, and return what failed; never raises."""
+        failures = switch_outputs_off(self._devices)
+        self._drive, self._turns = None, 0.0
+        return failures
+
+    def _prepare(self, advance: Advance | None) -> None:
+        """Let the devices work out the set points that take them time, before anything is on."""
+        prepare = self._devices.prepare
+        if prepare is None:
+            return
+        wanted = dict.fromkeys((drive_setting(point), rotation_speed(point, self._diameter)) for point in self._points)
+        for number, (setting, turns) in enumerate(wanted):
+            self._end_if_asked()
+            if advance is not None:
+                advance("preparing set points", number, len(wanted))
+            prepare(setting, turns)
+
+    def _happens(self, event: Event, reason: str = "") -> None:
+        """Take an event into the state of the run, and note it."""
+        self._present, _ = after(self._present, event, reason=reason)
+        if event is not Event.START:
+            self._note(event.value, reason=reason, state=self._present.state.value)
+
+    def _note(self, kind: str, **facts: str | float) -> None:
+        """Note what happened; while a run ends, a record that cannot be written is no hindrance."""
+        sampling = self._sampling
+        try:
+            sample = sampling.sample if sampling.is_running else None
+            self._recorder.note(kind, sample=sample, protocol_time=sampling.time, **facts)
+        except SonolubeError:
+            if self._present.state is State.RUNNING:
+                raise
+
+    def _reach(self, point: SetPoint) -> None:
+        """Do what a step begins with."""
+        self._point = point
+        step = step_at(self._protocol, point.step)
+        if isinstance(step, Prompt):
+            self._ask(step)
+        if not self._sampling.is_running:
+            self._sample_again()
+        if isinstance(step, Check):
+            self._check(step)
+        if point.kind == "acquire":
+            assert point.sample_rate is not None
+            self._sampling.record(point.channels, sample_rate=point.sample_rate)
+            self._note("acquire", step=point.step, sample_rate=self._sampling.rate)
+        self._follow()
+
+    def _sample_again(self) -> None:
+        """Start to sample what is recorded now, or next."""
+        later = (point for point in self._points if point.time >= self._sampling.time and point.channels)
+        point = self._point if self._records_now else next(later, self._point)
+        if self._records_now:
+            assert point.sample_rate is not None
+            self._sampling.record(point.channels, sample_rate=point.sample_rate)
+        else:
+            self._sampling.start(point.channels, sample_rate=point.sample_rate)
+
+    @property
+    def _records_now(self) -> bool:
+        """Whether the present set point is within a recording that has begun before it."""
+        until = self._point.recorded_until
+        return self._point.kind != "acquire" and until is not None and self._sampling.time < until
+
+    def _follow(self) -> None:
+        """Set motor and drive as the present set point says."""
+        point = self._point
+        turns = rotation_speed(point, self._diameter)
+        if turns != self._turns:
+            self._devices.motor.turn(turns)
+            self._turns = turns
+            self._note("motor", step=point.step, rotation_speed=turns)
+        setting = drive_setting(point)
+        if setting != self._drive:
+            if setting is None:
+                self._devices.drive.off()
+            else:
+                self._devices.drive.drive(setting)
+            self._drive = setting
+            frequency = 0.0 if setting is None else setting.frequency
+            self._note("drive", step=point.step, voltage_peak_to_peak=point.voltage_peak_to_peak, frequency=frequency)
+
+    def _ask(self, prompt: Prompt) -> None:
+        """Ask the operator with motor and drive off, while the clock stands."""
+        self._pause(f"{prompt.task}: {prompt.text}")
+        if not self._operator(prompt):
+            raise RunEnded(Event.STOP, f"the operator did not confirm: {prompt.text}")
+        self._happens(Event.RESUME)
+
+    def _pause(self, reason: str) -> None:
+        """Switch motor and drive off and stop to sample; what is recorded goes on in a part of its own."""
+        self._happens(Event.PAUSE, reason)
+        failures = self.switch_off()
+        if failures:
+            raise DeviceError("; ".join(failures))
+        self._sampling.stop()
+
+    def _wait_while_paused(self) -> None:
+        """Hold the run while a pause is wanted."""
+        self._pause("on request")
+        wait = Signal()
+        while self._control.is_paused and not self._control.stop_reason:
+            wait.wait(_POLL)
+        self._end_if_asked()
+        self._happens(Event.RESUME)
+        self._sample_again()
+        self._follow()
+
+    def _run_until(self, time: float, advance: Advance | None) -> None:
+        """Read block after block until a time of the protocol."""
+        sampling, until = self._sampling, self._point.recorded_until
+        while sampling.time < time:
+            self._obey_requests()
+            ends = [time, sampling.time + BLOCK_DURATION]
+            if sampling.is_recording and until is not None:
+                ends.append(until)
+            self._end_at(sampling.read_until(min(ends)))
+            if sampling.is_recording and until is not None and sampling.time >= until:
+                sampling.end_recording()
+                self._note("recorded")
+            if advance is not None:
+                advance(self._doing(), round(1e3 * sampling.time), round(1e3 * self._points[-1].time))
+
+    def _obey_requests(self) -> None:
+        """Stop or pause where that is wanted."""
+        self._end_if_asked()
+        if self._control.is_paused:
+            self._wait_while_paused()
+
+    def _end_if_asked(self) -> None:
+        """End the run where that is wanted."""
+        if self._control.stop_reason:
+            raise RunEnded(Event.STOP, self._control.stop_reason)
+
+    def _end_at(self, trip: Trip | None) -> None:
+        """End the run at a sample beyond a limit."""
+        if trip is not None:
+            raise RunEnded(Event.TRIP, trip.reason)
+
+    def _check(self, check: Check) -> None:
+        """Look at a quantity until it lies within its bounds, or do what the step says otherwise."""
+        low, high = check.bounds
+        waited = 0.0
+        while True:
+            value = self._value_of(check.quantity)
+            if value is not None and low <= value <= high:
+                self._note("check", quantity=check.quantity, value=value)
+                return
+            reason = _missed(check, value)
+            if check.otherwise == "note":
+                self._note("check", reason=reason)
+                return
+            if check.otherwise == "stop" or value is None or waited > self._protocol.limits.duration_maximum:
+                raise RunEnded(Event.STOP, reason)
+            self._obey_requests()
+            waited += BLOCK_DURATION
+
+    def _value_of(self, quantity: str) -> float | None:
+        """Value of a checked quantity: a speed as it is set, else as measured; None where nothing tells it."""
+        if quantity == "rotation_speed":
+            return self._turns
+        if quantity == "sliding_speed":
+            return self._turns * pi * self._diameter
+        value, trip = self._sampling.measure(quantity)
+        self._end_at(trip)
+        return value
+
+    def _doing(self) -> str:
+        """What happens now, with friction and temperature where they are measured."""
+        now = [f"step {self._point.step}", self._point.kind.replace("_", " ")]
+        for name, unit in (("friction_force", "N"), ("temperature", "K")):
+            value = self._sampling.mean(name)
+            if value is not None:
+                now.append(format_si(value, unit, digits=3))
+        return ", ".join(now)
+
+    def _close(self) -> RunResult:
+        """Switch everything off, release the devices and close the record."""
+        failures = self.switch_off()
+        for reason in release_devices(self._devices, self._sampling.stop):
+            self._note("device error", reason=reason)
+        self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
+        present = self._present
+        self._recorder.finish(present.outcome, reason=present.reason)
+        return RunResult(state=present.state, outcome=present.outcome, reason=present.reason)
+
+
+def _missed(check: Check, value: float | None) -> str:
+    """Why a check does not hold."""
+    bounds = f"{check.lowest or 'any'} to {check.highest or 'any'}"
+    if value is None:
+        return f"check of {check.quantity}: no channel measures it; wanted {bounds}"
+    return f"check of {check.quantity}: {format_si(value, unit_of(check.quantity))}, wanted {bounds}"

@@ -1,0 +1,156 @@
+"""Sampling of a run: blocks held to the sample counter and to the limits, recorded where a step says so."""
+
+from collections.abc import Sequence
+from typing import Final, Protocol as Interface
+
+import numpy as np
+
+from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.devices import Acquisition, SamplesLost
+from sonolube.laboratory.interlocks import Interlock, Trip, first_trip
+
+BLOCK_DURATION: Final = 0.05
+"""Longest time between two looks at the limits, and at requests to pause or stop. [s]"""
+
+_IDLE_RATE: Final = 1000.0  # Hz, of protocols that record nothing
+
+
+class Recorder(Interface):
+    """Record of a run, as `sonolube.laboratory.records` keeps it."""
+
+    def begin(self, channels: Sequence[Channel], *, sample_rate: float) -> None:
+        """Begin a recording without gaps."""
+
+    def append(self, block: Block) -> None:
+        """Keep a block."""
+
+    def end(self) -> None:
+        """End the recording."""
+
+    def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
+        """Keep what happened."""
+
+    def finish(self, outcome: str, *, reason: str = "") -> object:
+        """Close the record."""
+
+
+class Sampling:
+    """Acquisition of a run, whose sample counter is the clock of the protocol.
+
+    Parameters
+    ----------
+    acquisition : Acquisition
+    recorder : Recorder
+    locks : sequence of Interlock
+    """
+
+    def __init__(self, acquisition: Acquisition, recorder: Recorder, locks: Sequence[Interlock]) -> None:
+        self._acquisition, self._recorder, self._locks = acquisition, recorder, locks
+        self._names: list[str] = []
+        self._recorded = 0  # of them, the first ones
+        self._origin = 0.0  # time of the protocol at sample 0
+        self._recording = False
+        self._latest: Block | None = None
+        self.rate = 0.0
+        self.sample = 0
+        self.time = 0.0
+
+    @property
+    def is_running(self) -> bool:
+        """Whether samples are taken."""
+        return self.rate > 0
+
+    @property
+    def is_recording(self) -> bool:
+        """Whether samples are recorded."""
+        return self._recording
+
+    def start(self, channels: Sequence[str], *, sample_rate: float | None) -> None:
+        """Sample channels to be recorded, and those that limits watch, from sample 0 on.
+
+        Parameters
+        ----------
+        channels : sequence of str
+        sample_rate : float or None
+            None where nothing is recorded. [Hz]
+        """
+        watched = [lock.channel.name for lock in self._locks if lock.channel.name not in channels]
+        self._names = [*channels, *watched] or [next(iter(self._acquisition.channels))]
+        self._recorded = len(channels)
+        self.rate = self._acquisition.start(self._names, sample_rate=sample_rate or _IDLE_RATE)
+        self.sample, self._origin = 0, self.time
+
+    def stop(self) -> None:
+        """Stop to sample and to record."""
+        self.end_recording()
+        if self.is_running:
+            self.rate = 0.0
+            self._acquisition.stop()
+
+    def record(self, channels: Sequence[str], *, sample_rate: float) -> None:
+        """Record channels from now on; the acquisition starts anew where it samples otherwise.
+
+        Parameters
+        ----------
+        channels : sequence of str
+        sample_rate : float
+            [Hz]
+        """
+        as_it_runs = self._names[: self._recorded] == list(channels) and bool(np.isclose(self.rate, sample_rate))
+        if not as_it_runs:
+            self.stop()
+            self.start(channels, sample_rate=sample_rate)
+        found = [self._acquisition.channels[name] for name in channels]
+        self._recorder.begin(found, sample_rate=self.rate)
+        self._recording = True
+
+    def end_recording(self) -> None:
+        """Record no more."""
+        if self._recording:
+            self._recording = False
+            self._recorder.end()
+
+    def read_until(self, time: float) -> Trip | None:
+        """Read the samples up to a time of the protocol, and return the first one beyond a limit. [s]"""
+        count = round((time - self._origin) * self.rate) - self.sample
+        trip = self._take(count) if count > 0 else None
+        self.time = time
+        return trip
+
+    def measure(self, channel: str) -> tuple[float | None, Trip | None]:
+        """Mean of a channel over a block that is read for it while the clock of the protocol stands.
+
+        Parameters
+        ----------
+        channel : str
+
+        Returns
+        -------
+        float or None
+            In SI; None where the channel is not sampled.
+        Trip or None
+        """
+        if channel not in self._names:
+            return None, None
+        count = max(1, round(BLOCK_DURATION * self.rate))
+        trip = self._take(count)
+        self._origin -= count / self.rate
+        return self.mean(channel), trip
+
+    def mean(self, channel: str) -> float | None:
+        """Mean of a channel over the latest block, in SI; None where it is not sampled."""
+        if self._latest is None or channel not in self._names:
+            return None
+        return float(np.mean(self._latest.values[:, self._names.index(channel)]))
+
+    def _take(self, count: int) -> Trip | None:
+        """Read samples, hold them to the counter and to the limits, and record them."""
+        block = self._acquisition.read(count)
+        if block.first_sample != self.sample:
+            lost = block.first_sample - self.sample
+            raise SamplesLost(f"{self._acquisition.name}: {lost} samples are missing after sample {self.sample}")
+        self.sample, self._latest = block.next_sample, block
+        if self._recording:
+            values = block.values[:, : self._recorded]
+            self._recorder.append(Block(first_sample=block.first_sample, sample_rate=self.rate, values=values))
+        return first_trip(block, self._names, self._locks)

@@ -1,0 +1,137 @@
+"""Rotation speeds and drive settings of set points, held to the limits of devices."""
+
+from collections.abc import Iterator
+from math import pi
+from typing import Final
+
+from sonolube.errors import InvalidInput, SeveralFaults
+from sonolube.facts.protocol import Protocol, SetPoint, flattened
+from sonolube.laboratory.devices import Devices, DriveSetting
+from sonolube.laboratory.interlocks import interlocks_for
+from sonolube.units import format_si
+
+_ROUNDING: Final = 1 + 1e-9
+
+
+def require_possible(protocol: Protocol, devices: Devices) -> None:
+    """Raise where devices cannot do what a protocol says, before anything is connected.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    devices : Devices
+
+    Raises
+    ------
+    InvalidInput
+        With all that `impossibilities` finds.
+    """
+    faults = impossibilities(protocol, devices)
+    if faults:
+        raise InvalidInput(faults[0]) if len(faults) == 1 else SeveralFaults(faults)
+
+
+def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
+    """Everything that a protocol asks for and devices cannot give.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    devices : Devices
+
+    Returns
+    -------
+    tuple of str
+        Limits that no channel can watch; then of each step the highest voltage and speed beyond the devices, and the
+        channels that are missing.
+    """
+    faults: dict[tuple[str, str], tuple[float, str]] = {}
+    try:
+        interlocks_for(protocol.limits, devices.acquisition.channels)
+    except InvalidInput as refusal:
+        unwatched = refusal.faults if isinstance(refusal, SeveralFaults) else (str(refusal),)
+        faults |= {("", text): (0.0, text) for text in unwatched}
+    diameter = groove_diameter(protocol, devices)
+    before: SetPoint | None = None
+    for point in flattened(protocol):
+        for kind, value, text in _faults(point, before, devices, diameter):
+            known = faults.get((point.step, kind))
+            if known is None or value > known[0]:
+                faults[point.step, kind] = (value, text)
+        before = point
+    return tuple(text for _, text in faults.values())
+
+
+def groove_diameter(protocol: Protocol, devices: Devices) -> float:
+    """Diameter of the circle under the pin, of the protocol or else of the rig. [m]
+
+    Parameters
+    ----------
+    protocol : Protocol
+    devices : Devices
+
+    Returns
+    -------
+    float
+    """
+    return protocol.metadata.groove_diameter or devices.groove_diameter
+
+
+def rotation_speed(point: SetPoint, diameter: float) -> float:
+    """Speed of the disc that a set point asks for. [1/s]
+
+    Parameters
+    ----------
+    point : SetPoint
+    diameter : float
+        Of the circle under the pin, in m.
+
+    Returns
+    -------
+    float
+    """
+    if point.rotation_speed is not None:
+        return point.rotation_speed
+    return (point.sliding_speed or 0.0) / (pi * diameter)
+
+
+def drive_setting(point: SetPoint) -> DriveSetting | None:
+    """Output of the drive source that a set point asks for.
+
+    Parameters
+    ----------
+    point : SetPoint
+
+    Returns
+    -------
+    DriveSetting or None
+        None for off.
+    """
+    if point.frequency is None or point.voltage_peak_to_peak == 0:
+        return None
+    return DriveSetting(
+        voltage_peak_to_peak=point.voltage_peak_to_peak,
+        voltage_offset=point.voltage_offset,
+        frequency=point.frequency,
+        waveform=point.waveform,
+    )
+
+
+def _faults(
+    point: SetPoint, before: SetPoint | None, devices: Devices, diameter: float
+) -> Iterator[tuple[str, float, str]]:
+    """Kind, value and text of what a set point changes to and devices cannot give."""
+    place, drive, motor = f"step {point.step}", devices.drive, devices.motor
+    volts = point.voltage_maximum
+    if volts > drive.voltage_maximum * _ROUNDING and (before is None or volts != before.voltage_maximum):
+        reached, most = format_si(volts, "V"), format_si(drive.voltage_maximum, "V")
+        yield "voltage", volts, f"{place}: the drive reaches {reached}; {drive.name} gives at most {most}"
+    turns, fastest = rotation_speed(point, diameter), motor.rotation_speed_maximum
+    if turns > fastest * _ROUNDING and (before is None or turns != rotation_speed(before, diameter)):
+        wanted, most = format_si(turns, "1/s"), format_si(fastest, "1/s")
+        yield "speed", turns, f"{place}: needs {wanted}; {motor.name} turns at most at {most}"
+    channels = devices.acquisition.channels
+    missing = [name for name in point.channels if name not in channels]
+    if missing and point.kind == "acquire":
+        names = f"channel {missing[0]}" if len(missing) == 1 else f"channels {', '.join(missing)}"
+        yield "channels", 0.0, f"{place}: {devices.acquisition.name} has no {names}; it has {', '.join(channels)}"

@@ -1,0 +1,321 @@
+"""Virtual rig: what its channels read over time, as motor and drive are set between blocks."""
+
+from collections.abc import Mapping, Sequence
+from math import pi
+from time import monotonic, sleep
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.laboratory.block import Block, Channel, quantity_of
+from sonolube.laboratory.devices import DeviceError, DeviceLost, DriveSetting, SamplesLost
+from sonolube.laboratory.heating_assumptions import HeatingAssumptions
+from sonolube.laboratory.virtual_tribometer.arm_resonance import arm_resonance
+from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
+from sonolube.laboratory.virtual_tribometer.faults import Fault
+from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
+from sonolube.laboratory.virtual_tribometer.signals import (
+    Approach,
+    ColouredNoise,
+    correlated,
+    hall_pulses,
+    play,
+    resonant,
+    waveform,
+)
+from sonolube.laboratory.virtual_tribometer.stick_slip import StickSlip
+from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures, Thermocouple
+from sonolube.laboratory.virtual_tribometer.truth import TruthSetting, truth_dataset
+from sonolube.rig import Rig
+from sonolube.rig.excitation import actuator_capacitance
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+VOLTAGE_MAXIMUM: Final = 200.0
+"""Of the amplifier. [V]"""
+
+_PULSE: Final = 0.01  # T, height of the pulses of the Hall probe
+CHANNELS: Final = (
+    *("friction_force", "normal_load", "voltage", "voltage_peak_to_peak", "current", "temperature", "gaussmeter"),
+)
+_STANDS: Final = 1e-9  # 1/s
+
+
+class VirtualRig:
+    """State of the virtual rig between blocks.
+
+    Parameters
+    ----------
+    rig : Rig
+    friction : FrictionDraw
+    disturbances : Disturbances
+        Of this test.
+    heating : HeatingAssumptions
+    streams : sequence of numpy.random.SeedSequence
+        Of the noises, in the order of `CHANNELS`, and of the phases.
+    groove_diameter : float
+        Of the circle under the pin. [m]
+    real_time : bool
+    fault : Fault or None
+    """
+
+    def __init__(
+        self,
+        rig: Rig,
+        friction: FrictionDraw,
+        disturbances: Disturbances,
+        heating: HeatingAssumptions,
+        streams: Sequence[np.random.SeedSequence],
+        groove_diameter: float,
+        real_time: bool,
+        fault: Fault | None,
+    ) -> None:
+        self._rig, self._friction, self._sizes = rig, friction, disturbances
+        self._diameter, self._real_time, self._fault = groove_diameter, real_time, fault
+        self._streams = streams
+        phases = np.random.default_rng(streams[-2])
+        self._wobble_phases = phases.uniform(0, 1, 2)
+        self._drift = float(disturbances.drift_rate * phases.standard_normal())
+        self._generator_phase = float(phases.uniform())
+        self._time, self._epoch, self._rate, self._sample = 0.0, 0.0, 0.0, 0
+        self._began_at = 0.0  # on the wall clock
+        self._names: tuple[str, ...] = ()
+        self._setting: DriveSetting | None = None
+        self._level = friction.at(None, 0.0)
+        self._turning = Approach(0.0, 0.0, 0.0, disturbances.motor_time)
+        self._revolutions, self._began_to_slide, self._volume = 0.0, 0.0, 0.0
+        self._ratio = Approach(0.0, 1.0, 1.0, disturbances.vibration_time)
+        thermocouple = Thermocouple(disturbances.contact_share, disturbances.thermocouple_time)
+        self._temperatures = Temperatures(rig, heating, thermocouple)
+        self._capacitance = actuator_capacitance(rig)
+        held = None if rig.structure is None else arm_resonance(rig.structure)
+        self._arm = held or (disturbances.natural_frequency, disturbances.holder_damping_ratio)
+        self._stick_slip = self._sticking(0.0)
+        self._gauge = 0.0
+        self._noises: dict[str, ColouredNoise] = {}
+        self._settings: list[TruthSetting] = []
+
+    def truth(self) -> "xr.Dataset":
+        """What the recording was made of, as `VirtualTribometer.truth`."""
+        actuator, pin = self._temperatures.rises(self._time)
+        single = {
+            "friction_coefficient": (self._friction.friction_coefficient, "1"),
+            "force_drift_rate": (self._drift, "N/s"),
+            "arm_frequency": (self._arm[0], "Hz"),
+            "arm_damping_ratio": (self._arm[1], "1"),
+            "wear_volume": (self._worn(self._time), "m3"),
+            "sliding_distance": (float(self._distance(np.asarray(self._time))), "m"),
+            "actuator_temperature_rise": (actuator, "K"),
+            "pin_temperature_rise": (pin, "K"),
+        }
+        return truth_dataset(self._settings, sizes=self._sizes, single=single, title=f"Truth of {self._rig.title}")
+
+    def start(self, names: Sequence[str], sample_rate: float) -> None:
+        """Begin to sample."""
+        self._names, self._rate, self._sample, self._epoch = tuple(names), sample_rate, 0, self._time
+        self._began_at = monotonic()
+        sizes = self._sizes
+        feedback = {
+            "friction noise": correlated(time_constant=sizes.noise_time, sample_rate=sample_rate),
+            "ringing": resonant(frequency=self._arm[0], damping_ratio=self._arm[1], sample_rate=sample_rate),
+        }
+        kinds = (*CHANNELS, *feedback)
+        for kind, stream in zip(kinds, self._streams, strict=False):
+            former = self._noises.get(kind)
+            source = np.random.default_rng(stream) if former is None else former.generator
+            self._noises[kind] = ColouredNoise(source, feedback.get(kind, (0.0, 0.0)))
+
+    def stop(self) -> None:
+        """End to sample."""
+        self._rate = 0.0
+
+    def read(self, samples: int) -> Block:
+        """Next samples."""
+        if not self._rate:
+            raise DeviceError("virtual acquisition: nothing is sampled; call start first")
+        fault = self._fault
+        first = self._sample
+        reached = fault is not None and first <= fault.sample < first + samples
+        if fault is not None and fault.kind == "lost" and (reached or fault.sample < first):
+            raise DeviceLost("virtual acquisition: answers no more")
+        if fault is not None and fault.kind == "overrun" and reached:
+            raise SamplesLost("virtual acquisition: samples were overwritten before they were read")
+        time = self._epoch + (first + np.arange(samples)) / self._rate
+        self._sample = first + samples
+        self._time = self._epoch + self._sample / self._rate
+        values = self._values(time)
+        if fault is not None and (reached or fault.sample < first) and "friction_force" in self._names:
+            broken = {"saturated": self.channels["friction_force"].highest, "no number": np.nan}
+            values[max(0, fault.sample - first) :, self._names.index("friction_force")] = broken[fault.kind]
+        if self._real_time:
+            sleep(max(0.0, self._began_at + self._time - self._epoch - monotonic()))
+        return Block(first_sample=first, sample_rate=self._rate, values=values)
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        """Channels of the acquisition."""
+        load = self._rig.normal_load
+        ranges = {
+            "friction_force": (-5 * load, 5 * load),
+            "normal_load": (-5 * load, 5 * load),
+            "voltage": (-2 * VOLTAGE_MAXIMUM, 2 * VOLTAGE_MAXIMUM),
+            "voltage_peak_to_peak": (-1.0, 4 * VOLTAGE_MAXIMUM),
+            "current": (-100.0, 100.0),
+            "temperature": (173.0, 773.0),
+            "gaussmeter": (-0.3, 0.3),
+        }
+        return {
+            name: Channel(name=name, quantity=quantity_of(name), lowest=low, highest=high)
+            for name, (low, high) in ranges.items()
+        }
+
+    def turn(self, rotation_speed: float) -> None:
+        """Set the motor."""
+        if self._turning.target == 0 and rotation_speed > 0:
+            self._began_to_slide = float(self._distance(np.asarray(self._time)))
+        self._volume = self._worn(self._time)
+        self._revolutions = float(self._turned(np.asarray(self._time)))
+        self._turning = self._turning.towards(rotation_speed, time=self._time)
+        self._settle()
+
+    def prepare(self, setting: DriveSetting | None, rotation_speed: float) -> None:
+        """Work out the friction at a setting of drive and motor, which takes seconds for some rigs."""
+        import scipy.signal  # noqa: F401  for which the first block would wait
+
+        self._friction.at(setting, rotation_speed * pi * self._diameter)
+
+    def drive(self, setting: DriveSetting | None) -> None:
+        """Set the drive, None for off."""
+        self._setting = setting
+        self._settle()
+
+    def _settle(self) -> None:
+        """Take the friction of the present setting."""
+        speed = self._turning.target * pi * self._diameter
+        self._volume_until_now()
+        self._level = self._friction.at(self._setting, speed)
+        self._ratio = self._ratio.towards(self._level.friction_ratio, time=self._time)
+        self._stick_slip = self._sticking(speed)
+        flash = self._temperatures.set(
+            self._time, setting=self._setting, friction_force=self._level.friction_force, sliding_speed=speed
+        )
+        self._settings.append(TruthSetting(self._time, speed, self._setting, self._level, flash))
+
+    def _sticking(self, sliding_speed: float) -> StickSlip:
+        """Stick-slip without vibration at a speed."""
+        sizes = self._sizes
+        mean = self._friction.friction_coefficient * self._rig.normal_load
+        return StickSlip(
+            excess_force=sizes.static_share * mean,
+            stiffness=sizes.holder_stiffness,
+            mass=sizes.holder_mass,
+            damping_ratio=sizes.holder_damping_ratio,
+            sliding_speed=sliding_speed,
+        )
+
+    def _volume_until_now(self) -> None:
+        """Add the wear of the setting that ends, and begin anew from here."""
+        self._volume = self._worn(self._time)
+        self._revolutions = float(self._turned(np.asarray(self._time)))
+        self._turning = self._turning.towards(self._turning.target, time=self._time)
+
+    def _worn(self, time: float) -> float:
+        """Wear volume until a time. [m3]"""
+        slid = float(self._turned(np.asarray(time)) - self._revolutions) * pi * self._diameter
+        return self._volume + self._level.wear_rate * slid
+
+    def _turned(self, time: Floats) -> Floats:
+        """Revolutions of the disc until times. []"""
+        return np.asarray(self._revolutions + self._turning.integral(time))
+
+    def _distance(self, time: Floats) -> Floats:
+        """Sliding distance until times. [m]"""
+        return self._turned(time) * pi * self._diameter
+
+    def _values(self, time: Floats) -> Floats:
+        """Samples of all channels at times."""
+        wobble, sizes = self._wobble(time), self._sizes
+        of_name = {
+            "friction_force": lambda: self._friction_force(time, wobble),
+            "normal_load": lambda: (
+                self._rig.normal_load * wobble + self._white("normal_load", sizes.sensor_noise, time)
+            ),
+            "voltage": lambda: self._voltage(time),
+            "voltage_peak_to_peak": lambda: self._monitor(time),
+            "current": lambda: self._current(time),
+            "temperature": lambda: (
+                self._temperatures.reading(time) + self._white("temperature", sizes.temperature_noise, time)
+            ),
+            "gaussmeter": lambda: self._flux(time),
+        }
+        return np.stack([of_name[name]() for name in self._names], axis=1)
+
+    def _white(self, name: str, deviation: float, time: Floats) -> Floats:
+        """White noise of a channel."""
+        return deviation * self._noises[name].next(time.size)
+
+    def _wobble(self, time: Floats) -> Floats:
+        """Load over its mean by the run-out of the disc. []"""
+        turned, (first, second) = self._turned(time), self._wobble_phases
+        return np.asarray(
+            1
+            + self._sizes.wobble_1 * np.cos(2 * np.pi * (turned + first))
+            + self._sizes.wobble_2 * np.cos(4 * np.pi * (turned + second))
+        )
+
+    def _friction_force(self, time: Floats, wobble: Floats) -> Floats:
+        """Reading of the force gauge."""
+        sizes = self._sizes
+        mean = self._friction.friction_coefficient * self._rig.normal_load
+        distance = self._distance(time)
+        ratio = self._ratio.at(time)
+        level = mean * wobble * ratio * (1 + sizes.run_in_share * np.exp(-distance / sizes.run_in_distance))
+        noise = sizes.friction_noise * self._noises["friction noise"].next(time.size)
+        force = level * (1 + noise + sizes.ringing * self._noises["ringing"].next(time.size))
+        if self._setting is None and self._stick_slip.occurs:
+            force += self._stick_slip.force(time - self._turning.start)
+        turning = self._turning.at(time)
+        drawn = sizes.holder_stiffness * (distance - self._began_to_slide)  # while the pin still sticks
+        force = np.where(drawn < (1 + sizes.static_share) * level, drawn, force) * (turning / (turning + _STANDS))
+        reading = force + self._drift * time + self._white("friction_force", sizes.sensor_noise, time)
+        if sizes.hysteresis > 0:
+            reading = play(reading, sizes.hysteresis, self._gauge)
+            self._gauge = float(reading[-1])
+        return np.asarray(reading)
+
+    def _phase(self, time: Floats, setting: DriveSetting) -> Floats:
+        """Phase of the generator, whose clock is not that of the acquisition, in periods."""
+        return setting.frequency * (1 + self._sizes.clock_error) * time + self._generator_phase
+
+    def _voltage(self, time: Floats) -> Floats:
+        """Voltage at the actuator."""
+        noise = self._white("voltage", 1.0, time)
+        setting = self._setting
+        if setting is None:
+            return self._sizes.voltage_noise * noise
+        half = setting.voltage_peak_to_peak / 2
+        wave = waveform(periods=self._phase(time, setting), shape=setting.waveform)
+        return setting.voltage_offset + half * (wave + self._sizes.voltage_noise * noise)
+
+    def _monitor(self, time: Floats) -> Floats:
+        """Peak-to-peak voltage by the monitor of the amplifier."""
+        voltage = 0.0 if self._setting is None else self._setting.voltage_peak_to_peak
+        return voltage + self._sizes.voltage_noise * max(voltage, 1.0) * self._white("voltage_peak_to_peak", 1.0, time)
+
+    def _current(self, time: Floats) -> Floats:
+        """Current into the capacitance of the actuator, without that of its motion."""
+        noise = self._white("current", self._sizes.current_noise, time)
+        setting, capacitance = self._setting, self._capacitance
+        if setting is None or capacitance is None:
+            return noise
+        step = 1 / (400 * setting.frequency)
+        phases = (self._phase(time + shift, setting) for shift in (-step / 2, step / 2))
+        before, after = (waveform(periods=phase, shape=setting.waveform) for phase in phases)
+        return noise + capacitance * setting.voltage_peak_to_peak / 2 * (after - before) / step
+
+    def _flux(self, time: Floats) -> Floats:
+        """Reading of the Hall probe."""
+        pulses = hall_pulses(revolutions=self._turned(time), magnets=self._sizes.magnets)
+        return _PULSE * (pulses + self._white("gaussmeter", self._sizes.flux_noise, time))

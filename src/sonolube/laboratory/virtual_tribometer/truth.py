@@ -1,0 +1,79 @@
+"""True values behind a virtual test, as a dataset with units."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sonolube.laboratory.devices import DriveSetting
+from sonolube.laboratory.virtual_tribometer.disturbances import DISTURBANCE_UNITS, Disturbances
+from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionLevel
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, slots=True)
+class TruthSetting:
+    """Setting of motor and drive with what it gives.
+
+    Parameters
+    ----------
+    start_time : float
+        [s]
+    sliding_speed : float
+        [m/s]
+    drive : DriveSetting or None
+        None for off.
+    level : FrictionLevel
+    flash_temperature_rise : float
+        Mean of the contact, steady, in K; NaN where materials are unknown.
+    """
+
+    start_time: float
+    sliding_speed: float
+    drive: DriveSetting | None
+    level: FrictionLevel
+    flash_temperature_rise: float
+
+
+def truth_dataset(
+    settings: Sequence[TruthSetting], *, sizes: Disturbances, single: Mapping[str, tuple[float, str]], title: str
+) -> "xr.Dataset":
+    """True values behind a virtual test.
+
+    Parameters
+    ----------
+    settings : sequence of TruthSetting
+    sizes : Disturbances
+        Of the test.
+    single : mapping of str to (float, str)
+        Further values with their units.
+    title : str
+
+    Returns
+    -------
+    xarray.Dataset
+        Values of each setting over `setting`, and the others as numbers, each with its unit.
+    """
+    import xarray as xr
+
+    columns = {
+        "start_time": ([each.start_time for each in settings], "s"),
+        "sliding_speed": ([each.sliding_speed for each in settings], "m/s"),
+        "voltage_peak_to_peak": ([each.drive.voltage_peak_to_peak if each.drive else 0.0 for each in settings], "V"),
+        "voltage_offset": ([each.drive.voltage_offset if each.drive else 0.0 for each in settings], "V"),
+        "frequency": ([each.drive.frequency if each.drive else 0.0 for each in settings], "Hz"),
+        "vibration_amplitude": ([each.level.vibration_amplitude for each in settings], "m"),
+        "friction_force": ([each.level.friction_force for each in settings], "N"),
+        "friction_ratio": ([each.level.friction_ratio for each in settings], "1"),
+        "wear_rate": ([each.level.wear_rate for each in settings], "m2"),
+        "flash_temperature_rise": ([each.flash_temperature_rise for each in settings], "K"),
+    }
+    numbers = {**single, **{name: (getattr(sizes, name), unit) for name, unit in DISTURBANCE_UNITS.items()}}
+    return xr.Dataset(
+        {
+            **{name: ("setting", values, {"units": unit}) for name, (values, unit) in columns.items()},
+            **{name: ((), value, {"units": unit}) for name, (value, unit) in numbers.items()},
+        },
+        attrs={"title": title},
+    )

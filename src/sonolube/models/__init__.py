@@ -1,0 +1,1 @@
+"""Models: surfaces, contact, friction, wear, heat, actuators, dynamics and finite elements, a phenomenon a room."""

@@ -1,0 +1,45 @@
+"""Tangential stiffness of a rough contact after Mindlin: a constant fraction of its normal stiffness."""
+
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_positive
+from sonolube.models.contact.rough import RoughContact, normal_stiffness
+
+
+def mindlin_tangential_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
+    r"""Return the tangential stiffness of sticking asperities after Mindlin. [N/m]
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape
+        Separation of the mean planes. [m]
+
+    Returns
+    -------
+    ndarray, shape of `separation`
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not positive and finite.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: k_t = \frac{4 G^*}{E^*}\, k_n
+
+    with the ratio `ContactPair.mindlin_ratio`. Exact for elastic asperities that stick; for yielded ones k_n is the
+    loading stiffness.
+
+    See Also
+    --------
+    cube_tangential_stiffness : Bending stiffness of the cube of Dong (2015).
+
+    References
+    ----------
+    .. [1] R. D. Mindlin, J. Appl. Mech. 16, 259 (1949).
+    """
+    d = require_positive(separation=separation)
+    return contact.pair.mindlin_ratio * normal_stiffness(contact, separation=d)

@@ -1,0 +1,378 @@
+"""Statistical contact of rough surfaces after Greenwood and Williamson: separation, real area and normal stiffness."""
+
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_finite, require_positive
+from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.models.contact.asperity import AsperityLaw, ChangEtsionBogy
+from sonolube.models.contact.greenwood_williamson import GreenwoodWilliamsonIntegrals, greenwood_williamson_integrals
+from sonolube.models.contact.height_distribution import ExponentialHeights, HeightDistribution
+from sonolube.models.contact.pair import ContactPair
+from sonolube.models.surfaces import Roughness
+
+__all__ = [  # `integrals_at` serves this room only
+    "RoughContact",
+    "contact_count",
+    "decay_length",
+    "normal_force",
+    "normal_stiffness",
+    "real_contact_area",
+    "separation",
+    "separation_range",
+]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RoughContact:
+    """Contact of two rough surfaces: roughness, materials, nominal area, height distribution and asperity law.
+
+    Parameters
+    ----------
+    roughness : Roughness
+        Combined roughness of both surfaces.
+    pair : ContactPair
+    nominal_area : float
+        Area over which the bodies face each other. [m2]
+    heights : HeightDistribution
+        Exponential by default.
+    asperity : AsperityLaw
+        That of Chang, Etsion and Bogy by default.
+    decay_length : float or None
+        Length over which the normal force falls by a factor of e, where it is known otherwise than by the roughness,
+        such as from the stiffness of a worn contact; for exponential heights only. R_q/lambda where None. [m]
+
+    Raises
+    ------
+    InvalidInput
+        If area or decay length is not positive and finite, or heights that are not exponential have a decay length.
+
+    Notes
+    -----
+    The pair is replaced by one surface with the roughness of both against a smooth flat. Its asperities are spheres of
+    one radius that do not interact, so the real area must stay far below the nominal one. Separations are measured from
+    the mean of the summit heights. `contact_caveats` returns the reasons against applying the model to a contact.
+
+    With a `decay_length` l the heights are those of a surface whose rms height is lambda l (`height_scale`): load,
+    area and number of contacts fall by a factor of e over l. `roughness` stays what was measured, often before wear.
+
+    See Also
+    --------
+    sonolube.models.contact.greenwood_williamson : The integrals over all asperities behind the functions of this
+    module. sonolube.models.contact.PerssonContact : Contact from the power spectrum, without asperities.
+
+    References
+    ----------
+    .. [1] J. A. Greenwood and J. B. P. Williamson, Proc. R. Soc. A 295, 300 (1966). doi:10.1098/rspa.1966.0242
+    .. [2] A. A. Polycarpou and I. Etsion, J. Tribol. 121, 234 (1999). doi:10.1115/1.2833926
+    """
+
+    roughness: Roughness
+    pair: ContactPair
+    nominal_area: float
+    heights: HeightDistribution = field(default_factory=ExponentialHeights)
+    asperity: AsperityLaw = field(default_factory=ChangEtsionBogy)
+    decay_length: float | None = None
+
+    def __post_init__(self) -> None:
+        require_positive(nominal_area=self.nominal_area)
+        if self.decay_length is not None:
+            require_positive(decay_length=self.decay_length)
+            if not isinstance(self.heights, ExponentialHeights):
+                raise InvalidInput(
+                    f"decay_length is for exponential heights, got {self.heights.name} heights, whose decay length"
+                    " varies with the separation: leave it out or use exponential heights"
+                )
+
+    @property
+    def height_scale(self) -> float:
+        """Rms height of the height distribution: the measured one, or lambda l where the decay length is given. [m]"""
+        if self.decay_length is None or not isinstance(self.heights, ExponentialHeights):
+            return self.roughness.rms_height
+        return self.heights.decay * self.decay_length
+
+
+def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
+    r"""Return the separation of the mean planes at which the asperities carry a load. [m]
+
+    Parameters
+    ----------
+    contact : RoughContact
+    normal_load : array_like, any shape
+        Force pressing the bodies together. [N]
+
+    Returns
+    -------
+    ndarray, shape of `normal_load`
+
+    Raises
+    ------
+    InvalidInput
+        If a load is not positive and finite.
+    OutsideRange
+        If no separation in the range of the height distribution carries a load.
+
+    Notes
+    -----
+    The inverse of `normal_force`. For exponential heights of decay constant lambda, with the force F_0 at zero
+    separation,
+
+    .. math:: d = \frac{R_q}{\lambda} \ln \frac{F_0}{F_n}
+
+    Not positive where the load is so high that the mean planes meet: see `contact_caveats`.
+
+    References
+    ----------
+    .. [1] D 3.3
+    """
+    load = require_positive(normal_load=normal_load)
+    integrals = _integrals(contact)
+    lowest, highest = integrals.force.value(np.array([integrals.highest, integrals.lowest])).tolist()
+    _require_range(contact, lowest, highest, "normal_load", "N", load)
+    return integrals.force.inverse(load) * contact.height_scale
+
+
+def separation_range(contact: RoughContact) -> tuple[float, float]:
+    """Return the smallest and the largest separation for which the height distribution is evaluated. [m]
+
+    Parameters
+    ----------
+    contact : RoughContact
+
+    Returns
+    -------
+    tuple of float
+        The largest is infinite for exponential heights.
+    """
+    integrals, Rq = _integrals(contact), contact.height_scale
+    return integrals.lowest * Rq, integrals.highest * Rq
+
+
+def normal_force(contact: RoughContact, *, separation: ArrayLike) -> Floats:
+    r"""Return the normal force on all asperities. [N]
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape
+        Separation of the mean planes. [m]
+
+    Returns
+    -------
+    ndarray, shape of `separation`
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not finite.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: F_n = \eta A_n \int_0^\infty f(w)\, \phi\!\left( \frac{d + w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
+
+    See Also
+    --------
+    sonolube.models.contact.separation : The inverse.
+
+    References
+    ----------
+    .. [1] D 3.3 to 3.5
+    """
+    integrals, h = integrals_at(contact, separation=separation)
+    return integrals.force.value(h)
+
+
+def real_contact_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
+    r"""Return the real contact area of all asperities. [m2]
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape
+        Separation of the mean planes. [m]
+
+    Returns
+    -------
+    ndarray, shape of `separation`
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not finite.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: A_r = \eta A_n \int_0^\infty a(w)\, \phi\!\left( \frac{d + w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
+
+    See Also
+    --------
+    sonolube.models.contact.elastic_area : Part on asperities that have not yielded.
+    sonolube.models.contact.plastic_area : Part on asperities that have.
+
+    References
+    ----------
+    .. [1] D 3.6
+    """
+    integrals, h = integrals_at(contact, separation=separation)
+    return integrals.area.value(h)
+
+
+def contact_count(contact: RoughContact, *, separation: ArrayLike) -> Floats:
+    """Return the expected number of asperities in contact. []
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape
+        Separation of the mean planes. [m]
+
+    Returns
+    -------
+    ndarray, shape of `separation`
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not finite.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+    """
+    integrals, h = integrals_at(contact, separation=separation)
+    return integrals.count.value(h)
+
+
+def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
+    r"""Return the normal contact stiffness. [N/m]
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape
+        Separation of the mean planes. [m]
+
+    Returns
+    -------
+    ndarray, shape of `separation`
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not finite.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: k_n = -\frac{\mathrm{d} F_n}{\mathrm{d} d}
+
+    The slope of the loading curve. Yielded asperities unload with a higher stiffness than they were loaded with.
+
+    See Also
+    --------
+    sonolube.models.contact.decay_length : Force over stiffness.
+    sonolube.models.contact.mindlin_tangential_stiffness : Tangential stiffness in proportion to this one.
+    """
+    integrals, h = integrals_at(contact, separation=separation)
+    return integrals.force.value(h) * integrals.force.decay_rate(h) / contact.height_scale
+
+
+def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) -> Floats:
+    r"""Return the decay length of the contact force: normal force over normal stiffness. [m]
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape, optional
+        Separation of the mean planes; required by every height distribution but the exponential one, whose decay
+        length is that of the contact, or R_q/lambda, at any separation. [m]
+
+    Returns
+    -------
+    ndarray, shape of `separation`
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not finite, or is missing where it is required.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: l = \frac{F_n}{k_n}
+
+    Over this increase of the separation the normal force falls by a factor of e.
+    """
+    if separation is None:
+        if not isinstance(contact.heights, ExponentialHeights):
+            raise InvalidInput(f"decay_length of {contact.heights.name} heights varies: give a separation")
+        separation = 0.0
+    integrals, h = integrals_at(contact, separation=separation)
+    if contact.decay_length is not None:
+        return np.full_like(h, contact.decay_length)
+    return contact.height_scale / integrals.force.decay_rate(h)
+
+
+@lru_cache(maxsize=512)
+def _integrals(contact: RoughContact) -> GreenwoodWilliamsonIntegrals:
+    """Return the integrals over all asperities of a contact, computed once."""
+    return greenwood_williamson_integrals(**summit_population(contact))
+
+
+def summit_population(contact: RoughContact) -> dict[str, Any]:
+    """Arguments of the integrals over all asperities: those of the contact, its rms height that of the heights."""
+    roughness = contact.roughness
+    if contact.decay_length is not None:
+        roughness = replace(roughness, rms_height=contact.height_scale)
+    return {
+        "roughness": roughness,
+        "pair": contact.pair,
+        "nominal_area": contact.nominal_area,
+        "heights": contact.heights,
+        "asperity": contact.asperity,
+    }
+
+
+def integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:
+    """Return the integrals over all asperities of a contact, and the separations over the rms height of its heights.
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape
+        Separation of the mean planes. [m]
+
+    Returns
+    -------
+    integrals : GreenwoodWilliamsonIntegrals
+    h : ndarray, shape of `separation`
+        Normalized separation.
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not finite.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+    """
+    d = require_finite(separation=separation)
+    _require_range(contact, *separation_range(contact), "separation", "m", d)
+    return _integrals(contact), d / contact.height_scale
+
+
+def _require_range(contact: RoughContact, low: float, high: float, name: str, unit: str, values: Floats) -> None:
+    """Refuse the first value outside a range."""
+    inside = (values >= low) & (values <= high)
+    if not inside.all():
+        raise OutsideRange(
+            f"{name} must lie between {low:.4g} and {high:.4g} {unit} for {contact.heights.name} heights on this "
+            f"contact, got {values[~inside].flat[0]:.6g} {unit}"
+        )

@@ -1,0 +1,92 @@
+"""Records of a batch of steady states: the problem that CPU and GPU solve, and the solution that both return."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Complexes, Floats, Integers
+from sonolube.models.dynamics.gap_laws.protocol import GapLaw
+from sonolube.models.dynamics.harmonic_balance.receptance import PoleResidueModel
+
+
+class BatchProblem(NamedTuple):
+    """Steady states to compute: one structure and contact law, p operating points, and options of the solver."""
+
+    model: PoleResidueModel
+    gap_law: GapLaw
+    omega: Floats  # (p,) rad/s, angular frequency of the drive
+    load: Floats  # (p,) N, dead load
+    voltage: Complexes  # (p, K) V, harmonics of the drive
+    static_displacement: Floats  # (p,) m, mean displacement without contact force
+    minimum_harmonics: int  # least number of harmonics of the contact, fully coupled
+    upper_branch: bool  # whether to return the larger of coexisting vibrations
+    stability: bool  # whether to compute stability
+    tolerance: float  # largest relative error of amplitude and force
+    speeds: Floats  # (s,) m/s, positive sliding speeds at which a GPU averages friction too
+
+    def select(self, points: NDArray[np.intp]) -> "BatchProblem":
+        """Return the problem of some of the points."""
+        return self._replace(
+            omega=self.omega[points],
+            load=self.load[points],
+            voltage=self.voltage[points],
+            static_displacement=self.static_displacement[points],
+        )
+
+
+class BatchSolution(NamedTuple):
+    """Steady states of a batch, one row of each array per point; NaN for a point without solution."""
+
+    mean_displacement: Floats  # (p,) m
+    harmonics: Complexes  # (p, H) m, of the displacement
+    mean_normal_force: Floats  # (p,) N
+    charge_harmonics: Complexes  # (p, K) C, of the charge on the stack
+    vibration_amplitude: Floats  # (p,) m
+    extremum_phases: Floats  # (p, 2) rad, of maximum and minimum displacement; NaN with more than two extrema
+    lowest_displacement: Floats  # (p,) m
+    highest_normal_force: Floats  # (p,) N
+    lowest_normal_force: Floats  # (p,) N
+    contact_loss_fraction: Floats  # (p,)
+    unstable: NDArray[np.bool_]  # (p,)
+    coexisting_amplitude: Floats  # (p,) m, of another stable steady state; NaN where none was found
+    harmonic_count: Integers  # (p,)
+    friction: Floats  # (p, 2, s): friction averages of a point that a GPU solved, plain and force-weighted
+    on_gpu: NDArray[np.bool_]  # (p,): whether a GPU solved the point
+
+    def replace_rows(self, points: NDArray[np.intp], other: "BatchSolution") -> "BatchSolution":
+        """Return the solution with the rows of some points taken from another one, in place but for `harmonics`."""
+        capacity = max(self.harmonics.shape[1], other.harmonics.shape[1])
+        harmonics = np.zeros((self.mean_displacement.size, capacity), dtype=np.complex128)
+        harmonics[:, : self.harmonics.shape[1]] = self.harmonics
+        harmonics[points] = 0.0
+        harmonics[points, : other.harmonics.shape[1]] = other.harmonics
+        for name in self._fields:
+            if name != "harmonics":
+                getattr(self, name)[points] = getattr(other, name)
+        return self._replace(harmonics=harmonics)
+
+
+def concatenate(parts: list[BatchSolution]) -> BatchSolution:
+    """Return the solution of a batch from those of its consecutive chunks.
+
+    Parameters
+    ----------
+    parts : list of BatchSolution
+        In the order of the points, at least one.
+
+    Returns
+    -------
+    BatchSolution
+    """
+    if len(parts) == 1:
+        return parts[0]
+    capacity = max(part.harmonics.shape[1] for part in parts)
+    harmonics = np.zeros((sum(part.mean_displacement.size for part in parts), capacity), dtype=np.complex128)
+    start = 0
+    for part in parts:
+        harmonics[start : start + part.mean_displacement.size, : part.harmonics.shape[1]] = part.harmonics
+        start += part.mean_displacement.size
+    narrow = (part._replace(harmonics=part.harmonics[:0, :1]) for part in parts)
+    joined = BatchSolution(*(np.concatenate(columns) for columns in zip(*narrow, strict=True)))
+    return joined._replace(harmonics=harmonics)

@@ -1,0 +1,149 @@
+"""Contact force laws on SIMD rows: force, stiffness and damping of every point of a block at once.
+
+`kind` selects the branch at compile time: a kernel compiles one law only, and the laws that a user never calls are
+never compiled. The classes behind the numbers are those of `sonolube.models.dynamics.gap_laws`.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.compilation import kernel
+from sonolube.models.dynamics.kernels.force_table import log_force_at
+from sonolube.models.dynamics.kernels.simd import INNER, LANES, exponentials
+
+EXPONENTIAL, HERTZ, LINEAR, TABULATED = range(4)
+"""Contact laws that the kernels evaluate, by `GapLaw.kind`. []"""
+
+LARGEST_LOG_FORCE = 700.0
+"""Largest magnitude of the logarithm of a force in N that tabulated laws return. []"""
+
+CompileTimeInt = tuple[int, ...]
+"""An integer that a kernel is compiled for, passed as the length of a tuple."""
+
+
+class LawParameters(NamedTuple):
+    """Numbers of a contact law at run time."""
+
+    parameter: float  # decay length, in m; Hertz coefficient, in N/m^1.5; stiffness, in N/m; or table cells per metre
+    damping: float  # tau of F (1 - tau v), in s/m
+    cells: Floats  # coefficients of the force table, empty for any other law
+
+
+class KernelVariant(NamedTuple):
+    """Properties of a contact law that kernels are compiled for."""
+
+    kind: CompileTimeInt  # EXPONENTIAL to TABULATED
+    damped: CompileTimeInt  # 1 with damping, 0 without
+
+
+@kernel(**INNER)
+def stiffness_follows_force(kind: CompileTimeInt, damped: CompileTimeInt) -> bool:
+    """Return whether the stiffness is proportional to the force, so that one Fourier transform serves both."""
+    return len(kind) == EXPONENTIAL and len(damped) == 0
+
+
+@kernel(**INNER)
+def velocity_over_omega(damped: CompileTimeInt, motion: Floats, h: int, velocity: Floats) -> None:
+    """Write the harmonics i k X_k of the velocity over omega, in the rows of a motion; nothing without damping."""
+    if len(damped) == 1:
+        for k in range(1, h + 1):
+            for lane in range(LANES):
+                velocity[2 * k - 1, lane] = -k * motion[2 * k, lane]
+                velocity[2 * k, lane] = k * motion[2 * k - 1, lane]
+
+
+@kernel(**INNER)
+def contact_force_rows(
+    kind: CompileTimeInt,
+    damped: CompileTimeInt,
+    law: LawParameters,
+    load: Floats,
+    equilibrium: Floats,
+    x: Floats,
+    v: Floats,
+    results: Floats,
+) -> None:
+    r"""Write the contact force, the stiffness -dF/dx and the damping -dF/dv.
+
+    Parameters
+    ----------
+    kind, damped : tuple
+        See `KernelVariant`.
+    law : LawParameters
+    load, equilibrium : ndarray, shape (lanes,)
+        Dead load, in N, and `GapLaw.equilibrium_coordinate`.
+    x, v : ndarray, shape (lanes,)
+        Displacement, in m, and velocity, in m/s; the velocity is not read without damping.
+    results : ndarray, shape (3, lanes)
+        Written, in N, N/m and N s/m; the last row is scratch without damping.
+
+    Notes
+    -----
+    .. math:: F_n = F(x)\,\max(1 - \tau v,\, 0), \qquad -\partial F_n/\partial x, \qquad -\partial F_n/\partial v
+    """
+    force, slope, drag = results[0], results[1], results[2]
+    if len(kind) == EXPONENTIAL:
+        for lane in range(LANES):
+            slope[lane] = -x[lane] / law.parameter
+        exponentials(slope, force)
+        for lane in range(LANES):
+            force[lane] *= load[lane]
+            slope[lane] = force[lane] / law.parameter
+    elif len(kind) == HERTZ:
+        for lane in range(LANES):
+            approach = max(equilibrium[lane] - x[lane], 0.0)
+            slope[lane] = 1.5 * law.parameter * np.sqrt(approach)
+            force[lane] = slope[lane] * approach / 1.5
+    elif len(kind) == TABULATED:
+        _tabulated_rows(law, equilibrium, x, force, slope, drag)
+    else:
+        for lane in range(LANES):
+            touching = load[lane] - law.parameter * x[lane]
+            force[lane] = max(touching, 0.0)
+            slope[lane] = law.parameter if touching > 0 else 0.0
+    if len(damped) == 1:
+        for lane in range(LANES):
+            factor = 1 - law.damping * v[lane]
+            drag[lane] = law.damping * force[lane] if factor > 0 else 0.0
+            factor = max(factor, 0.0)
+            force[lane] *= factor
+            slope[lane] *= factor
+
+
+@kernel(**INNER)
+def _tabulated_rows(
+    law: LawParameters, equilibrium: Floats, x: Floats, force: Floats, slope: Floats, scratch: Floats
+) -> None:
+    """Write force and stiffness of a tabulated law, whose position on the table starts from equilibrium."""
+    for lane in range(LANES):
+        slope[lane], scratch[lane] = log_force_at(law.cells, equilibrium[lane] + law.parameter * x[lane])
+    exponentials(slope, force)
+    for lane in range(LANES):
+        slope[lane] = -law.parameter * scratch[lane] * force[lane]
+
+
+@kernel(**INNER)
+def contact_force(
+    kind: CompileTimeInt,
+    damped: CompileTimeInt,
+    law: LawParameters,
+    load: float,
+    equilibrium: float,
+    x: float,
+    v: float,
+) -> float:
+    """Return the contact force of a single point, in N; arguments as of `contact_force_rows`."""
+    if len(kind) == EXPONENTIAL:
+        force = load * np.exp(min(-x / law.parameter, LARGEST_LOG_FORCE))
+    elif len(kind) == HERTZ:
+        force = law.parameter * max(equilibrium - x, 0.0) ** 1.5
+    elif len(kind) == TABULATED:
+        log_force = log_force_at(law.cells, equilibrium + law.parameter * x)[0]
+        force = np.exp(min(max(log_force, -LARGEST_LOG_FORCE), LARGEST_LOG_FORCE))
+    else:
+        force = max(load - law.parameter * x, 0.0)
+    if len(damped) == 1:
+        force *= max(1 - law.damping * v, 0.0)
+    return float(force)

@@ -1,0 +1,314 @@
+"""Periodic steady-state response of a structure vibrating against its contact, by harmonic balance, for batches."""
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.checks import (
+    Complexes,
+    Floats,
+    require_finite,
+    require_finite_complex,
+    require_non_negative,
+    require_positive,
+)
+from sonolube.errors import InvalidInput
+from sonolube.models.dynamics.backend import Backend, cpu_fallback, usable_backend
+from sonolube.models.dynamics.gap_laws.protocol import GapLaw
+from sonolube.models.dynamics.gap_laws.table import kernel_law
+from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution, concatenate
+from sonolube.models.dynamics.harmonic_balance.receptance import pole_residue_model
+from sonolube.models.dynamics.harmonic_balance.solver import MOST_HARMONICS, solve
+from sonolube.models.dynamics.steady_states import Status, SteadyStates
+from sonolube.models.dynamics.structure import Structure
+from sonolube.models.dynamics.warm_up import compile_in_parallel
+from sonolube.threads import map_chunks
+
+
+def steady_state(
+    structure: Structure,
+    gap_law: GapLaw,
+    *,
+    normal_load: ArrayLike,
+    frequency: ArrayLike,
+    voltage_amplitude: ArrayLike | None = None,
+    voltage_harmonics: ArrayLike | None = None,
+    voltage_offset: ArrayLike = 0.0,
+    separation: ArrayLike | None = None,
+    upper_branch: bool = False,
+    minimum_harmonics: int = 1,
+    relative_tolerance: float = 1e-6,
+    stability: bool = True,
+    workers: int = 1,
+    backend: Backend = "cpu",
+) -> SteadyStates:
+    r"""Return the periodic steady-state vibration of a structure against its contact, by harmonic balance.
+
+    Parameters
+    ----------
+    structure : Structure
+    gap_law : GapLaw
+    normal_load : array_like
+        Dead load on the contact. [N]
+    frequency : array_like
+        Frequency of the drive. [Hz]
+    voltage_amplitude : array_like, optional
+        Amplitude of a sinusoidal drive, a cosine at phase zero. [V]
+    voltage_harmonics : array_like of complex, shape (..., K), optional
+        Harmonics of any other periodic drive, in V: twice the `fourier_coefficients` of its waveform times the
+        peak-to-peak voltage.
+    voltage_offset : array_like
+        Mean of the drive. [V]
+    separation : array_like, optional
+        Separation at equilibrium under the dead load, for `gap_closed`. [m]
+    upper_branch : bool
+        Whether to return the larger of coexisting vibrations, which a voltage lowered to its value reaches, rather
+        than the smaller, which a raised one reaches.
+    minimum_harmonics : int
+        Least number of harmonics of the contact, from 1 to 64, all coupled; more than the points require makes
+        neighbouring points comparable to the last digit.
+    relative_tolerance : float
+        Largest error of amplitude and mean force relative to the exact solution of the equations, from 1e-8 to 1e-3; a
+        looser one takes fewer harmonics.
+    stability : bool
+        Whether to compute stability, which takes about as long as the vibration itself.
+    workers : int
+        Number of threads of the CPU.
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU solves the points that it supports; the CPU solves the others, and all without a GPU.
+
+    Returns
+    -------
+    SteadyStates
+        Of the shape of the broadcast arguments.
+
+    Raises
+    ------
+    InvalidInput
+        If a frequency or load is not positive, a value not finite, the drive not given in exactly one way, there are no
+        points, or `minimum_harmonics` or `relative_tolerance` is out of its range.
+
+    Warns
+    -----
+    GpuUnused
+        If a GPU was requested and none is available, or it does not support this contact, structure or drive.
+
+    See Also
+    --------
+    steady_friction, response_curve, march
+
+    Notes
+    -----
+    Only the contact is nonlinear, so that the unknowns are the mean and the harmonics of its displacement alone:
+
+    .. math::
+        S_0\,(\bar x - \bar x_0) = \bar F_n - F_N, \qquad X_k = H(k\omega)\,V_k + G(k\omega)\,\Phi_k
+
+    with the harmonics :math:`\Phi_k` of the contact force, which is sampled in time and Fourier transformed. Numbers of
+    harmonics and samples adapt to each point [1]_. Batches are solved in chunks, which bounds the memory.
+
+    Coexisting vibrations of the drive's period are searched for where the equation of a single harmonic has several
+    solutions. Motions of other periods that coexist with a stable vibration are not: impacting at a few hundred hertz,
+    a start from rest can end in one.
+
+    References
+    ----------
+    .. [1] T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56, 149 (1989), on alternating frequency-time transforms.
+       doi:10.1115/1.3176036
+    """
+    states, _ = solve_steady_states(
+        structure,
+        gap_law,
+        normal_load=normal_load,
+        frequency=frequency,
+        voltage_harmonics=drive_harmonics(voltage_amplitude, voltage_harmonics),
+        voltage_offset=voltage_offset,
+        separation=separation,
+        upper_branch=upper_branch,
+        minimum_harmonics=minimum_harmonics,
+        relative_tolerance=relative_tolerance,
+        stability=stability,
+        workers=workers,
+        backend=backend,
+    )
+    return states
+
+
+def solve_steady_states(
+    structure: Structure,
+    gap_law: GapLaw,
+    *,
+    normal_load: ArrayLike,
+    frequency: ArrayLike,
+    voltage_harmonics: Complexes,
+    voltage_offset: ArrayLike = 0.0,
+    separation: ArrayLike | None = None,
+    upper_branch: bool = False,
+    minimum_harmonics: int = 1,
+    relative_tolerance: float = 1e-6,
+    stability: bool = True,
+    workers: int = 1,
+    backend: Backend = "cpu",
+    sliding_speed: Floats | None = None,
+) -> tuple[SteadyStates, BatchSolution]:
+    """Return steady states, and the solution of the batch with friction averages of the points that a GPU solved.
+
+    Parameters
+    ----------
+    structure, gap_law, upper_branch, minimum_harmonics, relative_tolerance, stability, workers, backend
+        As in `steady_state`.
+    normal_load : array_like
+        Dead load on the contact. [N]
+    frequency : array_like
+        Frequency of the drive. [Hz]
+    voltage_harmonics : ndarray of complex, shape (..., K)
+        Harmonics of the drive, in V.
+    voltage_offset : array_like
+        Mean of the drive. [V]
+    separation : array_like, optional
+        Separation at equilibrium under the dead load. [m]
+    sliding_speed : ndarray, shape (s,), optional
+        Positive sliding speeds at which a GPU averages friction. [m/s]
+
+    Returns
+    -------
+    SteadyStates
+        Of the shape of the broadcast arguments.
+    BatchSolution
+        Of the flattened batch.
+    """
+    if not 1 <= minimum_harmonics <= MOST_HARMONICS:
+        raise InvalidInput(f"minimum_harmonics must lie between 1 and {MOST_HARMONICS}, got {minimum_harmonics!r}")
+    if not 1e-8 <= relative_tolerance <= 1e-3:
+        raise InvalidInput(f"relative_tolerance must lie between 1e-8 and 1e-3, got {relative_tolerance!r}")
+    load, f = require_positive(normal_load=normal_load), require_positive(frequency=frequency)
+    offset = require_finite(voltage_offset=voltage_offset)
+    rest = np.asarray(np.inf) if separation is None else require_positive(separation=separation)
+    shape = _batch_shape(load.shape, f.shape, voltage_harmonics.shape[:-1], offset.shape, rest.shape)
+
+    def flat(values: Floats) -> Floats:
+        return np.ascontiguousarray(np.broadcast_to(values, shape)).reshape(-1)
+
+    drive = np.broadcast_to(voltage_harmonics, (*shape, voltage_harmonics.shape[-1]))
+    model = pole_residue_model(structure)
+    problem = BatchProblem(
+        model=model,
+        gap_law=gap_law,
+        omega=2 * np.pi * flat(f),
+        load=flat(load),
+        voltage=np.ascontiguousarray(drive).reshape(-1, drive.shape[-1]),
+        static_displacement=model.displacement_per_volt * flat(offset),
+        minimum_harmonics=minimum_harmonics,
+        upper_branch=upper_branch,
+        stability=stability,
+        tolerance=relative_tolerance,
+        speeds=np.empty(0) if sliding_speed is None else sliding_speed,
+    )
+    solution = _solve(problem, workers, backend)
+    orders = np.arange(1, problem.voltage.shape[1] + 1)
+    current = 1j * problem.omega[:, np.newaxis] * orders * solution.charge_harmonics
+    columns: dict[str, Any] = {
+        "normal_load": problem.load,
+        "frequency": flat(f),
+        "voltage_harmonics": problem.voltage,
+        "voltage_offset": flat(offset),
+        "status": _status(solution),
+        "current_harmonics": current,
+        "dissipated_power": 0.5 * np.sum((problem.voltage * current.conj()).real, axis=1),
+        "gap_closed": solution.lowest_displacement <= -flat(rest),
+    }
+    columns |= {name: getattr(solution, name) for name in _SHARED_FIELDS}
+    shaped = {name: values.reshape((*shape, *values.shape[1:])) for name, values in columns.items()}
+    states = SteadyStates(structure=structure, gap_law=gap_law, relative_tolerance=relative_tolerance, **shaped)
+    return states, solution
+
+
+_SHARED_FIELDS = {field.name for field in fields(SteadyStates)} & set(BatchSolution._fields)
+
+
+def _solve(problem: BatchProblem, workers: int, backend: Backend) -> BatchSolution:
+    """Return the solution of a batch by a GPU, where requested and supported, and by the CPU for all other points."""
+    points = np.arange(problem.omega.size)
+    if not _gpu_supports(problem, backend):
+        return _solve_on_cpu(problem, points, workers)
+    from sonolube.models.dynamics.gpu import solve_on_gpu
+
+    solution, _ = solve_on_gpu(problem)
+    remaining = points[~solution.on_gpu]
+    if remaining.size:
+        others = _solve_on_cpu(problem, remaining, workers)
+        friction = np.zeros((remaining.size, *solution.friction.shape[1:]))
+        solution = solution.replace_rows(remaining, others._replace(friction=friction))
+    return solution
+
+
+def _gpu_supports(problem: BatchProblem, backend: Backend) -> bool:
+    """Return whether a GPU is requested, available, and supports the problem; warn where it is not or does not."""
+    if usable_backend(backend) == "cpu":
+        return False
+    from sonolube.models.dynamics.gpu import unsupported_steady_state
+
+    reason = unsupported_steady_state(problem)
+    return not reason or cpu_fallback(reason) == "gpu"
+
+
+def _solve_on_cpu(problem: BatchProblem, chosen: NDArray[np.intp], workers: int) -> BatchSolution:
+    """Return the solution of some points of a batch by threads of the CPU."""
+    variant, _ = kernel_law(problem.gap_law)
+    with compile_in_parallel(variant, stability=problem.stability, tolerance=problem.tolerance):
+        return concatenate(map_chunks(lambda own: solve(problem.select(chosen[own])), chosen.size, workers))
+
+
+def _batch_shape(*shapes: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the broadcast shape of the points, at least one."""
+    given = f"load, frequency, voltage, offset and gap{{}} shapes{{}} {', '.join(map(str, shapes))}"
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError:
+        raise InvalidInput(given.format(" must have matching", ", got")) from None
+    if 0 in shape:
+        raise InvalidInput(f"there are no points to compute: {given.format(' have', '')}")
+    return shape
+
+
+def drive_harmonics(amplitude: ArrayLike | None, harmonics: ArrayLike | None) -> Complexes:
+    """Return the harmonics of a drive given either by its amplitude or by its harmonics, shape (..., K), in V.
+
+    Parameters
+    ----------
+    amplitude : array_like or None
+        Amplitude of a sinusoidal drive, in V.
+    harmonics : array_like of complex, shape (..., K), or None
+        Harmonics of any other drive, in V.
+
+    Returns
+    -------
+    ndarray of complex
+
+    Raises
+    ------
+    InvalidInput
+        If not exactly one of them is given, or a value is negative or not finite.
+    """
+    if (amplitude is None) == (harmonics is None):
+        raise InvalidInput("give either voltage_amplitude or voltage_harmonics")
+    if amplitude is not None:
+        return require_non_negative(voltage_amplitude=amplitude)[..., np.newaxis].astype(np.complex128)
+    assert harmonics is not None
+    drive = require_finite_complex(voltage_harmonics=harmonics)
+    if drive.ndim == 0 or not 1 <= drive.shape[-1] <= MOST_HARMONICS:
+        raise InvalidInput(
+            f"voltage_harmonics must have 1 to {MOST_HARMONICS} harmonics along the last axis, got shape {drive.shape}"
+        )
+    return drive
+
+
+def _status(solution: BatchSolution) -> NDArray[np.int8]:
+    """Return the status of each point."""
+    status = np.full(solution.mean_displacement.shape, Status.PERIODIC, dtype=np.int8)
+    status[np.isfinite(solution.coexisting_amplitude)] = Status.MULTISTABLE
+    status[solution.unstable] = Status.UNSTABLE
+    status[np.isnan(solution.mean_displacement)] = Status.NOT_CONVERGED
+    return status

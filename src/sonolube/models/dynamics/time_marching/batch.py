@@ -1,0 +1,321 @@
+"""Time marching of a batch of points: problem, solution, and the distribution of points on SIMD lanes and threads."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.models.dynamics.first_order_modes import FirstOrderModes
+from sonolube.models.dynamics.gap_laws.protocol import GapLaw
+from sonolube.models.dynamics.gap_laws.table import kernel_law
+from sonolube.models.dynamics.kernels.contact_kernel import EXPONENTIAL
+from sonolube.models.dynamics.time_marching.integrator import ExponentialIntegrator, exponential_integrator
+from sonolube.models.dynamics.time_marching.marching_kernel import march_lanes
+from sonolube.models.dynamics.time_marching.row_layout import LANES, STATISTICS, row_layout
+from sonolube.models.dynamics.waveform import StartUpRamp, Waveform, jump_phases
+from sonolube.threads import thread_pool
+
+_BLOCK = 32 * LANES  # points whose integrators are in memory together
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MarchingSchedule:
+    """Drive waveform, ramp, time steps and recording of a march, common to all points.
+
+    Parameters
+    ----------
+    waveform : Waveform
+    ramp : StartUpRamp
+    steps : int
+        Steps per period, a multiple of 4, at least 8, such that the waveform jumps between steps.
+    periods : int
+        Number of drive periods.
+    window : int
+        Periods per entry of the statistics.
+    recorded : int
+        Number of periods, at the end, of which every step is recorded.
+    strobed : int
+        Number of periods, at the end, of which the last instant is recorded.
+
+    Raises
+    ------
+    InvalidInput
+        If a count is out of range or the waveform jumps within a step.
+    """
+
+    waveform: Waveform
+    ramp: StartUpRamp
+    steps: int
+    periods: int
+    window: int
+    recorded: int
+    strobed: int
+
+    def __post_init__(self) -> None:
+        if self.steps < 8 or self.steps % 4:
+            raise InvalidInput(f"steps_per_period must be a multiple of 4, at least 8, got {self.steps!r}")
+        for name, count in {
+            "periods": self.periods,
+            "periods_per_window": self.window,
+            "recorded_periods": self.recorded,
+            "strobed_periods": self.strobed,
+        }.items():
+            if count < 1:
+                raise InvalidInput(f"{name} must be at least 1, got {count!r}")
+        _ = self.jump_steps
+
+    @property
+    def jump_steps(self) -> NDArray[np.int64]:
+        """Steps of a period before which the waveform jumps."""
+        jumps = jump_phases(self.waveform) / (2 * np.pi)
+        if _within_steps(jumps, self.steps):
+            fitting = [steps for steps in range(8, 513, 4) if not _within_steps(jumps, steps)]
+            advice = f"take a multiple of {fitting[0]} steps" if fitting else "move it to a multiple of 1/512 period"
+            raise InvalidInput(f"steps_per_period = {self.steps} lets the waveform jump within a step; {advice}")
+        return np.round(jumps * self.steps).astype(np.int64)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MarchingProblem:
+    """Trajectories to compute: one structure, contact law and schedule, and the operating points.
+
+    Parameters
+    ----------
+    modes : FirstOrderModes
+    contact_output : ndarray, shape (2, n, 2)
+        Displacement and velocity of the contact per state.
+    gap_law : GapLaw
+    schedule : MarchingSchedule
+    normal_load : ndarray, shape (points,)
+        Dead load. [N]
+    frequency : ndarray, shape (points,)
+        Frequency of the drive. [Hz]
+    voltage_peak_to_peak : ndarray, shape (points,)
+        Peak-to-peak drive voltage. [V]
+    voltage_offset : ndarray, shape (points,)
+        Mean drive voltage. [V]
+    start : ndarray, shape (2 n, points)
+        Initial states.
+    """
+
+    modes: FirstOrderModes
+    contact_output: Floats
+    gap_law: GapLaw
+    schedule: MarchingSchedule
+    normal_load: Floats
+    frequency: Floats
+    voltage_peak_to_peak: Floats
+    voltage_offset: Floats
+    start: Floats
+
+    def law_rows(self) -> Floats:
+        """Return the rows by which kernels evaluate the contact law, shape (5, points): load, three numbers, damping.
+
+        The numbers are the parameter of the law (the inverse decay length of an exponential one), its equilibrium
+        coordinate, and the logarithm of the load.
+        """
+        law, load = self.gap_law, self.normal_load
+        parameter = 1 / law.kernel_parameter if law.kind == EXPONENTIAL else law.kernel_parameter
+        parameters, dampings = np.full_like(load, parameter), np.full_like(load, law.force_damping)
+        return np.stack([load, parameters, law.equilibrium_coordinate(load), np.log(load), dampings])
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MarchingSolution:
+    """Trajectories of a batch as the kernels return them, points last.
+
+    Parameters
+    ----------
+    statistics : ndarray, shape (windows, 8, points)
+        Over the steps of each window: highest and lowest displacement of the contact, its sum and its sums weighted by
+        cosine and sine of the drive's phase; sum, highest and lowest of the contact force.
+    recorded : ndarray, shape (steps, 2 n + 1, points)
+        States, then the contact force less the load that the step was computed with.
+    strobed : ndarray, shape (periods, 2 n, points)
+        States at the ends of periods.
+    final : ndarray, shape (2 n, points)
+        States at the end.
+    step_response : ndarray, shape (2, points)
+        Displacement and velocity of the contact after one step of a constant unit force.
+    """
+
+    statistics: Floats
+    recorded: Floats
+    strobed: Floats
+    final: Floats
+    step_response: Floats
+
+
+def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
+    """Return the trajectories of a batch by threads of the CPU.
+
+    Parameters
+    ----------
+    problem : MarchingProblem
+    workers : int
+        Number of threads.
+
+    Returns
+    -------
+    MarchingSolution
+
+    Raises
+    ------
+    InvalidInput
+        If there is not at least one worker, or a step is too long for the structure's fastest mode.
+    """
+    if workers < 1:
+        raise InvalidInput(f"workers must be at least 1, got {workers!r}")
+    schedule, gap_law = problem.schedule, problem.gap_law
+    m, count = problem.start.shape
+    width, chunks = min(count, LANES), -(-count // LANES)
+    steps, periods = schedule.steps, schedule.periods
+    statistics = np.empty((chunks, -(-periods // schedule.window), STATISTICS, width))
+    recorded = np.empty((chunks, min(schedule.recorded, periods) * steps, m + 1, width))
+    strobed = np.empty((chunks, min(schedule.strobed, periods), m, width))
+    final = np.empty((chunks, 1, m, width))
+    step_response = np.empty((2, count))
+    pairs = (0,) * (m // 2)
+    state = row_layout(pairs).state
+    variant, law = kernel_law(gap_law)
+    law_rows = problem.law_rows()
+
+    def march_chunk(
+        chunk: int, integrator: ExponentialIntegrator, which: NDArray[np.intp], points: NDArray[np.intp]
+    ) -> None:
+        numbers = _lane_rows(problem, law_rows[:, points], integrator, which, points)
+        drive, table = _drive_rows(problem, integrator, which, points), _aligned(np.empty((steps + 4) * m * LANES))
+        march_lanes(
+            pairs,
+            *variant,
+            law.cells,
+            numbers,
+            drive,
+            table,
+            schedule.ramp.duration * problem.frequency[points] * steps,
+            schedule.ramp.shape == "cosine",
+            integrator.backward.ravel(),
+            schedule.jump_steps,
+            steps,
+            periods,
+            schedule.window,
+            statistics[chunk],
+            recorded[chunk],
+            strobed[chunk],
+        )
+        final[chunk, 0] = numbers[state : state + m * LANES].reshape(m, LANES)[:, :width]
+
+    with thread_pool(workers) as pool:
+        for block in _blocks(count):
+            frequency, where = np.unique(problem.frequency[block], return_inverse=True)
+            integrator = exponential_integrator(
+                problem.modes, problem.contact_output, frequency=frequency, steps=steps, waveform=schedule.waveform
+            )
+            step_response[:, block] = integrator.ahead[where, :, 0].sum(axis=-1).T
+            jobs = [
+                pool.submit(march_chunk, (block.start + first) // LANES, integrator, where[own], block.start + own)
+                for first, own in _lanes(block.stop - block.start)
+            ]
+            for job in jobs:
+                job.result()
+    return MarchingSolution(
+        statistics=with_force_extremes(_points_last(statistics, count), gap_law, problem.normal_load),
+        recorded=_points_last(recorded, count),
+        strobed=_points_last(strobed, count),
+        final=_points_last(final, count)[0],
+        step_response=step_response,
+    )
+
+
+def with_force_extremes(statistics: Floats, gap_law: GapLaw, load: Floats) -> Floats:
+    """Write the extremes of an undamped contact force into the statistics: those at the extremes of displacement.
+
+    Parameters
+    ----------
+    statistics : ndarray, shape (windows, 8, points)
+        As in `MarchingSolution`; changed in place.
+    gap_law : GapLaw
+    load : ndarray, shape (points,)
+        Dead load, in N.
+
+    Returns
+    -------
+    ndarray
+        The same statistics.
+    """
+    if gap_law.force_damping == 0:
+        statistics[:, 6] = gap_law.force(statistics[:, 1], load)
+        statistics[:, 7] = gap_law.force(statistics[:, 0], load)
+    return statistics
+
+
+def _within_steps(jumps: Floats, steps: int) -> bool:
+    """Return whether a jump, at a fraction of the period, falls within a step."""
+    return bool(np.any(np.abs(jumps * steps - np.round(jumps * steps)) > 1e-9))
+
+
+def _blocks(count: int) -> Iterator[slice]:
+    """Return blocks of points."""
+    return (slice(first, min(first + _BLOCK, count)) for first in range(0, count, _BLOCK))
+
+
+def _lanes(count: int) -> Iterator[tuple[int, NDArray[np.intp]]]:
+    """Return the points of each set of SIMD lanes; surplus lanes repeat the last point."""
+    return ((first, np.minimum(np.arange(first, first + LANES), count - 1)) for first in range(0, count, LANES))
+
+
+def _points_last(chunks: Floats, count: int) -> Floats:
+    """Return results of chunks as one array with the points as last axis."""
+    moved = np.moveaxis(chunks, 0, -2)
+    return moved.reshape(*moved.shape[:-2], -1)[..., :count]
+
+
+def _drive_rows(
+    problem: MarchingProblem, integrator: ExponentialIntegrator, which: NDArray[np.intp], points: NDArray[np.intp]
+) -> Floats:
+    """Return the drive of each lane, flattened from shape (3, steps, states, lanes)."""
+    swing, offset = problem.voltage_peak_to_peak[points], problem.voltage_offset[points]
+    drive = np.einsum("l,lknma->knmal", swing, integrator.wave[which])
+    drive += np.einsum("l,lkma->kmal", offset, integrator.offset[which])[:, np.newaxis]
+    return _aligned(drive)
+
+
+def _lane_rows(
+    problem: MarchingProblem,
+    law_rows: Floats,
+    integrator: ExponentialIntegrator,
+    which: NDArray[np.intp],
+    points: NDArray[np.intp],
+) -> Floats:
+    """Return the rows of the kernel, flattened, in the order of `row_layout`."""
+    output, start = problem.contact_output, problem.start
+    same = np.broadcast_to(output[..., np.newaxis], (*output.shape, LANES))
+    at = row_layout((0,) * output.shape[1])
+    groups = [
+        np.moveaxis(integrator.propagator[which], 0, -1),
+        np.moveaxis(integrator.oldest[which], 0, -1),
+        same[0],
+        same[1],
+        start[:, points],
+        start[:, points],
+        np.moveaxis(integrator.recent[which], 0, -1),
+        np.moveaxis(integrator.predictor[which], 0, -1),
+        np.zeros(5 * LANES),
+        law_rows,
+        np.zeros(at.x_ahead - at.statistics),
+        np.moveaxis(integrator.ahead[which], 0, -1),
+        np.zeros(LANES),
+    ]
+    return _aligned(np.concatenate([group.reshape(-1, LANES) for group in groups]))
+
+
+def _aligned(values: Floats) -> Floats:
+    """Return a flat copy aligned to a cache line, for vector loads."""
+    padded = np.empty(values.size + 8)
+    first = -(padded.ctypes.data // 8) % 8
+    flat = padded[first : first + values.size]
+    flat[:] = values.ravel()
+    return flat

@@ -1,0 +1,162 @@
+"""Dahl friction: an elastoplastic bristle whose force depends on the sliding distance and not on the rate."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_finite, require_positive
+from sonolube.compilation import kernel
+from sonolube.models.friction.laws.sampled_motion import integrate_rows, require_increasing
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DahlFriction:
+    r"""Dahl's law of friction for one contact at a constant normal load.
+
+    Parameters
+    ----------
+    contact_stiffness : float
+        Tangential stiffness of the contact at rest, K. [N/m]
+    coulomb_friction_force : float
+        Friction force of steady sliding, F_c. [N]
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive and finite.
+
+    Notes
+    -----
+    .. math:: \frac{\mathrm{d}\delta}{\mathrm{d}t} = v \left( 1 - \frac{K \delta}{F_c}\, \mathrm{sgn}\, v \right),
+              \qquad F = K \delta \tag{D 1.3}
+
+    with the tangential deformation delta and the sliding velocity v.
+
+    See Also
+    --------
+    LuGreFriction : The law with Stribeck effect, bristle damping and viscous friction.
+
+    References
+    ----------
+    .. [1] P. R. Dahl, AIAA J. 14, 1675 (1976). doi:10.2514/3.61511
+    """
+
+    contact_stiffness: float
+    coulomb_friction_force: float
+
+    def __post_init__(self) -> None:
+        require_positive(contact_stiffness=self.contact_stiffness, coulomb_friction_force=self.coulomb_friction_force)
+
+    @property
+    def steady_deformation(self) -> float:
+        """Deformation of steady sliding, F_c/K. [m]"""
+        return self.coulomb_friction_force / self.contact_stiffness
+
+
+def dahl_friction(law: DahlFriction, *, displacement: ArrayLike, deformation: ArrayLike = 0.0) -> Floats:
+    r"""Return the friction force after a monotonic slide by Dahl's law. [N]
+
+    Parameters
+    ----------
+    law : DahlFriction
+    displacement : array_like
+        Distance of a slide in one direction, negative for the other direction. [m]
+    deformation : array_like, broadcast against `displacement`
+        Tangential deformation of the contact at the start. [m]
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not finite.
+
+    Notes
+    -----
+    .. math:: F = K \delta_0\, e^{-K |x|/F_c} + F_c\, \mathrm{sgn}(x) \left( 1 - e^{-K |x|/F_c} \right)
+
+    D 1.3 integrated over the distance x from the deformation delta_0. A deformation beyond F_c/K, as after a reduction
+    of the load, decays to that value.
+
+    References
+    ----------
+    .. [1] D 1.3.
+    """
+    distance = require_finite(displacement=displacement)
+    start = require_finite(deformation=deformation)
+    K, F_c = law.contact_stiffness, law.coulomb_friction_force
+    decay = -K * np.abs(distance) / F_c
+    return K * start * np.exp(decay) - F_c * np.sign(distance) * np.expm1(decay)  # D 1.3 integrated for one sign of v
+
+
+def dahl_friction_history(
+    law: DahlFriction, *, time: ArrayLike, relative_velocity: ArrayLike, deformation: ArrayLike = 0.0
+) -> Floats:
+    """Return the friction force along sampled motions by Dahl's law. [N]
+
+    Parameters
+    ----------
+    law : DahlFriction
+    time : array_like, shape (n,)
+        Increasing times of the samples. [s]
+    relative_velocity : array_like, shape (..., n)
+        Sliding velocity at these times, interpolated linearly between them. [m/s]
+    deformation : array_like, shape (...)
+        Tangential deformation of the contact at the first sample. [m]
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+
+    Raises
+    ------
+    InvalidInput
+        If times do not increase, shapes disagree, or a value is not finite.
+
+    Notes
+    -----
+    Exact for velocities that are linear between samples, at any step: the law depends on the distance alone, and a step
+    in which the velocity changes sign is divided there. The error is that of the sampling, second order in the step.
+
+    See Also
+    --------
+    dahl_friction : Closed form for a slide in one direction.
+    dahl_under_vibration : Mean force over the steady period of a vibration.
+
+    References
+    ----------
+    .. [1] D 1.3.
+    """
+    times = require_increasing(time=time)
+    velocities = require_finite(relative_velocity=relative_velocity)
+    start = require_finite(deformation=deformation)
+    K, F_c = law.contact_stiffness, law.coulomb_friction_force
+    return K * integrate_rows(_deformation_history, times, velocities, start, K / F_c)
+
+
+@kernel(cache=True)
+def _deformation_history(times: Floats, velocities: Floats, start: float, rate: float) -> Floats:
+    """Return the deformation along one sampled motion; `rate` is K/F_c."""
+    deformation = np.empty_like(velocities)
+    deformation[0] = delta = start
+    for k in range(times.size - 1):
+        step, v0, v1 = times[k + 1] - times[k], velocities[k], velocities[k + 1]
+        if v0 * v1 < 0:
+            reversal = step * v0 / (v0 - v1)
+            delta = _deformation_after_slide(delta, 0.5 * v0 * reversal, rate)
+            delta = _deformation_after_slide(delta, 0.5 * v1 * (step - reversal), rate)
+        else:
+            delta = _deformation_after_slide(delta, 0.5 * (v0 + v1) * step, rate)
+        deformation[k + 1] = delta
+    return deformation
+
+
+@kernel(cache=True)
+def _deformation_after_slide(delta: float, distance: float, rate: float) -> float:
+    """Return the deformation after a slide in one direction."""
+    decay = -rate * abs(distance)
+    return delta * math.exp(decay) + math.copysign(math.expm1(decay) / rate, distance)

@@ -1,0 +1,181 @@
+"""Mean friction ratio of a vibrated contact by the LuGre law with a limit that follows speed and normal force."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, Integers, require_finite, require_non_negative, require_positive
+from sonolube.models.contact.gap_motion import GapMotion, delayed_oscillation
+from sonolube.models.contact.period_mean import richardson_period_mean, richardson_period_means
+from sonolube.models.friction.laws.lugre import LuGreFriction, lugre_steady_friction
+from sonolube.models.friction.laws.steady_period_kernel import steady_period_mean_force
+
+_TOLERANCE = 1e-4
+
+
+def lugre_under_vibration(
+    law: LuGreFriction,
+    motion: GapMotion,
+    *,
+    sliding_speed: ArrayLike,
+    in_plane_fraction: ArrayLike = 0.0,
+    in_plane_phase: ArrayLike = 0.0,
+) -> Floats:
+    r"""Return the mean friction ratio over the steady period of a vibration by the LuGre law. []
+
+    Parameters
+    ----------
+    law : LuGreFriction
+        Law of the contact under its dead load.
+    motion : GapMotion
+        One period of the gap, with its normal force.
+    sliding_speed : array_like, any shape
+        Mean sliding speed. [m/s]
+    in_plane_fraction : float
+        Amplitude along the sliding direction over that along the normal. []
+    in_plane_phase : float
+        Lag of the in-plane motion behind the normal one. [rad]
+
+    Returns
+    -------
+    ndarray, shape of `sliding_speed`
+
+    Raises
+    ------
+    InvalidInput
+        If a speed is not positive, the fraction negative, or a value not finite.
+
+    Notes
+    -----
+    .. math:: \frac{\mathrm{d}z}{\mathrm{d}t} = v - \frac{|v|}{g}\, z, \qquad
+              \sigma_0\, g = \frac{F_n(t)}{F_N} \left[ F_c + (F_s - F_c)\, e^{-(v/v_s)^2} \right]
+
+    The slip limit follows speed and normal force; the bristle stiffness is constant. The law is linear in z along a
+    given motion, so that each step is an exact exponential and the steady period the fixed point of a linear map. The
+    bristle damping has no effect on the mean over a period. Relative error 1e-4.
+
+    Under vibration along the normal alone the Stribeck curve cancels, and the ratio of slow sliding is the harmonic
+    mean :math:`1/\langle F_N/F_n \rangle`. Fast in-plane vibration reduces friction further where the Stribeck curve
+    falls.
+
+    See Also
+    --------
+    dahl_under_vibration : Bristle stiffness that follows the separation, without Stribeck effect.
+
+    References
+    ----------
+    .. [1] C. Canudas de Wit, H. Olsson, K. J. Astrom and P. Lischinsky, IEEE Trans. Autom. Control 40, 419 (1995).
+       doi:10.1109/9.376053
+    """
+    v_r = require_positive(sliding_speed=sliding_speed)
+    fraction = float(require_non_negative(in_plane_fraction=in_plane_fraction))
+    lag = float(require_finite(in_plane_phase=in_plane_phase))
+    speeds, own = v_r.reshape(-1, 1), _Columns.of([law])
+
+    def mean_force(sampled: GapMotion) -> Floats:
+        oscillation = _in_plane(sampled.displacement, fraction, lag)
+        load = _mid_load(sampled.normal_force, motion.normal_load)
+        bristle_force = _mean_force(own, load, oscillation, speeds, motion.frequency)
+        return bristle_force + law.viscous_coefficient * speeds[:, 0]
+
+    steady = lugre_steady_friction(law, relative_velocity=speeds[:, 0])
+    ratio = richardson_period_mean(lambda sampled: mean_force(sampled) / steady, motion, tolerance=_TOLERANCE)
+    return ratio.reshape(v_r.shape)
+
+
+def lugre_ratios(
+    laws: Sequence[LuGreFriction],
+    motions: Sequence[GapMotion],
+    *,
+    sliding_speed: Floats,
+    in_plane_fraction: float = 0.0,
+    in_plane_phase: float = 0.0,
+) -> Floats:
+    """Return the friction ratios of `lugre_under_vibration` for many pairs of law and motion at once. []
+
+    Parameters
+    ----------
+    laws : sequence of LuGreFriction
+        Of each point.
+    motions : sequence of GapMotion
+        Of each point.
+    sliding_speed : ndarray, shape (n,)
+        Mean sliding speed of each point. [m/s]
+    in_plane_fraction : float
+        Amplitude along the sliding direction over that along the normal. []
+    in_plane_phase : float
+        Lag of the in-plane motion behind the normal one. [rad]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Raises
+    ------
+    InvalidInput
+        If a speed is not positive, the fraction negative, or a value not finite.
+    """
+    v_r = require_positive(sliding_speed=sliding_speed)
+    fraction = float(require_non_negative(in_plane_fraction=in_plane_fraction))
+    lag = float(require_finite(in_plane_phase=in_plane_phase))
+    law = _Columns.of(laws)
+    loads, frequencies = (
+        np.array([[getattr(motion, name)] for motion in motions]) for name in ("normal_load", "frequency")
+    )
+    steady = law.limit(v_r[:, np.newaxis]) + law.viscous_coefficient * v_r[:, np.newaxis]
+
+    def mean_ratio(rows: Integers, displacement: Floats, normal_force: Floats) -> Floats:
+        oscillation = _in_plane(displacement, fraction, lag)
+        speeds, load = v_r[rows, np.newaxis], _mid_load(normal_force, loads[rows])
+        own = law.rows(rows)
+        bristle_force = _mean_force(own, load, oscillation, speeds, frequencies[rows])
+        force: Floats = bristle_force + (own.viscous_coefficient * speeds)[:, 0]
+        return np.asarray(force / steady[rows, 0])
+
+    return richardson_period_means(mean_ratio, motions, tolerance=_TOLERANCE)
+
+
+class _Columns(NamedTuple):
+    """Parameters of laws, shape (n, 1) each."""
+
+    coulomb_friction_force: Floats
+    static_friction_force: Floats
+    stribeck_velocity: Floats
+    bristle_stiffness: Floats
+    viscous_coefficient: Floats
+
+    @classmethod
+    def of(cls, laws: Sequence[LuGreFriction]) -> "_Columns":
+        """Return the columns of some laws."""
+        return cls(*(np.array([[getattr(law, name)] for law in laws]) for name in cls._fields))
+
+    def rows(self, rows: Integers) -> "_Columns":
+        """Return some rows."""
+        return _Columns(*(column[rows] for column in self))
+
+    def limit(self, v: Floats) -> Floats:
+        """Return the limit of the bristle force under the dead load at relative velocities. [N]"""
+        F_c, F_s = self.coulomb_friction_force, self.static_friction_force
+        return np.asarray(F_c + (F_s - F_c) * np.exp(-((v / self.stribeck_velocity) ** 2)))
+
+
+def _in_plane(displacement: Floats, fraction: float, lag: float) -> Floats:
+    """Return the motion along the sliding that goes with samples of that along the normal. [m]"""
+    return fraction * delayed_oscillation(displacement, phase=lag) if fraction else np.zeros(displacement.shape)
+
+
+def _mid_load(normal_force: Floats, normal_load: float | Floats) -> Floats:
+    """Return the normal force amid successive samples over the dead load. []"""
+    return (normal_force + np.roll(normal_force, -1, axis=-1)) / (2 * normal_load)
+
+
+def _mean_force(law: _Columns, load: Floats, oscillation: Floats, speeds: Floats, frequency: float | Floats) -> Floats:
+    """Return the mean bristle force of each row of samples. [N]"""
+    n = oscillation.shape[-1]
+    slides = np.roll(oscillation, -1, axis=-1) - oscillation + speeds / (frequency * n)
+    # where contact is lost the limit is the least number
+    limit = np.maximum(load * law.limit(slides * frequency * n), np.finfo(np.float64).tiny)
+    stiffness = np.broadcast_to(law.bristle_stiffness, limit.shape).copy()
+    return steady_period_mean_force(stiffness, limit, slides, np.full(limit.shape, 1 / n))

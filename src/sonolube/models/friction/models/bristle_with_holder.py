@@ -1,0 +1,170 @@
+"""Mean friction ratio of a vibrated contact by one bristle on an elastic holder, with normal and in-plane vibration."""
+
+import math
+from dataclasses import dataclass, fields
+from typing import ClassVar, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_positive
+from sonolube.errors import InvalidInput, warn_of_range
+from sonolube.models.contact.gap_motion import GapMotion, delayed_oscillation, require_open_gap
+from sonolube.models.contact.mindlin import mindlin_tangential_stiffness
+from sonolube.models.contact.period_mean import richardson_period_mean
+from sonolube.models.contact.rough import RoughContact
+from sonolube.models.friction.bristle import (
+    MAXIMUM_PERIODS,
+    Holder,
+    holder_propagators,
+    mean_force_inertial_holder,
+    mean_force_massless_holder,
+)
+from sonolube.models.friction.models.model import FrictionModel, parameter
+
+
+@final
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BristleWithHolder(FrictionModel):
+    r"""One bristle with Mindlin's tangential stiffness, continuous through the period, on a rigid or elastic holder.
+
+    Parameters
+    ----------
+    holder_stiffness : float
+        Stiffness of the holder along the sliding direction; infinite for a rigid one. [N/m]
+    holder_mass : float
+        Mass that moves with the slider; zero for a spring alone. [kg]
+    holder_damping : float
+        Damping between slider and ground; requires a mass. [N s/m]
+    in_plane_fraction : float
+        Amplitude along the sliding direction over that along the normal. []
+    in_plane_phase : float
+        Lag of the in-plane motion behind the normal one. [rad]
+    dahl_exponent : float
+        Approach to the friction limit: 0 elastic up to it, as spring and slider in series; 1 gradual, after Dahl. []
+
+    Raises
+    ------
+    InvalidInput
+        If the stiffness is not positive, another value negative or not finite, the exponent neither 0 nor 1, or a
+        holder without mass is damped or one with mass rigid.
+
+    Notes
+    -----
+    .. math:: \frac{dF}{dt} = k_t(t) \, v \left(1 - \mathrm{sgn}(v) \frac{F}{\mu F_n}\right)^i,
+              \qquad |F| \le \mu F_n(t)
+
+    with the relative velocity :math:`v = v_r + \dot u - \dot y`, the in-plane motion u and that of the holder y,
+    :math:`m \ddot y + c \dot y + K y = F`. The force grows with the increment of the deformation; a stiffness that
+    multiplies the whole deformation, F = k_t(t) delta, would not reduce friction where k_t is in proportion to F_n.
+
+    With a rigid holder, exponent 0 and a load-balanced sine the ratio is exactly 1 from v_r = mu omega a k_n/k_t on,
+    and exp(-beta)/I0(beta) in the limit of slow sliding, with beta = a/l: the smallest ratio by vibration along the
+    normal alone. An elastic holder without mass is a spring in series with the bristle.
+
+    The bristle is continuous while parts of the contact open and close. With in-plane motion in phase with the normal
+    one its varying stiffness therefore increases the force; in `AsperityStickSlip`, where the force of every asperity
+    restarts at each contact, it does not.
+
+    See Also
+    --------
+    sonolube.models.friction.models.asperity_stick_slip.AsperityStickSlip : A population of asperities with loss of
+    contact.
+
+    References
+    ----------
+    .. [1] M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017). doi:10.1007/s40544-016-0136-4
+    .. [2] P. R. Dahl, AIAA J. 14, 1675 (1976). doi:10.2514/3.61511
+    """
+
+    name: ClassVar[str] = "bristle_with_holder"
+    citation: ClassVar[str] = "M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017)"
+
+    holder_stiffness: float = parameter(math.inf, positive=True)
+    holder_mass: float = parameter(0.0, lowest=0.0)
+    holder_damping: float = parameter(0.0, lowest=0.0)
+    in_plane_fraction: float = parameter(0.0, lowest=0.0)
+    in_plane_phase: float = parameter(0.0)
+    dahl_exponent: float = parameter(0.0, lowest=0.0)
+
+    def __post_init__(self) -> None:
+        FrictionModel.__post_init__(self)
+        if self.dahl_exponent not in (0, 1):
+            raise InvalidInput(f"dahl_exponent must be 0 or 1, got {self.dahl_exponent!r}")
+        _ = self.holder
+
+    @property
+    def holder(self) -> Holder:
+        """Holder of the slider along the sliding direction."""
+        return Holder(**{field.name: getattr(self, field.name) for field in fields(Holder)})
+
+    def ratio(
+        self,
+        contact: RoughContact,
+        motion: GapMotion,
+        *,
+        sliding_speed: ArrayLike,
+        friction_coefficient: ArrayLike | None = None,
+    ) -> Floats:
+        """Return mean friction under a motion of the gap over friction without vibration. []
+
+        Parameters
+        ----------
+        contact : RoughContact
+        motion : GapMotion
+        sliding_speed : array_like, any shape
+            Mean sliding speed. [m/s]
+        friction_coefficient : float, optional
+            Coefficient of friction of steady sliding, which limits the force at every instantaneous normal force. []
+
+        Returns
+        -------
+        ndarray, shape of `sliding_speed`
+
+        Raises
+        ------
+        InvalidInput
+            If a speed or the coefficient is not positive, or the coefficient missing.
+        OutsideRange
+            If the motion closes the gap.
+
+        Warns
+        -----
+        ModelRangeWarning
+            If slider and holder reach no steady period; the mean over the last of many periods is returned.
+        """
+        v_r = require_positive(sliding_speed=sliding_speed)
+        if friction_coefficient is None:
+            raise InvalidInput(f"{self.name} requires a friction_coefficient, which limits the force of the bristle")
+        mu = float(require_positive(friction_coefficient=friction_coefficient))
+        d = require_open_gap(contact, motion)
+        settled = True
+
+        def normalized_friction(sampled: GapMotion) -> Floats:
+            nonlocal settled
+            order = np.roll(np.arange(sampled.displacement.size), -int(np.argmin(sampled.normal_force)))
+            limit = mu * sampled.normal_force[order]
+            k = mindlin_tangential_stiffness(contact, separation=d + sampled.displacement[order])
+            u = self.in_plane_fraction * delayed_oscillation(sampled.displacement, phase=self.in_plane_phase)[order]
+            step = 1 / (motion.frequency * order.size)
+            slides = np.roll(u, -1) - u, v_r.ravel() * step
+            forces, settled = self._mean_force(k, limit, slides, step)
+            return forces / (mu * motion.normal_load)
+
+        ratio = richardson_period_mean(normalized_friction, motion)
+        if not settled:
+            warn_of_range(
+                f"slider and holder reach no steady period within {MAXIMUM_PERIODS}; the mean over the last ones is"
+                " returned. Increase holder_damping"
+            )
+        return ratio.reshape(v_r.shape)
+
+    def _mean_force(self, k: Floats, limit: Floats, slides: tuple[Floats, Floats], step: float) -> tuple[Floats, bool]:
+        """Return the mean force at each sliding speed, in N, and whether a steady period was reached."""
+        exponent, stiffness = float(self.dahl_exponent), self.holder_stiffness
+        if self.holder_mass == 0:
+            return mean_force_massless_holder(k / (1 + k / stiffness), limit, *slides, exponent), True
+        deflection = mean_force_massless_holder(k, limit, *slides, exponent) / stiffness
+        matrices = holder_propagators(self.holder, step)
+        forces, settled = mean_force_inertial_holder(k, limit, *slides, step, exponent, *matrices, deflection)
+        return forces, bool(settled)

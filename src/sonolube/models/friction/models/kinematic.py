@@ -1,0 +1,148 @@
+"""Mean friction ratio of a normally vibrated contact by the direction of the relative velocity (kinematic model)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_positive
+from sonolube.compilation import kernel
+from sonolube.models.contact.gap_motion import GapMotion
+from sonolube.models.contact.period_mean import richardson_period_mean
+from sonolube.models.contact.rough import RoughContact
+from sonolube.models.friction.models.model import FrictionModel, parameter
+
+__all__ = ["Kinematic"]  # the period average serves the models of this room
+
+
+@final
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Kinematic(FrictionModel):
+    r"""Constant friction along the resultant of sliding and vibration velocity.
+
+    Parameters
+    ----------
+    amplitude_fraction : float
+        Fraction of the vibration amplitude that enters; other values than 1 come from fits only. []
+
+    Raises
+    ------
+    InvalidInput
+        If the fraction is not positive.
+
+    Notes
+    -----
+    .. math:: \frac{F_1}{F_0} = \left\langle \frac{v_r}{\sqrt{v_r^2 + v_1^2}} \right\rangle
+
+    over a period, with the sliding speed v_r and the velocity v_1 along the normal. D 3.46 prints v_1, which passes
+    through zero twice a period, below the fraction line; the resultant is meant.
+
+    See Also
+    --------
+    sonolube.models.friction.models.dong_2015.Dong2015FullPeriod : The same, weighted with the stiffness of the cube.
+
+    References
+    ----------
+    .. [1] D 3.46.
+    """
+
+    name: ClassVar[str] = "kinematic"
+    citation: ClassVar[str] = "D 3.46, with the resultant velocity where v_1 is printed"
+
+    needs_open_gap: ClassVar[bool] = False
+
+    amplitude_fraction: float = parameter(1.0, positive=True)
+
+    def ratio(
+        self,
+        contact: RoughContact,
+        motion: GapMotion,
+        *,
+        sliding_speed: ArrayLike,
+        friction_coefficient: ArrayLike | None = None,
+    ) -> Floats:
+        """Return mean friction under a motion of the gap over friction without vibration. []
+
+        Parameters
+        ----------
+        contact : RoughContact
+            Without effect in this model.
+        motion : GapMotion
+        sliding_speed : array_like, any shape
+            Mean sliding speed. [m/s]
+        friction_coefficient : float, optional
+            Without effect in this model. []
+
+        Returns
+        -------
+        ndarray, shape of `sliding_speed`
+
+        Raises
+        ------
+        InvalidInput
+            If a speed is not positive.
+        """
+        return kinematic_mean(
+            np.ones_like, motion, sliding_speed=sliding_speed, amplitude_fraction=self.amplitude_fraction
+        )
+
+
+def kinematic_mean(
+    weight: Callable[[Floats], Floats], motion: GapMotion, *, sliding_speed: ArrayLike, amplitude_fraction: float = 1.0
+) -> Floats:
+    r"""Return the period average of a weight times the kinematic factor. []
+
+    Parameters
+    ----------
+    weight : callable
+        Returns the weight for an array of displacements.
+    motion : GapMotion
+    sliding_speed : array_like, any shape
+        Mean sliding speed. [m/s]
+    amplitude_fraction : float
+        Fraction of the vibration velocity that enters. []
+
+    Returns
+    -------
+    ndarray, shape of `sliding_speed`
+
+    Raises
+    ------
+    InvalidInput
+        If a speed is not positive.
+
+    Notes
+    -----
+    .. math:: \langle w(x) \cos\theta \rangle, \qquad \cos\theta = \frac{v_r}{\sqrt{v_r^2 + v_1^2}}
+    """
+    v_r = require_positive(sliding_speed=sliding_speed)
+
+    def mean(sampled: GapMotion) -> Floats:
+        return _weighted_cosine(weight(sampled.displacement), amplitude_fraction * sampled.velocity, v_r.ravel())
+
+    return richardson_period_mean(mean, motion).reshape(v_r.shape)
+
+
+@kernel(cache=True, no_cfunc_wrapper=True)
+def _weighted_cosine(weights: Floats, velocity: Floats, speeds: Floats) -> Floats:
+    """Return the mean of weight times v_r/sqrt(v_r^2 + v^2), both linear between samples, exactly for any v_r."""
+    n = weights.size
+    means = np.empty(speeds.size)
+    for i in range(speeds.size):
+        total = 0.0
+        q = velocity[n - 1] / speeds[i]
+        angle, length = np.arcsinh(q), np.sqrt(1 + q * q)
+        for k in range(n):
+            p, angle_before, length_before = q, angle, length
+            q = velocity[k] / speeds[i]
+            angle, length = np.arcsinh(q), np.sqrt(1 + q * q)
+            w, rise, slope = weights[k - 1], weights[k] - weights[k - 1], q - p
+            if abs(slope) > 1e-3:
+                cosine = (angle - angle_before) / slope
+                total += w * cosine + rise * ((length - length_before) / slope - p * cosine) / slope
+            else:
+                total += (w + rise / 2) / np.sqrt(1 + (p + q) ** 2 / 4)
+        means[i] = total / n
+    return means

@@ -1,0 +1,42 @@
+"""Outliers of single pixels, by comparison with the median of their neighbours."""
+
+import numpy as np
+from scipy.ndimage import median_filter, uniform_filter
+
+from sonolube.models.surfaces.height_map import HeightMap
+
+__all__: list[str] = []  # used in this room only
+
+_DEVIATIONS = 8.0  # over the standard deviation of heights about the median of their neighbours
+_COMMON = 4.0  # over the deviation that 2 % of the pixels exceed
+_LEAST = 0.05  # of the range of heights: the kink of an edge is less
+_DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
+
+
+def without_outliers(surface: HeightMap) -> HeightMap:
+    """Scan with outliers of one or two pixels as missing ones.
+
+    Parameters
+    ----------
+    surface : HeightMap
+
+    Returns
+    -------
+    HeightMap
+    """
+    measured = surface.measured
+    share = uniform_filter(measured.astype(np.float64), 5)
+    mean = uniform_filter(np.where(measured, surface.height, 0.0), 5) / np.maximum(share, 0.01)
+    filled = np.where(measured, surface.height, mean)
+    deviation = np.abs(filled - median_filter(filled, 3))
+    of_measured = deviation[measured]
+    low, high = np.quantile(filled[measured], [0.005, 0.995])
+    limit = max(
+        _DEVIATIONS * _DEVIATION_OVER_MEDIAN * float(np.median(of_measured)),
+        _COMMON * float(np.quantile(of_measured, 0.98)),
+        _LEAST * float(high - low),
+    )
+    outlying = measured & (deviation > limit)
+    if not outlying.any() or outlying.sum() == measured.sum():
+        return surface
+    return surface.with_height(np.where(outlying, np.nan, surface.height))

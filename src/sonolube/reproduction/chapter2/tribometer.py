@@ -1,0 +1,221 @@
+"""Section 2.3, the modified tribometer, and its protocol in appendix A: rows of settings, friction, wear and marks."""
+
+from collections.abc import Iterator
+from operator import add, sub, truediv
+from typing import Final
+
+from sonolube.facts.published import ComputedValue, as_exact, as_setting, propagate_rounding, published_number, si_value
+from sonolube.models.friction import dong_2015_half_period_ratio
+from sonolube.models.wear import cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.reproduction import formulas
+from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row, range_rows
+from sonolube.validation.contacts import wear_contact
+
+_SPEEDS: Final = ("20.3", "40.6", "87")  # one to a row of Tables 2.2 and 2.5, one to two rows of Tables 2.3 and 2.4
+_ROTATIONS: Final = ("A.3.1.6-rotation-20.3", "A.3.1.10-rotation-40.6", "A.3.1.10-rotation-87")
+_DISTANCE: Final = "table-2.2-sliding_distance-1"
+_HIGHEST_SPEED: Final = "table-2.2-sliding_speed-3"
+
+
+def tribometer_rows() -> Iterator[Row]:
+    """Yield the rows of section 2.3."""
+    yield from _settings_of_first_study()
+    yield from _protocol()
+    yield from _friction()
+    yield from _surfaces()
+    yield from _wear_of_first_study()
+    yield from _marks()
+    yield from _settings_of_second_study()
+    yield from _wear_of_second_study()
+
+
+def reductions_of_table_2_3(column: str) -> list[ComputedValue]:
+    """Return the reductions of a column of Table 2.3 under vibration at the three speeds. []"""
+    return [
+        propagate_rounding(formulas.friction_reduction, f"table-2.3-{column}-{off}", f"table-2.3-{column}-{off + 1}")
+        for off in (1, 3, 5)
+    ]
+
+
+def wear_reductions(table_id: str) -> list[ComputedValue]:
+    """Return the wear reductions of the three pairs of wear rates of Table 2.5 or 2.7. []"""
+    return [
+        propagate_rounding(
+            formulas.wear_reduction,
+            f"table-{table_id}-intrinsic_wear_rate-{row}",
+            f"table-{table_id}-reduced_wear_rate-{row}",
+        )
+        for row in (1, 2, 3)
+    ]
+
+
+def _settings_of_first_study() -> Iterator[Row]:
+    """Yield the rows of Table 2.2 from distance, revolutions and rotation speed."""
+    turns = as_setting("table-2.2-revolutions-1")
+    printed = formulas.sliding_distance(turns.value, si_value("table-2.2-groove_diameter-1"))
+    yield comparison_row(
+        "table-2.2-groove_diameter-1",
+        propagate_rounding(formulas.groove_diameter, _DISTANCE, turns),
+        f"Distance over pi times turns; with the printed diameter the distance is {printed:.1f} m.",
+        kind=RowKind.PUBLISHED_FORMULA,
+    )
+
+    def speed(rotation: float, distance: float, turns: float) -> float:
+        return formulas.sliding_speed(rotation, formulas.groove_diameter(distance, turns))
+
+    for row, rotation in enumerate(_ROTATIONS, start=1):
+        speed_id, note = f"table-2.2-sliding_speed-{row}", "Rotation of appendix A times distance per turn."
+        yield formula_row(speed_id, note, speed, rotation, _DISTANCE, turns)
+        yield formula_row(f"table-2.2-running_time-{row}", "Distance over speed.", truediv, _DISTANCE, speed_id)
+
+
+def _protocol() -> Iterator[Row]:
+    """Yield the rows of appendix A from the settings of Table 2.2."""
+    turns = as_setting("table-2.2-revolutions-1")
+    yield comparison_row(
+        "A.1.3.6-groove-radius",
+        propagate_rounding(lambda *settings: formulas.groove_diameter(*settings) / 2, _DISTANCE, turns),
+        "Half the diameter that follows from distance and turns of Table 2.2.",
+        kind=RowKind.PUBLISHED_FORMULA,
+    )
+    for row, rotation in enumerate(_ROTATIONS, start=1):
+        time = as_setting(f"table-2.2-running_time-{row}")
+        yield formula_row(rotation, "Turns over running time of Table 2.2.", truediv, turns, time)
+    note = "Distance over speed of Table 2.2."
+    yield formula_row("A.3.1.10-duration-87", note, truediv, _DISTANCE, _HIGHEST_SPEED)
+
+
+def _friction() -> Iterator[Row]:
+    """Yield the rows of friction with vibration by the cube, and of the reductions of friction and fluctuation."""
+    load, amplitude = si_value("table-2.2-normal_load-1"), si_value("table-2.2-vibration_amplitude-1")
+    ratio = float(dong_2015_half_period_ratio(wear_contact(), normal_load=load, vibration_amplitude=amplitude))
+    for row in (2, 4, 6):
+        yield comparison_row(
+            f"table-2.3-friction_force-{row}",
+            ratio * si_value(f"table-2.3-friction_force-{row - 1}"),
+            f"Cube, D 3.15 with Table 3.2: {ratio:.3f} of the force without vibration, at every speed; it has no slip.",
+            kind=RowKind.PUBLISHED_MODEL,
+        )
+    reductions = reductions_of_table_2_3("friction_force")
+    for published, reduction in (
+        *((f"table-2.5-friction_reduction-{row}", each) for row, each in enumerate(reductions, start=1)),
+        ("2.3.5-friction-reduction-20.3", reductions[0]),
+        ("2.3.5-friction-reduction-87", reductions[2]),
+        ("2.3.7-friction-reduction", max(reductions)),
+        ("2.3.7-friction-reduction-87", reductions[2]),
+    ):
+        yield comparison_row(
+            published, reduction, "D 2.1 from the forces of Table 2.3.", kind=RowKind.PUBLISHED_FORMULA
+        )
+    reductions = reductions_of_table_2_3("friction_rms")
+    each = ", ".join(f"{100 * reduction.value:.1f}" for reduction in reductions)
+    note = f"Largest reduction of the fluctuation in Table 2.3: {each} %."
+    yield comparison_row("2.3.7-stick-slip-reduction", max(reductions), note, kind=RowKind.PUBLISHED_FORMULA)
+
+
+def _surfaces() -> Iterator[Row]:
+    """Yield the rows of Table 2.4 and of the hardness."""
+    for row in range(1, 8):
+        parts = f"table-2.4-maximum_peak_height-{row}", f"table-2.4-maximum_pit_depth-{row}"
+        yield formula_row(f"table-2.4-total_height-{row}", "R_p + R_v.", add, *parts)
+    for metal, hardness in (("steel", "table-2.15-hardness-2"), ("aluminium", "table-2.15-hardness-1")):
+        yield formula_row(f"2.3.4-hardness-{metal}", "The same alloy in Table 2.15.", float, hardness)
+
+
+def _wear_of_first_study() -> Iterator[Row]:
+    """Yield the rows of Table 2.5 on wear, and of the wear reductions in the text."""
+    reductions = wear_reductions("2.5")
+    for row, reduction in enumerate(reductions, start=1):
+        rates = f"table-2.5-intrinsic_wear_rate-{row}", f"table-2.5-reduced_wear_rate-{row}"
+        yield formula_row(f"table-2.5-wear_rate_drop-{row}", "Difference of the rates.", sub, *rates)
+        yield comparison_row(
+            f"table-2.5-wear_reduction-{row}", reduction, "D 2.3 from the rates.", kind=RowKind.PUBLISHED_FORMULA
+        )
+        count, frequency = f"table-2.5-vibration_contact_count-{row}", f"table-2.2-frequency-{row}"
+        time = as_setting(f"table-2.2-running_time-{row}")
+        yield formula_row(count, "f times running time.", formulas.contact_count, frequency, time)
+    smallest, largest = (f"D 2.3 from the rates of Table 2.5, the {which}." for which in ("smallest", "largest"))
+    yield from range_rows(
+        "2.3.5-wear-reduction",
+        min(reductions),
+        max(reductions),
+        smallest,
+        high_note=largest,
+        kind=RowKind.PUBLISHED_FORMULA,
+    )
+    yield comparison_row("2.3.7-wear-reduction", max(reductions), largest, kind=RowKind.PUBLISHED_FORMULA)
+    yield _wear_reduction_of_the_cube()
+
+
+def _wear_reduction_of_the_cube() -> Row:
+    """Return the wear reduction by the cube, with Table 3.2 and the rounding of the amplitude."""
+    contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
+    off = float(cube_wear_rate(contact, normal_load=load))
+
+    def reduction(amplitude: float) -> float:
+        return 1 - float(vibrating_cube_wear_rate(contact, normal_load=load, vibration_amplitude=amplitude)) / off
+
+    return comparison_row(
+        "2.3.5-wear-reduction",
+        propagate_rounding(reduction, "2.3.1-amplitude"),
+        "Cube, D 3.26 averaged over the separating half period against that at rest; the same at every speed.",
+        suffix="by-the-cube",
+        kind=RowKind.PUBLISHED_MODEL,
+    )
+
+
+def _marks() -> Iterator[Row]:
+    """Yield the rows of the marks on the discs: dots of the vibration and indentations of stick-slip."""
+    period = as_exact("2.3.4-stick-slip-period")
+    dots = propagate_rounding(formulas.dot_spacing, _HIGHEST_SPEED, "table-2.2-frequency-3")
+    yield comparison_row("2.3.4-dots-calculated", dots, "v over f.", kind=RowKind.PUBLISHED_FORMULA)
+    note = "v over f, the length of one cycle; D states no scatter of the measurement in one image."
+    yield comparison_row("2.3.4-dots-measured", dots, note, kind=RowKind.PUBLISHED_FORMULA)
+    for row, printed in enumerate(_SPEEDS, start=1):
+        needed = si_value(f"2.3.4-indentation-{printed}") / si_value(f"table-2.2-sliding_speed-{row}")
+        yield comparison_row(
+            f"2.3.4-indentation-{printed}",
+            propagate_rounding(formulas.indentation_spacing, f"table-2.2-sliding_speed-{row}", period),
+            f"D 2.4 with {1e3 * period.value:g} ms; the print corresponds to {1e3 * needed:.1f} ms.",
+            kind=RowKind.PUBLISHED_FORMULA,
+        )
+    at_highest_speed = propagate_rounding(formulas.indentation_spacing, _HIGHEST_SPEED, period)
+    yield comparison_row("2.3.4-indentation-measured", at_highest_speed, "D 2.4.", kind=RowKind.PUBLISHED_FORMULA)
+    yield comparison_row("2.3.7-indentations", at_highest_speed, "D 2.4.", kind=RowKind.PUBLISHED_FORMULA)
+    note = "v over the measured distance of indentations."
+    yield formula_row("2.3.7-stick-slip-frequency", note, truediv, _HIGHEST_SPEED, "2.3.4-indentation-measured")
+
+
+def _settings_of_second_study() -> Iterator[Row]:
+    """Yield the rows of Table 2.6, and of the revolutions of the second study, from running times."""
+    times = [as_setting(f"table-2.6-running_time-{row}") for row in (1, 2, 3)]
+    for row, time in enumerate(times, start=1):
+        speed, distance = f"table-2.6-sliding_speed-{row}", f"table-2.6-sliding_distance-{row}"
+        yield formula_row(speed, "Distance over running time.", truediv, distance, time)
+
+    def in_proportion(whole: float, part_time: float, whole_time: float) -> float:
+        return whole * part_time / whole_time
+
+    way, turns = published_number("table-2.6-sliding_distance-3"), as_setting("table-2.6-revolutions-3")
+    for published, quantity, whole, time in (
+        ("table-2.6-sliding_distance-1", "Distance", way, times[0]),
+        ("table-2.6-sliding_distance-2", "Distance", way, times[1]),
+        ("table-2.6-revolutions-1", "Turns", turns, times[0]),
+        ("table-2.6-revolutions-2", "Turns", turns, times[1]),
+        ("table-2.7-revolutions-1", "Turns", turns, times[0]),
+        ("2.3.6-revolutions-1", "Turns", turns, times[0]),
+    ):
+        note = f"{quantity} of the longest test, in proportion to time."
+        yield formula_row(published, note, in_proportion, whole, time, times[2])
+
+
+def _wear_of_second_study() -> Iterator[Row]:
+    """Yield the rows of Table 2.7."""
+    for row, reduction in enumerate(wear_reductions("2.7"), start=1):
+        distance = f"table-2.6-sliding_distance-{row}"
+        for state in ("intrinsic", "reduced"):
+            rate, volume = f"table-2.7-{state}_wear_rate-{row}", f"table-2.7-{state}_wear_volume-{row}"
+            yield formula_row(rate, "D 2.2 with the distance of Table 2.6.", formulas.wear_rate, volume, distance)
+        yield comparison_row(
+            f"table-2.7-wear_reduction-{row}", reduction, "D 2.3 from the rates.", kind=RowKind.PUBLISHED_FORMULA
+        )

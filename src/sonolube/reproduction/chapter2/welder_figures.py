@@ -1,0 +1,250 @@
+"""Section 2.4, the welder rig: figures of its force gauge, the bent waveguide, and of friction in time by that gauge.
+
+No reading of the gauge is printed. A waveguide with Preisach's hysteresis, of assumed stiffness and loss, stands for
+the one of D: its readings are calibrated as a measured file is, and converted by that calibration.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from scipy.optimize import brentq
+
+from sonolube.checks import Floats
+from sonolube.compilation import few_points
+from sonolube.facts.published import PrintedNumber, published_number, si_value
+from sonolube.figure import COLOURS, LINES, ReportFigure
+from sonolube.measurement.gauge.calibration import PreisachCalibration, fit_branches, fit_preisach, force_from_preisach
+from sonolube.measurement.gauge.preisach import PreisachPlane
+from sonolube.models.contact import decay_length, separation
+from sonolube.models.friction import sine_stick_slip_ratio
+from sonolube.reproduction.plots import line_style, single_axes
+from sonolube.validation.published_tests import friction_tests
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_ROUND_TIP: Final = 1  # rows of Table 2.9
+_FLAT_TIP: Final = 2
+_LARGEST_DEFLECTION: Final = 80e-6  # m, assumed
+_STIFFNESS: Final = 0.45e6  # N/m, assumed: of the first pull
+_LOSS: Final = 0.35  # of the stiffness, which relays take away by the largest deflection; assumed
+_LEVELS: Final = 8
+_NOISE: Final = 0.15  # N, of the load cell in a pull by hand, assumed
+_PULLS: Final = (1.0, 0.8, 0.6, 0.4, 0.2)  # deflections at which the pull is released, over the largest
+_READINGS: Final = 40  # of each pull and of each release
+_START: Final = 0.2  # s in which the motor takes up the slack, assumed
+_VIBRATED: Final = (3.0, 8.0)  # s, assumed: D says a few seconds
+_GAUGE: Final = (
+    f"a waveguide of {1e-6 * _STIFFNESS:g} N/µm, of whose force hysteresis takes {100 * _LOSS:g} % at "
+    f"{1e6 * _LARGEST_DEFLECTION:g} µm, "
+    f"and a load cell that scatters by {_NOISE:g} N"
+)
+
+
+def welder_figures() -> Iterator[ReportFigure]:
+    """Return the figures of section 2.4."""
+    yield ReportFigure(
+        name="figure-2-32-calibration",
+        title="Calibration of friction over the deflection of the waveguide",
+        caption="As D figure 2.32, of which no number is printed. The readings are generated, for pulls released at "
+        f"five deflections: {_GAUGE}, all assumed. Where the release begins decides the way back, so that one curve "
+        "for loading and one for unloading (dashed) do not hold; Preisach's model, with the history of the deflection, "
+        "does.",
+        draw=_calibration,
+    )
+    yield ReportFigure(
+        name="figure-2-33-welder-friction",
+        title="Deflection of the waveguide and friction in time",
+        caption="As D figure 2.33. Forces and rotation are of Tables 2.8 and 2.9, whose ranges are the bands: the "
+        "friction swings through them once a turn. Deflections are those at which the waveguide of figure 2.32 "
+        f"({_GAUGE}; assumed) carries these forces, converted by its calibration. Vibration from {_VIBRATED[0]:g} to "
+        f"{_VIBRATED[1]:g} s, assumed, and 11 turns in all. Dashed: asperity stick-slip, 20 kHz and 11.46 µm.",
+        draw=_friction_in_time,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Readings:
+    """Readings of the calibration: deflection, and force of the pull.
+
+    Parameters
+    ----------
+    deflection : ndarray, shape (n,)
+        In the order of time, in m.
+    applied_force : ndarray, shape (n,)
+        Of the load cell. [N]
+    """
+
+    deflection: Floats
+    applied_force: Floats
+
+
+@cache
+def waveguide() -> PreisachCalibration:
+    """Return the assumed waveguide: a spring with relays of one density over the plane of Preisach."""
+    plane = PreisachPlane(lowest=0.0, highest=_LARGEST_DEFLECTION, levels=_LEVELS)
+    up, down = np.tril_indices(_LEVELS)
+    share = np.where(up == down, 0.5, 1.0)  # cells on the diagonal are triangles
+    return PreisachCalibration(
+        plane=plane,
+        reversible=np.full(_LEVELS, _STIFFNESS * _LARGEST_DEFLECTION / _LEVELS),
+        weights=share / share.sum() * _LOSS * _STIFFNESS * _LARGEST_DEFLECTION,
+        resting_force=0.0,
+        force_deviation=_NOISE,
+    )
+
+
+@cache
+def readings() -> Readings:
+    """Return the generated readings of pulls that are released at five deflections, with scatter of the load cell."""
+    turns = [0.0]
+    for pull in _PULLS:
+        turns += [pull * _LARGEST_DEFLECTION, 0.0]
+    legs = [np.linspace(start, end, _READINGS, endpoint=False) for start, end in pairwise(turns)]
+    x = np.concatenate([*legs, [0.0]])
+    noise = _NOISE * np.random.default_rng(20).standard_normal(x.size)
+    return Readings(deflection=x, applied_force=force_from_preisach(waveguide(), displacement=x).applied_force + noise)
+
+
+@cache
+def calibration() -> PreisachCalibration:
+    """Return Preisach's calibration by the readings."""
+    found = readings()
+    return fit_preisach(displacement=found.deflection, applied_force=found.applied_force, levels=_LEVELS)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class TipRecord:
+    """Deflection and friction in time of the test with a tip.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        From the first deflection on. [s]
+    deflection : ndarray, shape (n,)
+        Of the waveguide, in m.
+    friction_force : ndarray, shape (n,)
+        By the calibration. [N]
+    """
+
+    time: Floats
+    deflection: Floats
+    friction_force: Floats
+
+
+def tip_record(tip: int, *, samples: int = 401) -> TipRecord:
+    """Return the record of the test with a tip: 1 round, 2 flat, rows of Table 2.9.
+
+    Parameters
+    ----------
+    tip : int
+    samples : int
+        Number of samples.
+
+    Returns
+    -------
+    TipRecord
+        Of the duration of the printed revolutions.
+    """
+    slow, fast = (si_value(f"table-2.8-rotation_speed-{row}") for row in (2 * tip - 1, 2 * tip))
+    first, last = _VIBRATED
+    turns = si_value(f"table-2.8-revolutions-{2 * tip - 1}")
+    end = last - first + (turns - fast * (last - first)) / slow
+    time = np.linspace(0.0, end, samples)
+    vibrated = (time >= first) & (time < last)
+    turned = slow * time + (fast - slow) * (np.clip(time, first, last) - first)
+    without, with_vibration = forces(tip)
+    highest = _deflection(without.high)
+    lowest = _deflection(with_vibration.low, highest)
+    off = _deflection(without.low, highest), highest
+    on = lowest, _deflection(with_vibration.high, highest, lowest)
+    low, high = (np.where(vibrated, of_on, of_off) for of_off, of_on in zip(off, on, strict=True))
+    started = np.minimum(time / _START, 1.0)
+    x = started * ((low + high) / 2 + (high - low) / 2 * np.sin(2 * np.pi * turned))
+    force = force_from_preisach(calibration(), displacement=x).applied_force
+    return TipRecord(time=time, deflection=x, friction_force=force)
+
+
+def forces(tip: int) -> tuple[PrintedNumber, PrintedNumber]:
+    """Return friction without and with vibration with a tip, Table 2.9."""
+    off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
+    return off, on
+
+
+def _deflection(force: float, *before: float) -> float:
+    """Return the deflection at which the assumed waveguide carries a force, after others that it had. [m]"""
+
+    def excess(x: float) -> float:
+        return float(force_from_preisach(waveguide(), displacement=[0.0, *before, x]).applied_force[-1]) - force
+
+    return float(brentq(excess, 0.0, _LARGEST_DEFLECTION, xtol=1e-9))
+
+
+def _calibration() -> "Figure":
+    """Draw the readings with Preisach's model, and with one curve for loading and one for unloading."""
+    figure, axes = single_axes()
+    with few_points():
+        found, fitted = readings(), calibration()
+        model = force_from_preisach(fitted, displacement=found.deflection).applied_force
+    branches = fit_branches(displacement=found.deflection, applied_force=found.applied_force)
+    um = 1e6 * found.deflection
+    axes.plot(um, found.applied_force, ".", color="0.55", markersize=3, label="readings, generated")
+    axes.plot(um, model, color=COLOURS[1], linewidth=1.1, label="Preisach's model")
+    order = np.linspace(0.0, um.max(), 101)
+    for name, curve in (("loading and unloading", branches.loading), (None, branches.unloading)):
+        axes.plot(order, curve(1e-6 * order), LINES[1], color=COLOURS[0], label=name)
+    axes.set(xlabel="Deflection of the waveguide [µm]", ylabel="Pulling force [N]", xlim=(-2, 82), ylim=(-1, 27))
+    axes.locator_params(axis="x", nbins=5)
+    axes.legend(loc="upper left")
+    return figure
+
+
+def _friction_in_time() -> "Figure":
+    """Draw deflection and friction in time of the flat and of the round tip."""
+    from matplotlib import pyplot as plt
+
+    figure, panels = plt.subplots(2, 2, figsize=(7.2, 4.6), sharex="col", sharey="row")
+    for (deflected, rubbed), (tip, name) in zip(
+        panels.T, ((_FLAT_TIP, "Flat tip"), (_ROUND_TIP, "Round tip")), strict=True
+    ):
+        with few_points():
+            record = tip_record(tip)
+        deflected.plot(record.time, 1e6 * record.deflection, **line_style(0))
+        rubbed.plot(record.time, record.friction_force, **line_style(0), label="by the gauge")
+        first, last = _VIBRATED
+        off, on = forces(tip)
+        for number, spans in ((off, ((0.0, first), (last, record.time[-1]))), (on, ((first, last),))):
+            for start, end in spans:
+                rubbed.fill_between([start, end], number.low, number.high, color="0.8", linewidth=0, zorder=0)
+        rubbed.fill_between([], [], [], color="0.8", label="range of Table 2.9")
+        rubbed.plot(
+            [first, last],
+            np.full(2, off.value * stick_slip_ratio(tip)),
+            LINES[1],
+            color=COLOURS[1],
+            label="asperity stick-slip",
+        )
+        deflected.set_title(name, fontsize=9)
+        rubbed.set(xlabel="Time [s]", xlim=(0, record.time[-1]), xticks=(0, 3, 8))
+    panels[0, 0].set(ylabel="Deflection [µm]", ylim=(0, 70), yticks=(0, 20, 40, 60))
+    panels[1, 0].set(ylabel="Friction force [N]", ylim=(0, 23))
+    figure.legend(*panels[1, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    return figure
+
+
+def stick_slip_ratio(tip: int) -> float:
+    """Return the friction ratio of the test with a tip by asperity stick-slip: 1 round, 2 flat. []"""
+    test = friction_tests("G")[tip - 1]
+    at_rest = separation(test.contact, normal_load=test.normal_load)
+    return float(
+        sine_stick_slip_ratio(
+            decay_length=float(decay_length(test.contact, separation=at_rest)),
+            vibration_amplitude=test.vibration_amplitude,
+            frequency=test.frequency,
+            sliding_speed=test.sliding_speed,
+        )
+    )

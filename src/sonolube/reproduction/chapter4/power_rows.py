@@ -1,0 +1,259 @@
+"""Section 4.1: rows of the settings of the power maps and of their example test, by cube and efficiency line."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from operator import sub, truediv
+
+from sonolube.facts.metrics import power_for_friction
+from sonolube.facts.published import (
+    ComputedValue,
+    PrintedNumber,
+    PublishedValue,
+    column_numbers,
+    propagate_rounding,
+    published_number,
+    published_value,
+    si_value,
+)
+from sonolube.reproduction import formulas
+from sonolube.reproduction.chapter4 import power_map
+from sonolube.reproduction.cube import STEEL_ON_STEEL_NOTE
+from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row
+from sonolube.validation.contacts import STEEL_YIELD_STRENGTHS
+from sonolube.validation.efficiency import efficiency_line
+
+_UNIT_OF_LINE = 1e-9  # mW mm2/(N W) in m2/N
+
+
+def power_map_rows() -> Iterator[Row]:
+    """Yield the rows of section 4.1 on settings and example test."""
+    yield from nominal_pressure_rows("4.1")
+    for row, voltage in column_numbers("4.1", "voltage_peak_to_peak").items():
+        yield power_row(f"table-4.1-actuator_power-{row}", voltage.value)
+    yield from amplitude_rows("4.1")
+    yield _highest_amplitude()
+    yield from _settings_of_the_text()
+    yield from _example_test()
+    for point in power_map.example_points():
+        yield _reduction_of_mean_forces(point)
+        yield _cube_friction(point)
+        yield _efficiency(point)
+        yield _line_friction(point)
+        yield _line_power(point)
+    slowest = power_map.example_test() | {"sliding_speed": published_number("table-4.1-sliding_speed-1").low}
+    first, *_, last = power_map.example_points()
+    yield line_reduction_row("4.1.2-reduction-lowest-voltage", slowest, actuator_power=first.actuator_power)
+    yield line_reduction_row("4.1.2-reduction-highest-voltage", slowest, actuator_power=last.actuator_power)
+    yield _intrinsic_friction()
+
+
+def nominal_pressure_rows(table_id: str) -> Iterator[Row]:
+    """Yield the nominal pressures of a table from its loads and its nominal area."""
+    area = published_number(f"table-{table_id}-nominal_area-1")
+    for row, load in column_numbers(table_id, "normal_load").items():
+        yield _pressure_row(f"table-{table_id}-nominal_pressure-{row}", load.value, area)
+
+
+def amplitude_rows(table_id: str) -> Iterator[Row]:
+    """Yield the amplitudes of a table below the highest, in proportion to its voltages."""
+    voltages, amplitudes = (
+        column_numbers(table_id, column) for column in ("voltage_peak_to_peak", "vibration_amplitude")
+    )
+    highest, amplitude = voltages[max(voltages)], amplitudes[max(voltages)]
+    note = f"{amplitude.value / highest.value * 1e6:.4f} um per volt peak to peak, from {highest.text} V"
+    for row, voltage in voltages.items():
+        if 0 < voltage.value < highest.value:
+            published = f"table-{table_id}-vibration_amplitude-{row}"
+            yield formula_row(published, note, lambda a, highest, u: a / highest * u, amplitude, highest, voltage)
+
+
+def power_row(published: PublishedValue | str, voltage: float) -> Row:
+    """Return the row of a published actuator power at a voltage peak to peak in V."""
+    power = float(power_map.actuator_power(voltage_peak_to_peak=voltage))
+    note = f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
+    return comparison_row(published, power, note, kind=RowKind.PUBLISHED_FORMULA)
+
+
+def line_reduction_row(published: str, test: dict[str, float], *, actuator_power: float) -> Row:
+    """Return the row of a friction reduction on the efficiency line.
+
+    Parameters
+    ----------
+    published : str
+        Id of the published reduction.
+    test : dict
+        Settings as `example_test` returns them.
+    actuator_power : float
+        Power of the actuator. [W]
+
+    Returns
+    -------
+    Row
+    """
+    off, on = test["intrinsic_friction_force"], float(power_map.line_friction(test, actuator_power=actuator_power))
+    note = (
+        f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and {test['sliding_speed'] * 1e3:g} "
+        f"mm/s, from {off:.3g} N; the line ends at {power_map.line_end() * 1e3:.0f} mm/s, where it crosses zero"
+    )
+    return comparison_row(published, formulas.friction_reduction(off, on), note, kind=RowKind.PUBLISHED_MODEL)
+
+
+def _pressure_row(published: PublishedValue | str, load: float, area: PrintedNumber) -> Row:
+    """Return the row of a published nominal pressure of a load in N on a printed area."""
+    note = f"{load:g} N over {area.text} mm2, the load taken as exact"
+    return formula_row(published, note, partial(truediv, load), area)
+
+
+def _highest_amplitude() -> Row:
+    """Return the highest amplitude of Table 4.1 from that of the wear tests, in proportion to the voltage."""
+    voltages, amplitude = column_numbers("4.1", "voltage_peak_to_peak"), published_number("2.3.1-amplitude")
+    in_wear_tests = 2 * si_value("A.3.1.3-voltage-amplitude") * si_value("A.3.1.5-gain")
+    last = max(voltages)
+    return comparison_row(
+        f"table-4.1-vibration_amplitude-{last}",
+        propagate_rounding(lambda a: a / in_wear_tests * voltages[last].value, amplitude),
+        f"in proportion to {amplitude.text} um at {in_wear_tests:.3g} V peak to peak, section 2.3.1 and appendix A 3.1",
+        kind=RowKind.PUBLISHED_FORMULA,
+    )
+
+
+def _settings_of_the_text() -> Iterator[Row]:
+    """Yield diameters, stresses and powers of section 4.1.1."""
+    for nth in (1, 2):
+        inches = published_number(f"4.1.3-groove-diameter-{nth}")
+        yield comparison_row(
+            f"4.1.1-diameter-{nth}", inches.value, f"{inches.text} in of section 4.1.3", kind=RowKind.PUBLISHED_FORMULA
+        )
+    area, load = published_number("4.1.1-nominal-area"), published_number("4.1.1-normal-load")
+    for limit, newtons in zip(published_value("4.1.1-stress").limits(), (load.low, load.high), strict=True):
+        yield _pressure_row(limit, newtons, area)
+    yield _pressure_row("4.1.2-efficiency-stress", load.high, area)
+    first, *_, last = power_map.example_points()
+    for limit, point in zip(published_value("4.1.1-power").limits(), (first, last), strict=True):
+        yield power_row(limit, point.voltage_peak_to_peak)
+
+
+def _example_test() -> Iterator[Row]:
+    """Yield speed, duration and friction drop of the example test."""
+
+    def speed(turn: float, diameter: float = si_value("4.1.2-diameter")) -> float:
+        return formulas.sliding_speed(1 / turn, diameter)
+
+    rounded = speed(si_value("4.1.2-turn-duration"), si_value("4.1.1-diameter-1"))
+    note = f"pi times 1.1 in over the time of a turn; with the rounded 28 mm {rounded * 1e3:.1f} mm/s"
+    yield formula_row("4.1.2-sliding-speed", note, speed, "4.1.2-turn-duration")
+
+    levels, level = si_value("4.1.1-voltage-count"), si_value("4.1.2-level-duration")
+    duration = si_value("4.1.2-vibration-start") + levels * level
+    note = f"start of the vibration, then {levels:g} levels of {level:g} s"
+    yield comparison_row("4.1.2-duration", duration, note, kind=RowKind.PUBLISHED_FORMULA)
+
+    off, on, *_ = column_numbers("4.2", "friction_force").values()
+    yield formula_row("4.1.2-friction-drop", f"{off.value:g} N less {on.value:g} N", sub, off, on)
+
+
+def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
+    """Return the friction reduction of the mean forces of Table 4.2 at a voltage."""
+    off, on = power_map.example_test()["intrinsic_friction_force"], point.friction.value
+    note = f"D 2.1 from the mean forces, {off:g} N and {on:g} N"
+    # compared within the scatter of D alone: the rounding of the forces would hide that D averaged otherwise, E17
+    return comparison_row(
+        f"table-4.2-friction_reduction-{point.row}",
+        formulas.friction_reduction(off, on),
+        note,
+        kind=RowKind.PUBLISHED_FORMULA,
+    )
+
+
+def _cube_friction(point: power_map.ExamplePoint) -> Row:
+    """Return the friction of the cube at a voltage."""
+    off = power_map.example_test()["intrinsic_friction_force"]
+    volts = point.voltage_peak_to_peak
+    friction = float(power_map.cube_friction(voltage_peak_to_peak=volts))
+    weakest, strongest = (
+        float(power_map.cube_friction(voltage_peak_to_peak=volts, yield_strength=strength))
+        for strength in STEEL_YIELD_STRENGTHS
+    )
+    note = (
+        f"cube, D 3.15: ratio {friction / off:.3f} of {off:g} N; R_q = 2.12 um of the plates (D 4.1.3);"
+        f" {STEEL_ON_STEEL_NOTE}; neither sliding speed nor in-plane motion of the tip enters"
+    )
+    return comparison_row(
+        f"table-4.2-friction_force-{point.row}",
+        friction,
+        note,
+        suffix="by-the-cube",
+        kind=RowKind.PUBLISHED_MODEL,
+        possible=(weakest, strongest),
+    )
+
+
+def _efficiency(point: power_map.ExamplePoint) -> Row:
+    """Return the intercept of the efficiency line from the efficiency coefficient at a voltage."""
+    line, speed = efficiency_line(), power_map.example_test()["sliding_speed"]
+    to_zero_speed = -line.slope * speed
+    coefficient = power_map.point_efficiency(point, friction=point.friction.value)
+    on_line = float(power_map.line_efficiency(sliding_speed=speed))
+    note = (
+        f"D 4.1 at {point.voltage_peak_to_peak:g} V gives {coefficient / _UNIT_OF_LINE:.3f}, the line"
+        f" {on_line / _UNIT_OF_LINE:.3f} mW mm2/(N W); carried to zero speed by the printed slope"
+    )
+    intercept = _over_scatter(
+        lambda friction: power_map.point_efficiency(point, friction=friction) + to_zero_speed, point.friction
+    )
+    note, suffix = note + _surplus_power_note(point), f"at-{point.voltage_peak_to_peak:g}V"
+    return comparison_row("4.1.2-efficiency-intercept", intercept, note, suffix=suffix, kind=RowKind.PUBLISHED_MODEL)
+
+
+def _line_friction(point: power_map.ExamplePoint) -> Row:
+    """Return the friction on the efficiency line at a voltage."""
+    test = power_map.example_test()
+    as_printed = test["intrinsic_friction_force"] * (1 + point.actuator_power / power_map.sufficient_power(test))
+    note = (
+        f"D 4.4 solved for the reduced friction, at {point.actuator_power:.3g} W; "
+        f"as printed it would rise to {as_printed:.3g} N{_surplus_power_note(point)}"
+    )
+    friction = float(power_map.line_friction(test, actuator_power=point.actuator_power))
+    return comparison_row(
+        f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line", kind=RowKind.PUBLISHED_MODEL
+    )
+
+
+def _line_power(point: power_map.ExamplePoint) -> Row:
+    """Return the power on the efficiency line for the friction at a voltage."""
+
+    def power(friction: float) -> float:
+        return float(power_for_friction(efficiency_line(), reduced_friction_force=friction, **power_map.example_test()))
+
+    voltages = column_numbers("4.1", "voltage_peak_to_peak")
+    row = next(row for row, voltage in voltages.items() if voltage.value == point.voltage_peak_to_peak)
+    note = f"D 4.3 for the {point.friction.text} N of Table 4.2{_surplus_power_note(point)}"
+    power_over_scatter = _over_scatter(power, point.friction)
+    return comparison_row(
+        f"table-4.1-actuator_power-{row}", power_over_scatter, note, suffix="by-the-line", kind=RowKind.PUBLISHED_MODEL
+    )
+
+
+def _surplus_power_note(point: power_map.ExamplePoint) -> str:
+    """Return the note on power beyond the sufficient one; empty below it."""
+    sufficient = power_map.sufficient_power(power_map.example_test())
+    if point.actuator_power <= sufficient:
+        return ""
+    return (
+        f"; of {point.actuator_power:.3g} W the line needs {sufficient:.3g} W to take all friction away, "
+        "the rest saves nothing"
+    )
+
+
+def _intrinsic_friction() -> Row:
+    """Return the friction without vibration of section 4.1.3 from Table 4.2."""
+    test = power_map.example_test()
+    off, load = test["intrinsic_friction_force"], test["normal_load"]
+    note = f"friction of Table 4.2 at {load:g} N; over that load a coefficient of {off / load:.3f}"
+    return comparison_row("4.1.3-friction-uncoated", off, note, kind=RowKind.PUBLISHED_FORMULA)
+
+
+def _over_scatter(function: Callable[[float], float], measured: PrintedNumber) -> ComputedValue:
+    """Return a monotonic function of a measured mean with the interval of its scatter."""
+    limits = function(measured.low), function(measured.high)
+    return ComputedValue(value=function(measured.value), low=min(limits), high=max(limits))

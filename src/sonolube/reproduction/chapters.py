@@ -1,0 +1,122 @@
+"""Table of the reproduced sections, and the reproduction of a chapter or of the whole dissertation."""
+
+from dataclasses import asdict
+from functools import cache
+from typing import Final
+
+from sonolube.errors import UnknownName
+from sonolube.prediction.published_figures import published_prediction_figures
+from sonolube.reproduction.chapter2.flextensional import flextensional_rows
+from sonolube.reproduction.chapter2.flextensional_figures import flextensional_figures
+from sonolube.reproduction.chapter2.material_pairs import material_pair_figures, material_pair_rows
+from sonolube.reproduction.chapter2.metal_forming_figures import metal_forming_figures
+from sonolube.reproduction.chapter2.poisson_effect import poisson_effect_figures, poisson_effect_rows
+from sonolube.reproduction.chapter2.tribometer import tribometer_rows
+from sonolube.reproduction.chapter2.tribometer_figures import tribometer_figures
+from sonolube.reproduction.chapter2.welder import welder_rows
+from sonolube.reproduction.chapter2.welder_figures import welder_figures
+from sonolube.reproduction.chapter2.welder_motor import welder_motor_rows
+from sonolube.reproduction.chapter3.cube_figures import cube_figures
+from sonolube.reproduction.chapter3.cube_rows import cube_rows
+from sonolube.reproduction.chapter3.parametric_study_figures import parametric_study_figures
+from sonolube.reproduction.chapter3.parametric_study_rows import parametric_study_rows
+from sonolube.reproduction.chapter3.vibration_period_figures import vibration_period_figures
+from sonolube.reproduction.chapter4.coated_plate_figures import coated_plate_figures
+from sonolube.reproduction.chapter4.collar_figures import collar_figures
+from sonolube.reproduction.chapter4.collar_rows import collar_rows
+from sonolube.reproduction.chapter4.cutter_head_figures import cutter_head_figures
+from sonolube.reproduction.chapter4.dry_temperature_figures import dry_temperature_figures
+from sonolube.reproduction.chapter4.load import load_figures, load_rows
+from sonolube.reproduction.chapter4.lubrication import lubrication_figures, lubrication_rows
+from sonolube.reproduction.chapter4.lubrication_method_figures import lubrication_method_figures
+from sonolube.reproduction.chapter4.maps import map_figures, map_rows
+from sonolube.reproduction.chapter4.power_figures import power_figures
+from sonolube.reproduction.chapter4.power_rows import power_map_rows
+from sonolube.reproduction.chapter4.skin_replica import skin_replica_figures, skin_replica_rows
+from sonolube.reproduction.chapter4.temperature_figures import temperature_figures
+from sonolube.reproduction.chapter4.temperature_rows import temperature_rows
+from sonolube.reproduction.claims import findings
+from sonolube.reproduction.friction_models.computed_motion import computed_motion_figures
+from sonolube.reproduction.friction_models.friction_test_rows import (
+    power_map_test_rows,
+    roughness_caveat,
+    tribometer_test_rows,
+)
+from sonolube.reproduction.friction_models.mechanisms import mechanism_figures
+from sonolube.reproduction.friction_models.variant_figures import variant_figures
+from sonolube.reproduction.section import ChapterFigure, Reproduction, Section
+from sonolube.validation.comparison import ComparedFit, compare_models
+from sonolube.validation.figures import comparison_figures
+
+
+@cache
+def published_comparison() -> tuple[ComparedFit, ...]:
+    """Return all model variants compared on all published tests."""
+    return compare_models()
+
+
+SECTIONS: Final = (
+    Section(number="2.1", rows=poisson_effect_rows, figures=poisson_effect_figures),
+    Section(number="2.2", rows=flextensional_rows, figures=flextensional_figures),
+    Section(number="2.3", rows=tribometer_rows, figures=tribometer_figures),
+    Section(number="2.4", figures=metal_forming_figures),
+    Section(number="2.4", rows=welder_rows, figures=welder_figures),
+    Section(number="2.4", rows=welder_motor_rows),
+    Section(number="2.5", rows=material_pair_rows, figures=material_pair_figures),
+    Section(number="3.1", rows=cube_rows, figures=cube_figures),
+    Section(number="3.3", rows=parametric_study_rows, figures=parametric_study_figures),
+    Section(number="3.3", figures=vibration_period_figures),
+    Section(number="4.1", rows=power_map_rows, figures=power_figures),
+    Section(number="4.1", rows=map_rows, figures=map_figures),
+    Section(number="4.1", figures=coated_plate_figures),
+    Section(number="4.1", rows=load_rows, figures=load_figures),
+    Section(number="4.2", figures=lubrication_method_figures),
+    Section(number="4.2", rows=lubrication_rows, figures=lubrication_figures),
+    Section(number="4.3", rows=temperature_rows, figures=temperature_figures),
+    Section(number="4.3", figures=dry_temperature_figures),
+    Section(number="4.4", rows=skin_replica_rows, figures=skin_replica_figures),
+    Section(number="4.4", figures=cutter_head_figures),
+    Section(number="4.5", rows=collar_rows, figures=collar_figures),
+    Section(number="2.3", rows=tribometer_test_rows),
+    Section(number="4.1", rows=power_map_test_rows),
+    Section(number="3.3", figures=variant_figures),
+    Section(number="4.1", figures=mechanism_figures),
+    Section(number="3.3", figures=computed_motion_figures),
+    Section(number="3.3", figures=lambda: comparison_figures(published_comparison)),
+    Section(number="3.3", figures=published_prediction_figures),
+)
+"""All reproduced sections: those of the chapters, then the friction models on the friction tests of all chapters."""
+
+
+def reproduction(*, chapter: int | None = None) -> Reproduction:
+    """Return the findings on the claims, and the published numbers beside the computed ones, with figures.
+
+    Parameters
+    ----------
+    chapter : int, optional
+        Only this chapter; all chapters where absent.
+
+    Returns
+    -------
+    Reproduction
+
+    Raises
+    ------
+    UnknownName
+        If no section of that chapter is reproduced.
+    """
+    chapters = sorted({section.chapter for section in SECTIONS})
+    if chapter is not None and chapter not in chapters:
+        raise UnknownName.among(map(str, chapters), kind="chapter", name=str(chapter))
+    chosen = [section for section in SECTIONS if chapter in (None, section.chapter)]
+    rows = tuple(row for section in chosen for row in section.rows())
+    return Reproduction(
+        findings=findings(rows),
+        rows=rows,
+        figures=tuple(
+            ChapterFigure(chapter=section.chapter, **asdict(figure))
+            for section in chosen
+            for figure in section.figures()
+        ),
+        caveats=() if chapter == 3 else (roughness_caveat(),),
+    )

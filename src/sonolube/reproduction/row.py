@@ -1,0 +1,371 @@
+"""Rows of the reproduction: a published number, the numbers computed for it, and the verdict of their comparison."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Final
+
+from sonolube.facts.published import ComputedValue, PrintedNumber, PublishedValue, propagate_rounding, published_value
+from sonolube.units import convert
+from sonolube.vocabulary import unit_of
+
+
+class RowKind(StrEnum):
+    """Class of a comparison: what the computed number comes from, and what it is held against."""
+
+    PUBLISHED_FORMULA = "published_formula"
+    PUBLISHED_MODEL = "published_model"
+    DEFAULT_MODEL = "default_model"
+
+
+class Verdict(StrEnum):
+    """Outcome of the comparison of a computed with a published number."""
+
+    REPRODUCED = "reproduced"
+    FITTED = "fitted"
+    TRIVIALLY_MET = "trivially_met"
+    MISPRINT = "misprint"
+    NOT_REPRODUCED = "not_reproduced"
+    UNDETERMINED = "undetermined"
+    NOT_COMPUTED = "not_computed"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Alternative:
+    """Number that another model than that of the row gives for the same published number.
+
+    Parameters
+    ----------
+    computed : float
+        Computed value, in the printed unit.
+    reproduced : bool
+        Whether it is in the interval of the published number.
+    note : str
+        Method of the computation.
+    """
+
+    computed: float
+    reproduced: bool
+    note: str
+
+
+Computed = ComputedValue | float
+"""Computed number, in SI, with or without the interval that the rounding of its inputs leaves."""
+
+_NO_EFFECT: Final = 0.01
+"""Share of the largest reduction that a print leaves open, below which a computed one counts as none. []"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Row:
+    """One row of the reproduction report; numbers are in the printed unit.
+
+    Parameters
+    ----------
+    id : str
+        Stable id of the row.
+    kind : RowKind
+    chapter : int
+        Chapter of the source.
+    source : str
+        Place in the source, such as "Table 3.4".
+    quantity : str
+        Name in the vocabulary.
+    unit : str
+        Printed unit.
+    printed : str
+        Printed digits, such as "62.22", "0.379±0.041" or "45.8-48.6"; of a limit of a range, those of the range.
+    published : float
+        Published value.
+    published_low, published_high : float
+        Interval in which a computed value counts as reproduced: that of the printed number (rounding, scatter or
+        range), widened by the effect of the rounding of printed inputs on the computed value.
+    computed : float or None
+        Computed value; None where an input is missing.
+    verdict : Verdict
+    note : str
+        Method of the computation, and evidence for the verdict.
+    possible_low, possible_high : float or None
+        Limits of the computed value over what an input that is not printed can be; None where all are printed or their
+        values do not matter.
+    alternatives : mapping of str to Alternative
+        What other models give for the same number, by name. None of them affects the verdict.
+    """
+
+    id: str
+    kind: RowKind
+    chapter: int
+    source: str
+    quantity: str
+    unit: str
+    printed: str
+    published: float
+    published_low: float
+    published_high: float
+    computed: float | None
+    verdict: Verdict
+    note: str
+    possible_low: float | None = None
+    possible_high: float | None = None
+    alternatives: Mapping[str, Alternative] = field(default_factory=dict)
+
+    @property
+    def is_upper_limit(self) -> bool:
+        """Whether the print says "less than" the published value."""
+        return self.published_low == 0 < self.published == self.published_high
+
+    @property
+    def relative_error(self) -> float | None:
+        """Computed over published value, minus one; None where either is missing or the published one is zero."""
+        if self.computed is None or self.published == 0:
+            return None
+        return self.computed / self.published - 1
+
+
+def comparison_row(
+    published: PublishedValue | str,
+    computed: Computed,
+    note: str,
+    *,
+    kind: RowKind,
+    suffix: str = "",
+    fitted: str = "",
+    possible: tuple[float, float] | None = None,
+    alternatives: Mapping[str, tuple[Computed, str]] | None = None,
+) -> Row:
+    """Return the row that compares a computed with a published number.
+
+    Parameters
+    ----------
+    published : PublishedValue or str
+        Published value, or its id.
+    computed : ComputedValue or float
+        Computed value, in SI.
+    note : str
+        Method of the computation.
+    kind : RowKind
+        Class of the comparison.
+    suffix : str
+        Suffix of the row's id, where several numbers are computed for one published number.
+    fitted : str
+        What of the computation was fitted to, or chosen by, the published number itself; empty for nothing.
+    possible : tuple of float, optional
+        Lowest and highest computed value over what an input that is not printed can be, in SI.
+    alternatives : mapping of str to (ComputedValue or float, str), optional
+        Values of other models, in SI, each with its note, by name.
+
+    Returns
+    -------
+    Row
+        `undetermined` if some possible values agree with the print and others do not. Else `reproduced` within the
+        interval that print, scatter and rounding leave, `fitted` if the number itself entered the computation,
+        `trivially_met` if a reduction of zero is left open, as "less than 10 %" does, and none is computed. Outside it,
+        `misprint` if the row is of a published formula, a correction with evidence is on record and the computed number
+        agrees with it; else `not_reproduced`: that a model misses a test says nothing against the print.
+    """
+    published = published_value(published) if isinstance(published, str) else published
+    computed = _with_interval(computed)
+    if possible is not None and not fitted and _is_open(published.number, computed, possible):
+        verdict = Verdict.UNDETERMINED
+    elif _agree(published.number, computed):
+        verdict = _met(published, computed, fitted=fitted)
+    elif kind is RowKind.PUBLISHED_FORMULA and _meets_correction(published, computed):
+        verdict, note = Verdict.MISPRINT, f"{note.rstrip('.')}. {published.evidence}"
+    else:
+        verdict = Verdict.NOT_REPRODUCED
+    if verdict is Verdict.FITTED:
+        note = f"{note.rstrip('.')}. Fitted to this number: {fitted}."
+    others = {
+        name: Alternative(
+            computed=_printed(published, _with_interval(other).value),
+            reproduced=_agree(published.number, _with_interval(other)),
+            note=other_note,
+        )
+        for name, (other, other_note) in (alternatives or {}).items()
+    }
+    interval = _interval(published.number, computed)
+    row = _row(published, suffix, interval, computed.value, verdict, note, kind=kind, alternatives=others)
+    if possible is None:
+        return row
+    low, high = (_printed(published, limit) for limit in sorted((*possible, computed.value))[::2])
+    return replace(row, possible_low=low, possible_high=high)
+
+
+def formula_row(
+    published: PublishedValue | str, note: str, formula: Callable[..., float], *inputs: PrintedNumber | str
+) -> Row:
+    """Return the row of a published number that follows from others by a formula, with their rounding propagated.
+
+    Parameters
+    ----------
+    published : PublishedValue or str
+        The published number, or its id.
+    note : str
+        Formula in words.
+    formula : callable
+        Function of the inputs.
+    *inputs : PrintedNumber or str
+        Published numbers, or their ids.
+
+    Returns
+    -------
+    Row
+    """
+    return comparison_row(published, propagate_rounding(formula, *inputs), note, kind=RowKind.PUBLISHED_FORMULA)
+
+
+def range_rows(
+    published: str, low: Computed, high: Computed, note: str, *, kind: RowKind, high_note: str = ""
+) -> Iterator[Row]:
+    """Yield the rows of the limits of a published range.
+
+    Parameters
+    ----------
+    published : str
+        Id of the published range.
+    low, high : ComputedValue or float
+        Computed limits, in SI.
+    note : str
+        Method of the computation.
+    kind : RowKind
+        Class of the comparison.
+    high_note : str
+        Method of the computation of the upper limit, if another.
+
+    Yields
+    ------
+    Row
+    """
+    lower, upper = published_value(published).limits()
+    yield comparison_row(lower, low, note, kind=kind)
+    yield comparison_row(upper, high, high_note or note, kind=kind)
+
+
+def undetermined_row(published: str, missing: str, *, kind: RowKind = RowKind.PUBLISHED_FORMULA) -> Row:
+    """Return the row of a published number that nobody can compute, for an input of it is not printed.
+
+    Parameters
+    ----------
+    published : str
+        Id of the published number.
+    missing : str
+        Inputs that are not printed.
+    kind : RowKind
+        Class of the comparison that they would allow.
+
+    Returns
+    -------
+    Row
+    """
+    return _row_without_number(published, Verdict.UNDETERMINED, f"Missing: {missing}", kind=kind)
+
+
+def not_computed_row(published: str, missing: str, *, kind: RowKind) -> Row:
+    """Return the row of a published number that this installation cannot compute.
+
+    Parameters
+    ----------
+    published : str
+        Id of the published number.
+    missing : str
+        Part that is not installed, and how to install it.
+    kind : RowKind
+        Class of the comparison that the part would allow.
+
+    Returns
+    -------
+    Row
+    """
+    return _row_without_number(published, Verdict.NOT_COMPUTED, f"Not computed: {missing}", kind=kind)
+
+
+def _row_without_number(published: str, verdict: Verdict, note: str, *, kind: RowKind) -> Row:
+    """Return a row without a computed number."""
+    value = published_value(published)
+    return _row(value, "", (value.number.low, value.number.high), None, verdict, note, kind=kind)
+
+
+def _with_interval(computed: Computed) -> ComputedValue:
+    """Return a computed number with its interval, empty if none is given."""
+    if isinstance(computed, ComputedValue):
+        return computed
+    return ComputedValue(value=computed, low=computed, high=computed)
+
+
+def _met(published: PublishedValue, computed: ComputedValue, *, fitted: str) -> Verdict:
+    """Return the verdict of a computed number that agrees with the print."""
+    if fitted:
+        return Verdict.FITTED
+    return Verdict.TRIVIALLY_MET if _is_trivial(published, computed) else Verdict.REPRODUCED
+
+
+def _is_open(number: PrintedNumber, computed: ComputedValue, possible: tuple[float, float]) -> bool:
+    """Return whether some, and not all, of the possible values agree with a printed number."""
+    low, high = _interval(number, computed)
+    least, most = min(*possible, computed.value), max(*possible, computed.value)
+    return least <= high and low <= most and not (low <= least and most <= high)
+
+
+def _meets_correction(published: PublishedValue, computed: ComputedValue) -> bool:
+    """Return whether there is evidence against a print, and its correction, unless in words, is the computed number."""
+    if not published.evidence:
+        return False
+    return not published.corrected or any(_agree(corrected, computed) for corrected in published.corrected)
+
+
+def _is_trivial(published: PublishedValue, computed: ComputedValue) -> bool:
+    """Return whether print and scatter leave a reduction of zero open, as "less than 10 %", and no more is computed."""
+    number = published.number
+    return (
+        published.quantity.endswith("_reduction")
+        and number.low <= 0 < number.high
+        and abs(computed.value) < _NO_EFFECT * number.high
+    )
+
+
+def _interval(number: PrintedNumber, computed: ComputedValue) -> tuple[float, float]:
+    """Return the interval of a printed number, widened by that of the computed one, in SI."""
+    return number.low - (computed.high - computed.value), number.high + (computed.value - computed.low)
+
+
+def _agree(number: PrintedNumber, computed: ComputedValue) -> bool:
+    """Return whether a computed number lies in the widened interval of a printed one."""
+    low, high = _interval(number, computed)
+    slack = 1e-9 * max(abs(low), abs(high))  # binary rounding of decimal halves
+    return low - slack <= computed.value <= high + slack
+
+
+def _printed(published: PublishedValue, value: float) -> float:
+    """Return a value in the printed unit."""
+    return convert(value, from_unit=unit_of(published.quantity), to_unit=published.unit)
+
+
+def _row(
+    published: PublishedValue,
+    suffix: str,
+    interval: tuple[float, float],
+    computed: float | None,
+    verdict: Verdict,
+    note: str,
+    *,
+    kind: RowKind,
+    alternatives: Mapping[str, Alternative] | None = None,
+) -> Row:
+    """Return a row, its numbers converted to the printed unit."""
+    low, high = interval
+    return Row(
+        id=f"{published.id}-{suffix}" if suffix else published.id,
+        kind=kind,
+        chapter=published.chapter,
+        source=published.source,
+        quantity=published.quantity,
+        unit=published.unit,
+        printed=published.number.text,
+        published=_printed(published, published.number.value),
+        published_low=_printed(published, low),
+        published_high=_printed(published, high),
+        computed=None if computed is None else _printed(published, computed),
+        verdict=verdict,
+        note=note,
+        alternatives=alternatives or {},
+    )

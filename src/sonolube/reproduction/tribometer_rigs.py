@@ -1,0 +1,72 @@
+"""Modified tribometer as a rig: published settings with the structure identified from published facts."""
+
+from dataclasses import replace
+from functools import cache
+from typing import Final
+
+from sonolube.facts.published import si_value
+from sonolube.models.actuator.drive import Drive
+from sonolube.models.dynamics import Structure, chain_structure, pin_on_disc_chain
+from sonolube.models.friction import FRICTION_MODELS
+from sonolube.rig.driven_rig import DrivenRig
+from sonolube.validation.contacts import uncoated_plate_contact, wear_contact
+from sonolube.validation.tribometer import IDENTIFIED, tribometer_stack
+
+IDENTIFIED_NOTE: Final = (
+    "Masses, springs and dampers of D 3.3.1 are not printed; they are identified from published facts"
+)
+"""Note of every result that depends on them."""
+
+
+@cache
+def identified_structure() -> Structure:
+    """Return the structure of the tribometer with the parameters identified from published facts."""
+    return chain_structure(pin_on_disc_chain(tribometer_stack(), **IDENTIFIED))
+
+
+def tribometer_rig(*, friction_model: str = "asperity_stick_slip") -> DrivenRig:
+    """Return the tribometer of section 2.3 for the multi-scale model of section 3.3, driven as in the tests.
+
+    Parameters
+    ----------
+    friction_model : str
+        Name of the friction model.
+
+    Returns
+    -------
+    DrivenRig
+    """
+    stack, load = tribometer_stack(), si_value("table-2.2-normal_load-1")
+    voltage = 2 * si_value("A.3.1.3-voltage-amplitude") * si_value("A.3.1.5-gain")
+    return DrivenRig(
+        title="Modified pin-on-disc tribometer",
+        source="D Tables 2.2, 2.3, 3.2 and 3.5, appendix A",
+        contact=wear_contact(),
+        normal_load=load,
+        friction_coefficient=si_value("table-2.3-friction_force-1") / load,
+        sliding_speed=si_value("table-2.3-sliding_speed-1"),
+        vibration_amplitude=si_value("2.3.1-amplitude"),
+        amplitude_source="computed",
+        drive=Drive(frequency=si_value("4.1.1-frequency"), voltage_peak_to_peak=voltage, voltage_offset=voltage / 2),
+        capacitance=stack.free_capacitance,
+        stack=stack,
+        structure=identified_structure(),
+        friction_model=FRICTION_MODELS[friction_model](),
+        assumptions={"structure": IDENTIFIED_NOTE},
+    )
+
+
+def plate_rig() -> DrivenRig:
+    """Return the tribometer with the uncoated steel plates of section 4.1, at the settings of its example test."""
+    rig, highest = tribometer_rig(), si_value("table-4.1-voltage_peak_to_peak-15")
+    load = si_value("4.1.2-normal-load")
+    return replace(
+        rig,
+        title="Tribometer with uncoated steel plates",
+        source="D 4.1.3, Tables 4.1 and 4.2",
+        contact=uncoated_plate_contact(),
+        friction_coefficient=si_value("4.1.2-friction-off") / load,
+        normal_load=load,
+        sliding_speed=si_value("4.1.2-sliding-speed"),
+        drive=replace(rig.drive, voltage_peak_to_peak=highest, voltage_offset=highest / 2),
+    )

@@ -1,0 +1,201 @@
+"""Device maps: the example, every fault at once, calibrations, and what is beyond the devices."""
+
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import MonkeyPatch, approx, raises
+from tests.facts.protocol.schema_faults import schema_faults
+from tests.laboratory.rig_stand_ins import EXAMPLE
+
+from sonolube.errors import InvalidInput, MissingPackage, SeveralFaults
+from sonolube.facts.protocol import protocol_by_name_or_file, protocol_from
+from sonolube.laboratory.drivers import device_map_schema, missing_parts, read_device_map, unfulfilled
+from sonolube.laboratory.drivers.sensor_scale import tabulated_scale
+
+TEXT = EXAMPLE.read_text(encoding="utf-8")
+LOADS = "normal_load.csv"
+
+
+def written(folder: Path, *changes: tuple[str, str], calibration: str | None = None) -> Path:
+    text = TEXT
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    table = (EXAMPLE.parent / LOADS).read_text(encoding="utf-8") if calibration is None else calibration
+    (folder / LOADS).write_text(table, encoding="utf-8")
+    path = folder / "devices.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_example_names_its_devices_channels_and_limits() -> None:
+    read = read_device_map(EXAMPLE)
+    devices = read.devices()
+    channels = devices.acquisition.channels
+    assert set(channels) == {"friction_force", "normal_load", "voltage", "current", "temperature", "gaussmeter"}
+    friction = channels["friction_force"]
+    assert friction.unit == "N"
+    assert [friction.lowest, friction.highest] == approx([-20.012, 19.988])
+    assert [channels["normal_load"].lowest, channels["normal_load"].highest] == approx([0.0, 15.696])
+    assert channels["temperature"].lowest == approx(-226.85)
+    assert devices.drive.voltage_maximum == approx(80.0)
+    assert [devices.motor.rotation_speed_maximum, devices.groove_diameter] == approx([5.0, 0.05])
+    assert not devices.simulated
+    assert "MY50001234" in devices.description["drive hardware"]
+    assert set(read.files) == {"devices.toml", LOADS}
+
+
+def test_a_map_is_read_and_its_devices_are_made_without_their_libraries(monkeypatch: MonkeyPatch) -> None:
+    for name in ("nidaqmx", "pyvisa", "pyvisa_py", "serial"):
+        monkeypatch.setitem(sys.modules, name, None)
+    read = read_device_map(EXAMPLE)
+    assert [line.rpartition(": ")[2] for line in missing_parts(read)] == [
+        "pip install 'sonolube[daqmx]'",
+        "pip install 'sonolube[visa]'",
+    ]
+    devices = read.devices()
+    for device in (devices.acquisition, devices.drive, devices.motor):
+        with raises(MissingPackage, match=r"pip install 'sonolube\["):
+            device.connect()
+        device.close()
+
+
+def test_no_library_of_an_instrument_is_imported_before_it_is_needed() -> None:
+    libraries = "{'nidaqmx', 'pyvisa', 'serial'}"
+    code = f"import sys, sonolube.laboratory.drivers as d; d.read_device_map; print({libraries} & {{*sys.modules}})"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "set()"
+
+
+def test_the_input_of_the_amplifier_can_be_the_tighter_limit(tmp_path: Path) -> None:
+    path = written(tmp_path, ('output_maximum = "5 V"', 'output_maximum = "2 V"'))
+    assert read_device_map(path).devices().drive.voltage_maximum == approx(40.0)
+
+
+def test_all_faults_are_told_at_once_with_their_keys(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        ('gain = "4 N/V"', 'gain = "4 N"'),
+        ('name = "current"', 'name = "curent"'),
+        ('input = "ai2"', 'input = "Dev1/ai0:3"'),
+        ("amplifier_gain = 20.0", 'amplifier_gain = "20"'),
+        ('frequency_maximum = "100 kHz"', "frequency_maximum = 100e3"),
+        ('speed_command = "V{speed}"', 'speed_command = "V{0.__class__}"'),
+        ('query = "GV"\n', ""),
+        ("baud_rate", "baudrate"),
+    )
+    with raises(SeveralFaults) as refusal:
+        read_device_map(path)
+    told = "\n".join(refusal.value.lines)
+    for part in (
+        "acquisition.channels[1]: gain 4 N",
+        "acquisition.channels[4].name: unknown channel 'curent'; did you mean current?",
+        "acquisition.channels[3].input:",
+        "drive.amplifier_gain:",
+        "drive.frequency_maximum: 100000.0 has no unit",
+        "motor.speed_command: must hold {speed} once",
+        "motor.baudrate: unknown key",
+    ):
+        assert part in told
+    assert refusal.value.where == str(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (('driver = "scpi"', 'driver = "gpib"'), "drive: driver must be scpi or daqmx"),
+        (('driver = "line"\n', ""), "motor: driver is missing"),
+        (('input = "ai1"', 'input = "ai0"'), "input ai0 stands twice"),
+        (('gain = "20 V/V"', 'gain = "20 V/V"\ncalibration = "x.csv"'), "needs either gain or calibration"),
+        (('gain = "0.1 A/V"', 'gain = "0 A/V"'), "gain must not be 0"),
+        (('output_maximum = "5 V"', 'output_maximum = "12 V"'), "at most 10 V"),
+        (('query = "GV"\n', ""), "query and query_answer belong together"),
+        (('"TCPIP::192.168.1.21::5025::SOCKET"', '"192.168.1.21"'), "drive.resource"),
+        ((f'"{LOADS}"', '"../secret.csv"'), "must be the name of a file beside the map"),
+        ((f'"{LOADS}"', '"absent.csv"'), r"acquisition.channels\[2\].calibration: absent.csv: no such file"),
+    ],
+)
+def test_an_impossible_map_is_refused_with_the_reason(change: tuple[str, str], reason: str, tmp_path: Path) -> None:
+    with raises(InvalidInput, match=reason):
+        read_device_map(written(tmp_path, change))
+
+
+@pytest.mark.parametrize(
+    ("table", "reason"),
+    [
+        ("voltage,friction_force\n0 V,0 N\n1 V,1 N", "line 1: expected voltage,normal_load"),
+        ("voltage,normal_load\n0 V,0 N", "1 points"),
+        ("voltage,normal_load\n0 V,0 N\n0 V,1 N", "the voltages must increase"),
+        ("voltage,normal_load\n0 V,0 N\n1 V,2 N\n2 V,1 N", "the readings must rise or fall"),
+        ("voltage,normal_load\n0 V,0 N\n1,1 N", "line 3: 1 has no unit"),
+        ("voltage,normal_load\n0 V,0 N\n1 V", "line 3: expected a voltage and a reading"),
+    ],
+)
+def test_a_calibration_that_is_no_function_of_voltage_is_refused(table: str, reason: str, tmp_path: Path) -> None:
+    with raises(InvalidInput, match=f"{LOADS}: {reason}"):
+        read_device_map(written(tmp_path, calibration=table))
+
+
+def test_a_calibration_is_linear_between_its_points_and_saturates_beyond_them() -> None:
+    scale = tabulated_scale("voltage,temperature\n0 V,20 degC\n1 V,120 degC\n2 V,320 degC\n", quantity="temperature")
+    assert scale.values(np.array([-1.0, 0.0, 0.5, 1.5, 9.0])) == approx([293.15, 293.15, 343.15, 493.15, 593.15])
+    assert [*scale.reach(1.0), *scale.reach(10.0)] == approx([293.15, 393.15, 293.15, 593.15])
+
+
+def test_the_example_follows_the_schema_and_a_faulty_map_does_not() -> None:
+    schema = json.loads(json.dumps(device_map_schema()))
+    content = tomllib.loads(TEXT)
+    assert list(schema_faults(schema, content, schema)) == []
+    del content["motor"]["speed_command"]
+    content["acquisition"]["channels"][0]["input"] = 3
+    assert len(list(schema_faults(schema, content, schema))) >= 2
+
+
+def test_what_a_protocol_asks_beyond_the_devices_is_told_by_its_step(tmp_path: Path) -> None:
+    slow = written(
+        tmp_path,
+        ('frequency_maximum = "100 kHz"', 'frequency_maximum = "20 kHz"'),
+        ('sample_rate_maximum = "500 kHz"', 'sample_rate_maximum = "10 Hz"'),
+        ('voltage_maximum = "80 V"', 'voltage_maximum = "5 V"'),
+    )
+    protocol = protocol_by_name_or_file("map_test")
+    told = "\n".join(unfulfilled(read_device_map(slow), protocol))
+    for part in ("the drive gives at most 20 kHz", "the device takes 10 Hz in all", "gives at most 5 V"):
+        assert part in told
+    assert unfulfilled(read_device_map(EXAMPLE), protocol) == ()
+
+
+def test_all_that_is_beyond_the_devices_is_told_at_once_each_with_its_step_and_worst_value(tmp_path: Path) -> None:
+    weak = written(
+        tmp_path,
+        ('voltage_maximum = "80 V"', 'voltage_maximum = "8 V"'),
+        ('rotation_speed_maximum = "300 rpm"', 'rotation_speed_maximum = "6 rpm"'),
+    )
+    drive = {"kind": "drive", "frequency": "22 kHz"}
+    steps = [
+        {"kind": "acquire", "channels": ["noise", "voltage", "smell"], "sample_rate": "1 kHz", "duration": "3 s"},
+        {"kind": "motor_speed", "rotation_speed": "2 Hz"},
+        {"kind": "wait", "duration": "1 s"},
+        drive | {"voltage_peak_to_peak": "20 V"},
+        {"kind": "voltage_steps", "voltages": ["18 V", "28 V", "10 V"], "step_duration": "1 s", "frequency": "22 kHz"},
+        {"kind": "motor_speed", "rotation_speed": "0.05 Hz"},
+        drive | {"voltage_peak_to_peak": "10 V"},
+        {"kind": "motor_speed", "rotation_speed": "3 Hz"},
+    ]
+    limits = {"voltage_maximum": "30 V", "duration_maximum": "10 s", "friction_force_maximum": "100 N"}
+    protocol = protocol_from({"title": "much", "source": "none", "limits": limits, "steps": steps})
+    name = "function generator TCPIP::192.168.1.21::5025::SOCKET"
+    motor = "motor ASRL/dev/ttyUSB0::INSTR"
+    assert [line.partition("; it has")[0] for line in unfulfilled(read_device_map(weak), protocol)] == [
+        "limits.friction_force_maximum of 100 N lies beyond the range of channel friction_force, 20 N",
+        "step 1: NI-DAQmx Dev1 has no channels noise, smell",
+        f"step 2: needs 2 1/s; {motor} turns at most at 0.1 1/s",
+        f"step 4: the drive reaches 10 V; {name} gives at most 8 V",
+        f"step 5: the drive reaches 14 V; {name} gives at most 8 V",
+        f"step 8: needs 3 1/s; {motor} turns at most at 0.1 1/s",
+    ]

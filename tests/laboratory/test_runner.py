@@ -1,0 +1,267 @@
+"""Runner: protocols on a simulated rig, and every way in which a run can end."""
+
+import signal
+import threading
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from pytest import raises
+from tests.laboratory.simulated_rig import Fault, MemoryRecord, SimulatedRig
+
+from sonolube.errors import InvalidInput
+from sonolube.facts.protocol import Prompt, Protocol, protocol_from
+from sonolube.laboratory import Block, RunControl, RunResult, State, run_protocol
+
+MAP_TEST = {
+    "title": "map test",
+    "source": "D 4.1.2",
+    "limits": {"voltage_maximum": "30 V", "duration_maximum": "40 s"},
+    "metadata": {"groove_diameter": "28 mm"},
+    "steps": [
+        {"kind": "prompt", "task": "cleaning", "text": "Wipe pin and plate."},
+        {"kind": "acquire", "channels": ["friction_force", "voltage"], "sample_rate": "400 Hz", "duration": "32.5 s"},
+        {"kind": "wait", "duration": "0.5 s"},
+        {"kind": "motor_speed", "sliding_speed": "65.5 mm/s"},
+        {"kind": "wait", "duration": "12 s"},
+        {
+            "kind": "voltage_steps",
+            "voltages": ["5.1 V", "10.3 V", "15.5 V", "20.7 V", "25.9 V"],
+            "step_duration": "4 s",
+            "frequency": "22 kHz",
+            "unipolar": True,
+        },
+    ],
+}
+
+
+def protocol(*steps: Mapping[str, object], **limits: str) -> Protocol:
+    content = MAP_TEST | {"limits": MAP_TEST["limits"] | limits}  # type: ignore[operator]
+    return protocol_from(content | ({"steps": list(steps)} if steps else {}))
+
+
+def run(
+    test: Protocol,
+    rig: SimulatedRig | None = None,
+    *,
+    record: MemoryRecord | None = None,
+    control: RunControl | None = None,
+) -> tuple[RunResult, SimulatedRig, MemoryRecord]:
+    rig, record = rig or SimulatedRig(), record or MemoryRecord()
+    result = run_protocol(test, rig.devices(), record, operator=lambda prompt: True, control=control)
+    assert rig.is_off or result.state is State.FAILED
+    assert not record.is_open
+    assert record.outcome == result.outcome
+    return result, rig, record
+
+
+def test_the_map_test_records_every_sample_at_the_set_points_of_the_dissertation() -> None:
+    result, rig, record = run(protocol())
+    assert (result.state, result.outcome) == (State.SAFE, "completed")
+    assert record.samples() == [13_000]
+    force = np.concatenate([block.values[:, 0] for block in record.segments[0]])
+    levels = [0.0] * 200 + [1.0] * 4800 + [0.4] * 8000
+    assert np.array_equal(force, levels)
+    turns = 0.0655 / (np.pi * 0.028)
+    drives = [f"drive {voltage} V" for voltage in (5.1, 10.3, 15.5, 20.7, 25.9)]
+    assert [call for call in rig.calls if call not in ("off", "close")] == [f"turn {turns:.3g}", *drives]
+
+
+def test_blocks_follow_each_other_and_none_is_longer_than_the_time_between_two_looks() -> None:
+    blocks = run(protocol())[2].segments[0]
+    assert all(block.next_sample == following.first_sample for block, following in pairwise(blocks))
+    assert max(block.samples for block in blocks) <= 0.05 * 400
+
+
+@pytest.mark.parametrize("call", range(40))
+def test_a_device_that_answers_no_more_ends_the_run_with_everything_off(call: int) -> None:
+    result, rig, record = run(protocol(), SimulatedRig(fault=Fault(call=call)))
+    assert (result.state, result.outcome) == (State.SAFE, "failed")
+    assert result.reason == "simulated: answers no more"
+    assert rig.calls.count("close") == 3
+    assert record.notes[-1][1]["state"] == "safe"
+
+
+@pytest.mark.parametrize("error", [RuntimeError("a fault of the program"), KeyboardInterrupt(), MemoryError()])
+def test_a_crash_switches_everything_off_and_closes_the_record(error: BaseException) -> None:
+    rig, record = SimulatedRig(fault=Fault(call=30, error=error, stays_dead=False)), MemoryRecord()
+    with raises(type(error)):
+        run_protocol(protocol(), rig.devices(), record, operator=lambda prompt: True)
+    assert rig.is_off
+    assert record.outcome == "failed"
+    assert type(error).__name__ in record.reason
+
+
+def test_a_device_that_cannot_be_switched_off_is_told() -> None:
+    class Stuck(SimulatedRig):
+        def off(self) -> None:
+            raise OSError("no route to device")
+
+    result, _, record = run(protocol(), Stuck())
+    assert (result.state, result.outcome) == (State.FAILED, "failed")
+    assert "no route to device" in result.reason
+    assert record.notes[-1][0] == "not off"
+
+
+@pytest.mark.parametrize(
+    ("limits", "values", "reason"),
+    [
+        ({"friction_force_maximum": "0.9 N"}, {}, "channel friction_force is 1 N; its limit is 900 mN"),
+        ({"temperature_maximum": "300 K"}, {"temperature": 301.0}, "channel temperature is 301 K; its limit is 300 K"),
+        ({"current_maximum": "0.5 A"}, {"current": -0.7}, "channel current is -700 mA; its limit is 500 mA"),
+        ({"current_maximum": "0.5 A"}, {"current": np.nan}, "channel current gives no number"),
+        ({"friction_force_maximum": "20 N"}, {"friction_force": 20.0}, "channel friction_force is saturated at 20 N"),
+    ],
+)
+def test_a_limit_trips_within_one_block(limits: dict[str, str], values: dict[str, float], reason: str) -> None:
+    rig = SimulatedRig(values=values)
+    result, _, record = run(protocol(**limits), rig)
+    assert (result.outcome, result.reason) == ("stopped", reason)
+    begins = 200 if "0.9 N" in limits.values() else 0  # motor on at 0.5 s, at 400 Hz
+    assert sum(record.samples()) <= begins + 0.05 * 400
+
+
+def test_a_lost_sample_is_no_silent_gap() -> None:
+    result, _, _ = run(protocol(), SimulatedRig(skip_at=1000))
+    assert result.outcome == "failed"
+    assert "1 samples are missing after sample" in result.reason
+
+
+def test_a_full_disk_ends_the_run_and_keeps_what_was_written() -> None:
+    result, _, record = run(protocol(), record=MemoryRecord(blocks_until_full=50))
+    assert (result.outcome, result.reason) == ("failed", "blocks: no space left on device")
+    assert len(record.segments[0]) == 50
+
+
+def test_an_operator_who_does_not_confirm_ends_the_run_before_anything_moves() -> None:
+    rig, record = SimulatedRig(), MemoryRecord()
+    result = run_protocol(protocol(), rig.devices(), record, operator=lambda prompt: False)
+    assert (result.outcome, result.reason) == ("stopped", "the operator did not confirm: Wipe pin and plate.")
+    assert not any(call.startswith(("turn", "drive")) for call in rig.calls)
+
+
+def test_motor_and_drive_are_off_while_the_operator_works_and_the_recording_goes_on_in_a_second_part() -> None:
+    steps: list[Mapping[str, object]] = [
+        {"kind": "acquire", "channels": ["friction_force"], "sample_rate": "1 kHz", "duration": "2 s"},
+        {"kind": "motor_speed", "rotation_speed": "1 Hz"},
+        {"kind": "wait", "duration": "0.5 s"},
+        {"kind": "prompt", "task": "mounting", "text": "Turn the specimen."},
+        {"kind": "wait", "duration": "1.5 s"},
+    ]
+    rig, record, states = SimulatedRig(), MemoryRecord(), []
+
+    def look(prompt: Prompt) -> bool:
+        states.append(rig.is_off)
+        return True
+
+    result = run_protocol(protocol(*steps), rig.devices(), record, operator=look)
+    assert result.outcome == "completed"
+    assert states == [True]
+    assert record.samples() == [500, 1500]
+    assert record.segments[1][0].values[0, 0] == 1.0  # the motor turns again
+
+
+def test_a_pause_holds_the_clock_and_a_stop_ends_after_the_present_block() -> None:
+    control = RunControl()
+
+    class Watched(SimulatedRig):
+        def read(self, samples: int) -> Block:
+            if self.total == 1000:
+                control.pause()
+            if self.total >= 4000:
+                control.stop("enough")
+            return super().read(samples)
+
+    class Resuming(MemoryRecord):
+        def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
+            super().note(kind, sample=sample, **facts)
+            if facts.get("reason") == "on request":
+                threading.Timer(0.2, control.resume).start()
+
+    result, _, record = run(protocol(), Watched(), record=Resuming(), control=control)
+    assert (result.outcome, result.reason) == ("stopped", "enough")
+    assert sum(record.samples()) == 4020
+    assert [kind for kind, _ in record.notes].count("pause") == 2  # the prompt, and the request
+
+
+@pytest.mark.parametrize(("otherwise", "outcome"), [("stop", "stopped"), ("note", "completed"), ("wait", "completed")])
+def test_a_check_stops_notes_or_waits(otherwise: str, outcome: str) -> None:
+    steps: list[Mapping[str, object]] = [
+        {"kind": "acquire", "channels": ["friction_force"], "sample_rate": "1 kHz", "duration": "1 s"},
+        {"kind": "check", "quantity": "temperature", "highest": "295 K", "otherwise": otherwise},
+        {"kind": "wait", "duration": "1 s"},
+    ]
+
+    class Cooling(SimulatedRig):
+        def read(self, samples: int) -> Block:
+            self.values = {"temperature": 300.0 - self.total / 100}
+            return super().read(samples)
+
+    result, _, record = run(protocol(*steps, temperature_maximum="400 K"), Cooling())
+    assert result.outcome == outcome
+    if outcome == "completed":
+        assert sum(record.samples()) >= 1000
+    else:
+        assert "check of temperature: 300 K, wanted any to 295 K" in result.reason
+
+
+def test_what_devices_cannot_do_is_refused_before_they_are_connected() -> None:
+    weak = SimulatedRig(voltage_maximum=20.0)
+    with raises(InvalidInput, match=r"step 6: the drive reaches 25.9 V; simulated rig gives at most 20 V"):
+        run_protocol(protocol(), weak.devices(), MemoryRecord(), operator=lambda prompt: True)
+    slow = SimulatedRig(rotation_speed_maximum=0.1)
+    with raises(InvalidInput, match=r"step 4: needs .* simulated rig turns at most at 0.1 1/s"):
+        run_protocol(protocol(), slow.devices(), MemoryRecord(), operator=lambda prompt: True)
+    unknown = {"kind": "acquire", "channels": ["noise"], "sample_rate": "1 Hz", "duration": "1 s"}
+    with raises(InvalidInput, match="has no channel noise; it has friction_force"):
+        run_protocol(protocol(unknown), SimulatedRig().devices(), MemoryRecord(), operator=lambda prompt: True)
+    assert (weak.connected, slow.connected) == (0, 0)
+
+
+def test_a_limit_that_nothing_watches_is_refused() -> None:
+    rig = SimulatedRig()
+    found = rig.devices()
+    blind = replace(found, acquisition=_Blind())
+    with raises(InvalidInput, match="temperature_maximum cannot be watched: no device has a channel temperature"):
+        run_protocol(protocol(temperature_maximum="400 K"), blind, MemoryRecord(), operator=lambda prompt: True)
+
+
+class _Blind(SimulatedRig):
+    @property
+    def channels(self):  # type: ignore[no-untyped-def]
+        return {name: each for name, each in super().channels.items() if name != "temperature"}
+
+
+def test_progress_tells_step_time_and_friction() -> None:
+    told = []
+    run_protocol(
+        protocol(),
+        SimulatedRig().devices(),
+        MemoryRecord(),
+        operator=lambda prompt: True,
+        advance=lambda now, done, whole: told.append((now, done, whole)),
+    )
+    assert told[-1] == ("step 6, voltage steps, 400 mN", 32_500, 32_500)
+    assert [done for _, done, _ in told] == sorted(done for _, done, _ in told)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_run_after_the_present_block_and_handlers_are_as_before(
+    number: signal.Signals, request: pytest.FixtureRequest
+) -> None:
+    former = signal.signal(number, signal.default_int_handler)  # a background job ignores it
+    request.addfinalizer(lambda: signal.signal(number, former))
+
+    class Signalled(SimulatedRig):
+        def read(self, samples: int) -> Block:
+            if self.total == 1000:
+                signal.raise_signal(number)
+            return super().read(samples)
+
+    result, _, record = run(protocol(), Signalled())
+    assert result.outcome == "stopped"
+    assert result.reason in ("interrupted", "terminated")
+    assert sum(record.samples()) == 1020
+    assert signal.getsignal(number) is signal.default_int_handler
