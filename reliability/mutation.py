@@ -21,8 +21,8 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "sonolube"
 ROOMS = {
-    "contact": 45, "friction": 60, "wear": 12, "thermal": 35, "actuator": 35, "metrics": 20, "surfaces": 45,
-    "dynamics": 30, "fem": 18,
+    "models/contact": 45, "models/friction": 60, "models/wear": 12, "models/thermal": 35, "models/actuator": 35,
+    "facts/metrics": 20, "models/surfaces": 45, "models/dynamics": 30, "models/fem": 18,
 }  # fmt: skip
 _OTHER_TESTS = (
     "tests/validation",
@@ -202,7 +202,7 @@ def tests_of(file: str) -> list[list[str]]:
     every = sorted(
         (ROOT / "tests").rglob("test_*.py"), key=lambda test: not names.search(test.read_text(encoding="utf-8"))
     )
-    room = [test for test in every if path.parts[0] in test.relative_to(ROOT / "tests").parts[0]]
+    room = [test for test in every if path.parts[:2] == test.relative_to(ROOT / "tests").parts[:2]]
     own = [test for test in room if test.stem == f"test_{path.stem}"]
     naming = [test for test in every if test not in room and names.search(test.read_text(encoding="utf-8"))]
     naming.sort(key=lambda test: _OTHER_TESTS[0] not in test.as_posix())

@@ -120,7 +120,7 @@ def answer(folder: Path, *arguments: object) -> Any:
 
 @pytest.fixture
 def with_friction_model(copied_package: Path) -> Path:
-    models = copied_package / "friction" / "models"
+    models = copied_package / "models" / "friction" / "models"
     extend(
         models / "constant_ratio.py",
         FRICTION_MODEL,
@@ -193,7 +193,7 @@ def test_a_parameter_of_another_friction_model_is_refused(with_friction_model: P
 @pytest.mark.slow
 def test_an_asperity_law_is_one_file_and_one_line(copied_package: Path) -> None:
     folder = copied_package.parent
-    contact = copied_package / "contact"
+    contact = copied_package / "models" / "contact"
     extend(
         contact / "asperity_laws" / "doubled.py",
         ASPERITY_LAW,

@@ -12,7 +12,10 @@ import grimp
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PHYSICS = ("surfaces", "contact", "friction", "wear", "thermal", "actuator", "dynamics", "metrics")
+PHYSICS = (
+    *(f"models.{room}" for room in ("surfaces", "contact", "friction", "wear", "thermal", "actuator", "dynamics")),
+    "facts.metrics",
+)
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import pytest
 TESTS = Path(__file__).parent
 CLOCKS = {"monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns", "process_time", "time_ns", "thread_time"}
 HUNG = {"cli/terminal.py", "cli/predict/test_new.py"}  # where a clock ends a hung test
-STAND_INS = {"lab/records/clock.py", "cli/console/test_progress.py"}  # of clocks, which are named alike
+STAND_INS = {"laboratory/records/clock.py", "cli/console/test_progress.py"}  # of clocks, which are named alike
 LEAST = 60.0  # s
 
 

@@ -15,7 +15,7 @@ METHODS = {  # of paths, or of modules that move and remove files
 MODULES = {"shutil", "tempfile", "sqlite3"}  # made to write
 READING = {"which"}  # of these modules
 EXCEPTED = {  # calls of modules that replace nothing: a file without a name, and a folder among temporary files
-    "fem/solver/cad.py": ("TemporaryFile",),
+    "models/fem/solver/cad.py": ("TemporaryFile",),
     "input_files.py": ("os.O_RDONLY",),  # reads pipes
     "compilation.py": ("import tempfile", "tempfile.gettempdir()", "folder.mkdir(mode=stat.S_IRWXU"),
 }
