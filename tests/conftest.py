@@ -1,6 +1,7 @@
 """Shared settings and fixtures: hypothesis without clocks, and a copy of the package that a test may extend."""
 
 import gc
+import os
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -12,6 +13,8 @@ from tests import skips
 
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("patient")
+
+os.environ["COLUMNS"] = "500"  # so that lines of the program are not wrapped, whatever terminal runs the tests
 
 _OBJECTS = 20_000  # allocated between two collections of garbage; Python's 700 take a twentieth of the time
 

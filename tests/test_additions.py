@@ -59,37 +59,39 @@ class DoubledAsperity(ElasticAsperity):
         return 2 * super().force_ratio(pair, interference_ratio)
 '''
 
-COMMAND = '''
-"""Command `hello`: the circular frequency of a frequency."""
+TASK = '''
+"""Task `hello`: the circular frequency of a frequency."""
 
 import math
+from collections.abc import Sequence
+from typing import Annotated
 
-import typer
+from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.blocks import Block
+from sonolube.tasks.parameters import Number, Parameter
+from sonolube.tasks.task import in_si, task
 
-from sonolube.cli.console.answer import Answer, deliver
-from sonolube.cli.console.options import Json
-from sonolube.units import to_si
 
-
+@answer
 class Circular(Answer):
     """Circular frequency of a frequency."""
 
-    def __init__(self, frequency: float) -> None:
-        self.circular = 2 * math.pi * frequency
+    circular: float
 
-    def lines(self) -> list[str]:
+    def blocks(self) -> Sequence[Block]:
         return [f"{self.circular:.6g} rad/s"]
 
     def object(self) -> dict[str, object]:
         return {"circular_frequency": {"value": self.circular, "unit": "rad/s"}}
 
 
-def hello(frequency: str, json: Json = False) -> None:
+@task
+def hello(frequency: Annotated[Number, Parameter(help="Of the drive.", unit="Hz")]) -> Circular:
     """Circular frequency of a frequency.
 
     Example: sonolube hello 1kHz
     """
-    deliver(Circular(to_si(frequency, unit="Hz", name="FREQUENCY")), as_json=json)
+    return Circular(circular=2 * math.pi * in_si("frequency", frequency))
 '''
 
 
@@ -214,15 +216,17 @@ def test_an_asperity_law_is_one_file_and_one_line(copied_package: Path) -> None:
     assert '"doubled"' in json.dumps(answer(folder, "schema"))
 
 
-def test_a_command_is_one_file_and_one_line(copied_package: Path) -> None:
+def test_a_task_is_one_file_and_one_line_for_terminal_and_python(copied_package: Path) -> None:
     folder = copied_package.parent
     extend(
-        copied_package / "cli" / "lookup" / "hello.py",
-        COMMAND,
-        table=copied_package / "cli" / "commands.py",
-        after='    Command(_LOOKUP, "schema", "lookup.schema:schema"),\n',
-        line='    Command(_LOOKUP, "hello", "lookup.hello:hello"),',
+        copied_package / "tasks" / "lookup" / "hello.py",
+        TASK,
+        table=copied_package / "tasks" / "table.py",
+        after="TASKS: Final = (\n",
+        line='    Task(_LOOKUP, "hello", "lookup.hello:hello"),',
     )
     assert answer(folder, "hello", "1kHz")["circular_frequency"]["value"] == approx(6283.185307)
     assert "6283.19 rad/s" in run(folder, "-c", "from sonolube.cli import main; main(['hello', '1 kHz'])")
     assert "Circular frequency of a frequency." in run(folder, "-c", "from sonolube.cli import main; main(['--help'])")
+    in_python = "from sonolube.tasks.table import TASKS; print(TASKS[0].function(1000.0))"
+    assert "6283.19 rad/s" in run(folder, "-c", in_python)

@@ -40,17 +40,22 @@ def imported_distributions() -> Mapping[str, set[str]]:
 
 def test_every_extra_of_the_project_has_its_line_in_the_package() -> None:
     declared = PROJECT["optional-dependencies"]
-    assert declared.keys() == EXTRAS.keys()
+    assert declared.keys() - {"all"} == EXTRAS.keys()
     for name, extra in EXTRAS.items():
         assert {module.lower().replace("_", "-") for module in extra.modules} - {"netgen", "serial"} <= (
             names(declared[name]) | names(declared["surfaces"])
         )
 
 
+def test_the_extra_all_has_every_other_that_a_usual_computer_can_use() -> None:
+    (every,) = PROJECT["optional-dependencies"]["all"]
+    assert set(re.findall(r"[\w-]+", every)) == {"sonolube", *EXTRAS} - {"cluster", "gpu"}
+
+
 def test_every_package_that_is_imported_is_required_and_every_extra_is_used() -> None:
     # Pillow, cycler and fontTools come with matplotlib; type checkers have _typeshed; only `learning` needs emcee
     implied = {"pillow", "cycler", "fonttools", "pydantic-core", "-typeshed", "emcee"}
-    optional = {name for requirements in PROJECT["optional-dependencies"].values() for name in names(requirements)}
+    optional = {name for extra in EXTRAS for name in names(PROJECT["optional-dependencies"][extra])}
     required = names(PROJECT["dependencies"])
     imported = imported_distributions()
     assert {module for module, called in imported.items() if not called & (required | optional | implied)} == set()

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from sonolube.tasks.lookup.example import example
+
 ROOT = Path(__file__).parents[1]
 RIG = ROOT / "examples" / "rigs" / "tribometer.toml"
 UV = Path(sys.executable).with_name("uv")
@@ -79,6 +81,14 @@ def test_an_installed_wheel_computes_the_friction_of_a_rig(programs: Path, tmp_p
         run = subprocess.run([program, *words], capture_output=True, text=True, check=True, cwd=tmp_path)
         answers.append(json.loads(run.stdout))
     assert answers[0] == answers[1]
+
+
+def test_an_installed_wheel_has_every_example_file(programs: Path, tmp_path: Path) -> None:
+    words = ["example", "all", "--json"]
+    run = subprocess.run([programs / "sonolube", *words], capture_output=True, text=True, check=True, cwd=tmp_path)
+    assert json.loads(run.stdout)["files"] == list(example("all").files())
+    friction = [str(programs / "sonolube"), "friction", "examples/rigs/collar.toml"]
+    assert "Friction force" in subprocess.run(friction, capture_output=True, text=True, check=True, cwd=tmp_path).stdout
 
 
 def test_an_installed_wheel_is_imported_from_its_own_place_without_warnings(programs: Path, tmp_path: Path) -> None:

@@ -13,10 +13,11 @@ METHODS = {  # of paths, or of modules that move and remove files
     *("mkdir", "rmdir", "removedirs", "renames", "remove", "makedirs", "rmtree", "move", "copy", "copy2", "copyfile"),
 }
 MODULES = {"shutil", "tempfile", "sqlite3"}  # made to write
-READING = {"which"}  # of these modules
+READING = {"which", "get_terminal_size"}  # of these modules
 EXCEPTED = {  # calls of modules that replace nothing: a file without a name, and a folder among temporary files
     "models/fem/solver/cad.py": ("TemporaryFile",),
     "input_files.py": ("os.O_RDONLY",),  # reads pipes
+    "tasks/files.py": ("tempfile", "TemporaryDirectory", "path.write_bytes(file.content)"),
     "compilation.py": ("import tempfile", "tempfile.gettempdir()", "folder.mkdir(mode=stat.S_IRWXU"),
 }
 IN_MEMORY = {"BytesIO", "StringIO"}

@@ -96,3 +96,13 @@ def jupyter(cells: list[Cell]) -> str:
     return json.dumps(
         {"nbformat": 4, "nbformat_minor": 4, "metadata": {"kernelspec": kernel}, "cells": content}, indent=1
     )
+
+
+def write_all(folder: Path) -> None:
+    """Write every notebook of a folder as a Jupyter file beside its script."""
+    for script in sorted(folder.glob("*.py")):
+        script.with_suffix(".ipynb").write_text(jupyter(cells_of(script)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_all(Path(__file__).parents[2] / "examples" / "notebooks")

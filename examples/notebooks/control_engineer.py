@@ -20,7 +20,7 @@ from sonolube.design.control import (
     stability_margins,
 )
 from sonolube.design.control.figures import closed_loop_figure
-from sonolube.figure import publication_style
+from sonolube.figure import publication_style, shown_in_notebooks
 
 rig = sl.read_rig("../rigs/tribometer.toml")
 wanted = 0.2 * rig.normal_load
@@ -61,7 +61,7 @@ print(f"delay margin    {1e3 * margins.delay_margin:.1f} ms beyond the 2 ms")
 # %%
 with publication_style():
     figure = closed_loop_figure(study)
-figure
+shown_in_notebooks(figure)
 
 # %%
 run = study.run

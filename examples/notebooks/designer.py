@@ -16,7 +16,7 @@ from sonolube.design.horn import amplitude_limits, tuned_horn
 from sonolube.design.horn_figures import horn_axis_figure
 from sonolube.design.horn_shapes import horn_body
 from sonolube.facts.materials import material
-from sonolube.figure import publication_style
+from sonolube.figure import publication_style, shown_in_notebooks
 from sonolube.models import fem
 
 titanium = material("titanium_6al4v")
@@ -53,7 +53,7 @@ for strength, limit in amplitude_limits(horn, material=titanium).items():
 # %%
 with publication_style():
     figure = horn_axis_figure(horn)
-figure
+shown_in_notebooks(figure)
 
 # %% [markdown]
 # The node is where a flange may hold the horn. The peak stress lies beyond it, and
@@ -100,7 +100,7 @@ with publication_style():
     above.set(ylabel="Impedance [Ω]")
     below.semilogy(1e-3 * frequency, 1e6 * per_volt)
     below.set(xlabel="Frequency [kHz]", ylabel="Tip [µm/V]")
-figure
+shown_in_notebooks(figure)
 
 # %% [markdown]
 # The losses are those assumed of the materials; joints add to them, so that the
@@ -112,7 +112,7 @@ figure
 # every published test, and the answer says so.
 
 # %%
-rig = sl.new_rig(
+rig = sl.new(
     pin="titanium_6al4v",
     disc="304",
     load="50 N",
@@ -120,7 +120,5 @@ rig = sl.new_rig(
     frequency="20 kHz",
     amplitude="20 um",
     shape="flat 6mm",
-)
-prediction = sl.predict(rig)
-print(prediction.attrs["statement"])
-print("caveat:", prediction.attrs["caveats"])
+).rig
+sl.predict(rig)

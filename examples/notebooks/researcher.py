@@ -29,7 +29,8 @@ for volts, speed, force, still in zip(
 # model that wins by this has not won by its number of parameters.
 
 # %%
-fit = sl.fit_runs(runs, rig)
+answer = sl.fit(runs, rig=rig)
+fit = answer.fit
 for model in fit.models[:5]:
     print(
         f"{model.name:38s} rms of the fit {model.rms_fit:.3f}, of unseen conditions {model.rms_unseen:.3f}"
@@ -38,7 +39,7 @@ print(f"mean of the other conditions: {fit.rms_of_mean:.3f}")
 print(fit.verdict)
 
 # %%
-sl.plot(fit)
+sl.plot(answer)
 
 # %% [markdown]
 # ## Next
@@ -59,7 +60,7 @@ print(following.condition.settings)
 
 # %%
 for label, known in (("published tests alone", None), ("with these runs", runs)):
-    low, high = np.quantile(sl.predict(rig, runs=known).friction_ratio, [0.1, 0.9])
+    low, high = np.quantile(sl.predict(rig, runs=known)["friction_ratio"], [0.1, 0.9])
     print(f"{label:22s} friction ratio {low:.2f} to {high:.2f} (80 %)")
 
 # %%

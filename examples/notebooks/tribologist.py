@@ -24,7 +24,7 @@ folder = Path(mkdtemp())
 # measured has a distribution.
 
 # %%
-rig = sl.new_rig(
+rig = sl.new(
     pin="brass",
     disc="304",
     load="5 N",
@@ -32,9 +32,9 @@ rig = sl.new_rig(
     frequency="20 kHz",
     amplitude="3 um",
     finish="ground N6",
-)
+).rig
 before = sl.predict(rig)
-print(before.attrs["statement"])
+before
 
 # %%
 sl.plot(before)
@@ -68,7 +68,7 @@ def record(name: str, level: float) -> Path:
 
 still = sl.measure.friction(record("off.csv", 1.75), sliding_speed=0.2)
 vibrated = sl.measure.friction(record("on.csv", 0.95), sliding_speed=0.2)
-print(vibrated)
+vibrated
 
 # %%
 sl.plot(vibrated)
@@ -89,7 +89,7 @@ sl.plot(vibrated)
 )
 after = sl.predict(rig, runs=sl.read_runs(folder / "runs.csv"))
 for label, each in (("before", before), ("after", after)):
-    low, high = each.friction_ratio.quantile([0.1, 0.9]).values
+    low, high = each["friction_ratio"].quantile([0.1, 0.9]).values
     print(f"{label:7s} friction ratio {low:.2f} to {high:.2f} (80 %)")
 
 # %%

@@ -12,11 +12,11 @@ from functools import cache
 from pathlib import Path
 
 from reliability.study import Measure, Record, Study
-from sonolube.cli.console.ranges import values_by_key
 from sonolube.design import grid_plan, sweep
+from sonolube.tasks.ranges import values_by_key
 
 _RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
-_OVER, _CHUNK, _CHUNKS = "sliding.sliding_speed=10mm/s:90mm/s:400", 10, 40
+_KEY, _VALUES, _CHUNK, _CHUNKS = "sliding.sliding_speed", "10mm/s:90mm/s:400", 10, 40
 _PROGRAM = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a background job ignores it
     "import sonolube.cli; print(flush=True); sonolube.cli.main()"
@@ -27,7 +27,7 @@ _LONGEST = 3.0  # s, from the start
 
 def _sweep(folder: Path) -> dict[str, bytes]:
     """Contents of the folder of a sweep that ends undisturbed: chunks, manifest and dataset."""
-    sweep(grid_plan(_RIG, over=values_by_key([_OVER])), folder=folder, chunk_points=_CHUNK).close()
+    sweep(grid_plan(_RIG, over=values_by_key({_KEY: _VALUES})), folder=folder, chunk_points=_CHUNK).close()
     pages = {"sweep.html", "sweep.png", "sweep.svg"}
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.name not in pages}
 
@@ -62,7 +62,7 @@ def _trial(seed: int) -> Record:
     code, word = _SIGNALS[number]
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "out"
-        words = ("sweep", str(_RIG), "--over", _OVER, "--chunk", str(_CHUNK), "--out", str(folder))
+        words = ("sweep", str(_RIG), "--over", f"{_KEY}={_VALUES}", "--chunk", str(_CHUNK), "--out", str(folder))
         command = [sys.executable, "-c", _PROGRAM, *words]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
             assert run.stdout

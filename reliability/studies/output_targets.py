@@ -52,6 +52,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "identify decay-length": (INPUT,),
     "literature": (INPUT,),
     "reproduce": (),
+    "example": ("all",),
 }
 IN_THE_WAY = ("pipe", "device", "link to a pipe", "dangling link", "loop", "below a file")
 KINDS_OF_FILE = ("input", "link to an input", "second name of an input", "folder", *IN_THE_WAY)

@@ -95,7 +95,7 @@ def _refuse_unless(accepted: NDArray[np.bool_], array: Floats, name: str, demand
     """Raise InvalidInput for the first element that is not accepted."""
     if not accepted.all():
         offender = float(array[~accepted].flat[0]) if array.ndim else float(array)
-        raise InvalidInput(f"{name} {demand}, got {offender!r} {unit_of(name)}".rstrip())
+        raise InvalidInput(f"{name} {demand}, got {offender!r} {unit_of(name)}".rstrip(), key=name)
 
 
 def _floats(name: str, value: ArrayLike) -> Floats:
@@ -105,7 +105,7 @@ def _floats(name: str, value: ArrayLike) -> Floats:
     except ValueError:
         array = np.asarray(None)
     if array.dtype.kind not in "fiu":
-        raise InvalidInput(f"{name} must be a number or an array of numbers, got {value!r}")
+        raise InvalidInput(f"{name} must be a number or an array of numbers, got {value!r}", key=name)
     return array.astype(np.float64, copy=False)
 
 

@@ -10,7 +10,19 @@ class SonolubeError(Exception):
 
 
 class InvalidInput(SonolubeError, ValueError):
-    """A value without meaning for its argument."""
+    """A value without meaning for its argument.
+
+    Parameters
+    ----------
+    text : str
+        One line that names the argument, the value and the remedy.
+    key : str
+        Name of the argument, or dotted key of a file; empty where the text is of several.
+    """
+
+    def __init__(self, text: str = "", *, key: str = "") -> None:
+        self.key = key
+        super().__init__(text)
 
 
 class SeveralFaults(InvalidInput):
@@ -24,10 +36,12 @@ class SeveralFaults(InvalidInput):
         Number of further faults, which are not listed.
     where : str
         What has the faults, such as a file.
+    keys : iterable of str
+        Dotted key of each fault, where it has one.
     """
 
-    def __init__(self, faults: Iterable[str], *, rest: int = 0, where: str = "") -> None:
-        self.faults, self.rest, self.where = tuple(faults), rest, where
+    def __init__(self, faults: Iterable[str], *, rest: int = 0, where: str = "", keys: Iterable[str] = ()) -> None:
+        self.faults, self.rest, self.where, self.keys = tuple(faults), rest, where, tuple(keys)
         super().__init__("; ".join([self.heading, *self.lines]))
 
     @property
@@ -42,7 +56,8 @@ class SeveralFaults(InvalidInput):
 
     def at(self, place: str) -> "SeveralFaults":
         """Return the same faults with a place before what has them."""
-        return SeveralFaults(self.faults, rest=self.rest, where=f"{place}: {self.where}".removesuffix(": "))
+        where = f"{place}: {self.where}".removesuffix(": ")
+        return SeveralFaults(self.faults, rest=self.rest, where=where, keys=self.keys)
 
 
 class OutsideRange(InvalidInput):

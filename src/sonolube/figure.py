@@ -178,6 +178,34 @@ def publication_style(style: str | None = None) -> Iterator[None]:
             yield
 
 
+def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options: Any) -> tuple["Figure", Any]:
+    """New figure with axes, which no state of matplotlib keeps.
+
+    Parameters
+    ----------
+    rows, columns : int
+    figsize : (float, float)
+        Width and height in inches.
+    **options : object
+        Of `matplotlib.figure.Figure.subplots`, and its `width_ratios` and `height_ratios`.
+
+    Returns
+    -------
+    Figure
+    Axes or ndarray of Axes
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=figsize)
+    return figure, figure.subplots(rows, columns, **options)
+
+
+def shown_in_notebooks(figure: "Figure") -> "Figure":
+    """Return the figure, which a notebook shows as a picture where it is the value of a cell."""
+    figure._repr_png_ = partial(render_figure, figure, "png")  # type: ignore[attr-defined]
+    return figure
+
+
 def fit_to_style(figure: "Figure") -> None:
     """Give a figure the width of a column or of the page of the style in use, and no text below its least size.
 

@@ -13,7 +13,7 @@ import pytest
 from pytest import CaptureFixture, MonkeyPatch, raises
 
 from sonolube.cli import main
-from sonolube.cli.console import answer, progress
+from sonolube.cli.console import delivery, progress
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.compilation import Kernel
 from sonolube.models.fem import electromechanical_model, mode_files, tuning
@@ -121,7 +121,7 @@ def only_foreseen_files(monkeypatch: MonkeyPatch) -> None:
         return expect_target(path)
 
     monkeypatch.setattr(OutputFolder, "expect", names)
-    monkeypatch.setattr(answer, "expect_target", one)
+    monkeypatch.setattr(delivery, "expect_target", one)
 
 
 @pytest.fixture(scope="session")

@@ -26,7 +26,7 @@ SWITCHES = str(ROOT / "examples" / "decay-length-run.csv")
 OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
 STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--points": "4", "--voltage": "10V"}
 DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7", "--backend": "gpu"}
-SWEEP = STUDY | DRAWN | {"--set": "contact.normal_load=2N", "--amplitude": "computed"}
+SWEEP = STUDY | DRAWN | LOADED | {"--amplitude": "computed"}
 SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
 KNOWN = (
     *("--pin", "aluminium_2024", "--disc", "stainless_steel_316", "--load", "5N", "--speed", "0.2m/s"),
@@ -53,8 +53,8 @@ MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage
 
 # Options that say how an answer is computed or kept: the answer stays the same.
 EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--scheduler", "--chunk", "--backend", "--keep"}
-# Options of the place of files, which every run here gives.
-PLACES = {"--out", "--json", "--help"}
+# Options of the place of files, which every run here gives, and of the form of text.
+PLACES = {"--out", "--json", "--help", "--brief"}
 # A run takes a minute; tests of these commands try them.
 TESTED_ELSEWHERE = {
     ("reproduce", "--chapter"),
@@ -325,6 +325,7 @@ MODES = {
             "--over": "contact.normal_load=3N",
             "--runs": RUNS,
             "--form": "svg",
+            "--load": "2N",
             "--amplitude": "per-volt",
             "--set": "contact.roughness.rms_height=1um",
             "--backend": "gpu",
@@ -344,9 +345,8 @@ MODES = {
             "--over": "sliding.sliding_speed=20mm/s,50mm/s",
             "--seed": "1",
             "--workers": "1",
-            "--set": "contact.normal_load=2N",
-            "--amplitude": "per-volt",
             "--keep": "OUT/keep",
+            **VIBRATED,
         },
         ("--sobol", "--no-interval"),
     ),
@@ -405,8 +405,7 @@ MODES = {
             "--quality": "100",
             "--coupling": "0.3",
             "--duration": "0.06s",
-            "--amplitude": "per-volt",
-            "--set": "contact.normal_load=2N",
+            **VIBRATED,
         },
         ("--no-track", "--stick-slip"),
     ),
@@ -598,8 +597,9 @@ MODES = {
     "lab virtual": Mode(
         "lab virtual",
         (str(RIGS / "power_map.toml"), "--protocol", "FOLDER/short.toml"),
-        {"--protocol": "FOLDER/shorter.toml", "--seed": "1", "--format": "csv"},
+        {"--protocol": "FOLDER/shorter.toml", "--seed": "1", "--format": "csv", **LOADED},
     ),
+    "lab virtual with a drive": Mode("lab virtual", (str(RIGS / "power_map.toml"),), AMPLITUDE),
     "lab hold": Mode(
         "lab hold",
         (str(RIGS / "power_map.toml"), "--duration", "1s", "--run-in", "0.1s"),
@@ -620,8 +620,7 @@ MODES = {
             "--device": "FOLDER/devices.toml",
             "--seed": "1",
             "--tag": "mine",
-            "--set": "contact.normal_load=2.5N",
-            **AMPLITUDE,
+            **VIBRATED,
         },
         ("--real-time",),
     ),
@@ -733,3 +732,9 @@ def write_inputs(place: Path) -> None:
 
 def _table(path: Path, heads: str, *columns: "np.ndarray[Any, np.dtype[np.float64]]") -> None:
     np.savetxt(path, np.stack(columns, 1), delimiter=",", header=heads, comments="", fmt="%.9g")
+
+
+_LOADED = ("response", "transient", "thermal", "regime", "optimise", "compare", "fit", "literature")
+for _mode in MODES.values():  # the load is an entry of every rig file
+    if _mode.command in _LOADED and "--set" in _mode.values:
+        object.__setattr__(_mode, "values", {**_mode.values, "--load": "2N"})

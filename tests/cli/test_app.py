@@ -3,7 +3,6 @@
 import inspect
 import os
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -137,56 +136,3 @@ def test_completion_can_be_had_for_every_shell(shell: str) -> None:
     run = installed(_SONOLUBE_COMPLETE=f"source_{shell}")
     assert run.returncode == 0
     assert "_SONOLUBE_COMPLETE" in run.stdout
-
-
-TOY = '''
-"""Command `greet`."""
-
-from dataclasses import dataclass
-from typing import Annotated, Any
-
-import typer
-
-from sonolube.cli.console.answer import Answer, deliver
-from sonolube.cli.console.options import Json
-
-
-@dataclass(frozen=True)
-class Greeting(Answer):
-    times: int
-
-    def lines(self) -> list[str]:
-        return ["hello"] * self.times
-
-    def object(self) -> dict[str, Any]:
-        return {"times": self.times}
-
-
-def greet(times: Annotated[int, typer.Option(help="How often.", max=3)] = 1, json: Json = False) -> None:
-    """Greet the user.
-
-    Example: sonolube greet --times 2
-    """
-    deliver(Greeting(times), as_json=json)
-'''
-
-
-def test_a_command_is_added_by_one_file_and_one_line_of_the_table(tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "src" / "sonolube", tmp_path / "sonolube", ignore=shutil.ignore_patterns("__pycache__"))
-    folder = tmp_path / "sonolube" / "cli"
-    (folder / "lookup" / "greet.py").write_text(TOY, encoding="utf-8")
-    table = (folder / "commands.py").read_text(encoding="utf-8")
-    line = '    Command(_LOOKUP, "greet", "lookup.greet:greet"),\n'
-    (folder / "commands.py").write_text(table.replace("COMMANDS = (\n", f"COMMANDS = (\n{line}"), encoding="utf-8")
-
-    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-        code = "from sonolube.cli import main; main()"
-        environment = os.environ | {"PYTHONPATH": str(tmp_path)}
-        return subprocess.run(
-            [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=False, env=environment
-        )
-
-    assert "Greet the user." in run("--help").stdout
-    assert run("greet", "--times", "2").stdout == "hello\nhello\n"
-    assert '"times": 1' in run("greet", "--json").stdout
-    assert_refused(run("greet", "--times", "7"), "sonolube greet: Invalid value for '--times'")

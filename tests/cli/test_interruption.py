@@ -109,7 +109,7 @@ def test_a_second_sweep_into_the_folder_of_one_at_work_is_refused(tmp_path: Path
 
 
 def test_a_sweep_that_was_killed_is_finished_by_the_next(tmp_path: Path, sonolube: Program) -> None:
-    words = (*SWEEP[:3], "sliding.sliding_speed=10mm/s:90mm/s:400", "--chunk", "50", "--out")
+    words = (*SWEEP[:3], "sliding.sliding_speed=10mm/s:90mm/s:400", "--chunk", "50", "--workers", "1", "--out")
     run = subprocess.run([sys.executable, "-c", KILLED, *words, "out"], cwd=tmp_path, capture_output=True, check=False)
     assert run.returncode == -signal.SIGKILL
     assert len(list((tmp_path / "out").glob("chunk-*.npz"))) == 2

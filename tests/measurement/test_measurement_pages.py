@@ -37,6 +37,7 @@ def test_a_step_of_the_tutorial_prints_what_the_page_quotes(
     step: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(folder)
+    monkeypatch.setenv("COLUMNS", "80")
     words = shlex.split(step)[1:]
     with pytest.raises(SystemExit) as ended:
         main(words)

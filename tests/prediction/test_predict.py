@@ -17,7 +17,7 @@ from sonolube.facts.published import si_value
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.prediction import LivePrediction, interval, predict, prediction_figure
 from sonolube.rig import Distribution, LogNormal, Rig, friction_point, read_rig
-from sonolube.workbench.first_rig import new_rig
+from sonolube.tasks.predict.new import new
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 COLUMNS = "vibration_amplitude [um],sliding_speed [mm/s],friction_ratio"
@@ -61,9 +61,9 @@ def test_wider_intervals_contain_narrower_ones() -> None:
 
 def brass_rig() -> Rig:
     """Rig of README, by `new`."""
-    return new_rig(
+    return new(
         pin="brass", disc="304", load="5N", speed="0.2m/s", frequency="20kHz", amplitude="3um", finish="ground N6"
-    )
+    ).rig
 
 
 def test_every_prediction_says_the_direction_of_the_vibration() -> None:

@@ -17,11 +17,10 @@ from sonolube.figure import render_figure
 from sonolube.models.surfaces import GaussianCorrelationSpectrum, gaussian_surface
 from sonolube.report import (
     MeasurementReport,
-    measurement_lines,
     measurement_object,
+    measurement_page,
     pin_on_disc_rows,
     read_pin_on_disc_sheet,
-    write_measurement_report,
 )
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
 from sonolube.report.measured.friction_comparison import comparison_sheet
@@ -66,7 +65,7 @@ def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def page(plate: Path, tmp_path: Path) -> str:
     friction = friction_sheet(recording_file(tmp_path / "a<b>.csv", 0.5), settings=FrictionSettings(sliding_speed=0.02))
     report = report_of(friction, surface_sheet(plate, settings=NPY))
-    return write_measurement_report(report, path=tmp_path / "page.html").read_text(encoding="utf-8")
+    return measurement_page(report)
 
 
 def test_axes_write_micrometres_as_other_figures_do(plate: Path, tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
@@ -77,7 +76,7 @@ def test_axes_write_micrometres_as_other_figures_do(plate: Path, tmp_path: Path,
         return render_figure(figure, form, **options)
 
     monkeypatch.setattr("sonolube.report.page.render_figure", read)
-    write_measurement_report(report_of(surface_sheet(plate, settings=NPY)), path=tmp_path / "page.html")
+    measurement_page(report_of(surface_sheet(plate, settings=NPY)))
     assert any("µm" in text for text in texts)
     assert [text for text in texts if re.search(r"\bum", text)] == []
 
@@ -113,7 +112,7 @@ def test_a_test_that_is_steady_from_the_start_slid_nothing_before(tmp_path: Path
 
 def test_what_was_sought_and_not_found_is_told_with_its_reason(tmp_path: Path) -> None:
     sheet = friction_sheet(recording_file(tmp_path / "test.csv", 0.5), settings=FrictionSettings())
-    assert any(line.startswith("  not found: stick-slip: ") for line in measurement_lines(report_of(sheet)))
+    assert any(reason.startswith("stick-slip: ") for reason in sheet.not_found)
 
 
 def test_three_tests_with_and_three_without_give_the_reduction_and_its_interval(tmp_path: Path) -> None:
@@ -186,9 +185,9 @@ def test_a_row_or_a_column_is_a_profile_with_parameters_and_spectrum(tmp_path: P
 def test_a_scan_says_its_lateral_unit_and_where_it_is_from_in_text_json_and_page(plate: Path, tmp_path: Path) -> None:
     report = report_of(surface_sheet(plate, settings=NPY))
     stated = "m, given by the user as the distance of pixels"
-    assert f"  lateral unit: {stated}" in measurement_lines(report)
+    assert report.sheets[0].size()["lateral unit"] == stated
     assert measurement_object(report)["results"][0]["source"]["lateral unit"] == stated
-    assert stated in write_measurement_report(report, path=tmp_path / "page.html").read_text(encoding="utf-8")
+    assert stated in measurement_page(report)
 
 
 def test_a_field_of_metres_has_a_caveat_on_its_sheet(plate: Path) -> None:

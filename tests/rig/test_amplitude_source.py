@@ -164,10 +164,23 @@ def test_amplitudes_that_differ_by_more_than_their_error_are_told_in_one_line() 
     assert not any("amplitudes differ" in caveat for caveat in friction_point(read_rig(TRIBOMETER)).caveats)
 
 
-def test_beyond_the_gap_at_rest_wear_about_it_has_no_number_but_the_range_of_the_models_that_hold() -> None:
+def test_beyond_the_gap_at_rest_wear_is_by_the_model_that_holds_and_says_so() -> None:
     from sonolube.rig import wear_point
 
-    wear = wear_point(read_rig(RIGS / "welder_flat.toml"))
+    rig = read_rig(RIGS / "welder_flat.toml")
+    wear = wear_point(rig)
+    assert wear.wear_model == "dong_2015_load_balanced"
+    assert wear.wear_rate_ratio == wear_point(rig, model="dong_2015_load_balanced").wear_rate_ratio
+    assert wear.reason is None
+    assert any(
+        "exceeds the gap at rest" in caveat and "half_period has no meaning" in caveat for caveat in wear.caveats
+    )
+
+
+def test_a_wear_model_that_was_asked_for_has_no_number_beyond_the_gap_at_rest() -> None:
+    from sonolube.rig import wear_point
+
+    wear = wear_point(read_rig(RIGS / "welder_flat.toml"), model="dong_2015_half_period")
     assert np.isnan(wear.wear_rate_ratio)
     assert wear.status == "outside_model_range"
     assert "exceeds the gap at rest" in (wear.reason or "")

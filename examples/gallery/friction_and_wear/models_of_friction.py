@@ -16,11 +16,11 @@ rig = sl.read_rig(Path(__file__).parents[2] / "rigs" / "power_map.toml")
 models = ("asperity_stick_slip", "bristle_with_holder", "kinematic")
 speed = np.geomspace(5e-3, 0.5, 25)
 over = {"friction.model": list(models), "sliding.sliding_speed": speed}
-swept = sl.sweep(rig, over)
+swept = sl.sweep(rig, over=over)
 
 with publication_style():
     figure, axes = plt.subplots(figsize=(4.4, 3.2))
-    for style, model, ratio in zip(LINES, models, swept.friction_ratio.values, strict=False):
+    for style, model, ratio in zip(LINES, models, swept["friction_ratio"].values, strict=False):
         axes.semilogx(1e3 * speed, ratio, linestyle=style, label=model.replace("_", " "))
     axes.set(xlabel="Sliding speed [mm/s]", ylabel="Friction ratio [-]", ylim=(0, 1.02))
     axes.legend()

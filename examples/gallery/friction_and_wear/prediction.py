@@ -6,9 +6,9 @@ The bands hold 50, 80 and 95 % of what the published tests make credible.
 
 import sonolube as sl
 
-rig = sl.new_rig(
+rig = sl.new(
     pin="brass", disc="304", load="5 N", speed="0.2 m/s", frequency="20 kHz", amplitude="3 um", finish="ground N6"
-)
+).rig
 figure = sl.plot(sl.predict(rig))
 
 if __name__ == "__main__":

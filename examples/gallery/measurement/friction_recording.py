@@ -17,7 +17,7 @@ force = 0.62 * (1 + 0.5 * np.exp(-time / 8)) + 0.05 * np.sin(2 * np.pi * time) +
 with TemporaryDirectory() as folder:
     path = Path(folder) / "friction.csv"
     np.savetxt(path, np.stack([time, force], 1), delimiter=",", header="time (s),friction_force (N)", comments="")
-    figure = sl.plot(sl.measure.friction(path, sliding_speed=0.02, rotation_speed=1.0))
+    figure = sl.measure.friction(path, sliding_speed=0.02, rotation_speed=1.0).plot()
 
 if __name__ == "__main__":
     figure.savefig("friction-recording.png", dpi=150)

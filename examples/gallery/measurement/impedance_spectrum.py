@@ -20,7 +20,7 @@ with TemporaryDirectory() as folder:
     path = Path(folder) / "transducer.csv"
     table = np.stack([frequency, np.abs(z), np.degrees(np.angle(z))], 1)
     np.savetxt(path, table, delimiter=",", header="frequency (Hz),|Z| (ohm),phase (deg)", comments="")
-    figure = sl.plot(sl.measure.impedance(path))
+    figure = sl.measure.impedance(path).plot()
 
 if __name__ == "__main__":
     figure.savefig("impedance-spectrum.png", dpi=150)

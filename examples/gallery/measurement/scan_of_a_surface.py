@@ -11,7 +11,6 @@ import numpy as np
 
 import sonolube as sl
 from sonolube.models.surfaces import SelfAffineSpectrum, gaussian_surface
-from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
 
 spectrum = SelfAffineSpectrum(
     hurst_exponent=0.8, longest_wavelength=100e-6, rolloff_wavelength=20e-6, shortest_wavelength=2e-6
@@ -22,8 +21,7 @@ surface = gaussian_surface(
 surface.height[np.random.default_rng(1).random(surface.height.shape) < 0.01] = np.nan
 with TemporaryDirectory() as folder:
     np.save(Path(folder) / "plate.npy", surface.height)
-    micrometre = SurfaceSettings(spacing_x=1e-6, spacing_y=1e-6, length_unit="m")
-    figure = sl.plot(surface_sheet(Path(folder) / "plate.npy", settings=micrometre))
+    figure = sl.plot(sl.measure.surface(Path(folder) / "plate.npy", spacing="1 um", length_unit="m"))
 
 if __name__ == "__main__":
     figure.savefig("scan-of-a-surface.png", dpi=150)

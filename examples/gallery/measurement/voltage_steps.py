@@ -19,8 +19,8 @@ with TemporaryDirectory() as folder:
     path = Path(folder) / "staircase.csv"
     header = "time (s),voltage_peak_to_peak (V),friction_force (N)"
     np.savetxt(path, np.stack([time, volts, force], 1), delimiter=",", header=header, comments="")
-    sheet = sl.measure.friction(path)
-    figure = sl.plot(sheet, title=sheet.figures[-1].title)
+    measured = sl.measure.friction(path)
+    figure = sl.plot(measured, title=list(measured.figures())[-1])
 
 if __name__ == "__main__":
     figure.savefig("voltage-steps.png", dpi=150)

@@ -11,16 +11,14 @@ import numpy as np
 
 import sonolube as sl
 from sonolube.models.surfaces import GrooveShape, GrooveTrack, synthetic_groove
-from sonolube.report.measured.groove import groove_sheet
-from sonolube.report.measured.surface import SurfaceSettings
 
 shape = GrooveShape(groove_width=0.6e-3, groove_depth=20e-6, pile_up_height=3e-6, pile_up_width=0.1e-3)
 track = GrooveTrack(track_direction=0.5, track_curvature=0.0, track_offset=5e-5)
 scan = synthetic_groove(shape, track=track, seed=1).scan
 with TemporaryDirectory() as folder:
     np.save(Path(folder) / "scan.npy", scan.height)
-    settings = SurfaceSettings(spacing_x=scan.spacing_x, spacing_y=scan.spacing_y, length_unit="m")
-    figure = sl.plot(groove_sheet(Path(folder) / "scan.npy", settings=settings)[0])
+    spacing = f"{scan.spacing_x} m, {scan.spacing_y} m"
+    figure = sl.plot(sl.measure.groove(Path(folder) / "scan.npy", spacing=spacing, length_unit="m"))
 
 if __name__ == "__main__":
     figure.savefig("wear-groove.png", dpi=150)

@@ -6,7 +6,7 @@ On the diagonal a model would be right.
 
 import sonolube as sl
 
-figure = sl.plot(sl.compare(models=["asperity-stick-slip", "kinematic"]))
+figure = sl.plot(sl.compare(model=["asperity-stick-slip", "kinematic"]))
 
 if __name__ == "__main__":
     figure.savefig("models-against-tests.png", dpi=150)

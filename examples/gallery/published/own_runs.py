@@ -10,7 +10,7 @@ import sonolube as sl
 
 examples = Path(__file__).parents[2]
 rig = sl.read_rig(examples / "rigs" / "tribometer.toml")
-figure = sl.plot(sl.fit_runs(sl.read_runs(examples / "tribometer-runs.csv"), rig))
+figure = sl.plot(sl.fit(examples / "tribometer-runs.csv", rig=rig))
 
 if __name__ == "__main__":
     figure.savefig("own-runs.png", dpi=150)

@@ -9,7 +9,7 @@ from pathlib import Path
 import sonolube as sl
 
 rig = sl.read_rig(Path(__file__).parents[2] / "rigs" / "tribometer.toml")
-figure = sl.plot(sl.sweep(rig, {"drive.voltage_peak_to_peak": "2V:28V:27"}))
+figure = sl.plot(sl.sweep(rig, over={"drive.voltage_peak_to_peak": "2V:28V:27"}))
 
 if __name__ == "__main__":
     figure.savefig("voltage-sweep.png", dpi=150)

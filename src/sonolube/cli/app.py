@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import sys
 from collections.abc import Callable, Sequence
 
@@ -23,8 +24,10 @@ _LONGEST_FAULT = 300  # characters of one fault among several
 _LONGEST_COMMAND = 60  # characters of a name of a command
 _HELP = (
     "Ultrasonic lubrication: friction and wear of two surfaces of which one vibrates.\n\n"
-    "Example: sonolube friction examples/rigs/tribometer.toml"
+    "Example: sonolube friction examples/rigs/tribometer.toml\n\n"
+    "To get the file of that rig: sonolube example tribometer"
 )
+_MISSING_FILE = re.compile(r"(examples/[\w./-]+): (?:cannot be read: )?no such file", re.IGNORECASE)
 
 
 def program(arguments: Sequence[str]) -> typer.Typer:
@@ -87,7 +90,7 @@ def run(arguments: Sequence[str] | None = None) -> None:
     except SeveralFaults as refusal:
         code = _refuse(command, refusal.heading, refusal.lines)
     except (SonolubeError, OSError) as refusal:
-        code = _refuse(command, str(refusal))
+        code = _refuse(command, _with_example(str(refusal)))
     except typer.TyperException as refusal:
         code = _refuse(command, _usage_error(command, refusal))
     except MemoryError as refusal:
@@ -150,6 +153,17 @@ def _usage_error(command: str, refusal: typer.TyperException) -> str:
     if renamed:
         return f"{refusal.option_name} is now {renamed}"  # type: ignore[attr-defined]
     return str(getattr(refusal, "format_message", refusal.__str__)())
+
+
+def _with_example(reason: str) -> str:
+    """Reason of a refusal, and how to get the file that is missing where it is an example."""
+    missing = _MISSING_FILE.search(reason.replace("\\", "/"))
+    if missing is None:
+        return reason
+    from sonolube.tasks.lookup.example_files import example_files
+
+    names = [name for name, each in example_files().items() if each.path == missing[1]]
+    return f"{reason}; to get it: sonolube example {names[0]}" if names else reason
 
 
 def _refuse(command: str, reason: str, faults: Sequence[str] = ()) -> int:

@@ -2,12 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import astuple, dataclass
-from pathlib import Path
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.identification import Posterior, SingularDirection, pin_on_disc_model, posterior
-from sonolube.rig import read_rig
+from sonolube.rig import Rig
 from sonolube.validation.tribometer import tribometer_identification, tribometer_problem, tribometer_test
 
 _STACK_FIELDS = 5  # leading fields of a stack that must agree with the tribometer's
@@ -33,14 +32,14 @@ class IdentifiedStructure:
 
 
 def identified_structure(
-    rig_file: Path, *, seed: int, advance: Callable[[int, int], None] | None = None
+    rig: Rig, *, seed: int, advance: Callable[[int, int], None] | None = None
 ) -> IdentifiedStructure:
     """Posterior of the tribometer's masses, springs and dampers, given the published facts that are consistent.
 
     Parameters
     ----------
-    rig_file : Path
-        A rig with the tribometer's stack.
+    rig : Rig
+        With the tribometer's stack.
     seed : int
         Of identification and draws.
     advance : callable, optional
@@ -55,12 +54,14 @@ def identified_structure(
     InvalidInput
         If the rig has another stack.
     """
-    stack, test = read_rig(rig_file).stack, tribometer_test()
+    stack, test = rig.stack, tribometer_test()
     if stack is None or not all(
         own == expected or (own and expected and abs(own / expected - 1) < _STACK_TOLERANCE)
         for own, expected in zip(astuple(stack)[:_STACK_FIELDS], astuple(test.stack)[:_STACK_FIELDS], strict=True)
     ):
-        raise InvalidInput(f"{rig_file}: --identified needs the tribometer's stack, which the facts are of")
+        raise InvalidInput(
+            f"{rig.file or rig.title}: an identified structure needs the tribometer's stack, which the facts are of"
+        )
     identification, bounds = tribometer_identification(seed=seed), tribometer_problem().bounds
     consistent = [fact for fact in identification.facts if fact.name in identification.satisfied]
     drawn = posterior(pin_on_disc_model(test), facts=consistent, bounds=bounds, seed=seed, advance=advance)

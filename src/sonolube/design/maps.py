@@ -255,6 +255,11 @@ def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "
     labels = {"units": "W", "long_name": "Power of a linear amplifier, D 1.9"}
     if "frequency" in values:
         return computed.assign_coords(actuator_power=(tuple(values), power, labels))
+    if not np.any(np.isfinite(power)):
+        raise InvalidInput(
+            f"{rig.title}: no voltage has a power, which this map is over: actuator.capacitance is missing; give it, or"
+            " map frequency-voltage"
+        )
     voltage_axis = list(values).index("voltage_peak_to_peak")
     power_by_voltage = np.moveaxis(power, voltage_axis, 0).reshape(shape[voltage_axis], -1)[:, 0]
     pressure = {"units": "Pa", "long_name": "Nominal contact pressure"}

@@ -71,26 +71,33 @@ def swept_variables(swept: "xr.Dataset") -> list[str]:
 
 
 def _curves(swept: "xr.Dataset", name: str) -> "Figure":
-    """Curves of friction ratio, amplitude and powers over one key, a panel each."""
+    """Curves of friction ratio, amplitude and powers over one key, a panel for each that is known."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.2, 4.6))
-    grid = figure.subplots(2, 2, sharex=True)
-    for axes, (outcome, title) in zip(
-        grid.flat, {_OUTCOME: "Friction ratio", **_FURTHER_OUTCOMES}.items(), strict=True
-    ):
+    every = {_OUTCOME: "Friction ratio", **_FURTHER_OUTCOMES}
+    swept_quantity = str(swept[name].attrs["key"]).rpartition(".")[2]
+    known = [
+        outcome
+        for outcome in every
+        if outcome == _OUTCOME or (outcome != swept_quantity and np.isfinite(swept[outcome].values).any())
+    ]
+    columns = min(len(known), 2)
+    rows = -(-len(known) // columns)
+    figure = Figure(figsize=(7.2 if columns > 1 else 5.2, 2.3 * rows if columns > 1 else 3.4))
+    grid = figure.subplots(rows, columns, squeeze=False)
+    for axes, outcome in zip(grid.flat, known, strict=False):
         values = swept[outcome].values
-        if not np.isfinite(values).any():
-            axes.text(0.5, 0.5, f"{title.lower()} is not known here", ha="center", transform=axes.transAxes, fontsize=8)
-            continue
         scale, label = scaled_label(outcome, values)
         x = _set_x_axis(axes, swept, name)
         line = "none" if _is_text(swept, name) else "-"
         marker = "o" if x.size <= _MOST_MARKED else ""
         axes.plot(x, scale * values, marker=marker, markersize=3, linestyle=line)
-        axes.set_ylabel(title + label[label.find(" [") :] if " [" in label else title)
-    for axes in grid[0]:
-        axes.set_xlabel("")
+        axes.set_ylabel(every[outcome] + label[label.find(" [") :] if " [" in label else every[outcome])
+    for axes in list(grid.flat)[len(known) :]:
+        axes.set_axis_off()
+    unknown = [title.lower() for outcome, title in every.items() if outcome not in (*known, swept_quantity)]
+    if unknown:
+        figure.supxlabel(f"not known here: {', '.join(unknown)}", fontsize=8, color="0.4")
     return figure
 
 

@@ -55,7 +55,7 @@ def available_outcomes(rig: Rig) -> tuple[str, ...]:
 
 
 def propagate(
-    rig_file: str | Path,
+    rig_file: str | Path | Rig,
     *,
     outcome: str = "friction_ratio",
     samples: int = 1024,
@@ -72,7 +72,7 @@ def propagate(
 
     Parameters
     ----------
-    rig_file : str or Path
+    rig_file : str, Path or Rig
         With the table `uncertainty`, unless `joint_samples` is given.
     outcome : str
         Quantity of interest, one of `available_outcomes`; it selects the model.
@@ -126,7 +126,7 @@ def propagate(
     with the points :math:`u` of a scrambled Sobol sequence. Entries are independent, but for those of `joint_samples`,
     which share one coordinate of the sequence. A sample without a result keeps its status, and NaN.
     """
-    rig = read_rig(rig_file, changes=changes)
+    rig = rig_file if isinstance(rig_file, Rig) else read_rig(rig_file, changes=changes)
     if outcome not in available_outcomes(rig):
         raise UnknownName.among(available_outcomes(rig), kind="outcome", name=outcome)
     grid = {key: np.atleast_1d(np.asarray(values)) for key, values in (over or {}).items()}
@@ -138,7 +138,9 @@ def propagate(
         if key not in grid and key not in (joint_samples or {})
     }
     if not distributions and not joint_samples:
-        raise InvalidInput(f"{rig_file}: the table uncertainty is missing, or names only keys that are swept")
+        raise InvalidInput(
+            f"{rig.file or rig.title}: the table uncertainty is missing, or names only keys that are swept"
+        )
     points, subsequence = (saltelli_sample if indices else sobol_sample)(
         len(distributions) + (0 if joint_samples is None else 1), samples=samples, seed=seed
     )
@@ -146,7 +148,7 @@ def propagate(
     for key, values in (joint_samples or {}).items():
         sample[key] = values[(points[..., -1] * values.size).astype(int)]
     shape = points.shape[:-1] + tuple(values.size for values in grid.values())
-    plan = _sample_plan(rig_file, sample, grid, shape, changes)
+    plan = _sample_plan(rig, sample, grid, shape)
     if outcome in NUMBERS and rig.structure is not None:
         chunk_points = _RIGS_PER_CHUNK * int(np.prod(shape[len(points.shape) - 1 :]))
         result = sweep(plan, folder=folder, chunk_points=chunk_points, workers=workers, advance=advance)
@@ -161,11 +163,7 @@ def _quantities(record: Any) -> list[str]:
 
 
 def _sample_plan(
-    rig_file: str | Path,
-    sample: Mapping[str, Floats],
-    grid: Mapping[str, NDArray[Any]],
-    shape: tuple[int, ...],
-    changes: Sequence[str],
+    rig: Rig, sample: Mapping[str, Floats], grid: Mapping[str, NDArray[Any]], shape: tuple[int, ...]
 ) -> SweepPlan:
     """List of points: every sample at every value of the grid."""
     values = {}
@@ -174,7 +172,7 @@ def _sample_plan(
         values[key] = np.broadcast_to(expanded, shape).ravel()
     for axis, (key, each) in enumerate(reversed(tuple(grid.items()))):
         values[key] = np.broadcast_to(each.reshape(each.shape + (1,) * axis), shape).ravel()
-    plan = list_plan(rig_file, over=values, changes=changes)
+    plan = list_plan(rig, over=values)
     return replace(plan, content={key: part for key, part in plan.content.items() if key not in _NOT_SAMPLED})
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS
+from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.scores import PROBABILITIES
 
@@ -108,9 +108,7 @@ def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
-
-    figure, (coverage, scores) = plt.subplots(1, 2, figsize=(6.85, 3.6))
+    figure, (coverage, scores) = subplots(1, 2, figsize=(6.85, 3.6))
     coverage.plot([0, 1], [0, 1], color="0.4", lw=0.8, ls=":")
     for index, one in enumerate(calibrations):
         places = np.array(PROBABILITIES) + 0.012 * (index - 2)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS, ReportFigure
+from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
 from sonolube.prediction.calibration import blind_calibration, calibrations, mean_ratio_calibration
 from sonolube.prediction.closures import Conditions
 from sonolube.prediction.evidence import TestedRig, published_rigs
@@ -82,12 +82,10 @@ def blind_caption() -> str:
 
 def blind_figure() -> "Figure":
     """Draw every published test with its prediction from the other rigs, the decay length unknown."""
-    from matplotlib import pyplot as plt
-
     predictions, mean = blind_calibration().predictions, mean_ratio_calibration().predictions
     places = np.arange(len(predictions))
     quantiles = np.quantile(np.stack([one.draws for one in predictions], axis=1), LEVELS, axis=0)
-    figure, axes = plt.subplots(figsize=(6.85, 3.2))
+    figure, axes = subplots(figsize=(6.85, 3.2))
     for row, opacity in enumerate((0.15, 0.25, 0.4)):
         low, high, probability = quantiles[row], quantiles[-1 - row], PROBABILITIES[::-1][row]
         label = f"{100 * probability:.0f} % interval"
@@ -111,9 +109,7 @@ def unseen_figure() -> "Figure":
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
-
-    figure, panels = plt.subplots(1, 2, figsize=(6.85, 3.3), sharey=True)
+    figure, panels = subplots(1, 2, figsize=(6.85, 3.3), sharey=True)
     for axes, (name, condition, scale, label, title) in zip(panels, _PANELS, strict=True):
         rig, posterior = _unseen(name)
         places = getattr(rig.at.conditions, condition)
@@ -137,10 +133,8 @@ def runs_figure() -> "Figure":
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
-
     counts, widths, shares = zip(*_widths_by_runs(), strict=True)
-    figure, (left, right) = plt.subplots(1, 2, figsize=(6.85, 2.9))
+    figure, (left, right) = subplots(1, 2, figsize=(6.85, 2.9))
     left.plot(counts, widths, MARKERS[0] + "-", color=COLOURS[0])
     left.set(xlabel="own runs known", ylabel="median width of the 80 % interval", ylim=(0, None), xticks=counts)
     right.plot(counts, shares, MARKERS[1] + "-", color=COLOURS[1])

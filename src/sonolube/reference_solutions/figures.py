@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, LINES, MARKERS
+from sonolube.figure import COLOURS, LINES, MARKERS, subplots
 from sonolube.reference_solutions.law_comparison import REFERENCE_SOLUTION, LawComparison, LawCurve
 
 if TYPE_CHECKING:
@@ -58,9 +58,7 @@ def comparison_figure(comparison: LawComparison) -> "Figure":
     -------
     Figure
     """
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.4))
+    figure, axes = subplots(1, 3, figsize=(9.6, 3.4))
     for index, (name, curve) in enumerate(comparison.laws.items()):
         style = (
             {"marker": MARKERS[0], "ls": "", "color": "black", "zorder": 3}

@@ -1,10 +1,8 @@
 from .measurement import (
     MeasurementReport as MeasurementReport,
     measurement_caveats as measurement_caveats,
-    measurement_lines as measurement_lines,
     measurement_object as measurement_object,
     measurement_page as measurement_page,
-    write_measurement_report as write_measurement_report,
 )
 from .page import Drawing as Drawing, Page as Page, PageTable as PageTable, rendered_files as rendered_files
 from .pin_on_disc_sheet import (

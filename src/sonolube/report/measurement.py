@@ -1,12 +1,10 @@
-"""Measurement report: sheets of measured files as a self-contained page, as JSON and as lines of text."""
+"""Measurement report: sheets of measured files as a self-contained page and as JSON."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from sonolube import __version__
-from sonolube.files import write_atomically
 from sonolube.report.measured.sheet import Sheet, Table, Value
 from sonolube.report.page import Advance, Drawing, drawn, embedded, html
 from sonolube.report.pin_on_disc_sheet import PinOnDiscSheet, pin_on_disc_rows
@@ -65,32 +63,6 @@ def measurement_page(report: MeasurementReport, *, advance: Advance = lambda nam
     )
 
 
-def write_measurement_report(
-    report: MeasurementReport, *, path: Path, advance: Advance = lambda name, done, total: None
-) -> Path:
-    """Write the page of a measurement report.
-
-    Parameters
-    ----------
-    report : MeasurementReport
-    path : Path
-        Its folder is made where it is missing.
-    advance : callable
-        As in `measurement_page`.
-
-    Returns
-    -------
-    Path
-        `path`.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be written.
-    """
-    return write_atomically(path, measurement_page(report, advance=advance))
-
-
 def measurement_object(report: MeasurementReport) -> dict[str, Any]:
     """Measurement report for JSON, all quantities in SI."""
     content: dict[str, Any] = {
@@ -107,11 +79,6 @@ def measurement_object(report: MeasurementReport) -> dict[str, Any]:
             for name, value in rows
         ]
     return content
-
-
-def measurement_lines(report: MeasurementReport) -> list[str]:
-    """Values, tables and results that were not found of every sheet, as lines of text; caveats apart."""
-    return [line for sheet in report.sheets for line in sheet.lines()]
 
 
 def measurement_caveats(report: MeasurementReport) -> list[str]:

@@ -2,7 +2,6 @@
 
 import base64
 import platform
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -32,7 +31,7 @@ class Drawing:
     caption : str
         Text under the figure on a page.
     forms : tuple of str
-        Formats of its files: "png", "svg" or "pdf".
+        Formats of its files: "png", "svg" or "pdf"; none for a figure without a file of its own.
     """
 
     draw: "Callable[[], Figure]"
@@ -97,11 +96,7 @@ def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
     with publication_style():
         figure = drawing.draw()
         fit_to_style(figure)
-    try:
-        return {form: render_figure(figure, form) for form in forms}
-    finally:
-        if "matplotlib.pyplot" in sys.modules:  # where it was not imported, it knows no figure
-            sys.modules["matplotlib.pyplot"].close(figure)
+    return {form: render_figure(figure, form) for form in forms}
 
 
 def rendered_files(
@@ -134,6 +129,8 @@ def rendered_files(
     for done, (name, drawing) in enumerate(drawings.items()):
         advance(name, done, len(drawings))
         forms = drawing.forms if page is None else tuple(dict.fromkeys(("png", *drawing.forms)))
+        if not forms:
+            continue
         contents = drawn(drawing, forms=forms)
         files |= {f"{name}.{form}": contents[form] for form in drawing.forms}
         if page is not None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from sonolube.facts.published import PrintedNumber
-from sonolube.figure import COLOURS, LINES, MARKERS
+from sonolube.figure import COLOURS, LINES, MARKERS, subplots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,9 +15,7 @@ if TYPE_CHECKING:
 
 def single_axes(figsize: tuple[float, float] = (4.8, 3.6)) -> "tuple[Figure, Axes]":
     """Return a figure with one pair of axes, its width and height in inches."""
-    from matplotlib import pyplot as plt
-
-    return plt.subplots(figsize=figsize)
+    return subplots(figsize=figsize)
 
 
 def axes_row(count: int, figsize: tuple[float, float], **options: Any) -> "tuple[Figure, list[Axes]]":
@@ -30,15 +28,13 @@ def axes_row(count: int, figsize: tuple[float, float], **options: Any) -> "tuple
     figsize : tuple of float
         Width and height of the figure in inches.
     **options
-        Options of `matplotlib.pyplot.subplots`, such as ``sharey=True``.
+        Options of `sonolube.figure.subplots`, such as ``sharey=True``.
 
     Returns
     -------
     Figure, list of Axes
     """
-    from matplotlib import pyplot as plt
-
-    figure, panels = plt.subplots(1, count, figsize=figsize, **options)
+    figure, panels = subplots(1, count, figsize=figsize, **options)
     return figure, list(panels)
 
 

@@ -42,7 +42,8 @@ class DrivenRig(Rig):
         Rig.__post_init__(self)
         if self.stack is None or self.structure is None:
             raise InvalidInput(
-                f"{self.title}: the tables stack and structure are missing; give them to compute its motion"
+                f"{self.title}: the tables stack and structure are missing; give them to compute its motion, or sweep"
+                " over vibration.vibration_amplitude, which needs none"
             )
         require_drive(self)
 
@@ -70,7 +71,10 @@ def require_drive(rig: Rig) -> Drive:
         If the rig has no drive voltage.
     """
     if rig.drive is None or rig.drive.voltage_peak_to_peak is None:
-        raise InvalidInput(f"{rig.title}: drive.voltage_peak_to_peak is missing; give it to compute a motion")
+        raise InvalidInput(
+            f"{rig.title}: drive.voltage_peak_to_peak is missing; give the voltage under which its amplitude holds, or"
+            " sweep over vibration.vibration_amplitude"
+        )
     return rig.drive
 
 

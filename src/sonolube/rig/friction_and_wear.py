@@ -199,6 +199,27 @@ def mean_wear(
     return ratio, f"{reason}; {range_text(holding, 'wear')}"
 
 
+def wear_model_that_holds(
+    rig: Rig, motions: tuple[GapMotion, ...], *, vibration_amplitude: float | None = None
+) -> str | None:
+    """Return the wear model within whose range some motions lie, the one about the risen mean gap first.
+
+    Parameters
+    ----------
+    rig : Rig
+    motions : tuple of GapMotion
+    vibration_amplitude : float, optional
+        Amplitude of a motion that is a sine; None for other motions. [m]
+
+    Returns
+    -------
+    str or None
+        None where no model holds.
+    """
+    names = sorted(WEAR_MODELS, key=lambda name: name != _RISING_WEAR_MODEL)
+    return next((name for name in names if _raw_wear_ratio(rig, motions, name, vibration_amplitude)[1] > 0), None)
+
+
 def rise_caveats(motions: tuple[GapMotion, ...], *, wear_model: str) -> tuple[str, ...]:
     """Return the line on the rise of computed motions, which wear about the gap at rest leaves out.
 

@@ -74,6 +74,14 @@ class RigEntries(Protocol):
     def content(self) -> Mapping[str, Any]:
         """Tables and values as they are written."""
 
+    @property
+    def path(self) -> str:
+        """Path of the file; empty where there is none."""
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """Entries that were replaced when it was read."""
+
     def replaced(self, key: str, value: str | float) -> "Rig":
         """Return the rig of the file with one entry replaced."""
 
@@ -225,6 +233,23 @@ class Rig:
             If the rig was not read from a file.
         """
         return deepcopy(dict(self._file().content))
+
+    @property
+    def file(self) -> Path | None:
+        """Path of the file that the rig was read from; None where there is none."""
+        return Path(self._entries.path) if self._entries is not None and self._entries.path else None
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """Entries of the file that were replaced when it was read, such as "drive.frequency=22kHz"."""
+        return () if self._entries is None else self._entries.changes
+
+    @property
+    def name(self) -> str:
+        """Name for the rig's files: that of its own without ending, or its title in plain characters."""
+        if self.file is not None:
+            return self.file.stem
+        return "-".join("".join(each if each.isalnum() else " " for each in self.title.lower()).split()) or "rig"
 
     def table(self) -> list[tuple[str, str]]:
         """Return the main quantities of the rig with their units, as rows of name and text."""

@@ -19,7 +19,14 @@ from sonolube.rig.excitation import (
     voltage_harmonics,
     voltage_range,
 )
-from sonolube.rig.friction_and_wear import mean_friction, mean_wear, range_text, rise_caveats, wear_model_of
+from sonolube.rig.friction_and_wear import (
+    mean_friction,
+    mean_wear,
+    range_text,
+    rise_caveats,
+    wear_model_of,
+    wear_model_that_holds,
+)
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
 from sonolube.rig.record import Rig
@@ -167,7 +174,8 @@ def wear_point(rig: Rig, *, model: str | None = None) -> WearPoint:
     ----------
     rig : Rig
     model : str, optional
-        Name of the wear model; that of the friction model's name where absent, else the default one.
+        Name of the wear model. Where absent that of the friction model's name, else the default one; and outside the
+        range of that one the model that holds, which a caveat says.
 
     Returns
     -------
@@ -188,7 +196,8 @@ def wear_point(rig: Rig, *, model: str | None = None) -> WearPoint:
     name = wear_model_of(rig) if model is None else model
     WEAR_MODELS.named(name)
     used, vibration = resolved_vibration(rig), steady_vibration(rig)
-    return _wear_point(rig, vibration, name, _caveats(rig, used, vibration), None)
+    caveats = _caveats(rig, used, vibration)
+    return _wear_point(rig, vibration, name, caveats, None, is_chosen=model is not None)
 
 
 def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction:
@@ -264,10 +273,22 @@ def _friction_point(
 
 
 def _wear_point(
-    rig: Rig, vibration: SteadyVibration, model: str, caveats: tuple[str, ...], friction: FrictionPoint | None
+    rig: Rig,
+    vibration: SteadyVibration,
+    model: str,
+    caveats: tuple[str, ...],
+    friction: FrictionPoint | None,
+    *,
+    is_chosen: bool = False,
 ) -> WearPoint:
     sine = vibration.vibration_amplitude if vibration.prescribed else None
     ratio, reason = mean_wear(rig, vibration.motions, wear_model=model, vibration_amplitude=sine)
+    other = None if is_chosen or not reason else wear_model_that_holds(rig, vibration.motions, vibration_amplitude=sine)
+    if reason and other:
+        outside = reason.removeprefix(f"{OUTSIDE_MODEL_RANGE}: ").partition(";")[0]
+        caveats = (*caveats, f"{outside}, so that wear model {model} has no meaning; the wear is by {other}")
+        model = other
+        ratio, reason = mean_wear(rig, vibration.motions, wear_model=model, vibration_amplitude=sine)
     if not reason and friction is not None and friction.reason and friction.friction_model == model:
         reason = friction.reason
     if not reason and not vibration.prescribed:

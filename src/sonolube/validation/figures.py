@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
+from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure, subplots
 from sonolube.validation.comparison import DATA_SETS, ComparedFit
 from sonolube.validation.published_tests import FrictionTest, friction_tests
 from sonolube.validation.tables import comparison_dataset
@@ -91,12 +91,10 @@ def rig_figure(result: "xr.Dataset") -> "Figure":
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
-
     known = result.isel(model=slice(None, None, -1)).dropna("model", subset=["rig_friction_ratio"])
     names, ratios = known["model"].to_numpy(), known["rig_friction_ratio"].to_numpy()
     errors = np.nan_to_num(known["rig_uncertainty"].to_numpy())
-    figure, axes = plt.subplots(figsize=(5.6, 1.3 + 0.22 * names.size))
+    figure, axes = subplots(figsize=(5.6, 1.3 + 0.22 * names.size))
     places = np.minimum(ratios, _HIGHEST_OF_RIG)
     axes.errorbar(places, range(names.size), xerr=errors, fmt="o", color=COLOURS[0], ecolor="0.6", capsize=2.5)
     for row, ratio in enumerate(ratios):
@@ -116,9 +114,7 @@ def speed_and_amplitude_panels() -> "tuple[Figure, Axes, Axes]":
     -------
     Figure, Axes, Axes
     """
-    from matplotlib import pyplot as plt
-
-    figure, (speeds, amplitudes) = plt.subplots(1, 2, figsize=(8.2, 4.4), sharey=True)
+    figure, (speeds, amplitudes) = subplots(1, 2, figsize=(8.2, 4.4), sharey=True)
     draw_measured(speeds, friction_tests("A"), lambda test: 1e3 * test.sliding_speed, "measured, Tables 2.3 and 4.2")
     draw_measured(amplitudes, friction_tests("B"), lambda test: 1e6 * test.vibration_amplitude)
     speeds.set(xlabel="Sliding speed [mm/s]", ylabel="Friction with over without vibration [-]", ylim=(-0.12, 1.1))
@@ -167,7 +163,6 @@ def predicted_against_measured_figure(result: "xr.Dataset") -> "Figure":
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
     from matplotlib.lines import Line2D
 
     assessed = result.dropna("model", subset=["rms"]).isel(model=slice(_PANELS))
@@ -177,7 +172,7 @@ def predicted_against_measured_figure(result: "xr.Dataset") -> "Figure":
     legend_columns = 1 if columns < 3 else 2
     width = max(2.15 * columns + 0.6, 4.9)
     height = rows * (min(width / columns, 2.6) + 0.25) + 0.4 + 1.8 / legend_columns
-    figure, grid = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
+    figure, grid = subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
     for index, axes in enumerate(grid.flat[:count]):
         _panel(axes, assessed.isel(model=index))
     for axes in grid.flat[count:]:

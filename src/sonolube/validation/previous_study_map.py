@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.facts.published import PreviousStudy, PrintedNumber, previous_studies
-from sonolube.figure import COLOURS, MARKERS
+from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.validation.published_tests import friction_tests
 
 if TYPE_CHECKING:
@@ -92,12 +92,11 @@ def study_map(added: StudyPoint | None = None, *, others: tuple[StudyPoint, ...]
     -------
     Figure
     """
-    import matplotlib.pyplot as plt
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     shades = ScalarMappable(Normalize(0, 100), "viridis")
-    figure, (aside, axes) = plt.subplots(1, 2, figsize=(7.6, 4.4), width_ratios=(1, 3.2))
+    figure, (aside, axes) = subplots(1, 2, figsize=(7.6, 4.4), width_ratios=(1, 3.2))
     axes.set(xscale="log", yscale="log", xlim=_SPEEDS, ylim=_PRESSURES)
     axes.set(xlabel="Sliding speed [m/s]", ylabel="Nominal pressure [Pa]")
     axes.axhspan(_PRESSURES[0], _BAND_EDGE, color="0.92", zorder=0)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, LINES, MARKERS
+from sonolube.figure import COLOURS, LINES, MARKERS, subplots
 from sonolube.validation.ranked_models import RankedModel
 from sonolube.validation.run_conditions import RunConditions, RunsTable
 from sonolube.validation.runs_comparison import RunsPrediction
@@ -40,9 +40,7 @@ def runs_fit_figure(result: RunsFit) -> "Figure":
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
-
-    figure, (measured, errors) = plt.subplots(1, 2, figsize=(8.4, 4.2), width_ratios=(1.25, 1))
+    figure, (measured, errors) = subplots(1, 2, figsize=(8.4, 4.2), width_ratios=(1.25, 1))
     _draw_runs(measured, result.table, result.models[:_CURVES])
     _draw_ranking(errors, result)
     handles, labels = (
@@ -66,9 +64,7 @@ def runs_prediction_figure(predictions: tuple[RunsPrediction, ...], table: RunsT
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(5.0, 4.6))
+    figure, axes = subplots(figsize=(5.0, 4.6))
     axes.plot([0, _HIGHEST], [0, _HIGHEST], color="0.5", lw=0.8)
     errors = [condition.uncertainty or 0.0 for condition in table.conditions]
     shown = [one for one in predictions if one.rms is not None][: len(MARKERS) - 1]

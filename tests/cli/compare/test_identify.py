@@ -26,7 +26,8 @@ def identification() -> Identification:
 @pytest.fixture
 def once(identification: Identification, monkeypatch: MonkeyPatch) -> None:
     """Identify once for all tests, which takes twenty seconds."""
-    monkeypatch.setattr("sonolube.cli.compare.identify.tribometer_identification", lambda *, seed: identification)
+    place = "sonolube.tasks.identify.rig_of_facts.tribometer_identification"
+    monkeypatch.setattr(place, lambda *, seed: identification)
 
 
 @pytest.mark.usefixtures("once")

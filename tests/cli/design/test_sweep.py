@@ -73,7 +73,7 @@ def test_a_latin_hypercube_has_as_many_points_as_asked_for(tmp_path: Path, sonol
         (("--over", f"{VOLTS}=2V:28V"), "must look like drive.voltage_peak_to_peak=first:last:count"),
         (("--over", f"{VOLTS}=28V:2V:5"), "at least 2 values that rise"),
         (("--over", f"{VOLTS}=0V:2V:5:log"), "the first above 0"),
-        (("--over", VOLTS), "must look like drive.frequency=20kHz:24kHz:50"),
+        (("--over", VOLTS), "must look like KEY=VALUES"),
         (("--over", f"{VOLTS}=1V", "--over", f"{VOLTS}=2V"), "was given twice"),
         (("--over", "drive.voltag=1,2"), "drive.voltag: unknown key"),
         (("--over", "friction.model=a:b:3"), "list its values"),

@@ -10,11 +10,11 @@ import pytest
 import xarray as xr
 from pytest import approx
 
-from sonolube.cli.design.uncertainty import UncertaintyAnswer
 from sonolube.design import propagate
 from sonolube.design.identified_structure import IdentifiedStructure
 from sonolube.identification import Posterior, SingularDirection
 from sonolube.rig import read_rig
+from sonolube.tasks.design.uncertainty import UncertaintyAnswer
 
 Program = Callable[..., Any]
 FEW = ("--samples", "32")
@@ -54,7 +54,7 @@ def test_the_lines_name_what_is_uncertain_and_the_remedy(tmp_path: Path, sonolub
     assert run.code == 0
     assert "32 points: wear rate with vibration over that without" in run.out
     assert "not converged" in run.out
-    assert "take more --samples" in run.out
+    assert "take more samples" in run.out
     assert "contact.roughness.rms_height     lognormal, 6 um within a factor of 2" in run.out
 
 
@@ -115,8 +115,8 @@ def test_directions_that_the_facts_leave_free_are_listed(rigs: Path) -> None:
     )
     rig = rigs / "tribometer.toml"
     result = propagate(rig, samples=32, joint_samples=structure.draws_by_key())
-    answer = UncertaintyAnswer(rig=read_rig(rig), rig_file=rig, result=result, structure=structure)
-    text = "\n".join(answer.lines())
+    answer = UncertaintyAnswer(rig=read_rig(rig), result=result, structure=structure)
+    text = answer.text(width=None)
     assert "structure.arm_damping" in text
     assert "; no fact settles it" in text
     assert "left free by the facts, to a factor of e and more: arm_damping^+0.99\n" in text

@@ -1,8 +1,10 @@
 """Commands `lab run` and `lab virtual`: a protocol on the virtual tribometer, its record, and every refusal."""
 
+import os
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from threading import Timer
 from typing import Any
 
 import numpy as np
@@ -10,8 +12,12 @@ import pytest
 import xarray as xr
 from pytest import approx
 from tests.cli.lab.test_watch import LONG, folder_of, running
+from tests.laboratory import rig_stand_ins
+from tests.laboratory.rig_stand_ins import analogue_rig
 
-from sonolube.facts.protocol import protocol_names
+from sonolube.cli.console import questions
+from sonolube.facts.protocol import Prompt, protocol_names
+from sonolube.laboratory import RunControl
 from sonolube.laboratory.records import read_run
 
 Program = Callable[..., Any]
@@ -67,8 +73,8 @@ def test_a_dry_run_of_every_protocol_tells_time_and_data_and_touches_nothing(
     ("arguments", "line"),
     [
         (["lab", "run", "map_tst"], "unknown protocol 'map_tst'; did you mean map_test?"),
-        (["lab", "run", "map_test"], "--device virtual needs --rig RIG.toml"),
-        (["lab", "virtual", "RIG", "--format", "xls"], "unknown format 'xls'"),
+        (["lab", "run", "map_test"], "--device virtual needs --rig, whose friction"),
+        (["lab", "virtual", "RIG", "--format", "xls"], "'xls' is not one of"),
         (["lab", "run", "map_test", "--rig", "RIG", "--dry-run", "--seed", "1"], "--seed"),
         (["lab", "virtual", "none.toml"], "none.toml: no such file"),
         (["lab", "run", "map_test", "--device", "none.toml"], "none.toml: no such file"),
@@ -97,6 +103,51 @@ def test_a_signal_ends_a_run_in_order(number: signal.Signals, rigs: Path, tmp_pa
     assert found.samples > 0
 
 
+@pytest.mark.parametrize(
+    ("typed", "outcome"), [("\n", "completed"), ("yes\n", "completed"), ("n\n", "stopped"), ("", "stopped")]
+)
+def test_a_person_at_the_terminal_confirms_prompts(
+    typed: str, outcome: str, sonolube: Program, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rig_stand_ins, "voltages", lambda terminal, numbers: 0.2 + 0 * numbers)  # V at every input
+    monkeypatch.setattr(questions, "is_terminal", lambda: True)
+    (tmp_path / "asking.toml").write_text(SHORT + ASKED)
+    (tmp_path / "typed").write_text(typed)
+    words = ("lab", "run", tmp_path / "asking.toml", "--device", tmp_path / "devices.toml", "--out", tmp_path / "runs")
+    with analogue_rig(tmp_path) as rig, (tmp_path / "typed").open() as keyboard:
+        monkeypatch.setattr("sys.stdin", keyboard)
+        run = sonolube(*words, "--json")
+        assert (rig.voltage(), rig.rotation_speed()) == (0.0, 0.0)
+    assert "load: Add a weight.\n  done? [Y/n] " in run.err
+    assert (run.answer["outcome"], run.code) == (outcome, int(outcome != "completed"))
+
+
+def test_an_end_that_is_asked_for_is_heard_while_a_person_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    silent, end = os.pipe()
+    control = RunControl()
+    with os.fdopen(silent) as keyboard, os.fdopen(end, "w"):
+        monkeypatch.setattr("sys.stdin", keyboard)
+        Timer(0.2, control.stop, ["terminated"]).start()
+        assert not questions.Operator(control)(Prompt(task="load", text="Add a weight."))
+
+
+def test_a_protocol_with_prompts_is_refused_where_nobody_can_answer(sonolube: Program, tmp_path: Path) -> None:
+    (tmp_path / "asking.toml").write_text(SHORT + ASKED)
+    words = ("lab", "run", tmp_path / "asking.toml", "--device", tmp_path / "devices.toml", "--out", tmp_path / "runs")
+    with analogue_rig(tmp_path) as rig:
+        rig.was_on()
+        assert "run it on a terminal, in Python with the argument operator, or take" in sonolube(*words).refusal
+        assert rig.rotation_speed() > 0  # untouched
+        assert not (tmp_path / "runs").exists()
+        assert sonolube(*words, "--yes", "--json").answer["state"] == "safe"
+
+
+ASKED = """
+[[steps]]
+kind = "prompt"
+task = "load"
+text = "Add a weight."
+"""
 SHORT = """title = "short"
 source = "none"
 

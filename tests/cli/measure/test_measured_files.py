@@ -116,10 +116,10 @@ def test_the_stack_of_a_rig_is_found_in_the_impedance_that_the_rig_computes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from sonolube.models.dynamics.structure import electrical_admittance
-    from sonolube.rig import structure_by_stack
+    from sonolube.rig import read_rig, structure_by_stack
 
     rig = Path(__file__).parents[3] / "examples" / "rigs" / "tribometer.toml"
-    stack, in_structure = structure_by_stack(rig)
+    stack, in_structure = structure_by_stack(read_rig(rig))
     frequency = np.linspace(15e3, 40e3, 201)
     z = 1 / electrical_admittance(in_structure(stack), frequency=frequency)
     rows = np.stack([frequency, np.abs(z), np.degrees(np.angle(z))], 1)

@@ -9,7 +9,6 @@ import pytest
 from pytest import approx
 from reliability import virtual_contact as virtual
 
-import sonolube as sl
 from sonolube.cli import main
 
 RIG = Path(__file__).parents[3] / "examples" / "rigs" / "tribometer.toml"
@@ -59,8 +58,6 @@ def test_slow_resonances_give_the_stiffness_and_the_lines_of_the_rig_file(
     ]
     assert answer["rig_lines"][-1].endswith('"lognormal factor 1.11"')  # 10 % of modal mass
     assert (spectra / "out" / "pressed-stiffness.png").stat().st_size > 10_000
-    in_python = sl.measure.stiffness(files[0], files[1], rig=sl.read_rig(RIG), again=files[2], mode_near=154.0)
-    assert in_python.values[0].value == approx(stiffness["value"])
 
 
 def test_the_large_drive_gives_the_decay_length_a_second_time(
@@ -82,7 +79,7 @@ def test_the_drive_resonance_gives_a_sentence_instead_of_a_number(
 ) -> None:
     files = [spectra / f"drive-{name}.csv" for name in ("free", "pressed")]
     assert run("measure", "stiffness", *files, "--rig", RIG, "--out", spectra / "out") == 0
-    text = capsys.readouterr().out
+    text = " ".join(capsys.readouterr().out.split())
     assert "not found: normal stiffness: the shift of" in text
     assert "below three standard uncertainties" in text
     assert "for the rig file" not in text

@@ -99,7 +99,7 @@ vibration_amplitude = "3 um"
 """
 
 
-def test_beyond_the_gap_at_rest_wear_has_no_number_and_friction_a_ratio_within_what_is_predicted(
+def test_beyond_the_gap_at_rest_wear_is_by_the_model_that_holds_and_friction_within_what_is_predicted(
     sonolube: Program, tmp_path: Path
 ) -> None:
     rig = tmp_path / "brass.toml"
@@ -109,9 +109,9 @@ def test_beyond_the_gap_at_rest_wear_has_no_number_and_friction_a_ratio_within_w
     assert 0.02 < low < high < 1.2
     assert 0 < ratio < high
     wear = sonolube("wear", rig, "--json").answer
-    assert wear["wear_reduction"]["value"] is None
-    assert "exceeds the gap at rest" in wear["reason"]
-    assert "smaller amplitude" not in wear["reason"]
+    assert 0 < wear["wear_reduction"]["value"] < 1
+    assert wear["wear_model"] == "dong_2015_load_balanced"
+    assert "exceeds the gap at rest" in " ".join(wear["caveats"])
 
 
 def test_a_prediction_tells_its_inputs_intervals_and_what_was_measured(

@@ -19,7 +19,7 @@ from tests.work import calls
 
 from sonolube.cli import main
 from sonolube.rig import read_rig
-from sonolube.workbench import new_rig
+from sonolube.tasks.predict.new import new
 
 PROGRAM = str(Path(sys.executable).parent / "sonolube")
 PIN, DISC = "brass_c36000", "stainless_steel_304"
@@ -200,7 +200,7 @@ def test_options_and_python_give_the_same_file_byte_for_byte() -> None:
     options = [text for key, value in typed.items() for text in (f"--{key}", value)]
     with raises(SystemExit):
         main(["new", "given.toml", *options, "--track-diameter", "30mm"])
-    new_rig(**typed, track_diameter="30mm").to_toml("made.toml")
+    new(**typed, track_diameter="30mm").rig.to_toml("made.toml")
     text = Path("given.toml").read_text()
     assert Path("made.toml").read_text() == text
     for said in (

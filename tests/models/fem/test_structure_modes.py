@@ -17,7 +17,7 @@ from sonolube.models.fem import change_order, generate_mesh, harmonic_response, 
 from sonolube.reproduction.chapter2.poisson_horn import ASSUMED_SOLIDS
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.workbench.named_parts import ALL_TRANSDUCERS, starting_size
+from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, starting_size
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 FILES = sorted((RIGS / "modes").glob("*.toml"))

@@ -1,16 +1,23 @@
 """Questions on a terminal for what the options of a command do not give."""
 
+import select
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.printable_text import printable
 
+if TYPE_CHECKING:
+    from sonolube.facts.protocol import Prompt
+    from sonolube.laboratory import RunControl
+
 Value = TypeVar("Value")
+
+_POLL = 0.1  # s, between two looks at requests to end while an operator is asked
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,3 +73,35 @@ def ask(question: Question, read: Callable[[str], Value]) -> Value:
             return read(line.strip() or question.default)
         except SonolubeError as refusal:
             typer.echo(f"  {printable(' '.join(str(refusal).split()))}", err=True)
+
+
+def operator_arguments() -> dict[str, Any]:
+    """Arguments of a run by which a person at the terminal confirms its prompts; none where nobody can."""
+    if not is_terminal():
+        return {}
+    from sonolube.laboratory import RunControl
+
+    control = RunControl()
+    return {"control": control, "operator": Operator(control)}
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """Person at the terminal who confirms prompts; requests to end the run are heard meanwhile.
+
+    Parameters
+    ----------
+    control : RunControl
+    """
+
+    control: "RunControl"
+
+    def __call__(self, prompt: "Prompt") -> bool:
+        """Show a prompt, and return whether it is confirmed by an empty line or by yes."""
+        sys.stderr.write(printable(f"\r\x1b[K{prompt.task}: {prompt.text}\n  done? [Y/n] "))
+        sys.stderr.flush()
+        while not self.control.stop_reason:
+            if select.select([sys.stdin], [], [], _POLL)[0]:
+                answer = sys.stdin.readline()
+                return bool(answer) and answer.strip().lower() in ("", "y", "yes")
+        return False

@@ -4,7 +4,6 @@ import os
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 from threading import Event
@@ -12,11 +11,14 @@ from typing import Annotated, Any, Final
 
 import typer
 
-from sonolube.cli.console.answer import Answer, aligned, deliver, si
+from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.options import Json
 from sonolube.interruption import asked_by_signal
 from sonolube.laboratory.records import Observation, RunObserver, run_to_watch
 from sonolube.printable_text import printable
+from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.blocks import Block, Rows
+from sonolube.tasks.lab.run_answer import SIMULATED
 from sonolube.units import format_si
 from sonolube.vocabulary import unit_of
 
@@ -46,8 +48,6 @@ def watch(
     observer = RunObserver(run_to_watch(folder))
     seen = observer.look() if once else _follow(observer, is_quiet=json)
     deliver(WatchedRun(seen=seen), as_json=json)
-    if not (seen.is_running or seen.outcome == "completed"):
-        raise typer.Exit(1)
 
 
 def _follow(observer: RunObserver, *, is_quiet: bool) -> Observation:
@@ -114,13 +114,13 @@ def observation_line(seen: Observation) -> str:
     return "; ".join(filter(None, parts))
 
 
-@dataclass(frozen=True, kw_only=True)
+@answer
 class WatchedRun(Answer):
     """A run at the last look."""
 
     seen: Observation
 
-    def lines(self) -> list[str]:
+    def blocks(self) -> Sequence[Block]:
         """Outcome or state, and what was seen last."""
         seen = self.seen
         outcome = seen.outcome + (f": {seen.reason}" if seen.reason and not seen.is_running else "")
@@ -133,7 +133,7 @@ class WatchedRun(Answer):
             ("set", _set_points(seen).removeprefix("set ")),
             *(("limit", trip) for trip in seen.trips),
         ]
-        return [f"{seen.folder.name}: {seen.known.title}", *aligned([row for row in rows if row[1]])]
+        return [f"{seen.folder.name}: {seen.known.title}", Rows([row for row in rows if row[1]])]
 
     def object(self) -> dict[str, Any]:
         """Same in SI."""
@@ -164,8 +164,13 @@ class WatchedRun(Answer):
             remedy = f"sonolube lab recover {quote(str(seen.folder))}"
             told.append(f"the program died during the run, and motor or drive may be on; {remedy} completes its record")
         if seen.known.facts.get("simulated"):
-            told.append("friction is drawn from the prediction of the rig: no measurement")
+            told.append(SIMULATED)
         return told
+
+    @property
+    def is_failure(self) -> bool:
+        """Whether the run has ended before its protocol."""
+        return not (self.seen.is_running or self.seen.outcome == "completed")
 
 
 def _step(seen: Observation) -> str:

@@ -1,1 +1,1 @@
-"""Commands that look up materials, actuators, published tables and the schema of rig files."""
+"""Command that looks up the state of the installation."""

@@ -5,7 +5,6 @@ import platform
 import re
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from shutil import which
@@ -14,13 +13,15 @@ from typing import Any, ClassVar
 import typer
 
 import sonolube
-from sonolube.cli.console.answer import Answer, aligned, deliver
+from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.progress import progress
 from sonolube.cli.lookup.self_checks import SELF_CHECKS
 from sonolube.extras import EXTRAS
 from sonolube.models.dynamics.backend import device_name, gpu_obstacle
 from sonolube.models.dynamics.warm_up import compiled_code_folder, is_compiled
+from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.blocks import Block, Rows
 
 _PROGRAMS = {  # names of each program, and what it is for
     "C compiler": (("cc", "gcc", "clang"), "compiles what control exports", "apt-get install gcc libc6-dev"),
@@ -42,7 +43,7 @@ def doctor(json: Json = False) -> None:
         for done, check in enumerate(SELF_CHECKS):
             advance(check.title, done, len(SELF_CHECKS))
             outcomes.append(check.outcome())
-    answer = Diagnosis(
+    diagnosis = Diagnosis(
         packages=_packages(),
         extras={name: extra.is_installed for name, extra in EXTRAS.items()},
         gpu=device_name("gpu"),
@@ -52,12 +53,12 @@ def doctor(json: Json = False) -> None:
         programs={name: _found(names) for name, (names, _, _) in _PROGRAMS.items()},
         checks=tuple(outcomes),
     )
-    deliver(answer, as_json=json)
-    if not answer.healthy:
+    deliver(diagnosis, as_json=json)
+    if not diagnosis.healthy:
         raise typer.Exit(1)
 
 
-@dataclass(frozen=True, kw_only=True)
+@answer
 class Diagnosis(Answer):
     """State of an installation."""
 
@@ -82,22 +83,22 @@ class Diagnosis(Answer):
         """Whether all self-checks pass, all required packages are there, and compiled code can be kept."""
         return all(each["passed"] for each in self.checks) and all(self.packages.values()) and self.cache_is_writable
 
-    def lines(self) -> list[str]:
+    def blocks(self) -> Sequence[Block]:
         """Sections of the state, each missing part with its remedy, and the verdict."""
         return [
             f"sonolube {sonolube.__version__} in {Path(sonolube.__file__).parent}",
             f"Python {platform.python_version()} on {platform.platform(terse=True)} {platform.machine()},"
             f" {os.cpu_count()} processor cores",
             "required packages",
-            *aligned([(name, found or "missing: pip install sonolube") for name, found in self.packages.items()]),
+            Rows([(name, found or "missing: pip install sonolube") for name, found in self.packages.items()]),
             "optional parts",
-            *aligned([(name, self._extra(name)) for name in self.extras]),
+            Rows([(name, self._extra(name)) for name in self.extras]),
             "processors and compiled code",
-            *aligned([("GPU", self.gpu or f"none: {self.gpu_obstacle}"), ("compiled code", self._cache())]),
+            Rows([("GPU", self.gpu or f"none: {self.gpu_obstacle}"), ("compiled code", self._cache())]),
             "other programs",
-            *aligned([(name, self._program(name)) for name in self.programs]),
+            Rows([(name, self._program(name)) for name in self.programs]),
             "self-check",
-            *aligned([(str(each["title"]), _verdict(each)) for each in self.checks]),
+            Rows([(str(each["title"]), _verdict(each)) for each in self.checks]),
             self._verdict(),
         ]
 

@@ -68,7 +68,7 @@ class RigLimits:
     mean_temperature_rise: float | None = None
 
 
-NO_LIMITS: Final = RigLimits()
+NO_LIMITS: Final[RigLimits] = RigLimits()
 """Limits of a rig that has none."""
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.design.test_plan.plan import TestPlan
-from sonolube.figure import COLOURS, MARKERS
+from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -24,9 +24,7 @@ def plan_figure(plan: TestPlan) -> "Figure":
     -------
     Figure
     """
-    from matplotlib import pyplot as plt
-
-    figure, (places, ratios) = plt.subplots(1, 2, figsize=(7.4, 3.7), width_ratios=(1.25, 1))
+    figure, (places, ratios) = subplots(1, 2, figsize=(7.4, 3.7), width_ratios=(1.25, 1))
     _draw_candidates(figure, places, plan)
     _draw_ratios(ratios, plan)
     return figure

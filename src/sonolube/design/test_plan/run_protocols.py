@@ -1,6 +1,7 @@
 """Protocols of the runs of a plan, one a run."""
 
 from collections.abc import Iterator
+from math import ceil, floor, log10
 from typing import Any, Final
 
 from sonolube.design.test_plan.plan import TestPlan
@@ -92,8 +93,14 @@ def _limits(plan: TestPlan, total: float) -> dict[str, str]:
     return {
         "voltage_maximum": exact_text(voltage, unit="V"),
         "duration_maximum": exact_text(_MARGIN * total, unit="s"),
-        "friction_force_maximum": exact_text(force, unit="N"),
+        "friction_force_maximum": exact_text(_rounded_up(force), unit="N"),
     }
+
+
+def _rounded_up(value: float) -> float:
+    """Limit that an operator sets: with three digits, not below the value."""
+    step = 10.0 ** (floor(log10(value)) - 2)
+    return float(f"{step * ceil(value / step * (1 - 1e-12)):.3g}")
 
 
 def _preparation(plan: TestPlan, specimen: str, load: float) -> Iterator[dict[str, Any]]:

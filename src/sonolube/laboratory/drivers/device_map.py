@@ -207,16 +207,16 @@ def _entries(content: Mapping[str, Any]) -> MapEntries:
     try:
         return MapEntries.model_validate(content)
     except ValidationError as refusal:
-        faults = [
-            f"{_place(each['loc'])}{_reason(each['type'], each['msg'])}"[:_LONGEST_FAULT]
-            for each in refusal.errors(include_url=False, include_context=False, include_input=False)
-        ]
-    raise _told(faults) if len(faults) > 1 else InvalidInput(faults[0])
+        found = refusal.errors(include_url=False, include_context=False, include_input=False)
+        keys = [".".join(map(str, each["loc"])) for each in found]
+        faults = [f"{_place(each['loc'])}{_reason(each['type'], each['msg'])}"[:_LONGEST_FAULT] for each in found]
+    raise _told(faults, keys) if len(faults) > 1 else InvalidInput(faults[0], key=keys[0])
 
 
-def _told(faults: Sequence[str]) -> SeveralFaults:
+def _told(faults: Sequence[str], keys: Sequence[str] = ()) -> SeveralFaults:
     """Faults, as many as one can read."""
-    return SeveralFaults(faults[:_MOST_FAULTS], rest=max(len(faults) - _MOST_FAULTS, 0))
+    rest = max(len(faults) - _MOST_FAULTS, 0)
+    return SeveralFaults(faults[:_MOST_FAULTS], rest=rest, keys=keys[:_MOST_FAULTS])
 
 
 def _place(parts: Sequence[str | int]) -> str:

@@ -8,4 +8,4 @@ from .record import (
     PlannedPoint as PlannedPoint,
     PlannedRecording as PlannedRecording,
 )
-from .text import dry_run_lines as dry_run_lines
+from .text import dry_run_cells as dry_run_cells, dry_run_lines as dry_run_lines, dry_run_sums as dry_run_sums

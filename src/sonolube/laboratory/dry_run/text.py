@@ -18,8 +18,27 @@ def dry_run_lines(found: DryRun) -> list[str]:
     list of str
         Refusals, caveats and assumptions are not among them.
     """
-    lines = [_line(point, found) for point in found.points]
-    return [*lines, "", *_sums(found)]
+    cells = (dry_run_cells(point, found) for point in found.points)
+    lines = [f"{time}  {step:<6}{kind:<14}{content}".rstrip() for time, step, kind, content in cells]
+    return [*lines, "", *(f"{name:<13}{text}" for name, text in dry_run_sums(found))]
+
+
+def dry_run_cells(point: PlannedPoint, found: DryRun) -> tuple[str, str, str, str]:
+    """Time, step, kind and content of a set point of a dry run.
+
+    Parameters
+    ----------
+    point : PlannedPoint
+    found : DryRun
+
+    Returns
+    -------
+    tuple of str
+        The times of all points are equally long.
+    """
+    at, width = point.setting, len(clock(found.duration))
+    content = point.content if at.kind == "prompt" else "  ".join(_facts(point))
+    return f"{clock(at.time):>{width}}", at.step, at.kind.replace("_", " "), content
 
 
 def clock(seconds: float) -> str:
@@ -38,14 +57,6 @@ def clock(seconds: float) -> str:
     hours, minutes = divmod(minutes, 60)
     text = f"{rest / 10:04.1f}".removesuffix(".0")
     return f"{hours}:{minutes:02d}:{text}" if hours else f"{minutes}:{text}"
-
-
-def _line(point: PlannedPoint, found: DryRun) -> str:
-    """Line of a set point."""
-    at = point.setting
-    width = len(clock(found.duration))
-    head = f"{clock(at.time):>{width}}  {at.step:<6}{at.kind.replace('_', ' '):<14}"
-    return (head + (point.content if at.kind == "prompt" else "  ".join(_facts(point)))).rstrip()
 
 
 def _facts(point: PlannedPoint) -> Iterator[str]:
@@ -70,27 +81,36 @@ def _facts(point: PlannedPoint) -> Iterator[str]:
         yield point.content
 
 
-def _sums(found: DryRun) -> Iterator[str]:
-    """Time, data, drive and temperatures of the whole."""
+def dry_run_sums(found: DryRun) -> Iterator[tuple[str, str]]:
+    """Time, data, drive and temperatures of a whole dry run, each as its name and its text.
+
+    Parameters
+    ----------
+    found : DryRun
+
+    Yields
+    ------
+    tuple of str
+    """
     prompts = sum(point.setting.kind == "prompt" for point in found.points)
     whole = clock(found.duration + found.prompt_time)
     beside = f", about {whole} with {_counted(prompts, 'prompt')}" if prompts else ""
-    yield f"duration     {clock(found.duration)}{beside}"
+    yield "duration", f"{clock(found.duration)}{beside}"
     recordings = _counted(len(found.recordings), "recording")
-    yield f"data         {recordings}, {found.samples:,} samples, {found.bytes / 1e6:.3g} MB"
+    yield "data", f"{recordings}, {found.samples:,} samples, {found.bytes / 1e6:.3g} MB"
     loads = [point.load for point in found.points if point.load is not None]
     if loads and any(load.peak_current for load in loads):
         current = format_si(max(load.peak_current for load in loads), "A", digits=3)
         power = format_si(max(load.actuator_power for load in loads), "W", digits=3)
         energy = found.amplifier_energy
         in_all = "" if energy is None else f", {format_si(energy, 'J', digits=3)} in all"
-        yield f"drive        at most {current} peak, {power} of a linear amplifier{in_all}"
+        yield "drive", f"at most {current} peak, {power} of a linear amplifier{in_all}"
     heating = found.heating
     if heating is not None:
-        yield f"friction     {format_si(heating.frictional_heat, 'J', digits=3)} of work"
+        yield "friction", f"{format_si(heating.frictional_heat, 'J', digits=3)} of work"
         if heating.contact_rise is not None:
-            yield f"contact      warms by {float(heating.contact_rise.max()):.3g} K at most"
-        yield f"actuator     warms by {float(heating.actuator_rise.max()):.3g} K at most"
+            yield "contact", f"warms by {float(heating.contact_rise.max()):.3g} K at most"
+        yield "actuator", f"warms by {float(heating.actuator_rise.max()):.3g} K at most"
 
 
 def _counted(number: int, thing: str) -> str:

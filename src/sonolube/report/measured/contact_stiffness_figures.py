@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.checks import Complexes
-from sonolube.figure import COLOURS, LINES
+from sonolube.figure import COLOURS, LINES, subplots
 from sonolube.measurement.contact_stiffness.analysis import MeasuredContactStiffness
 from sonolube.measurement.contact_stiffness.resonance_fit import ResonanceFit
 from sonolube.report.measured.sheet import captioned
@@ -17,9 +17,7 @@ if TYPE_CHECKING:
 @captioned("Resonance free and pressed", "Measured (points) and fitted (lines); the marks are the resonances compared.")
 def resonances(found: MeasuredContactStiffness) -> "Figure":
     """Spectra free, pressed, free again and at large drive, with fits and the resonances that were compared."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(6.4, 3.8))
+    figure, axes = subplots(figsize=(6.4, 3.8))
     for place, (name, fit) in enumerate(_named(found)):
         f = fit.spectrum.frequency
         scale = 1e3 if f[-1] > 1e4 else 1.0

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS
+from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.measurement.friction.motor_current import MotorFrictionTrace
 from sonolube.measurement.friction.running_in import SteadyStateOnset
 from sonolube.measurement.friction.voltage_steps import VoltageStep
@@ -26,9 +26,7 @@ def trace(
     t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyStateOnset | None
 ) -> "Figure":
     """Samples over time with the means and fluctuations of windows and the begin of the steady state."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=_WIDE)
+    figure, axes = subplots(figsize=_WIDE)
     if t is not None and signal is not None:
         middle, low, high = _envelope(t, signal)
         axes.fill_between(middle, low, high, color="0.8", linewidth=0.4, label="samples, lowest to highest")
@@ -48,9 +46,7 @@ def trace(
 @captioned("Trace by cycle", "One value a cycle, as the instrument gives it.")
 def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
     """Signal with one value a cycle over the number of the cycle."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=_WIDE)
+    figure, axes = subplots(figsize=_WIDE)
     axes.plot(cycles, signal, marker=".", linewidth=0.8, markersize=3)
     axes.set(xlabel="cycle", ylabel=_LABELS.get(name, name))
     return figure
@@ -62,9 +58,7 @@ def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
 )
 def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
     """Friction and its reduction over the voltage."""
-    import matplotlib.pyplot as plt
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=_WIDE)
+    figure, (left, right) = subplots(1, 2, figsize=_WIDE)
     left.errorbar(
         [step.voltage_peak_to_peak for step in steps],
         [step.friction_force for step in steps],
@@ -96,9 +90,7 @@ def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
 )
 def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> "Figure":
     """Friction over time with the bursts of stick-slip, and the fall in a slip over the voltage."""
-    import matplotlib.pyplot as plt
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=_WIDE, width_ratios=(2, 1))
+    figure, (left, right) = subplots(1, 2, figsize=_WIDE, width_ratios=(2, 1))
     middle, low, high = _envelope(t, force)
     left.fill_between(middle, low, high, color="0.7", linewidth=0.4)
     found = [step for step in steps if step.stick_slip.detected]
@@ -127,9 +119,7 @@ def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> "Figur
 )
 def loops(velocity: Floats, force: Floats) -> "Figure":
     """Friction over velocity."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.2, 3.4))
+    figure, axes = subplots(figsize=(4.2, 3.4))
     stride = max(1, velocity.size // 20_000)
     axes.plot(velocity[::stride], force[::stride], linewidth=0.8)
     axes.axhline(0, color="0.5", linewidth=0.6)
@@ -141,9 +131,7 @@ def loops(velocity: Floats, force: Floats) -> "Figure":
 @captioned("Friction by the motor current", "Mean in each window with its standard uncertainty.")
 def motor_trace(motor: MotorFrictionTrace) -> "Figure":
     """Friction by the motor current over time with its uncertainty."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=_WIDE)
+    figure, axes = subplots(figsize=_WIDE)
     axes.errorbar(
         motor.time, motor.friction_force, yerr=motor.friction_force_uncertainty, marker=MARKERS[0], elinewidth=0.8
     )
@@ -154,9 +142,7 @@ def motor_trace(motor: MotorFrictionTrace) -> "Figure":
 @captioned("Tests with and without vibration", "Each test, and the mean of its kind.")
 def comparison(without: Sequence[float], with_vibration: Sequence[float], level: str) -> "Figure":
     """Friction of single tests without and with vibration, and the mean of each kind."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(3.8, 3.2))
+    figure, axes = subplots(figsize=(3.8, 3.2))
     for place, (tests, name) in enumerate([(without, "without"), (with_vibration, "with")]):
         spread = 0.04 * (np.arange(len(tests)) - (len(tests) - 1) / 2)
         axes.plot(place + spread, tests, MARKERS[place], color=COLOURS[place], label=f"{name}: {len(tests)} tests")

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS
+from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.measurement.wear_track import WearTrack
 from sonolube.models.surfaces import HeightMap
 from sonolube.models.surfaces.grooves.groove import Groove
@@ -25,9 +25,9 @@ _SINGLE = 9  # sections shown
 @captioned("The groove", "Heights over the unworn surface, the vertical stretched.")
 def view(groove: Groove) -> "Figure":
     """Three-dimensional view of the groove, the vertical stretched."""
-    import matplotlib.pyplot as plt
+    from matplotlib.figure import Figure
 
-    figure = plt.figure(figsize=(6.4, 4.2))
+    figure = Figure(figsize=(6.4, 4.2))
     axes: Any = figure.add_subplot(projection="3d")
     levelled = groove.levelled
     size = max(1, math.ceil(max(levelled.height.shape) / _BLOCKS))
@@ -51,9 +51,7 @@ def view(groove: Groove) -> "Figure":
 )
 def sections(groove: Groove) -> "Figure":
     """Single cross-sections, and the mean one with its edges."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(6.4, 3.2))
+    figure, axes = subplots(figsize=(6.4, 3.2))
     single = groove.cross_sections
     for at in np.linspace(0, single.arc_length.size - 1, _SINGLE + 2).round().astype(int)[1:-1]:
         axes.plot(1e3 * single.transverse, 1e6 * single.height[at], color="0.7", linewidth=0.6)
@@ -71,9 +69,7 @@ def sections(groove: Groove) -> "Figure":
 @captioned("Map", "Heights over the unworn surface; the line goes round what counts as worn.")
 def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
     """Heights as colours, with the outline of the worn area."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(5.0, 3.4))
+    figure, axes = subplots(figsize=(5.0, 3.4))
     show_map(axes, levelled)
     _, per_metre = length_scale(levelled.x)
     x, y = per_metre * levelled.x, per_metre * levelled.y
@@ -87,9 +83,7 @@ def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
 )
 def ring(worn: WearTrack) -> "Figure":
     """Area of the mean section of each scan, with the mean of the ring and its 95 % interval."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.6, 3.0))
+    figure, axes = subplots(figsize=(4.6, 3.0))
     area = 1e12 * worn.cross_section_area
     circumference = math.pi * worn.groove_diameter
     low, high = (1e12 * end / circumference for end in worn.wear_volume_interval)
@@ -108,9 +102,7 @@ def ring(worn: WearTrack) -> "Figure":
 )
 def marks(track: TrackMarks) -> "Figure":
     """Power spectrum along the track over its background."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.6, 3.0))
+    figure, axes = subplots(figsize=(4.6, 3.0))
     inner = track.wavenumber > 0
     k = track.wavenumber[inner]
     axes.loglog(k, track.profile_spectral_density[inner], linewidth=1, label="along the track")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.figure import COLOURS
+from sonolube.figure import COLOURS, subplots
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.actuator import ButterworthVanDyke, circuit_admittance
 from sonolube.models.dynamics.structure import Structure, electrical_admittance
@@ -28,9 +28,7 @@ def stack(spectrum: ImpedanceSpectrum, fitted: Structure) -> "Figure":
 @captioned("Admittance circle", "Susceptance over conductance; a mode draws a circle.")
 def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> "Figure":
     """Susceptance over conductance, measured and fitted."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(3.8, 3.6))
+    figure, axes = subplots(figsize=(3.8, 3.6))
     fine = np.geomspace(spectrum.frequency[0], spectrum.frequency[-1], 4000)
     model = 1e3 * circuit_admittance(fitted, frequency=fine)
     measured = 1e3 * spectrum.admittance
@@ -43,10 +41,8 @@ def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -
 
 def _fit(spectrum: ImpedanceSpectrum, model: Complexes) -> "Figure":
     """Magnitude and phase of the impedance, measured and fitted, above the residual of the logarithm."""
-    import matplotlib.pyplot as plt
-
     f = spectrum.frequency / 1e3
-    figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(6.4, 5.4), sharex=True, height_ratios=(2, 1.5, 1))
+    figure, (top, middle, bottom) = subplots(3, 1, figsize=(6.4, 5.4), sharex=True, height_ratios=(2, 1.5, 1))
     for axes, of, is_measured in ((top, np.abs, True), (middle, _degrees, spectrum.has_phase)):
         if is_measured:
             axes.plot(f, of(spectrum.impedance), ".", color="0.45", markersize=3, label="measured")

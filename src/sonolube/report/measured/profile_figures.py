@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.figure import COLOURS, LINES
+from sonolube.figure import COLOURS, LINES, subplots
 from sonolube.models.surfaces import ProfileEvaluation, ProfileSpectrum
 from sonolube.report.measured.sheet import captioned
 from sonolube.report.measured.surface_figures import length_scale, wavelength
@@ -29,9 +29,7 @@ def profile(found: ProfileEvaluation, *, spacing: float) -> "Figure":
     -------
     matplotlib.figure.Figure
     """
-    import matplotlib.pyplot as plt
-
-    figure, (upper, lower) = plt.subplots(2, 1, figsize=(7.4, 4.2), sharex=True)
+    figure, (upper, lower) = subplots(2, 1, figsize=(7.4, 4.2), sharex=True)
     x = spacing * np.arange(found.primary.size, dtype=np.float64)
     across, per_metre = length_scale(x)
     stride = max(1, x.size // _POINTS)
@@ -54,9 +52,7 @@ def profile(found: ProfileEvaluation, *, spacing: float) -> "Figure":
 @captioned("Power spectrum", "Of the primary profile, two-sided; dashed, the cutoff of the L-filter.")
 def spectrum(found: ProfileSpectrum, *, cutoff: float | None) -> "Figure":
     """Power spectral density of a profile."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.6, 3.2))
+    figure, axes = subplots(figsize=(4.6, 3.2))
     inner = (found.wavenumber > 0) & (found.profile_spectral_density > 0)
     axes.loglog(found.wavenumber[inner], found.profile_spectral_density[inner], linewidth=0.8)
     if cutoff is not None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS
+from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.measurement.friction.rotation import DiscRotation
 from sonolube.report.measured.sheet import captioned
 
@@ -18,9 +18,7 @@ _TURNS_SHOWN = 6
 @captioned("Speed turn by turn", "Each turn is timed from a magnet to the same magnet; the line is the mean.")
 def speed(rotation: DiscRotation) -> "Figure":
     """DiscRotation speed turn by turn, with the speed at the groove on the right."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(6.4, 3.0))
+    figure, axes = subplots(figsize=(6.4, 3.0))
     speeds = rotation.rotation_speed
     begun = rotation.time[: speeds.size]
     axes.plot(begun, speeds, marker=".", linewidth=0.8, markersize=4)
@@ -43,9 +41,7 @@ def speed(rotation: DiscRotation) -> "Figure":
 @captioned("Pulses of the probe", "The first turns, with the pulses detected and those inserted where one was missing.")
 def pulses(t: Floats, flux_density: Floats, rotation: DiscRotation) -> "Figure":
     """Reading of the probe over the first turns, with its pulses."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(6.4, 3.0))
+    figure, axes = subplots(figsize=(6.4, 3.0))
     end = float(np.interp(_TURNS_SHOWN, rotation.revolutions, rotation.time))
     shown = t <= end + 0.02 * (end - t[0])
     axes.plot(t[shown], flux_density[shown], color="0.5", linewidth=0.8, label="reading")

@@ -1,10 +1,9 @@
 """Sheet of one measured file: values, tables, figures and caveats, with their origin."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial, wraps
-from html import escape
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ParamSpec
 
@@ -13,13 +12,12 @@ from sonolube.units import format_like, format_quantity, format_si
 from sonolube.vocabulary import quantities, unit_of
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib import figure as matplotlib_figure
 
 Cell = float | str | None
 Drawn = ParamSpec("Drawn")
 
-_SIZE = ("field", "length", "lateral unit", "setting class")  # origins of a scan that text gives as well as the page
+_SIZE = ("field", "length", "lateral unit", "setting class")  # origins
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,15 +64,6 @@ class Value:
             return f"{number} {unit}".rstrip() + f" ({lower:.4g} to {upper:.4g})"
         return rounded
 
-    def attributes(self) -> dict[str, str | float | list[float]]:
-        """Return unit, label and uncertainty or interval, as attributes of a variable."""
-        about: dict[str, str | float | list[float]] = {"units": self.unit or "1", "long_name": self.label}
-        if self.uncertainty is not None:
-            about["standard_uncertainty"] = self.uncertainty
-        if self.interval is not None:
-            about["interval"] = list(self.interval)
-        return about
-
     def _rounded(self) -> str:
         """Value with its digits; in the unit usual for it where it is a quantity of the vocabulary."""
         if unit_of(self.name) == self.unit:
@@ -116,27 +105,10 @@ class Table:
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
-    def lines(self) -> list[str]:
-        """Return the table as lines of text, columns aligned to the right."""
-        cells = [[column.label for column in self.columns], *self.texts()]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        return [
-            "    " + "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in cells
-        ]
-
     def texts(self) -> list[list[str]]:
         """Return the rows as text, the quantities of a column with one prefix."""
         columns = [column.texts([row[place] for row in self.rows]) for place, column in enumerate(self.columns)]
         return [list(row) for row in zip(*columns, strict=True)]
-
-    def by_column(self) -> "Iterator[tuple[Column, list[float] | list[str]]]":
-        """Yield each column with its cells: numbers, NaN where there is none, or text."""
-        for place, column in enumerate(self.columns):
-            cells = [row[place] for row in self.rows]
-            if any(isinstance(cell, str) for cell in cells):
-                yield column, ["" if cell is None else str(cell) for cell in cells]
-            else:
-                yield column, [math.nan if cell is None else float(cell) for cell in cells]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -163,7 +135,7 @@ def captioned(
     return decorated
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Sheet:
     """Values, tables, figures and caveats of one measured file, or of one analysis of it.
 
@@ -193,43 +165,9 @@ class Sheet:
     caveats: tuple[str, ...] = ()
     not_found: tuple[str, ...] = ()
 
-    def lines(self) -> list[str]:
-        """Return values, tables and what was not found as lines of text, caveats apart."""
-        width = max((len(value.label) for value in self.values), default=0)
-        size = [f"  {name}: {text}" for name, text in self.source.items() if name in _SIZE]
-        lines = [self.title, *size, *(f"  {value.label:<{width}}  {value.text}" for value in self.values)]
-        for table in self.tables:
-            lines += ["", f"  {table.title}", *table.lines()]
-        return [*lines, *(f"  not found: {reason}" for reason in self.not_found)]
-
-    def dataset(self) -> "xr.Dataset":
-        """Return the sheet as a labelled dataset in SI.
-
-        Returns
-        -------
-        xarray.Dataset
-            Values as scalars, with their standard uncertainty or interval among their attributes; columns of tables
-            over a dimension of the table's name.
-        """
-        import xarray as xr
-
-        variables = {value.name: ((), value.value, value.attributes()) for value in self.values}
-        columns = {
-            f"{table.name}_{column.name}": (table.name, cells, {"units": column.unit or "1", "long_name": column.label})
-            for table in self.tables
-            for column, cells in table.by_column()
-        }
-        attributes = {"title": self.title, "caveats": "\n".join(self.caveats), "not_found": "\n".join(self.not_found)}
-        return xr.Dataset({**variables, **columns}, attrs={**self.source, **attributes})
-
-    def __repr__(self) -> str:
-        return "\n".join([*self.lines(), *(f"  caveat: {caveat}" for caveat in self.caveats)])
-
-    def _repr_html_(self) -> str:
-        """Values as a table, for notebooks."""
-        rows = "".join(f"<tr><th>{escape(one.label)}</th><td>{escape(one.text)}</td></tr>" for one in self.values)
-        notes = "".join(f"<li>{escape(note)}</li>" for note in (*self.caveats, *self.not_found))
-        return f"<table><caption>{escape(self.title)}</caption><tbody>{rows}</tbody></table><ul>{notes}</ul>"
+    def size(self) -> dict[str, str]:
+        """Return the origins that text gives as well as the page: those that say how large a scan is."""
+        return {name: text for name, text in self.source.items() if name in _SIZE}
 
 
 def joined(parts: Sequence[Sheet], *, title: str, source: Mapping[str, str]) -> Sheet:

@@ -85,12 +85,12 @@ class SurfaceSettings:
     long_cutoff_length: float | None = None
 
 
-def spacings(text: str | None, *, name: str) -> tuple[float | None, float | None]:
-    """Distances of columns and rows from text such as "0.5um" or "0.5um,0.6um"; None where there is none. [m]
+def spacings(text: str | float | None, *, name: str) -> tuple[float | None, float | None]:
+    """Distances of columns and rows from a number or text such as "0.5um" or "0.5um,0.6um"; None without it. [m]
 
     Parameters
     ----------
-    text : str or None
+    text : str, float or None
     name : str
         How a refusal calls it.
 
@@ -103,8 +103,8 @@ def spacings(text: str | None, *, name: str) -> tuple[float | None, float | None
     InvalidInput
         If a distance is no length.
     """
-    if text is None:
-        return None, None
+    if text is None or not isinstance(text, str):
+        return text, text
     first, _, second = text.partition(",")
     along = to_si(first, unit="m", name=name)
     return along, to_si(second, unit="m", name=name) if second else along

@@ -6,7 +6,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.figure import COLOURS, LINES
+from sonolube.figure import COLOURS, LINES, subplots
 from sonolube.models.surfaces import (
     Autocorrelation,
     HeightMap,
@@ -27,9 +27,7 @@ _LONGEST = 2000.0  # of a unit, before the next is taken
 @captioned("Heights", "The surface as evaluated, levelled and filtered; what was not measured is left white.")
 def heights(surface: HeightMap) -> "Figure":
     """Height map, and a profile through its middle."""
-    import matplotlib.pyplot as plt
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 3.0), width_ratios=(1.15, 1))
+    figure, (left, right) = subplots(1, 2, figsize=(7.4, 3.0), width_ratios=(1.15, 1))
     unit, scale = length_scale(surface.height)
     across, per_metre = length_scale(surface.x)
     show_map(left, surface)
@@ -69,9 +67,7 @@ def length_scale(lengths: Floats) -> tuple[str, float]:
 @captioned("Abbott curve", "Share of the surface at or above each height, with the core by its equivalent line.")
 def abbott(curve: MaterialRatioCurve) -> "Figure":
     """Material ratio curve with the equivalent line of its core, beside the histogram of heights."""
-    import matplotlib.pyplot as plt
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.2), width_ratios=(1, 2.2), sharey=True)
+    figure, (left, right) = subplots(1, 2, figsize=(6.4, 3.2), width_ratios=(1, 2.2), sharey=True)
     unit, scale = length_scale(curve.height)
     share = np.full(curve.height.size, 100 / curve.height.size)
     left.hist(scale * curve.height, bins=80, weights=share, orientation="horizontal", color=COLOURS[5], linewidth=0)
@@ -107,9 +103,7 @@ def _core(axes: "Axes", curve: MaterialRatioCurve, scale: float, first: float, s
 )
 def spectrum(radial: RadialSpectrum) -> "Figure":
     """Radially averaged power spectral density."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.6, 3.2))
+    figure, axes = subplots(figsize=(4.6, 3.2))
     inner = radial.wavenumber > 0
     axes.loglog(radial.wavenumber[inner], radial.areal_spectral_density[inner])
     axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m⁴)")
@@ -126,9 +120,7 @@ def wavelength(other: Any) -> Any:
 @captioned("Autocorrelation", "Along rows and columns; Sal is where it first falls to 0.2 in any direction.")
 def correlation(found: Autocorrelation) -> "Figure":
     """Autocorrelation along rows and columns."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.6, 3.0))
+    figure, axes = subplots(figsize=(4.6, 3.0))
     rows, columns = (size // 2 for size in found.normalized.shape)
     unit, scale = length_scale(found.lag_x)
     axes.plot(scale * found.lag_x[columns:], found.normalized[rows, columns:], LINES[0], label="along rows")

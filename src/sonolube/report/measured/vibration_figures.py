@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS
+from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.measurement.vibration import AmplitudePerVolt, OperatingDeflectionShape
 from sonolube.report.measured.sheet import captioned
 
@@ -17,9 +17,7 @@ if TYPE_CHECKING:
 @captioned("Operating shape", "Motion in phase with the whole, scaled to 1, and the phase of each point.")
 def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> "Figure":
     """Operating shape and phase, point by point."""
-    import matplotlib.pyplot as plt
-
-    figure, (top, bottom) = plt.subplots(2, 1, figsize=(6.0, 3.8), sharex=True, height_ratios=(2, 1))
+    figure, (top, bottom) = subplots(2, 1, figsize=(6.0, 3.8), sharex=True, height_ratios=(2, 1))
     place = np.arange(1, len(points) + 1)
     top.plot(place, operating.shape, marker=MARKERS[0])
     top.axhline(0, color="0.5", linewidth=0.6)
@@ -37,9 +35,7 @@ def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> "Figure
 )
 def assurance(assurance_values: Floats) -> "Figure":
     """Modal assurance criterion with each mode."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.2, 2.8))
+    figure, axes = subplots(figsize=(4.2, 2.8))
     place = np.arange(1, assurance_values.size + 1)
     axes.bar(place, assurance_values, width=0.6, color=COLOURS[0])
     axes.set(xlabel="mode", ylabel="modal assurance", ylim=(0, 1.02), xticks=place)
@@ -49,9 +45,7 @@ def assurance(assurance_values: Floats) -> "Figure":
 @captioned("Amplitude over voltage", "Each recording, and the line through the origin with its 95 % interval.")
 def proportion(volts: Floats, amplitudes: Floats, fit: AmplitudePerVolt) -> "Figure":
     """Amplitude over voltage with the line through the origin and its interval."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.4, 3.2))
+    figure, axes = subplots(figsize=(4.4, 3.2))
     line = np.array([0.0, 1.05 * volts.max()])
     axes.fill_between(
         line, 1e6 * fit.lower * line, 1e6 * fit.upper * line, color=COLOURS[5], alpha=0.5, linewidth=0, label="95 %"

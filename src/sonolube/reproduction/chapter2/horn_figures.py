@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from sonolube.facts.published import published_number, si_value
-from sonolube.figure import COLOURS, MARKERS, ReportFigure
+from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
 from sonolube.models.fem import trajectory_ellipse
 from sonolube.reproduction.chapter2.horn_friction import FACE_END, FaceFriction, driven_face, friction_on_face
 from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS
@@ -104,9 +104,7 @@ def _paths() -> "Figure":
 
 def _ellipses() -> "Figure":
     """Draw semi-axes and phase of the elliptic paths along the face."""
-    from matplotlib import pyplot as plt
-
-    figure, (above, below) = plt.subplots(2, 1, figsize=(5.0, 4.8), sharex=True)
+    figure, (above, below) = subplots(2, 1, figsize=(5.0, 4.8), sharex=True)
     position = np.linspace(-FACE_END, FACE_END, 401)
     for index, horn in enumerate(HORNS):
         axial, normal = _motion(horn).at(position)

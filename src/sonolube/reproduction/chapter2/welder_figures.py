@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from sonolube.checks import Floats
 from sonolube.compilation import few_points
 from sonolube.facts.published import PrintedNumber, published_number, si_value
-from sonolube.figure import COLOURS, LINES, ReportFigure
+from sonolube.figure import COLOURS, LINES, ReportFigure, subplots
 from sonolube.measurement.gauge.calibration import PreisachCalibration, fit_branches, fit_preisach, force_from_preisach
 from sonolube.measurement.gauge.preisach import PreisachPlane
 from sonolube.models.contact import decay_length, separation
@@ -205,9 +205,7 @@ def _calibration() -> "Figure":
 
 def _friction_in_time() -> "Figure":
     """Draw deflection and friction in time of the flat and of the round tip."""
-    from matplotlib import pyplot as plt
-
-    figure, panels = plt.subplots(2, 2, figsize=(7.2, 4.6), sharex="col", sharey="row")
+    figure, panels = subplots(2, 2, figsize=(7.2, 4.6), sharex="col", sharey="row")
     for (deflected, rubbed), (tip, name) in zip(
         panels.T, ((_FLAT_TIP, "Flat tip"), (_ROUND_TIP, "Round tip")), strict=True
     ):

@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.facts.published import column_numbers, published_number, si_value
-from sonolube.figure import ReportFigure
+from sonolube.figure import ReportFigure, subplots
 from sonolube.reproduction.chapter4 import lubrication
 from sonolube.reproduction.plots import line_style
 
@@ -92,9 +92,7 @@ def friction_in_time(*, normal_load: float) -> tuple[Floats, Floats, dict[str, F
 
 def _methods() -> "Figure":
     """Draw friction in time above its coefficient over speed, a column for each load."""
-    from matplotlib import pyplot as plt
-
-    figure, panels = plt.subplots(2, 3, figsize=(7.8, 5.4), sharex="row")
+    figure, panels = subplots(2, 3, figsize=(7.8, 5.4), sharex="row")
     loads = [load.value for load in column_numbers("4.3", "normal_load").values()]
     for (force, coefficient), load in zip(panels.T, loads, strict=True):
         time, speed, friction = friction_in_time(normal_load=load)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS, ReportFigure
+from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
 from sonolube.models import friction
 from sonolube.models.contact import load_balanced_motion, sinusoidal_motion
 from sonolube.reproduction.friction_models.variant_predictions import DEFAULT, reported_fits
@@ -129,11 +129,9 @@ def _curves(speeds: Floats) -> Iterator[tuple[str, Floats]]:
 
 def _predicted_against_measured() -> "Figure":
     """Draw predicted against measured ratios, one panel for each variant."""
-    from matplotlib import pyplot as plt
-
     fits = reported_fits()
     rows = -(-len(fits) // _COLUMNS)
-    figure, panels = plt.subplots(rows, _COLUMNS, figsize=(6.85, 2.05 * rows + 0.5), sharex=True, sharey=True)
+    figure, panels = subplots(rows, _COLUMNS, figsize=(6.85, 2.05 * rows + 0.5), sharex=True, sharey=True)
     for axes, fit in zip(panels.flat, fits, strict=False):
         _panel(axes, fit)
         axes.xaxis.set_tick_params(labelbottom=True)
@@ -174,13 +172,11 @@ def _panel(axes: "Axes", fit: Fit) -> None:
 
 def _errors_by_test() -> "Figure":
     """Draw the errors of every variant in every test as a matrix, with error statistics and criteria."""
-    from matplotlib import pyplot as plt
-
     tests, names = friction_tests(FITTED_SETS), [variant.name.replace("-", " ") for variant in FRICTION_MODEL_VARIANTS]
     assessments = [assess_variant(variant, FITTED_SETS) for variant in FRICTION_MODEL_VARIANTS]
     predicted = [[assessment.fit.predict(test) for test in tests] for assessment in assessments]
     errors = np.array(predicted, dtype=np.float64) - [test.friction_ratio for test in tests]
-    figure, (axes, below) = plt.subplots(2, 1, figsize=(6.85, 1.9 + 0.4 * len(names)))
+    figure, (axes, below) = subplots(2, 1, figsize=(6.85, 1.9 + 0.4 * len(names)))
     image = axes.imshow(errors, cmap="RdBu_r", vmin=-_LARGEST_ERROR, vmax=_LARGEST_ERROR, aspect="auto")
     for (row, column), error in np.ndenumerate(errors):
         if np.isfinite(error):

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,18 +25,24 @@ class FileEntries:
         Reader of such a content.
     text : str
         File with its comments, where it is kept; empty otherwise.
+    path : str
+        Of the file; empty where there is none.
+    changes : tuple of str
+        Entries that were replaced when it was read.
     """
 
     content: Mapping[str, Any]
     rig_from: Callable[[Mapping[str, Any]], Rig]
     text: str = ""
+    path: str = ""
+    changes: tuple[str, ...] = ()
 
     def replaced(self, key: str, value: str | float) -> Rig:
         """Return the rig of the file with one entry replaced."""
         content = deepcopy(dict(self.content))
         set_entry(content, key, value)
         with prefixed(f"replace({key!r}, {value!r})"):
-            return self.rig_from(content)
+            return from_file(self.rig_from(content), path=self.path, changes=self.changes)
 
     def write(self, path: str | Path) -> Path:
         """Write the file with its entries."""
@@ -49,6 +55,12 @@ def with_entries(rig: Rig, entries: FileEntries) -> Rig:
     """Return a rig that was just read, with the entries of its file."""
     object.__setattr__(rig, "_entries", entries)
     return rig
+
+
+def from_file(rig: Rig, *, path: str, changes: tuple[str, ...]) -> Rig:
+    """Return a rig that was just read, with the path of its file and the entries that were replaced."""
+    entries: FileEntries = object.__getattribute__(rig, "_entries")
+    return with_entries(rig, replace(entries, path=path, changes=changes))
 
 
 def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:

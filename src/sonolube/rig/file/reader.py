@@ -15,7 +15,7 @@ from sonolube.models.dynamics import Structure
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.file.contact_section import RoughnessSection
 from sonolube.rig.file.derived import ALTERNATIVES, REPLACED, with_derived
-from sonolube.rig.file.entries import FileEntries, set_entry, with_entries
+from sonolube.rig.file.entries import FileEntries, from_file, set_entry, with_entries
 from sonolube.rig.file.modes_file import read_modes
 from sonolube.rig.file.renamed import refuse_former_names
 from sonolube.rig.file.sections import RigFile
@@ -47,7 +47,8 @@ def read_rig(path: str | Path, *, changes: Sequence[str] = ()) -> Rig:
     """
     content = rig_content(path, changes=changes)
     with prefixed(str(path)):
-        return rig_from(content)
+        rig = rig_from(content)
+    return from_file(rig, path=str(path), changes=tuple(changes))
 
 
 def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, Any]:
@@ -118,13 +119,13 @@ def rig_from(content: Mapping[str, Any]) -> Rig:
     return with_entries(_rig(file), FileEntries(content, rig_from))
 
 
-def structure_by_stack(path: str | Path) -> tuple[PiezoStack, Callable[[PiezoStack], Structure]]:
-    """Read a rig's stack, and its structure as it would be with another stack.
+def structure_by_stack(rig: Rig) -> tuple[PiezoStack, Callable[[PiezoStack], Structure]]:
+    """Stack of a rig, and its structure as it would be with another stack.
 
     Parameters
     ----------
-    path : str or Path
-        The rig's file, with the tables `stack` and `structure`.
+    rig : Rig
+        From a file with the tables `stack` and `structure`.
 
     Returns
     -------
@@ -135,16 +136,16 @@ def structure_by_stack(path: str | Path) -> tuple[PiezoStack, Callable[[PiezoSta
     Raises
     ------
     InvalidInput
-        As `read_rig`, or if the file lacks the tables.
+        If the file lacks the tables, or the rig was not read from one.
     """
-    path = Path(path)
-    stack = read_rig(path).stack
-    section = RigFile.model_validate(rig_content(path)).structure
-    if stack is None or section is None:
-        raise InvalidInput(f"{path}: the tables stack and structure are missing")
+    section = RigFile.model_validate(rig.content()).structure
+    if rig.stack is None or section is None:
+        raise InvalidInput(f"{rig.file or rig.title}: the tables stack and structure are missing")
     if isinstance(section, ModesSection):
-        raise InvalidInput(f"{path}: the stack is part of the modes of its structure, and cannot be another")
-    return stack, section.structure
+        raise InvalidInput(
+            f"{rig.file or rig.title}: the stack is part of the modes of its structure, and cannot be another"
+        )
+    return rig.stack, section.structure
 
 
 def _with_modes(content: dict[str, Any], folder: Path) -> dict[str, Any]:

@@ -46,7 +46,7 @@ def prefixed(place: str) -> Iterator[None]:
     except SeveralFaults as refusal:
         raise refusal.at(place) from None
     except SonolubeError as refusal:
-        raise InvalidInput(f"{place}: {refusal}") from None
+        raise InvalidInput(f"{place}: {refusal}", key=getattr(refusal, "key", "")) from None
 
 
 def validated(file: type[_Content], content: Mapping[str, Any]) -> _Content:
@@ -73,7 +73,10 @@ def validated(file: type[_Content], content: Mapping[str, Any]) -> _Content:
     except ValidationError as refusal:
         found = _complaints(file, refusal, content)
     faults = [_fault(file, each) for each in found[:_MOST]]
-    raise InvalidInput(faults[0]) if len(found) == 1 else SeveralFaults(faults, rest=len(found) - len(faults))
+    keys = [_key_of(each) for each in found[:_MOST]]
+    if len(found) == 1:
+        raise InvalidInput(faults[0], key=keys[0])
+    raise SeveralFaults(faults, rest=len(found) - len(faults), keys=keys)
 
 
 def _complaints(file: type[Section], refusal: ValidationError, content: Mapping[str, Any]) -> list[ErrorDetails]:
@@ -125,7 +128,12 @@ def _fault(file: type[Section], complaint: ErrorDetails) -> str:
         reason = f"unknown key; {suggestion(str(place[-1]), _keys(file, place[:-1]))}".removesuffix("; ")
     elif complaint["type"] == "missing":
         reason = _missing(str(place[-1]))
-    return f"{'.'.join(map(str, _without_tags(place)))}: {reason}".removeprefix(": ")
+    return f"{_key_of(complaint)}: {reason}".removeprefix(": ")
+
+
+def _key_of(complaint: ErrorDetails) -> str:
+    """Return the dotted key of a complaint."""
+    return ".".join(map(str, _without_tags(complaint["loc"])))
 
 
 def _missing(key: str) -> str:

@@ -1,1 +1,0 @@
-"""Commands that compare models with published data and identify parameters from them."""

@@ -1,0 +1,164 @@
+"""Delivery of an answer on a terminal: figures and files are written whole, then text or JSON is printed."""
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from shutil import get_terminal_size
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from sonolube.errors import InvalidInput
+from sonolube.printable_text import printable
+from sonolube.targets import expect_target
+from sonolube.tasks.answer import Answer
+from sonolube.tasks.blocks import text_lines
+
+if TYPE_CHECKING:
+    from sonolube.tasks.answer import Content
+
+_WIDEST = 80  # characters of a line, where COLUMNS says nothing
+_FAILED, _ALL_REFUSED = 1, 2  # exit codes
+
+
+def deliver(
+    answer: Answer,
+    *,
+    folder: Path | None = Path(),
+    report: Path | None = None,
+    as_json: bool = False,
+    brief: bool = False,
+    command: str = "sonolube",
+) -> None:
+    """Write the files of an answer, then print it as text or as one JSON object.
+
+    Parameters
+    ----------
+    answer : Answer
+    folder : Path or None
+        For page, figures and files, none of which are written where it is None; made where it is missing and needed.
+    report : Path, optional
+        Page that is written on request.
+    as_json : bool
+        Whether to print JSON rather than text.
+    brief : bool
+        Whether to leave out assumptions of the rig file.
+    command : str
+        Words before the reason of an input that was refused.
+
+    Raises
+    ------
+    InvalidInput
+        If a file, or standard output, cannot be written. Everything is rendered before the first file is written.
+    typer.Exit
+        With 1 where some of several inputs were refused, or the result is a failure, with 2 where all were refused.
+    """
+    folder = answer.folder or folder
+    written = [] if folder is None else _write(answer, folder, report)
+    if as_json:
+        content = answer.json_object()
+        _print(json.dumps(content if answer.is_lookup else content | {"files": list(map(str, written))}, indent=2))
+    else:
+        width = line_width()
+        lines = [*text_lines(answer.every_block(brief=brief), width=width), *_file_lines(written, folder or Path())]
+        if lines:
+            _print(printable("\n".join(lines)))
+    for reason in answer.refusals().values():
+        typer.echo(printable(f"{command}: {reason}"), err=True)
+    if answer.refusals():
+        raise typer.Exit(_FAILED if answer.has_result else _ALL_REFUSED)
+    if answer.is_failure:
+        raise typer.Exit(_FAILED)
+
+
+def line_width() -> int:
+    """Characters of a line: those of COLUMNS where it is set, else those of the terminal up to 80."""
+    if os.environ.get("COLUMNS", "").isdigit():
+        return int(os.environ["COLUMNS"])
+    return min(_WIDEST, get_terminal_size((_WIDEST, 24)).columns)
+
+
+def _write(answer: Answer, folder: Path, report: Path | None) -> list[Path]:
+    """Paths of all files of an answer, rendered one and all before the first is written."""
+    page, drawings = answer.page(), answer.figures()
+    contents: dict[Path, Any] = {}
+    if page is not None or report is not None or any(drawing.forms for drawing in drawings.values()):
+        from sonolube.cli.console.figure_style import prepare_matplotlib
+        from sonolube.cli.console.progress import progress
+        from sonolube.report import rendered_files
+
+        prepare_matplotlib()
+        if page is not None and answer.call is not None:
+            page = replace(page, settings=(*page.settings, *_rig_settings(answer), *answer.call.settings()))
+        notes = [
+            *(f"Caveat: {caveat}." for caveat in answer.every_caveat()),
+            *(f"Assumed {key}: {reason}." for key, reason in answer.assumptions().items()),
+        ]
+        with progress("drawing") as advance:
+            rendered = rendered_files(drawings, page=page, notes=notes, advance=advance)
+            contents |= {folder / name: content for name, content in rendered.items()}
+            if report is not None and (text := answer.report(advance)) is not None:
+                contents[report] = text
+    contents |= {folder / name: _with_notes(content, answer) for name, content in answer.files().items()}
+    for path, content in contents.items():
+        if not isinstance(content, Path):
+            expect_target(path)
+            _refuse_to_lose(answer, path, folder)
+    return [_written(path, content) for path, content in contents.items()]
+
+
+def _refuse_to_lose(answer: Answer, path: Path, folder: Path) -> None:
+    """Raise for a file whose present content would be a loss."""
+    if path.suffix in (".csv", ".toml") and path.is_file() and folder in path.parents:
+        try:
+            lost = answer.keeps(path.relative_to(folder).as_posix(), path.read_text(encoding="utf-8-sig"))
+        except (OSError, ValueError):
+            lost = True
+        if lost:
+            holds = "holds results, which" if path.suffix == ".csv" else "has other content, which"
+            raise InvalidInput(f"{path}: {holds} would be lost; move it, or name another folder by --out")
+
+
+def _rig_settings(answer: Answer) -> list[tuple[str, str]]:
+    """Entries of the rig file that were replaced."""
+    changes = () if answer.rig is None else answer.rig.changes
+    return [("--set", "; ".join(changes))] if changes else []
+
+
+def _with_notes(content: "Content", answer: Answer) -> "Content":
+    """Content of a file; a dataset with caveats and assumptions of the answer among its attributes."""
+    return content if isinstance(content, str | bytes | Path) else content.assign_attrs(**answer.notes())
+
+
+def _written(path: Path, content: "Content") -> Path:
+    """Path of a file with this content."""
+    if isinstance(content, Path):
+        return content
+    if isinstance(content, str | bytes):
+        from sonolube.files import write_atomically
+
+        return write_atomically(path, content)
+    from sonolube.rig import write_netcdf
+
+    return write_netcdf(content, path=path)
+
+
+def _print(text: str) -> None:
+    """Print text on standard output, which may be a file on a full disk."""
+    try:
+        typer.echo(text)
+    except BrokenPipeError:
+        raise  # the reader has seen enough
+    except OSError as failure:
+        raise InvalidInput(f"standard output: cannot be written: {failure.strerror}") from None
+
+
+def _file_lines(written: Sequence[Path], folder: Path) -> list[str]:
+    """Files as lines of text: several below a folder of the answer's own by their number."""
+    below: dict[Path, list[Path]] = {}
+    for path in written:
+        place = path if path.parent == folder or folder not in path.parents else path.parent
+        below.setdefault(place, []).append(path)
+    return [f"  {paths[0]}" if len(paths) == 1 else f"  {place}: {len(paths)} files" for place, paths in below.items()]

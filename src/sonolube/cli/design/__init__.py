@@ -1,1 +1,0 @@
-"""Commands that design: sweeps, maps, optimisation, uncertainty, control, efficiency and horns."""

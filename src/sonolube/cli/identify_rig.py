@@ -1,0 +1,30 @@
+"""Command `identify rig`: the task, and the rig file on standard output or in a file."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Final
+
+import typer
+
+from sonolube.cli.console.delivery import deliver
+from sonolube.cli.console.outputs import OutputFile
+from sonolube.cli.generated import Extra, command_of
+from sonolube.printable_text import printable
+from sonolube.tasks.identify.rig_of_facts import IdentificationAnswer
+from sonolube.tasks.table import task_named
+
+_OUT: Final = Annotated[Path | None, typer.Option(help="File to write; standard output by default."), OutputFile()]
+
+
+def _delivered(answer: IdentificationAnswer, typed: Mapping[str, Any]) -> None:
+    """Write the rig file and print what was found, or print the file with that as comments."""
+    out: Path | None = typed["out"]
+    if out is not None:
+        deliver(answer.written_to(out), folder=out.parent, as_json=typed["json"])
+    elif typed["json"]:
+        deliver(answer, as_json=True)
+    else:
+        typer.echo(printable(answer.file_text()))
+
+
+identify_rig = command_of(task_named("identify rig"), more=(Extra("out", _OUT, None),), delivery=_delivered)

@@ -1,1 +1,0 @@
-"""Commands that measure recordings, surfaces and spectra."""

@@ -1,0 +1,140 @@
+"""Command `new`: the task with questions on a terminal for what the options leave out, and one file to write."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Final
+
+import typer
+
+from sonolube.cli.console.delivery import deliver
+from sonolube.cli.console.outputs import OutputFile
+from sonolube.cli.console.questions import Question, ask, is_terminal
+from sonolube.cli.generated import Extra, command_of
+from sonolube.errors import InvalidInput
+from sonolube.facts.materials import material
+from sonolube.rig.new_rig.stated_text import pin_shape, reader, rotation_of, speed_of, surface_of, vibration_of
+from sonolube.tasks.predict.new import DEFAULT_FINISH, DEFAULT_SHAPE, NewRig, refuse_two_of_one
+from sonolube.tasks.table import task_named
+
+_SPEED: Final = Question(option="--speed", text="Sliding speed, such as 0.2m/s or '100 rpm'", default="0.1m/s")
+_TRACK: Final = Question(option="--track-radius", text="Radius of the track, such as 15mm", default="20mm")
+_FINISHES: Final = "such as turned, N7, 'ground N6' or 'Ra 0.4um', or the file of a scan"
+_QUESTIONS: Final[Mapping[str, tuple[Question, Callable[[str], object]]]] = {
+    "pin": (
+        Question(
+            option="--pin", text="Material of the pin, such as aluminium_2024 or steel", default="stainless_steel_304"
+        ),
+        material,
+    ),
+    "disc": (
+        Question(option="--disc", text="Material of the disc, such as m50 or steel", default="stainless_steel_304"),
+        material,
+    ),
+    "shape": (
+        Question(
+            option="--shape",
+            text="End of the pin: flat with its diameter or ball, such as 'ball radius 5mm' or 'ball diameter 10mm'",
+            default=DEFAULT_SHAPE,
+        ),
+        pin_shape,
+    ),
+    "load": (Question(option="--load", text="Normal load, such as 5N", default="5N"), reader("N", name="--load")),
+    "speed": (_SPEED, speed_of),
+    "frequency": (
+        Question(option="--frequency", text="Frequency of the vibration, such as 22kHz", default="20kHz"),
+        reader("Hz", name="--frequency"),
+    ),
+    "amplitude": (
+        Question(
+            option="--amplitude",
+            text="Vibration amplitude, zero to peak, such as 3um; or an actuator and its voltage: 'sa050510 50V'",
+            default="1um",
+        ),
+        vibration_of,
+    ),
+    "pin_finish": (
+        Question(option="--pin-finish", text=f"Finish of the pin, {_FINISHES}", default=DEFAULT_FINISH),
+        surface_of,
+    ),
+    "disc_finish": (
+        Question(option="--disc-finish", text=f"Finish of the disc, {_FINISHES}", default=DEFAULT_FINISH),
+        surface_of,
+    ),
+}
+"""Question for each argument, in their order, with the reader of its answer."""
+
+_NEEDED: Final = ("pin", "disc", "load", "speed", "frequency", "amplitude")
+_INSTEAD: Final = {"amplitude": ("actuator",), "pin_finish": ("finish", "pin_scan"), "disc_finish": ("finish", "scan")}
+"""Arguments that take the place of an answer."""
+
+
+def _completed(given: dict[str, Any]) -> dict[str, Any]:
+    """Arguments with the answers to questions for those that are missing."""
+    refuse_two_of_one(given)
+    missing = [name for name in _NEEDED if not _is_known(name, given)]
+    if missing and not is_terminal():
+        options = ", ".join(_QUESTIONS[name][0].option for name in missing)
+        raise InvalidInput(f"missing {options}; give them, or answer the questions on a terminal")
+    for name, (question, read) in _QUESTIONS.items():
+        if missing and not _is_known(name, given):
+            check = _readable_speed(given) if name == "speed" else read
+            given[name] = _answer_to(question, check)
+        if name == "speed" and _needs_track(given):
+            given["track_radius"] = _answer_to(_TRACK, lambda text: speed_of(given["speed"], track_radius=text))
+    return given
+
+
+def _answer_to(question: Question, check: Callable[[str], object]) -> str:
+    """Text of an answer that can be read."""
+
+    def read(text: str) -> str:
+        check(text)
+        return text
+
+    return ask(question, read)
+
+
+def _is_known(name: str, given: Mapping[str, Any]) -> bool:
+    """Whether an argument, or one in its place, was given."""
+    return any(each in given for each in (name, *_INSTEAD.get(name, ())))
+
+
+def _needs_track(given: Mapping[str, Any]) -> bool:
+    """Whether a rotational speed lacks its track, and somebody can be asked for it."""
+    has_track = "track_radius" in given or "track_diameter" in given
+    return not has_track and is_terminal() and rotation_of(str(given.get("speed", ""))) is not None
+
+
+def _readable_speed(given: Mapping[str, Any]) -> Callable[[str], object]:
+    """Reader of a speed, of which a rotational one may wait for its track."""
+    radius, diameter = given.get("track_radius"), given.get("track_diameter")
+
+    def read(text: str) -> object:
+        waits = rotation_of(text) is not None and not (radius or diameter)
+        return None if waits else speed_of(text, track_radius=radius, track_diameter=diameter)
+
+    return read
+
+
+def _delivered(answer: NewRig, typed: Mapping[str, Any]) -> None:
+    """Write the rig file, and print the answer."""
+    out: Path = typed["out"]
+    deliver(answer.written_to(out), folder=out.parent, as_json=typed["json"])
+
+
+def _refuse_existing(typed: Mapping[str, Any]) -> None:
+    """Refuse to replace a file without --force."""
+    if typed["out"].exists() and not typed["force"]:
+        raise InvalidInput(f"{typed['out']}: exists; name another file, or give --force to replace it")
+
+
+_OUT: Final = Annotated[Path, typer.Argument(metavar="[OUT.toml]", help="File to write."), OutputFile()]
+_FORCE: Final = Annotated[bool, typer.Option("--force", help="Replace the file where it exists.")]
+
+new = command_of(
+    task_named("new"),
+    more=(Extra("out", _OUT, Path("rig.toml")), Extra("force", _FORCE, False)),
+    before=_refuse_existing,
+    complete=_completed,
+    delivery=_delivered,
+)

@@ -1,1 +1,0 @@
-"""Commands that predict contact, friction, wear, vibration and temperature of a rig or a part."""

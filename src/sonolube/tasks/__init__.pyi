@@ -1,0 +1,1 @@
+from . import horn as horn, identify as identify, impedance as impedance, lab as lab, measure as measure

@@ -1,0 +1,270 @@
+"""Answer of a task in every form in which it is shown: blocks of text, JSON, dataset, figures, files and page."""
+
+import json
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
+
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.tasks.blocks import Block, Rows, Table, Verbatim, text_lines
+from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from sonolube.report import Drawing, Page
+    from sonolube.rig import Rig
+    from sonolube.rig.labelled_arrays import LabelledArrays
+    from sonolube.tasks.call import Call
+    from sonolube.tasks.progress import Advance
+
+    Content = str | bytes | xr.Dataset | LabelledArrays | Path
+
+_Answer = TypeVar("_Answer")
+
+
+class Answer(ABC):
+    """Result of a task; a task has one final class of it, made by `answer`.
+
+    `blocks` and `object` are required; the others are empty unless overridden. None of them prints or writes.
+    """
+
+    is_lookup: ClassVar[bool] = False
+    """Whether `object` is complete in itself: a table of facts, without caveats, assumptions or files."""
+
+    rig: "Rig | None" = None
+    """Rig that the result is of."""
+
+    folder: "Path | None" = None
+    """Folder of files that exist already, beside which the others belong; None where they may lie anywhere."""
+
+    call: "Call | None" = None
+    """Task and the arguments given, by which anybody gets the same answer."""
+
+    @abstractmethod
+    def blocks(self) -> Sequence[Block]:
+        """Content for people, without caveats and assumptions; its first line says what the result is of."""
+
+    @abstractmethod
+    def object(self) -> dict[str, Any]:
+        """Object for JSON, all quantities in SI, without caveats and assumptions."""
+
+    def caveats(self) -> Sequence[str]:
+        """Reasons for which the result may not hold, a line each."""
+        return ()
+
+    def leading_caveats(self) -> Sequence[str]:
+        """Caveats that stand above the result, below its first line, because they question all of it."""
+        return ()
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Values for which there is no source, by what was assumed, each with its reason: those of the rig file."""
+        return {} if self.rig is None else self.rig.assumptions
+
+    def figures(self) -> "Mapping[str, Drawing]":
+        """Figures by name, the first of which shows the result best."""
+        return {}
+
+    def files(self) -> "Mapping[str, Content]":
+        """Content of further files by name; datasets become netCDF, a path is a file that exists already."""
+        return {}
+
+    def page(self) -> "Page | None":
+        """Content of a page that shows the figures with settings, facts and tables; None for tasks without one."""
+        return None
+
+    def report(self, advance: "Advance") -> str | None:
+        """Self-contained page that is written on request; None for tasks without one."""
+        return None
+
+    def keeps(self, name: str, present: str) -> bool:
+        """Whether the present text of a file of this name would be a loss, so that it is not replaced."""
+        return False
+
+    def refusals(self) -> Mapping[str, str]:
+        """Reason for each of several inputs that could not be answered, while others were."""
+        return {}
+
+    @property
+    def has_result(self) -> bool:
+        """Whether anything was answered, where `refusals` are not empty."""
+        return True
+
+    @property
+    def is_failure(self) -> bool:
+        """Whether a result says that something failed or is missing; a program then ends with exit code 1."""
+        return False
+
+    def every_caveat(self) -> list[str]:
+        """Caveats, those first that stand above the result."""
+        return [*self.leading_caveats(), *self.caveats()]
+
+    def every_block(self, *, brief: bool = False) -> list[Block]:
+        """Content with caveats and assumptions, as all ways in show it; where brief, assumptions are only counted."""
+        assumptions = [f"  assumed {key}: {reason}" for key, reason in self.assumptions().items()]
+        if brief and assumptions:
+            assumptions = [f"  {len(assumptions)} assumptions, which --brief leaves out"]
+        first, *rest = self.blocks() or [""]
+        return [
+            *([first] if first else []),
+            *(f"  caveat: {caveat}" for caveat in self.leading_caveats()),
+            *rest,
+            *(f"  caveat: {caveat}" for caveat in self.caveats()),
+            *assumptions,
+        ]
+
+    def json_object(self) -> dict[str, Any]:
+        """Object for JSON with caveats and assumptions."""
+        if self.is_lookup:
+            return self.object()
+        return self.object() | {"caveats": self.every_caveat(), "assumptions": dict(self.assumptions())}
+
+    def to_json(self) -> str:
+        """Return the answer as a JSON text, all quantities in SI."""
+        return json.dumps(self.json_object(), indent=2, allow_nan=False)
+
+    def dataset(self) -> "xr.Dataset":
+        """Return the result as a labelled dataset, with units, caveats and assumptions."""
+        import xarray as xr
+
+        found = next((each for name, each in self.files().items() if name.endswith(".nc")), None)
+        if isinstance(found, Path):
+            found = xr.load_dataset(found)
+        elif found is None:
+            found = _scalars(self.object())
+        labelled = found if isinstance(found, xr.Dataset) else found.dataset()  # type: ignore[union-attr]
+        return labelled.assign_attrs(self.notes())
+
+    def notes(self) -> dict[str, str]:
+        """Caveats and assumptions as attributes of a dataset."""
+        assumed = "\n".join(f"{key}: {reason}" for key, reason in self.assumptions().items())
+        return {"caveats": "\n".join(self.every_caveat()), "assumptions": assumed}
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write the dataset as a netCDF file, whole or not at all."""
+        from sonolube.rig import write_netcdf
+
+        return write_netcdf(self.dataset(), path=Path(path))
+
+    def __getitem__(self, name: str) -> "xr.DataArray":
+        """Return a variable of the dataset."""
+        return self.dataset()[name]
+
+    def plot(self, title: str | None = None, *, style: str | None = None) -> "Figure":
+        """Draw a figure of the answer.
+
+        Parameters
+        ----------
+        title : str, optional
+            Name of a figure, or its end, such as "axial 1"; the first figure where absent.
+        style : str, optional
+            Key of `sonolube.figure.FIGURE_STYLES`: "journal" or "slides".
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        InvalidInput
+            If the answer has no figure.
+        UnknownName
+            If it has none of that title.
+        """
+        from sonolube.figure import fit_to_style, publication_style, shown_in_notebooks
+
+        drawings = self.figures()
+        if not drawings:
+            raise InvalidInput(f"{self.text().splitlines()[0]}: this answer has nothing that could be drawn")
+        names = [name for name in drawings if title is None or _plain(name).endswith(_plain(title))]
+        if not names:
+            raise UnknownName.among(drawings, kind="figure", name=title or "")
+        with publication_style(style):
+            figure = drawings[names[0]].draw()
+            fit_to_style(figure)
+        return shown_in_notebooks(figure)
+
+    def text(self, *, width: int | None = 80) -> str:
+        """Return the answer as text, as a terminal prints it; not wrapped where the width is None."""
+        return "\n".join(text_lines(self._shown(), width=width))
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _repr_html_(self) -> str:
+        """Tables for notebooks."""
+        return "".join(map(_html, self._shown()))
+
+    def _shown(self) -> list[Block]:
+        """Content as Python shows it: with the reasons of refused inputs, which a terminal prints apart."""
+        return [*self.every_block(), *(f"  refused: {reason}" for reason in self.refusals().values())]
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True, eq_default=False)
+def answer(kind: type[_Answer]) -> type[_Answer]:
+    """Class of answers as a frozen dataclass that prints as the terminal does."""
+    return dataclass(frozen=True, kw_only=True, repr=False, eq=False)(kind)
+
+
+def si(values: Mapping[str, float | None], *, unit: str | None = None) -> dict[str, Any]:
+    """Quantities for JSON, each as its value with its SI unit.
+
+    Parameters
+    ----------
+    values : mapping of str to float or None
+        By name.
+    unit : str, optional
+        Of all values; that of the vocabulary for each name where absent.
+
+    Returns
+    -------
+    dict
+        Such as {"normal_load": {"value": 3.0, "unit": "N"}}.
+
+    Raises
+    ------
+    UnknownName
+        If a name is not in the vocabulary and no unit is given.
+    """
+    return {
+        name: {"value": value, "unit": quantity(name).unit if unit is None else unit} for name, value in values.items()
+    }
+
+
+def _plain(name: str) -> str:
+    """Name of a figure for comparison."""
+    return name.casefold().replace(" ", "-")
+
+
+def _scalars(content: Mapping[str, Any]) -> "xr.Dataset":
+    """Quantities and texts of a JSON object as a dataset of scalars."""
+    import numpy as np
+    import xarray as xr
+
+    variables: dict[str, Any] = {}
+    for name, each in content.items():
+        if isinstance(each, Mapping) and set(each) == {"value", "unit"}:
+            value = np.nan if each["value"] is None else each["value"]
+            variables[name] = ((), value, {"units": each["unit"], "long_name": name.replace("_", " ")})
+    return xr.Dataset(variables, attrs={name: each for name, each in content.items() if isinstance(each, str)})
+
+
+def _html(block: Block) -> str:
+    """Block as HTML, all texts escaped."""
+    if isinstance(block, Rows):
+        rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in block.rows)
+        return f"<table><tbody>{rows}</tbody></table>"
+    if isinstance(block, Table):
+        heads = "".join(f"<th>{escape(head.strip())}</th>" for head in block.heads)
+        rows = "".join(f"<tr>{''.join(f'<td>{escape(cell.strip())}</td>' for cell in row)}</tr>" for row in block.rows)
+        return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
+    if isinstance(block, Verbatim):
+        return f"<pre>{escape(block.text)}</pre>"
+    return f"<p>{escape(block.strip())}</p>"

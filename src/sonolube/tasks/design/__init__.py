@@ -1,0 +1,1 @@
+"""Tasks that design: sweeps, maps, plans, optimisation, control and horns."""

@@ -1,0 +1,132 @@
+"""Task `efficiency`: efficiency line of a rig from measured runs, and the power that a friction force requires."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any
+
+from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
+from sonolube.design.efficiency_figures import efficiency_figure
+from sonolube.report import Drawing, Page
+from sonolube.rig import Rig
+from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.blocks import Block, Rows
+from sonolube.tasks.design.friction_target import friction_force
+from sonolube.tasks.parameters import Number, OwnRuns, Parameter, RigParameter, RigSource, file_stem, rig_of, runs_of
+from sonolube.tasks.results.rig_text import rig_settings
+from sonolube.tasks.task import in_si, refuse_unused, shown, task
+from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+_PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
+_FITTED = ("slope_uncertainty", "intercept_uncertainty", "efficiency_deviation", "lowest_speed", "highest_speed")
+_POWERS = ("actuator_power", "lowest_power", "highest_power")
+_CAPTION = (
+    "Efficiency coefficient (D 4.1) of {runs} runs over sliding speed, with the line of least squares, the band of the"
+    " line and that of one more run."
+)
+
+
+@task
+def efficiency(
+    runs: Annotated[OwnRuns, Parameter(help="Measured runs, a row each.", kind="RUNS.csv", is_file=True)],
+    *,
+    rig: Annotated[RigSource, RigParameter(without=("load", "amplitude"))],
+    target_friction: Annotated[
+        str | float | None,
+        Parameter(help="Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.", kind="FRICTION"),
+    ] = None,
+    speed: Annotated[Number | None, Parameter(help="Sliding speed of that target.", unit="m/s")] = None,
+    level: Annotated[float, Parameter(help="Confidence level.", lowest=0.5, highest=0.9999)] = 0.95,
+) -> "EfficiencyAnswer":
+    """Efficiency line from measured runs (D 4.1 to 4.3), and the power that a friction takes.
+
+    Example: sonolube efficiency examples/efficiency-runs.csv --rig examples/rigs/power_map.toml
+    """
+    if target_friction is None:
+        refuse_unused("speed", because=f"without {shown('target_friction')}, whose power is at this speed")
+    known = rig_of(rig)
+    target = None
+    if target_friction is not None:
+        target = friction_force("target_friction", target_friction, normal_load=known.normal_load)
+    calibration = calibrate_efficiency(
+        known, runs_of(runs), friction_force=target, sliding_speed=in_si("speed", speed), confidence_level=level
+    )
+    return EfficiencyAnswer(rig=known, calibration=calibration, name=f"{file_stem(runs)}-efficiency")
+
+
+@answer
+class EfficiencyAnswer(Answer):
+    """Efficiency line of a rig with its uncertainty, and the power for a target of the friction."""
+
+    rig: Rig
+    calibration: EfficiencyCalibration
+    name: str
+
+    def blocks(self) -> Sequence[Block]:
+        """Line, scatter and range of the runs, and the power."""
+        return [f"{self.rig.title}, {self.calibration.fit.runs} runs", Rows(self._facts())]
+
+    def object(self) -> dict[str, Any]:
+        """Slope and intercept with their uncertainties, range of speeds, and the power with its interval."""
+        found = self.calibration
+        values = {
+            "slope": found.fit.line.slope,
+            "intercept": found.fit.line.intercept,
+            **{name: getattr(found.fit, name) for name in _FITTED},
+            "confidence_level": found.confidence_level,
+        }
+        if found.estimate is not None:
+            values |= {"friction_force": found.friction_force, "sliding_speed": found.target_speed}
+            powers = {name: getattr(found.estimate, name) for name in _POWERS}
+            values |= {name: value for name, value in powers.items() if value is not None}
+        return {"rig": self.rig.title, "runs": found.fit.runs, **si(values)}
+
+    def caveats(self) -> Sequence[str]:
+        """Runs that were left out, and those whose power was more than the friction needed."""
+        saturated = self.calibration.saturated_runs
+        if not saturated:
+            return self.calibration.caveats
+        return (
+            *self.calibration.caveats,
+            f"{saturated} runs left less than a tenth of the friction: power beyond what is needed makes the line low",
+        )
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Coefficients of the runs over speed, the line and its bands."""
+        caption = _CAPTION.format(runs=self.calibration.fit.runs)
+        return {self.name: Drawing(draw=lambda: efficiency_figure(self.calibration), caption=caption)}
+
+    def files(self) -> "Mapping[str, xr.Dataset]":
+        """Line and bands as netCDF."""
+        return {f"{self.name}.nc": efficiency_dataset(self.calibration)}
+
+    def page(self) -> Page:
+        """Page `efficiency.html`."""
+        return Page(
+            name="efficiency",
+            title=f"Efficiency line: {self.rig.title}",
+            settings=rig_settings(self.rig),
+            facts=self._facts(),
+        )
+
+    def _facts(self) -> list[tuple[str, str]]:
+        """Line, scatter and range of the runs, and the power."""
+        found, fit = self.calibration, self.calibration.fit
+        slope, intercept = _PRINTED_UNIT * fit.line.slope, _PRINTED_UNIT * fit.line.intercept
+        facts = {
+            "line": f"({slope:.3g} +- {_PRINTED_UNIT * fit.slope_uncertainty:.2g}) v + ({intercept:.3g} +-"
+            f" {_PRINTED_UNIT * fit.intercept_uncertainty:.2g}), in mW mm2/(N W) with v in m/s",
+            "scatter of runs": f"{_PRINTED_UNIT * fit.efficiency_deviation:.2g} mW mm2/(N W)",
+            "speeds covered": f"{format_si(fit.lowest_speed, 'm/s')} to {format_si(fit.highest_speed, 'm/s')}",
+        }
+        if found.estimate is not None:
+            power, low, high = (
+                "no bound" if value is None else format_si(value, "W")
+                for value in (getattr(found.estimate, name) for name in _POWERS)
+            )
+            at = format_si(found.target_speed or 0.0, "m/s")
+            text = f"{power} for {format_si(found.friction_force or 0.0, 'N')} at {at}; {low} to {high} with"
+            facts["power"] = f"{text} {100 * found.confidence_level:g} %"
+        return list(facts.items())

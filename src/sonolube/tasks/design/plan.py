@@ -1,0 +1,152 @@
+"""Task `plan`: the next tests of a rig, replicates and order, protocols, a table to fill and a sheet to print."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.design.test_plan.candidates import Factors, RigLimits
+from sonolube.design.test_plan.comparison import COMPARISONS
+from sonolube.design.test_plan.plan import Procedure, Question, plan_tests, published_distances
+from sonolube.design.test_plan.run_order import BLOCKINGS
+from sonolube.errors import InvalidInput
+from sonolube.prediction.inputs import RigInputs, rig_inputs
+from sonolube.rig import Rig
+from sonolube.tasks.design.factor_values import factor_values
+from sonolube.tasks.design.plan_answer import PlanAnswer
+from sonolube.tasks.parameters import Disc, Number, Parameter, Pin, RigFile, RunsSource, rig_of, runs_of
+from sonolube.tasks.task import in_si, shown, task
+
+_SPEEDS, _AMPLITUDES = 7, 5  # values of a range without a count
+_SPEED_RANGE = 3.0  # times the rig's speed, and its part
+_LEAST_AMPLITUDE = 0.2  # of the rig's
+
+
+@task
+def plan(
+    rig: RigFile,
+    *,
+    runs: Annotated[
+        RunsSource,
+        Parameter(
+            help="Own earlier runs: they give the scatter and update the prediction.", kind="RUNS.csv", is_file=True
+        ),
+    ] = None,
+    speed: Annotated[
+        str | None,
+        Parameter(
+            help="Sliding speeds, such as 20:200mm/s or 20,40,87mm/s; by default 1/3 to 3 times the rig's.",
+            kind="VALUES",
+        ),
+    ] = None,
+    load: Annotated[
+        str | None, Parameter(help="Normal loads, such as 3,5,7N; the rig's by default.", kind="VALUES")
+    ] = None,
+    vibration: Annotated[
+        str | None,
+        Parameter(help="Vibration amplitudes, such as 0.5:2.3um; by default 1/5 of the rig's up to it.", kind="VALUES"),
+    ] = None,
+    voltage: Annotated[
+        str | None, Parameter(help="Drive voltages, peak to peak, instead of amplitudes.", kind="VALUES")
+    ] = None,
+    points: Annotated[int, Parameter(help="Number of conditions to test.", lowest=1)] = 4,
+    difference: Annotated[Number, Parameter(help="Friction reduction to be shown.", unit="", kind="SHARE")] = "10%",
+    power: Annotated[float, Parameter(help="Probability to show it where it is there.")] = 0.9,
+    significance: Annotated[float, Parameter(help="Probability to show it where it is not.")] = 0.05,
+    comparison: Annotated[
+        Literal["paired", "separate"],
+        Parameter(help="Each run without, with and again without vibration, or states on specimens of their own."),
+    ] = "paired",
+    scatter: Annotated[
+        Number | None,
+        Parameter(
+            help="Standard deviation of friction between runs; by the runs, or D Table 2.3.", unit="", kind="SHARE"
+        ),
+    ] = None,
+    block: Annotated[
+        Literal["day", "pair"], Parameter(help="What the runs of a block share: a day, or one pair of pin and disc.")
+    ] = "day",
+    running_in: Annotated[
+        Number | None,
+        Parameter(help="Sliding until friction is steady; the longest of D Table 2.3 by default.", unit="m"),
+    ] = None,
+    measuring_time: Annotated[Number, Parameter(help="In steady friction, in each state.", unit="s")] = "12s",
+    amplifier_voltage: Annotated[
+        Number | None, Parameter(help="Greatest voltage of the amplifier, offset included.", unit="V")
+    ] = None,
+    amplifier_power: Annotated[Number | None, Parameter(help="Greatest power of the amplifier.", unit="W")] = None,
+    temperature_rise: Annotated[
+        Number, Parameter(help="Greatest rise of the contact by friction; needs both materials.", unit="K")
+    ] = "50K",
+    pin: Pin = None,
+    disc: Disc = None,
+    seed: Annotated[int, Parameter(help="Of the order of the runs.", lowest=0)] = 0,
+) -> PlanAnswer:
+    """Plan the next tests of a rig: points that tell models apart, replicates, order, protocols, and a sheet to print.
+
+    Example: sonolube plan examples/rigs/power_map.toml --speed 20:200mm/s --points 3
+    """
+    known = rig_of(rig)
+    inputs = rig_inputs(known)
+    result = plan_tests(
+        known,
+        _factors(known, inputs, speed=speed, load=load, vibration=vibration, voltage=voltage),
+        question=Question(
+            difference=in_si("difference", difference),
+            power=power,
+            significance=significance,
+            comparison=COMPARISONS[comparison],
+            scatter=in_si("scatter", scatter),
+        ),
+        procedure=_procedure(in_si("running_in", running_in), in_si("measuring_time", measuring_time), block),
+        points=points,
+        limits=RigLimits(
+            voltage_maximum=in_si("amplifier_voltage", amplifier_voltage),
+            actuator_power=in_si("amplifier_power", amplifier_power),
+            mean_temperature_rise=in_si("temperature_rise", temperature_rise),
+        ),
+        runs=runs_of(runs),
+        pin=pin,
+        disc=disc,
+        seed=seed,
+    )
+    return PlanAnswer(rig=known, plan=result)
+
+
+def _factors(
+    rig: Rig, inputs: RigInputs, *, speed: str | None, load: str | None, vibration: str | None, voltage: str | None
+) -> Factors:
+    """Values of loads, speeds and amplitudes: as given, else about those of the rig."""
+    about = inputs.sliding_speed
+    speeds = f"{about / _SPEED_RANGE:.6g}:{about * _SPEED_RANGE:.6g} m/s" if speed is None else speed
+    return Factors(
+        normal_load=np.array([rig.normal_load])
+        if load is None
+        else factor_values(load, unit="N", option=shown("load"), count=3),
+        sliding_speed=factor_values(speeds, unit="m/s", option=shown("speed"), count=_SPEEDS),
+        vibration_amplitude=_amplitudes(inputs, vibration, voltage),
+    )
+
+
+def _amplitudes(inputs: RigInputs, vibration: str | None, voltage: str | None) -> Floats:
+    """Amplitudes as given, by voltages, or up to the rig's."""
+    if vibration is not None and voltage is not None:
+        raise InvalidInput(f"{shown('vibration')} and {shown('voltage')} both set the amplitude; give one")
+    if voltage is not None:
+        if inputs.voltage_peak_to_peak is None:
+            raise InvalidInput(
+                f"{shown('voltage')} needs the rig's drive.voltage_peak_to_peak to scale by; give {shown('vibration')}"
+            )
+        volts = factor_values(voltage, unit="V", option=shown("voltage"), count=_AMPLITUDES)
+        return np.asarray(inputs.amplitude.value * volts / inputs.voltage_peak_to_peak)
+    if vibration is not None:
+        return factor_values(vibration, unit="m", option=shown("vibration"), count=_AMPLITUDES)
+    return inputs.amplitude.value * np.linspace(_LEAST_AMPLITUDE, 1.0, _AMPLITUDES)
+
+
+def _procedure(running_in: float | None, measuring_time: float, block: str) -> Procedure:
+    """Form of each run."""
+    without, vibrated = published_distances() if running_in is None else (running_in, running_in)
+    return Procedure(
+        intrinsic_distance=without, vibrated_distance=vibrated, measuring_time=measuring_time, blocking=BLOCKINGS[block]
+    )

@@ -1,0 +1,388 @@
+"""Task `uncertainty`: uncertainty of an outcome from the distributions in a rig file, and its ranking by Sobol."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.design import (
+    IntervalEstimate,
+    SampleStatistics,
+    band_figure,
+    histogram_figure,
+    outcome_statistics,
+    propagate,
+    sobol_figure,
+)
+from sonolube.design.identified_structure import IdentifiedStructure, identified_structure
+from sonolube.design.point_statistics import failure_counts, status_counts
+from sonolube.design.uncertainty_summary import (
+    Band,
+    BandPlace,
+    RankedEntry,
+    contact_loss_probability,
+    outcome_band,
+    outcome_indices,
+    ranked_entries,
+)
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.models.friction.models.range_check import ratio_caveats
+from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
+from sonolube.report import Drawing, Page, PageTable
+from sonolube.rig import Rig, operating_caveats, steady_vibration
+from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.blocks import Block, Rows, Table
+from sonolube.tasks.design.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
+from sonolube.tasks.parameters import DoorParameter, Kept, Parameter, RigFile, Stop, Watch, kept, rig_of
+from sonolube.tasks.progress import stage
+from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
+from sonolube.tasks.results.beyond_the_model import BeyondTheModel, Interval, beyond_the_model
+from sonolube.tasks.results.rig_text import amplitude_object, amplitude_rows, rig_settings
+from sonolube.tasks.results.status_tables import status_tables
+from sonolube.tasks.task import shown, task
+from sonolube.units import format_quantity
+from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+_SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
+_OF_THE_MODEL = ("friction_ratio", "friction_reduction")  # outcomes that have the error of the friction model
+_BAND_CAPTION = "Median of the samples and their intervals over the keys that were swept."
+_SOBOL_CAPTION = "Contribution of each uncertain entry to the variance, with intervals of 95 %."
+_RANKING_HEADS = ("entry", "share alone", "with the others", "deviation were it known")
+
+
+@task
+def uncertainty(
+    rig: RigFile,
+    *,
+    of: Annotated[
+        str, Parameter(help="The outcome, such as vibration_amplitude or wear_rate_ratio.", kind="QUANTITY")
+    ] = "friction_ratio",
+    samples: Annotated[
+        int,
+        Parameter(help="Number of samples, up to the next power of two; for Sobol indices of each block.", lowest=32),
+    ] = 1024,
+    sobol: Annotated[
+        bool, Parameter(help="Rank the entries by their contribution to the variance, by Sobol indices.")
+    ] = False,
+    over: Annotated[
+        Values | None,
+        Parameter(
+            help="A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
+            kind="KEY=VALUES",
+            is_mapping=True,
+        ),
+    ] = None,
+    identified: Annotated[
+        bool, Parameter(help="Draw the tribometer's masses, springs and dampers from the published facts.")
+    ] = False,
+    seed: Annotated[int, Parameter(help="Of the samples.", lowest=0)] = 0,
+    workers: Annotated[int, Parameter(help="Threads.", lowest=1)] = 2,
+    interval: Interval = True,
+    keep: Annotated[Kept | None, DoorParameter(files="sweep.nc sweep.json")] = None,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> "UncertaintyAnswer":
+    """Uncertainty of an outcome from the distributions in the rig's file, and which entry to measure better.
+
+    Example: sonolube uncertainty examples/rigs/tribometer_uncertain.toml --samples 256
+    """
+    if sobol and (over or identified):
+        raise InvalidInput(
+            f"{shown('sobol')} needs independent entries and one outcome each: leave out {shown('over')} and"
+            f" {shown('identified')}"
+        )
+    known = rig_of(rig)
+    refuse_replaced(known, over or {})
+    axes = _axes(over or {})
+    structure = None
+    with stage("uncertainty") as advance:
+        if identified:
+            structure = identified_structure(
+                known, seed=seed, advance=lambda done, total: advance("facts", done, total)
+            )
+        result = propagate(
+            known,
+            outcome=of,
+            samples=samples,
+            indices=sobol,
+            over=axes,
+            joint_samples=None if structure is None else structure.draws_by_key(),
+            seed=seed,
+            folder=kept(keep, f"{known.name}-uncertainty-{of}"),
+            workers=workers,
+            advance=lambda done, total: advance("points", done, total),
+        )
+    found = UncertaintyAnswer(rig=known, result=result, structure=structure, interval=interval)
+    if result[of].isnull().all():
+        raise InvalidInput(f"no sample has a result: {next(iter(found.failures()))}")
+    return found
+
+
+@answer
+class UncertaintyAnswer(Answer):
+    """Statistics of an uncertain outcome, or its band over swept keys, and the ranking of the uncertain entries."""
+
+    rig: Rig
+    result: "xr.Dataset"
+    structure: IdentifiedStructure | None
+    interval: bool = True
+
+    def blocks(self) -> Sequence[Block]:
+        """Statistics or band, statuses, uncertain entries, and their ranking."""
+        rows, idle = self._ranking_rows(), self._without_effect()
+        return [
+            f"{self.rig.title}, {self.result[self._of].size} points: {_lower(self._of)}",
+            Rows([*amplitude_rows(self.rig), *self._statistics_rows(), *self._error_rows()]),
+            *(f"  without result: {count}: {reason}" for reason, count in self.failures().items()),
+            *self._status_lines(),
+            "uncertain entries",
+            Rows(entry_rows(self.rig, self.result, self.structure)),
+            *free_lines(self.structure),
+            *(("which to measure better, by shares of the variance", Table(_RANKING_HEADS, rows)) if rows else ()),
+            *([f"  without effect: {', '.join(idle)}"] if idle else []),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Statistics or band, statuses, uncertain entries, and their ranking."""
+        content: dict[str, Any] = {
+            "rig": self.rig.title,
+            **amplitude_object(self.rig),
+            "of": self._of,
+            "unit": quantity(self._of).unit,
+            "points": int(self.result[self._of].size),
+            "statuses": status_counts(self.result),
+            "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
+            "contact_lost": contact_loss_probability(self.result),
+            "uncertain": {
+                key: {"distribution": law.text, "truncated_fraction": law.truncated_fraction}
+                for key, law in distributions(self.rig, self.result, self.structure).items()
+            },
+        }
+        if self.structure is not None:
+            content["identified"] = posterior_object(self.structure)
+        if self._swept:
+            band = self._band
+            content["band"] = {"mean_width": band.mean_width} | {
+                name: asdict(place) for name, place in _places(band).items()
+            }
+        else:
+            found = self._statistics
+            content |= {
+                "mean": asdict(found.mean),
+                "standard_deviation": asdict(found.standard_deviation),
+                "quantiles": {str(share): asdict(each) for share, each in found.quantiles.items()},
+                "relative_error": found.relative_error,
+                "converged": found.has_converged,
+            }
+        if self._of in _OF_THE_MODEL:
+            content |= self._beyond.object()
+        if self._ranked:
+            content["sobol"] = [asdict(row) for row in self._ranking]
+        return content
+
+    def caveats(self) -> Sequence[str]:
+        """Too few samples, draws that have not converged, and those of the rig at its own operating point."""
+        caveats: list[str] = []
+        if not self._swept and not self._statistics.has_converged:
+            caveats.append(self._convergence())
+        if self.structure is not None and not self.structure.posterior.has_converged:
+            caveats.append(agreement(self.structure))
+        meaning = ratio_caveats(friction_ratio=self.result[self._of].values) if self._of == "friction_ratio" else ()
+        return [*caveats, *operating_caveats(self.rig), *meaning]
+
+    def leading_caveats(self) -> Sequence[str]:
+        """An amplitude beyond that of all published tests, where friction is the outcome."""
+        if self._of not in _OF_THE_MODEL:
+            return ()
+        try:
+            amplitude = steady_vibration(self.rig).vibration_amplitude
+            return large_amplitude_caveats(self.rig, vibration_amplitude=amplitude)
+        except SonolubeError:  # at the values of the file, which need not be those of the samples
+            return ()
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Histogram or band of the outcome, and the ranking of the entries."""
+        result = self.result
+        draw, caption = (band_figure, _BAND_CAPTION) if self._swept else (histogram_figure, _SAMPLES_CAPTION)
+        outcome = Drawing(draw=lambda: draw(result), caption=caption)
+        if not self._ranked:
+            return {self._name: outcome}
+        ranking = Drawing(draw=lambda: sobol_figure(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
+        return {self._name: outcome, f"{self._name}-sobol": ranking}
+
+    def files(self) -> "Mapping[str, xr.Dataset]":
+        """Samples as netCDF."""
+        return {f"{self._name}.nc": self.result}
+
+    def page(self) -> Page:
+        """Page `uncertainty.html`."""
+        lost = contact_loss_probability(self.result)
+        entries = PageTable(
+            title="Uncertain entries",
+            heads=("entry", "distribution"),
+            rows=tuple(entry_rows(self.rig, self.result, self.structure)),
+        )
+        return Page(
+            name="uncertainty",
+            title=f"Uncertainty of the {_lower(self._of)}: {self.rig.title}",
+            settings=rig_settings(self.rig),
+            facts=[
+                ("points", f"{self.result[self._of].size}"),
+                *self._statistics_rows(),
+                *self._error_rows(),
+                *([("contact lost", f"for part of the time in {lost:.1%} of the points")] if lost else []),
+                *([("without effect", ", ".join(idle))] if (idle := self._without_effect()) else []),
+            ],
+            tables=[
+                *([entries] if entries.rows else []),
+                *self._ranking_tables(),
+                *status_tables(self.result, self.failures()),
+            ],
+        )
+
+    def failures(self) -> dict[str, int]:
+        """Number of samples without a result, by the reason."""
+        return failure_counts(self.result, outcome=self._of)
+
+    @property
+    def _of(self) -> str:
+        """Quantity whose uncertainty is propagated."""
+        return str(self.result.attrs["outcome"])
+
+    @property
+    def _swept(self) -> bool:
+        """Whether the outcome is a band over swept keys."""
+        return bool(self.result.attrs["swept"])
+
+    @property
+    def _ranked(self) -> bool:
+        """Whether the samples are those of Sobol indices."""
+        return "block" in self.result.dims
+
+    @property
+    def _name(self) -> str:
+        """Name of the files, without ending."""
+        return f"{self.rig.name}-uncertainty-{self._of}"
+
+    @cached_property
+    def _statistics(self) -> SampleStatistics:
+        """Mean, deviation and quantiles of the outcome."""
+        return outcome_statistics(self.result)
+
+    @cached_property
+    def _band(self) -> Band:
+        """Interval of the outcome over the swept keys."""
+        return outcome_band(self.result)
+
+    def _statistics_rows(self) -> list[tuple[str, str]]:
+        """Statistics with their intervals, or the band where it is narrowest and widest."""
+        if self._swept:
+            return [(name, _place_text(place, self._of)) for name, place in _places(self._band).items()]
+        found = self._statistics
+        rows = {"mean": found.mean, "standard deviation": found.standard_deviation}
+        for share, each in found.quantiles.items():
+            rows["median" if share == 0.5 else f"{100 * share:.0f} % lie below"] = each
+        texts = [(name, _with_interval(each, self._of)) for name, each in rows.items()]
+        return [*texts, ("convergence", self._convergence())] if found.has_converged else texts
+
+    @cached_property
+    def _beyond(self) -> BeyondTheModel:
+        """What the samples leave out of the friction ratio."""
+        return beyond_the_model(self.rig, self.rig.friction_model, interval=self.interval)
+
+    def _error_rows(self) -> list[tuple[str, str]]:
+        """The same as names and texts."""
+        return self._beyond.rows() if self._of in _OF_THE_MODEL else []
+
+    def _convergence(self) -> str:
+        """Width of the intervals of the statistics over the deviation of the samples."""
+        found = self._statistics
+        if found.has_converged:
+            return f"intervals of 95 % within {found.relative_error:.1%} of the spread"
+        return f"not converged: an interval takes {found.relative_error:.1%} of the spread; take more samples"
+
+    def _status_lines(self) -> list[str]:
+        """Fractions of the points by status, and of those that lose contact."""
+        points, lost = self.result[self._of].size, contact_loss_probability(self.result)
+        shares = ", ".join(f"{name} {count / points:.1%}" for name, count in status_counts(self.result).items())
+        more = [f"  contact lost for part of the time in {lost:.1%} of them"] if lost else []
+        return [f"  {shares} of the points", *more]
+
+    @cached_property
+    def _ranking(self) -> list[RankedEntry]:
+        """Entries by their contribution to the variance; empty without Sobol indices."""
+        return ranked_entries(self.result) if self._ranked else []
+
+    def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
+        """Entries that matter with their contributions, alone and with others, and the deviation that would remain."""
+        return [
+            (row.key, _percent(row.first), _percent(row.total), format_quantity(row.deviation_if_known, self._of))
+            for row in self._ranking
+            if row.matters
+        ]
+
+    def _without_effect(self) -> list[str]:
+        """Entries that the outcome was not seen to depend on: to know them better changes nothing."""
+        return [row.key for row in self._ranking if not row.matters]
+
+    def _ranking_tables(self) -> list[PageTable]:
+        """Ranking as a table of the page."""
+        rows, title = tuple(self._ranking_rows()), "Which to measure better, by shares of the variance"
+        return [PageTable(title=title, heads=_RANKING_HEADS, rows=rows)] if rows else []
+
+
+def _axes(over: Values) -> dict[str, Floats]:
+    """Values that a band or a map runs over, by key."""
+    if len(over) > 2:
+        raise InvalidInput(f"{shown('over')} gives a band once and a map twice, not {len(over)} times")
+    axes = {}
+    for key, given in values_by_key(over).items():
+        values = np.atleast_1d(given)
+        if values.dtype.kind == "U":
+            raise InvalidInput(f"{shown('over')} {key}: a band needs numbers to run over, not words")
+        axes[key] = values.astype(np.float64)
+        if values.size < 2 or np.any(np.diff(axes[key]) <= 0):
+            raise InvalidInput(f"{shown('over')} {key}: a band needs at least 2 values that rise")
+    return axes
+
+
+def _places(band: Band) -> dict[str, BandPlace]:
+    """Where a band is narrowest and widest."""
+    return {
+        name: place for name, place in (("narrowest", band.narrowest), ("widest", band.widest)) if place is not None
+    }
+
+
+def _place_text(place: BandPlace, name: str) -> str:
+    """Median and interval of a band at a place, with the swept values there."""
+    low, median, high = (format_quantity(value, name) for value in (place.lower, place.median, place.upper))
+    at = [
+        value if isinstance(value, str) else format_quantity(value, key.rpartition(".")[2])
+        for key, value in place.at.items()
+    ]
+    return f"{median}, 90 % within {low} to {high}, at {', '.join(at)}"
+
+
+def _with_interval(each: IntervalEstimate, name: str) -> str:
+    """Estimate with its 95 % interval."""
+    value, low, high = (format_quantity(end, name) for end in (each.value, each.lower, each.upper))
+    return f"{value} ({low} to {high})"
+
+
+def _percent(share: IntervalEstimate) -> str:
+    """Fraction in percent with its interval."""
+    value, low, high = (100 * end for end in (share.value, share.lower, share.upper))
+    return f"{value:.1f} % ({low:.0f} to {high:.0f})"
+
+
+def _lower(name: str) -> str:
+    """Meaning of a quantity within a sentence."""
+    meaning = quantity(name).meaning
+    return meaning[:1].lower() + meaning[1:]

@@ -1,0 +1,124 @@
+"""Task `identify rig`: entries of a rig's stack and structure from ranked facts, as tables of a rig file."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+from sonolube.errors import InvalidInput
+from sonolube.identification import Identification, rig_tables
+from sonolube.input_files import input_text
+from sonolube.models.actuator import PiezoStack
+from sonolube.rig import read_rig, with_tables
+from sonolube.rig.facts_file import identify_from_facts
+from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.blocks import Block, Table, text_lines
+from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.parameters import Parameter, Stop, Watch
+from sonolube.tasks.progress import stage
+from sonolube.tasks.task import shown, task
+from sonolube.units import format_si
+from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
+from sonolube.vocabulary import quantities
+
+_FACTS = Parameter(
+    help="Facts about the rig; those of the dissertation's tribometer by default.", kind="FACTS.toml", is_file=True
+)
+
+
+@task
+def rig(
+    base: Annotated[
+        InputFile | None,
+        Parameter(help="Rig whose tables stack and structure to replace.", kind="[RIG.toml]", is_file=True),
+    ] = None,
+    *,
+    facts: Annotated[InputFile | None, _FACTS] = None,
+    seed: Annotated[int, Parameter(help="Seed of the search; equal seeds give equal results.", lowest=0)] = 0,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> "IdentificationAnswer":
+    """Masses, springs and dampers of a rig from ranked facts, with the facts that contradict each other.
+
+    Example: sonolube identify rig examples/rigs/tribometer.toml --facts examples/facts/tribometer.toml --out my.toml
+    """
+    if facts is not None and base is None:
+        given = shown("facts")
+        raise InvalidInput(f"{given} needs the rig they are of: sonolube identify rig RIG.toml --facts FACTS.toml")
+    path = None if base is None else file_path(base)
+    if path is not None:
+        read_rig(path)
+    with stage("identifying"):
+        if facts is None or path is None:
+            identification, stack = tribometer_identification(seed=seed), tribometer_stack()
+            tables = rig_tables(identification, stack)
+        else:
+            identification, stack, tables = identify_from_facts(path, file_path(facts), seed=seed)
+    text = tables if path is None else with_tables(input_text(path), tables)
+    return IdentificationAnswer(identification=identification, stack=stack, rig_text=text)
+
+
+@answer
+class IdentificationAnswer(Answer):
+    """Identified parameters with the facts that are satisfied or not, and the rig file with its tables."""
+
+    identification: Identification
+    stack: PiezoStack
+    rig_text: str
+    target: Path | None = None
+
+    def blocks(self) -> Sequence[Block]:
+        """Parameters with their ranges, facts that hold and that do not, conflicts and what the facts leave open."""
+        found = self.identification
+        known = quantities()
+        parameters = [
+            [
+                name,
+                *(
+                    format_si(value, known[name].unit if name in known else "")
+                    for value in (estimate.value, estimate.lower, estimate.upper)
+                ),
+            ]
+            for name, estimate in found.estimates.items()
+        ]
+        satisfied = [fact.name for fact in found.facts if fact.name in found.satisfied]
+        missed = [fact.name for fact in found.facts if fact.name not in found.satisfied]
+        return [
+            Table(("parameter", "estimate", "lowest", "highest"), parameters),
+            f"  facts that hold: {', '.join(satisfied) or 'none'}",
+            *([f"  facts that do not hold: {', '.join(missed)}"] if missed else []),
+            *(f"  contradict each other: {', '.join(sorted(conflict))}" for conflict in found.conflicts),
+            *(
+                "  not determined: " + " ".join(f"{name}^{power:.2g}" for name, power in direction.exponents.items())
+                for direction in found.unidentifiable_directions
+            ),
+        ]
+
+    def file_text(self) -> str:
+        """Return the rig file, with the findings as comments before it."""
+        comments = text_lines(self.blocks())
+        return "\n".join([*(f"# {line}".rstrip() for line in comments), self.rig_text])
+
+    def written_to(self, target: Path) -> "IdentificationAnswer":
+        """Return the answer for a file."""
+        return replace(self, target=target)
+
+    def object(self) -> dict[str, Any]:
+        """Stack, parameters with their ranges, facts with their misses, conflicts and free directions."""
+        found = self.identification
+        return {
+            "stack": si({name: value for name, value in asdict(self.stack).items() if value and name in quantities()}),
+            "parameters": {
+                name: si({name: known.value})[name] | asdict(known) for name, known in found.estimates.items()
+            },
+            "facts": [
+                asdict(fact) | {"observed": found.observed[fact.name], "satisfied": fact.name in found.satisfied}
+                for fact in found.facts
+            ],
+            "conflicts": [sorted(conflict) for conflict in found.conflicts],
+            "unidentifiable_directions": [dict(direction.exponents) for direction in found.unidentifiable_directions],
+        }
+
+    def files(self) -> Mapping[str, str]:
+        """Rig file with the identified tables."""
+        return {} if self.target is None else {self.target.name: self.rig_text}

@@ -1,0 +1,1 @@
+from .computed_impedance import compute as compute

@@ -1,0 +1,246 @@
+"""Task `impedance compute`: electrical impedance of a transducer by finite elements, free and clamped."""
+
+import inspect
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+
+from sonolube.checks import require_positive
+from sonolube.errors import InvalidInput
+from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.models.fem import Transducer
+from sonolube.models.fem.figures import impedance_figure
+from sonolube.models.fem.impedance_spectra import (
+    SupportedSpectrum,
+    coupled_modes_grid,
+    spectrum_table,
+    supported_spectra,
+)
+from sonolube.report import Drawing
+from sonolube.rig.datasets import labelled
+from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.blocks import Block, Table
+from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
+from sonolube.tasks.parts.named_parts import (
+    ALL_TRANSDUCERS,
+    PART_WIRING,
+    Axis,
+    longest_axis,
+    named_transducer,
+    part_name,
+    starting_size,
+)
+from sonolube.tasks.progress import stage
+from sonolube.tasks.task import in_si, shown, task
+from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_HEADS = ("mode", "f_s", "f_p", "k_eff", "tip per volt")
+
+
+@task
+def compute(
+    part: Annotated[
+        InputFile,
+        Parameter(help="stack, tribometer_actuator, cutter_head, or a part or STEP file.", kind="PART", is_file=True),
+    ],
+    *,
+    sizes: Sizes = None,
+    lowest: Annotated[Number, Parameter(help="Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Parameter(help="Highest frequency.", unit="Hz", option="--to")] = "60kHz",
+    points: Annotated[int, Parameter(help="Number of frequencies.", kind="NUMBER", lowest=2)] = 1001,
+    clamp: Annotated[
+        Sequence[str], Parameter(help="A face held still for a second spectrum, such as back.-z.", kind="FACE")
+    ] = (),
+    ceramic: Annotated[
+        str | None, Parameter(help="Ceramic of the stack or of a part that is no transducer; pic255.", kind="NAME")
+    ] = None,
+    poled: Annotated[Axis | None, Parameter(help="Direction in which such a part is poled; z.")] = None,
+    drive: Annotated[str | None, Parameter(help="Its driven electrode; +z.", kind="FACE")] = None,
+    ground: Annotated[str | None, Parameter(help="Its grounded electrode; -z.", kind="FACE")] = None,
+    measured: Annotated[
+        InputFile | None,
+        Parameter(help="Spectrum to draw over it, as `measure impedance` reads it.", kind="FILE", is_file=True),
+    ] = None,
+    tolerance: Annotated[
+        Number, Parameter(help="Largest change of a coupled resonance from mesh to mesh.", unit="", kind="RATIO")
+    ] = 0.02,
+    vtu: Annotated[bool, Parameter(help="Write the coupled modes for ParaView too.")] = False,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> "ImpedanceAnswer":
+    """Electrical impedance of a transducer, free and clamped: resonances, coupling and motion per volt.
+
+    Example: sonolube impedance compute tribometer_actuator --clamp back.-z --to 40kHz
+    """
+    low, high = in_si("lowest", lowest), in_si("highest", highest)
+    if not low < high:
+        raise InvalidInput(f"{shown('lowest')} must lie below {shown('highest')}, got {lowest} and {highest}")
+    frequency = np.linspace(float(require_positive(frequency=low)), high, points)
+    reference = None if measured is None else read_impedance(file_path(measured))
+    transducer = named_transducer(part, sizes or {}, ceramic=ceramic, poled=poled, drive=drive, ground=ground)
+    with stage("meshing and solving") as advance:
+        spectra = supported_spectra(
+            transducer,
+            frequency=frequency,
+            clamped_faces=clamp,
+            axis_of=longest_axis,
+            element_size=starting_size(transducer.geometry),
+            relative_tolerance=in_si("tolerance", tolerance),
+            advance=advance,
+        )
+    return ImpedanceAnswer(
+        part=part_name(part),
+        ceramic=_ceramic_of(part_name(part), ceramic),
+        transducer=transducer,
+        spectra=spectra,
+        measured=reference,
+        with_modes=vtu,
+    )
+
+
+def _ceramic_of(part: str, ceramic: str | None) -> str:
+    """Name of the ceramic that was given, or of that of a part."""
+    if ceramic is not None or part not in ALL_TRANSDUCERS:
+        return ceramic or PART_WIRING["ceramic"]
+    return str(inspect.signature(ALL_TRANSDUCERS[part]).parameters["ceramic"].default)
+
+
+@answer
+class ImpedanceAnswer(Answer):
+    """Impedance spectra of a transducer with their coupled modes, beside a measured spectrum where there is one."""
+
+    part: str
+    ceramic: str
+    transducer: Transducer
+    spectra: Mapping[str, SupportedSpectrum]
+    measured: ImpedanceSpectrum | None
+    with_modes: bool
+
+    def blocks(self) -> Sequence[Block]:
+        """Capacitance and coupled modes of each spectrum, and the least impedance measured."""
+        blocks: list[Block] = [f"{self.part} of {self.ceramic}: {', '.join(self.transducer.electrodes.driven)} driven"]
+        for name, spectrum in self.spectra.items():
+            port, lowest = spectrum.port, float(spectrum.response.frequency[0])
+            blocks.append(
+                f"  {name}: {format_si(spectrum.low_frequency_capacitance, 'F')} at {format_si(lowest, 'Hz')}, "
+                f"{port.model.mesh.node_count} nodes, resonances +-{port.frequency_error:.1g}"
+            )
+            blocks.append(Table(_HEADS, _mode_rows(spectrum)))
+        if self.measured is not None:
+            row = int(abs(self.measured.impedance).argmin())
+            least, at = float(abs(self.measured.impedance[row])), float(self.measured.frequency[row])
+            blocks.append(
+                f"  measured: least impedance {format_si(least, 'ohm')} at {format_si(at, 'Hz', digits=4)} in "
+                f"{self.measured.file_name}"
+            )
+        return blocks
+
+    def object(self) -> dict[str, Any]:
+        """Electrodes, coupled modes of each spectrum, origin of the dimensions, and the measured file."""
+        electrodes, measured = self.transducer.electrodes, self.measured
+        return {
+            "part": self.part,
+            "ceramic": self.ceramic,
+            "electrodes": {"driven": list(electrodes.driven), "grounded": list(electrodes.grounded)},
+            "spectra": {name: _spectrum_object(spectrum) for name, spectrum in self.spectra.items()},
+            "dimensions": [
+                {
+                    "name": size.name,
+                    "value": size.value,
+                    "origin": "printed" if size.printed else "assumed",
+                    "source": size.source,
+                }
+                for size in self.transducer.dimensions
+            ],
+            "measured": None if measured is None else {"file": measured.file_name, "sha256": measured.sha256},
+        }
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Dimensions that no source prints, with the reason for their values."""
+        return {size.name: size.source for size in self.transducer.dimensions if not size.printed}
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Impedance and motion per volt over frequency."""
+        measured = None if self.measured is None else (self.measured.frequency, self.measured.impedance)
+        title = self._stem().replace("_", " ")
+        draw = lambda: impedance_figure(self.spectra, title=title, measured=measured)  # noqa: E731
+        return {f"{self._stem()}-impedance": Drawing(draw=draw)}
+
+    def files(self) -> Mapping[str, str | LabelledArrays]:
+        """Table and dataset of each spectrum, and its coupled modes where they are wanted."""
+        stem = self._stem()
+        files: dict[str, str | LabelledArrays] = {}
+        for name, spectrum in self.spectra.items():
+            files[f"{stem}-impedance-{name}.csv"] = spectrum_table(spectrum)
+            files[f"{stem}-impedance-{name}.nc"] = self._labelled(name)
+            if self.with_modes:
+                files[f"{stem}-modes-{name}.vtu"] = coupled_modes_grid(spectrum)
+        return files
+
+    def dataset(self) -> "xr.Dataset":
+        """Return impedance, phase and motion per volt over frequency and support."""
+        import xarray as xr
+
+        supports = xr.Variable("support", list(self.spectra), {"long_name": "Support of the transducer"})
+        each = [self._labelled(name).dataset() for name in self.spectra]
+        found = xr.concat(each, supports, combine_attrs="drop_conflicts")
+        return found.assign_attrs(self.notes(), title=f"Impedance of {self._stem().replace('_', ' ')}")
+
+    def _labelled(self, name: str) -> LabelledArrays:
+        """Impedance, phase and motion per volt of a spectrum."""
+        spectrum = self.spectra[name]
+        values = {
+            "frequency": spectrum.response.frequency,
+            "impedance": np.abs(spectrum.impedance),
+            "phase": np.angle(spectrum.impedance),
+            "displacement_per_volt": np.abs(spectrum.response.displacement_per_volt[0]),
+        }
+        return labelled(values, along="frequency", title=f"Impedance of {self._stem().replace('_', ' ')}, {name}")
+
+    def _stem(self) -> str:
+        """Name of the part without folder and ending."""
+        return Path(self.part).stem
+
+
+def _mode_rows(spectrum: SupportedSpectrum) -> list[tuple[str, ...]]:
+    """Resonances, coupling and motion of the coupled modes of a spectrum."""
+    return [
+        (
+            mode.name,
+            f"{mode.series_frequency:.0f} Hz",
+            f"{mode.parallel_frequency:.0f} Hz",
+            f"{mode.coupling_factor:.3f}",
+            format_si(spectrum.tip_displacement_at(mode.series_frequency), "m"),
+        )
+        for mode in spectrum.coupled_modes
+    ]
+
+
+def _spectrum_object(spectrum: SupportedSpectrum) -> dict[str, Any]:
+    """Nodes, error, capacitance and coupled modes of a spectrum, for JSON."""
+    names = ("series_frequency", "parallel_frequency", "coupling_factor")
+    return {
+        "nodes": spectrum.port.model.mesh.node_count,
+        **si(
+            {
+                "frequency_error": spectrum.port.frequency_error,
+                "clamped_capacitance": spectrum.port.reduction.clamped_capacitance.real,
+            }
+        ),
+        "modes": [
+            {
+                "name": mode.name,
+                **si({name: getattr(mode, name) for name in names}),
+                **si({"displacement_per_volt": spectrum.tip_displacement_at(mode.series_frequency)}),
+            }
+            for mode in spectrum.coupled_modes
+        ],
+    }

@@ -1,0 +1,203 @@
+"""Task `lab hold`: friction held at a reference on devices or a virtual tribometer, the speed changing meanwhile."""
+
+from collections.abc import Mapping
+from math import ceil
+from pathlib import Path
+from typing import Annotated
+
+from sonolube.design.control import Amplifier, ControlDesign, ControlSettings, assumed_mode, design_control
+from sonolube.errors import InvalidInput
+from sonolube.facts.protocol import Limits, exact_text
+from sonolube.laboratory import RunControl
+from sonolube.laboratory.closed_loop import FrictionHold, SpeedStep, hold_friction, hold_protocol, require_holdable
+from sonolube.laboratory.records import read_run
+from sonolube.laboratory.virtual_tribometer import virtual_tribometer
+from sonolube.models.actuator.drive import Drive
+from sonolube.rig import Rig
+from sonolube.tasks.design.friction_target import friction_force
+from sonolube.tasks.lab.hold_answer import HoldAnswer
+from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
+from sonolube.tasks.lab.run_record import ControlDoor, RunPlan, begin_record, device_file, instruments, run_stage
+from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.progress import stage
+from sonolube.tasks.task import in_si, refuse_unused, shown, task
+from sonolube.units import to_si
+
+_SAMPLE_RATE = 2000.0  # Hz, at least
+_HEADROOM = 1.1  # of the limit of the measured voltage, for noise, over the voltage that may be commanded
+
+
+@task
+def hold(
+    rig: RigFile,
+    *,
+    friction: Annotated[
+        str | float | None,
+        Parameter(
+            help="Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
+            kind="FRICTION",
+        ),
+    ] = None,
+    step_to: Annotated[
+        Number | None, Parameter(help="Sliding speed after the step; twice the rig's by default.", unit="m/s")
+    ] = None,
+    step_at: Annotated[
+        Number | None, Parameter(help="Time under control until the step; half of --duration by default.", unit="s")
+    ] = None,
+    delay: Annotated[Number, Parameter(help="Delay of the friction measurement.", unit="s")] = "1ms",
+    rate: Annotated[Number, Parameter(help="Sampling rate of the controller.", unit="Hz")] = "20Hz",
+    closed_loop: Annotated[
+        Number | None, Parameter(help="Time constant of the closed loop; the delay by default.", unit="s")
+    ] = None,
+    voltage_limit: Annotated[
+        Number | None, Parameter(help="Largest swing, peak to peak; the rig's own by default.", unit="V")
+    ] = None,
+    temperature_limit: Annotated[
+        str | None, Parameter(help="Temperature that ends the test, such as 60degC.", kind="TEMPERATURE")
+    ] = None,
+    friction_limit: Annotated[Number | None, Parameter(help="Friction force that ends the test.", unit="N")] = None,
+    quality: Annotated[float, Parameter(help="Quality factor, where the rig has no structure.", lowest=0.6)] = 50.0,
+    coupling: Annotated[
+        float, Parameter(help="Effective coupling, where it has none.", lowest=0.001, highest=0.999)
+    ] = 0.2,
+    run_in: Annotated[
+        Number, Parameter(help="Sliding without vibration before the controller takes over.", unit="s")
+    ] = "1s",
+    duration: Annotated[Number, Parameter(help="Time under control.", unit="s")] = "10s",
+    device_map: Device = "virtual",
+    seed: Seed = 0,
+    real_time: RealTime = False,
+    tag: Tags = (),
+    out: AllRuns = RUNS,
+    control: ControlDoor = None,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> HoldAnswer:
+    """Hold friction at a reference by the controller of `control` while the speed steps, and record it.
+
+    Motor and drive are off at the end, whatever happens.
+
+    Example: sonolube lab hold examples/rigs/tribometer.toml --friction 0.7N --step-to 30mm/s
+    """
+    known, drive = _driven(rig_of(rig))
+    sampling_rate, run_time = in_si("rate", rate), in_si("duration", duration)
+    if sampling_rate <= 0 or run_time <= 0:
+        raise InvalidInput(f"{shown('rate')} {rate} and {shown('duration')} {duration} must be positive")
+    if known.structure is not None:
+        refuse_unused("quality", "coupling", because="for a rig whose file has the table structure")
+    file = device_file(device_map)
+    swing, voltage = drive.voltage_peak_to_peak or 0.0, in_si("voltage_limit", voltage_limit)
+    target = None if friction is None else friction_force("friction", friction, normal_load=known.normal_load)
+    settings = ControlSettings(
+        friction_force=target,
+        amplifier=Amplifier(voltage_maximum=swing if voltage is None else voltage),
+        dead_time=in_si("delay", delay),
+        sample_interval=1 / sampling_rate,
+        closed_loop_time=in_si("closed_loop", closed_loop),
+        duration=run_time,
+    )
+    design = _designed(known, settings, quality=quality, coupling=coupling)
+    wanted = _wanted(
+        drive,
+        design,
+        speeds=_speeds(known, step_to=in_si("step_to", step_to), step_at=step_at, run_time=run_time),
+        settings=settings,
+        run_in=in_si("run_in", run_in),
+        temperature=temperature_limit,
+        force=in_si("friction_limit", friction_limit),
+    )
+    virtual = virtual_tribometer(known, seed=seed, real_time=real_time) if file is None else None
+    devices = instruments(device_map) if virtual is None else virtual.devices
+    require_holdable(wanted, devices)
+    plan = RunPlan(
+        protocol=hold_protocol(wanted, devices.acquisition.channels),
+        name="hold",
+        rig=known,
+        device_file=file,
+        seed=seed,
+        tags=tag,
+    )
+    recorder = begin_record(plan, devices, out=Path(out), facts={"reference_friction_force": wanted.friction_force})
+    requests = control or RunControl()
+    with run_stage("holding", requests) as advance:
+        held = hold_friction(wanted, devices, recorder=recorder, control=requests, advance=advance)
+        if virtual is not None:
+            recorder.store_truth(virtual.truth())
+    return HoldAnswer(
+        rig=known,
+        design=design,
+        held=held,
+        run=read_run(recorder.folder),
+        simulated=devices.simulated,
+        assumed=_assumed(quality, coupling) if known.structure is None else {},
+        folder=recorder.folder / "hold",
+    )
+
+
+def _driven(rig: Rig) -> tuple[Rig, Drive]:
+    """Rig with its drive, which it must have."""
+    if rig.drive is None:
+        raise InvalidInput(f"{rig.file or rig.title}: has no drive, by which friction is held; add the table drive")
+    return rig, rig.drive
+
+
+def _designed(rig: Rig, settings: ControlSettings, *, quality: float, coupling: float) -> ControlDesign:
+    """Controller of a rig, whose resonance is assumed where it has no structure."""
+    with stage("designing the controller"):
+        is_assumed = rig.structure is None
+        mode = assumed_mode(rig, quality_factor=quality, coupling_factor=coupling) if is_assumed else None
+        return design_control(rig, settings, mode=mode)
+
+
+def _wanted(
+    drive: Drive,
+    design: ControlDesign,
+    *,
+    speeds: tuple[SpeedStep, ...],
+    settings: ControlSettings,
+    run_in: float,
+    temperature: str | None,
+    force: float | None,
+) -> FrictionHold:
+    """Friction to be held, with the limits that end the test."""
+    swing = drive.voltage_peak_to_peak or 0.0
+    ratio = drive.voltage_offset / swing if swing else 0.0
+    highest = _HEADROOM * (abs(ratio) + 0.5) * design.controller.voltage_maximum
+    rate = 1 / settings.sample_interval
+    return FrictionHold(
+        controller=design.controller,
+        friction_force=design.friction_force,
+        frequency=drive.frequency,
+        speeds=speeds,
+        duration=settings.duration,
+        limits=_limits(highest, lasts=run_in + settings.duration, temperature=temperature, force=force),
+        run_in=run_in,
+        offset_ratio=ratio,
+        sample_rate=rate * ceil(_SAMPLE_RATE / rate),
+    )
+
+
+def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time: float) -> tuple[SpeedStep, ...]:
+    """Sliding speed of the rig, then that after the step."""
+    after = 2 * rig.sliding_speed if step_to is None else step_to
+    time = run_time / 2 if step_at is None else in_si("step_at", step_at)
+    if not time > 0:
+        raise InvalidInput(f"{shown('step_at')} {step_at} must be positive")
+    return SpeedStep(time=0.0, sliding_speed=rig.sliding_speed), SpeedStep(time=time, sliding_speed=after)
+
+
+def _limits(voltage: float, *, lasts: float, temperature: str | None, force: float | None) -> Limits:
+    """Limits that end the test."""
+    content = {"voltage_maximum": exact_text(voltage, unit="V"), "duration_maximum": exact_text(lasts, unit="s")}
+    if temperature is not None:
+        limit = to_si(temperature, unit="K", name=shown("temperature_limit"))
+        content["temperature_maximum"] = exact_text(limit, unit="K")
+    if force is not None:
+        content["friction_force_maximum"] = exact_text(force, unit="N")
+    return Limits.model_validate(content)
+
+
+def _assumed(quality: float, coupling: float) -> Mapping[str, str]:
+    """Resonance that is assumed where the rig has no structure."""
+    text = f"at the drive's frequency, quality factor {quality:g}, coupling {coupling:g}; not measured"
+    return {"resonance": text}

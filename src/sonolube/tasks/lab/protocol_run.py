@@ -1,0 +1,101 @@
+"""Tasks `lab run` and `lab virtual`: a protocol on a rig or a virtual one, recorded; or gone through dry."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import sonolube.laboratory.dry_run as dry_runs
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.facts.protocol import protocol_by_name_or_file
+from sonolube.laboratory.records import EXPORT_FORMATS, export_run
+from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
+from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.lab.run_answer import DryRunAnswer, RunAnswer
+from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
+from sonolube.tasks.lab.run_record import ControlDoor, OperatorDoor, RunPlan, device_file, instruments, run_and_record
+from sonolube.tasks.parameters import OptionalRigSource, Parameter, RigFile, Stop, Watch, optional_rig, rig_of
+from sonolube.tasks.task import refuse_unused, shown, task
+
+
+@task
+def run(
+    protocol: Annotated[InputFile, Parameter(help="Such as map_test, or a TOML file.", kind="PROTOCOL")],
+    device_map: Device = "virtual",
+    *,
+    rig: Annotated[
+        OptionalRigSource,
+        Parameter(help="The rig; a virtual tribometer takes its friction.", kind="RIG.toml", is_file=True),
+    ] = None,
+    seed: Seed = 0,
+    real_time: RealTime = False,
+    dry_run: Annotated[bool, Parameter(help="Tell what will happen, and touch nothing.")] = False,
+    yes: Annotated[bool, Parameter(help="Take the prompts to the operator as done.")] = False,
+    tag: Tags = (),
+    out: AllRuns = RUNS,
+    operator: OperatorDoor = None,
+    control: ControlDoor = None,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> RunAnswer | DryRunAnswer:
+    """Run a protocol and record it; motor and drive are off at the end, whatever happens.
+
+    Example: sonolube lab run map_test --rig examples/rigs/power_map.toml
+    """
+    path, known = str(file_path(protocol)), optional_rig(rig)
+    read = protocol_by_name_or_file(path)
+    if dry_run:
+        unused = "seed", "real_time", "yes", "tag", "out"
+        refuse_unused(*unused, because=f"with {shown('dry_run')}, which runs nothing")
+        return DryRunAnswer(protocol=read, found=dry_runs.dry_run(read, rig=known))
+    file = device_file(device_map)
+    plan = RunPlan(protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, tags=tag)
+    simulated = _virtual_rig(plan, real_time=real_time) if file is None else None
+    return run_and_record(
+        plan,
+        instruments(device_map) if simulated is None else simulated.devices,
+        out=Path(out),
+        virtual=simulated,
+        operator=(lambda prompt: True) if yes else operator,
+        control=control,
+    )
+
+
+@task
+def virtual(
+    rig: RigFile,
+    *,
+    protocol: Annotated[InputFile, Parameter(help="Such as study_1, or a TOML file.", kind="PROTOCOL")] = "map_test",
+    seed: Annotated[int, Parameter(help="Of all that is drawn: another specimen, other noise.", lowest=0)] = 0,
+    file_format: Annotated[
+        Literal["netcdf", "tdms", "csv"], Parameter(help="Of the recording, beside netCDF.", option="--format")
+    ] = "netcdf",
+    out: AllRuns = RUNS,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> RunAnswer:
+    """Record a realistic test of a rig that exists in its file only.
+
+    Example: sonolube lab virtual examples/rigs/power_map.toml --protocol map_test
+    """
+    if file_format not in EXPORT_FORMATS:
+        raise UnknownName.among(EXPORT_FORMATS, kind="format", name=file_format)
+    path = str(file_path(protocol))
+    plan = RunPlan(protocol=protocol_by_name_or_file(path), name=Path(path).stem, rig=rig_of(rig), seed=seed)
+    simulated = _virtual_rig(plan)
+    found = run_and_record(plan, simulated.devices, out=Path(out), virtual=simulated)
+    if file_format != "netcdf":
+        export_run(found.run.folder, file_format=file_format, out=found.run.folder)
+    return found
+
+
+def _virtual_rig(plan: RunPlan, *, real_time: bool = False) -> VirtualTribometer:
+    """Virtual tribometer of a plan's rig.
+
+    Raises
+    ------
+    InvalidInput
+        If the plan names no rig.
+    """
+    if plan.rig is None:
+        raise InvalidInput(f"{shown('device_map')} virtual needs {shown('rig')}, whose friction it takes")
+    diameter = plan.protocol.metadata.groove_diameter or GROOVE_DIAMETER
+    return virtual_tribometer(plan.rig, seed=plan.seed, real_time=real_time, groove_diameter=diameter)

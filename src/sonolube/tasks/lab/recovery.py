@@ -1,0 +1,74 @@
+"""Task `lab recover`: records of killed runs completed."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.laboratory.records import Recovery, recover_run, run_folders
+from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.blocks import Block
+from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.task import task
+
+
+@answer
+class RecoveredRuns(Answer):
+    """Runs with what was mended.
+
+    Parameters
+    ----------
+    recovered : mapping of Path to Recovery
+    refused : mapping of str to str
+        Reasons of runs that could not be recovered, by their folders.
+    """
+
+    recovered: Mapping[Path, Recovery]
+    refused: Mapping[str, str]
+
+    def blocks(self) -> Sequence[Block]:
+        """What was mended, run by run."""
+        mended = {path: each for path, each in self.recovered.items() if each.done}
+        lines = [f"{len(mended)} of {len(self.recovered)} runs recovered"]
+        for path, each in mended.items():
+            summary = each.summary
+            lines.append(f"  {path.name}: {summary.outcome}, {summary.samples} samples")
+            lines += [f"    {line}" for line in each.done]
+        return lines
+
+    def object(self) -> dict[str, Any]:
+        """Runs for JSON."""
+        return {
+            "runs": [
+                {
+                    "folder": str(path),
+                    "outcome": each.summary.outcome,
+                    "samples": each.summary.samples,
+                    "done": list(each.done),
+                }
+                for path, each in self.recovered.items()
+            ]
+        }
+
+    def refusals(self) -> Mapping[str, str]:
+        """Reasons of runs that are at work or cannot be written."""
+        return self.refused
+
+
+@task
+def recover(
+    folder: Annotated[str | Path, Parameter(help="A run, or a folder of runs.", kind="DIR", is_output=True)],
+) -> RecoveredRuns:
+    """Complete the records of runs whose program was killed; what was damaged is kept aside.
+
+    Example: sonolube lab recover runs
+    """
+    recovered, refused = {}, {}
+    for each in run_folders(Path(folder)) or [Path(folder)]:  # a run itself, or refused as none
+        try:
+            recovered[each] = recover_run(each)
+        except SonolubeError as failure:
+            refused[str(each)] = str(failure)
+    if not recovered:
+        raise InvalidInput(next(iter(refused.values())))
+    return RecoveredRuns(recovered=recovered, refused=refused)

@@ -1,0 +1,1 @@
+"""Tasks that look up materials, actuators, published tables, schemas and example files."""

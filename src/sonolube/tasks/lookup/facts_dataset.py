@@ -1,0 +1,41 @@
+"""Quantities of several things, such as materials, as a labelled dataset."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def facts_dataset(kind: str, values: Mapping[str, Mapping[str, float]], titles: Mapping[str, str]) -> "xr.Dataset":
+    """Quantities of the vocabulary of several things, over their names; NaN where one is not known.
+
+    Parameters
+    ----------
+    kind : str
+        What they are, such as "material": the name of the dimension.
+    values : mapping of str to mapping of str to float
+        Quantities in SI by the name of the thing and that of the quantity.
+    titles : mapping of str to str
+        Title of each thing.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    import numpy as np
+    import xarray as xr
+
+    known = quantities()
+    names = dict.fromkeys(name for each in values.values() for name in each)
+    variables = {
+        name: (
+            kind,
+            np.array([each.get(name, np.nan) for each in values.values()]),
+            {"units": known[name].unit, "long_name": known[name].meaning},
+        )
+        for name in names
+    }
+    return xr.Dataset(variables | {"title": (kind, list(titles.values()))}, coords={kind: list(values)})

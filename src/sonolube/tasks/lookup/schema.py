@@ -1,0 +1,29 @@
+"""Task `schema`: JSON schema of rig files, protocols and device maps, and description of the tasks."""
+
+from json import dumps
+from typing import Annotated, Literal
+
+from sonolube.facts.protocol import protocol_schema
+from sonolube.laboratory.drivers import device_map_schema
+from sonolube.rig import rig_schema
+from sonolube.tasks.blocks import Verbatim
+from sonolube.tasks.lookup.listing import Listing
+from sonolube.tasks.openapi import tasks_description
+from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.task import task
+
+_SCHEMAS = {"rig": rig_schema, "protocol": protocol_schema, "devices": device_map_schema, "tasks": tasks_description}
+
+
+@task
+def schema(
+    kind: Annotated[
+        Literal["rig", "protocol", "devices", "tasks"], Parameter(help="Files to describe, or the tasks of sonolube.")
+    ] = "rig",
+) -> Listing:
+    """JSON schema of rig files, protocols or device maps, or OpenAPI of the tasks; the same with and without --json.
+
+    Example: sonolube schema > rig.schema.json
+    """
+    content = _SCHEMAS[kind]()
+    return Listing(parts=[Verbatim(dumps(content, indent=2))], content=content)

@@ -1,0 +1,47 @@
+"""Task `measure vibration`: amplitudes, operating shape and modal assurance of vibrometer recordings."""
+
+from functools import partial
+from typing import Annotated
+
+from sonolube.report.measured.vibration import VibrationSettings, has_voltage, proportion_sheet, vibration_sheet
+from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.measure.measured_files import (
+    Files,
+    Mapped,
+    MeasuredFiles,
+    TestSheet,
+    column_mapping,
+    conditions,
+    each_file,
+)
+from sonolube.tasks.number_table import number_table
+from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.task import in_si, task
+
+
+@task
+def vibration(
+    files: Files,
+    *,
+    frequency: Annotated[Number, Parameter(help="Of the drive, such as 22kHz.", unit="Hz", quantity="frequency")],
+    modes: Annotated[
+        InputFile | None, Parameter(help="Computed shapes at the points, one a column.", kind="MODES.csv", is_file=True)
+    ] = None,
+    mapping: Mapped = None,
+    test_sheet: TestSheet = None,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> MeasuredFiles:
+    """Vibration at the drive frequency: amplitude, amplitude per volt, operating shape, likeness to computed modes.
+
+    Example: sonolube measure vibration tip.csv --frequency 22kHz --report tip.html
+    """
+    settings = VibrationSettings(
+        frequency=in_si("frequency", frequency),
+        mapping=column_mapping(mapping),
+        modes=None if modes is None else number_table(file_path(modes)),
+    )
+    sheets, refused = each_file(files, partial(vibration_sheet, settings=settings), title="measuring")
+    if sum(map(has_voltage, sheets)) > 1:
+        sheets.append(proportion_sheet(sheets))
+    return MeasuredFiles(title="vibration", sheets=sheets, refused=refused, test=conditions(test_sheet))

@@ -1,0 +1,47 @@
+"""Task `measure rotation`: speed of a disc and of the pin on it from a Hall probe."""
+
+from functools import partial
+from typing import Annotated
+
+from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
+from sonolube.tasks.measure.measured_files import (
+    Files,
+    Mapped,
+    MeasuredFiles,
+    TestSheet,
+    column_mapping,
+    conditions,
+    each_file,
+)
+from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.task import in_si, task
+
+
+@task
+def rotation(
+    files: Files,
+    *,
+    groove_diameter: Annotated[
+        Number, Parameter(help="Of the circle under the pin.", unit="m", quantity="groove_diameter")
+    ],
+    magnets: Annotated[int, Parameter(help="Magnets at the rim.", lowest=1)] = 1,
+    prominence: Annotated[
+        float, Parameter(help="Weakest pulse that counts over the strongest.", lowest=0.01, highest=1.0)
+    ] = 0.25,
+    mapping: Mapped = None,
+    test_sheet: TestSheet = None,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> MeasuredFiles:
+    """Rotation from a Hall probe: speed of the disc and of the pin on it, missing pulses repaired.
+
+    Example: sonolube measure rotation hall.csv --groove-diameter 50mm --magnets 2 --report hall.html
+    """
+    settings = RotationSettings(
+        groove_diameter=in_si("groove_diameter", groove_diameter),
+        magnets=magnets,
+        prominence=prominence,
+        mapping=column_mapping(mapping),
+    )
+    sheets, refused = each_file(files, partial(rotation_sheet, settings=settings), title="measuring")
+    return MeasuredFiles(title="rotation", sheets=sheets, refused=refused, test=conditions(test_sheet))

@@ -1,0 +1,50 @@
+"""Task `measure impedance`: equivalent circuit of an impedance spectrum, or the stack of a rig's structure."""
+
+from functools import partial
+from typing import Annotated, Literal
+
+from sonolube.report.measured.impedance import ImpedanceSettings, StackInStructure, impedance_sheet
+from sonolube.rig import structure_by_stack
+from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, conditions, each_file
+from sonolube.tasks.parameters import Number, OptionalRigSource, Parameter, Stop, Watch, rig_of
+from sonolube.tasks.task import in_si, refuse_unused, shown, task
+
+
+@task
+def impedance(
+    files: Files,
+    *,
+    branches: Annotated[
+        int | None, Parameter(help="Number of modes; as many as are significant by default.", lowest=1, highest=8)
+    ] = None,
+    residual: Annotated[
+        Literal["log-complex", "log-magnitude", "linear-magnitude"], Parameter(help="Residual that the fit minimises.")
+    ] = "log-complex",
+    series_resistance: Annotated[
+        Number | None,
+        Parameter(help="Of the leads, such as 0.2ohm.", unit="ohm", quantity="series_resistance", kind="RESISTANCE"),
+    ] = None,
+    sweep: Annotated[str | None, Parameter(help="Sweep of the file, such as memory.", kind="NAME")] = None,
+    stack_of: Annotated[
+        OptionalRigSource, Parameter(help="Fit the stack of this rig's structure.", kind="RIG.toml", is_file=True)
+    ] = None,
+    test_sheet: TestSheet = None,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> MeasuredFiles:
+    """Impedance: the circuit that fits a spectrum, with quality, frequencies and coupling, or the stack of a rig.
+
+    Example: sonolube measure impedance transducer.csv --residual linear-magnitude --report transducer.html
+    """
+    if stack_of is not None:
+        because = f"for {shown('stack_of')}; it is for an equivalent circuit"
+        refuse_unused("branches", "series_resistance", because=because)
+    settings = ImpedanceSettings(
+        branches=branches,
+        residual=residual,
+        series_resistance=in_si("series_resistance", series_resistance) or 0.0,
+        sweep=sweep,
+        stack=None if stack_of is None else StackInStructure(*structure_by_stack(rig_of(stack_of))),
+    )
+    sheets, refused = each_file(files, partial(impedance_sheet, settings=settings), title="fitting")
+    return MeasuredFiles(title="impedance", sheets=sheets, refused=refused, test=conditions(test_sheet))

@@ -1,0 +1,112 @@
+"""Task `measure friction`: level, fluctuation, running-in, voltage steps, stick-slip and work in recordings."""
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Annotated
+
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.measurement.friction.motor_current import MotorCalibration
+from sonolube.report.measured.friction import FrictionSettings, friction_sheet
+from sonolube.report.measured.friction_comparison import comparison_sheet
+from sonolube.report.measured.joined_friction import joined_friction_sheet
+from sonolube.tasks.files import InputFile
+from sonolube.tasks.measure.measured_files import (
+    Channels,
+    Files,
+    Group,
+    Mapped,
+    MeasuredFiles,
+    Sections,
+    TestSheet,
+    column_mapping,
+    conditions,
+    each_file,
+    files_of,
+    reason_of,
+)
+from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.task import in_si, refuse_unused, shown, task
+
+
+@task
+def friction(
+    files: Files,
+    *,
+    mapping: Mapped = None,
+    group: Group = None,
+    channel: Channels = (),
+    section: Sections = (),
+    join: Annotated[bool, Parameter(help="The files are one test, in this order: measure it too.")] = False,
+    without_vibration: Annotated[
+        Sequence[InputFile], Parameter(help="A test without vibration; may come again.", kind="FILE", is_file=True)
+    ] = (),
+    sliding_speed: Annotated[
+        Number | None, Parameter(help="For the distance to the steady state.", unit="m/s", quantity="sliding_speed")
+    ] = None,
+    window: Annotated[Number, Parameter(help="Duration of the windows.", unit="s")] = "2s",
+    rotation_speed: Annotated[
+        Number | None,
+        Parameter(
+            help="Of the disc, to remove its wobble; without it found at voltage steps.",
+            unit="1/s",
+            quantity="rotation_speed",
+        ),
+    ] = None,
+    torque_constant: Annotated[
+        Number | None,
+        Parameter(help="Of the motor, such as '0.5 N m/A'.", unit="N m/A", quantity="torque_constant", kind="QUANTITY"),
+    ] = None,
+    idle_current: Annotated[
+        Number | None,
+        Parameter(help="Of the motor with the pin lifted.", unit="A", quantity="idle_current", kind="CURRENT"),
+    ] = None,
+    groove_diameter: Annotated[
+        Number | None, Parameter(help="Of the circle under the pin.", unit="m", quantity="groove_diameter")
+    ] = None,
+    test_sheet: TestSheet = None,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> MeasuredFiles:
+    """Friction in recordings: level, fluctuation, running-in, steps of the voltage, stick-slip, work.
+
+    Example: sonolube measure friction test.csv --sliding-speed 20.3mm/s --report test.html
+    """
+    settings = FrictionSettings(
+        mapping=column_mapping(mapping, group=group, channels=channel, sections=section),
+        window_duration=in_si("window", window),
+        sliding_speed=in_si("sliding_speed", sliding_speed),
+        rotation_speed=in_si("rotation_speed", rotation_speed),
+        motor=_motor(torque_constant, idle_current, groove_diameter),
+    )
+    measure = partial(friction_sheet, settings=settings)
+    sheets, refused = each_file(files, measure, title="measuring")
+    joined = []
+    if join and not refused:
+        try:
+            joined = [joined_friction_sheet(files_of(files), settings=settings)]
+        except SonolubeError as failure:
+            refused["all files as one test"] = reason_of(failure)
+    if without_vibration:
+        others, others_refused = each_file(without_vibration, measure, title="measuring without vibration")
+        refused |= others_refused
+        compared = [comparison_sheet(joined or sheets, others)] if sheets and others else []
+        sheets = [*sheets, *joined, *others, *compared]
+    else:
+        sheets += joined
+    return MeasuredFiles(title="friction", sheets=sheets, refused=refused, test=conditions(test_sheet))
+
+
+def _motor(
+    torque_constant: Number | None, idle_current: Number | None, groove_diameter: Number | None
+) -> MotorCalibration | None:
+    """Calibration by which the current of a motor tells the friction force."""
+    torque = in_si("torque_constant", torque_constant)
+    idle, diameter = in_si("idle_current", idle_current), in_si("groove_diameter", groove_diameter)
+    if torque is None:
+        unused = "idle_current", "groove_diameter"
+        refuse_unused(*unused, because=f"without {shown('torque_constant')}, for the force by the current")
+        return None
+    if idle is None or diameter is None:
+        needed = f"{shown('idle_current')} and {shown('groove_diameter')}"
+        raise InvalidInput(f"{shown('torque_constant')} needs {needed}")
+    return MotorCalibration(torque_constant=torque, idle_current=idle, groove_diameter=diameter)

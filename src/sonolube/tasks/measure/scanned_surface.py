@@ -1,0 +1,52 @@
+"""Task `measure surface`: areal and profile parameters, spectra and summits of height maps."""
+
+from functools import partial
+from typing import Annotated
+
+from sonolube.report.measured.surface import SurfaceSettings, spacings, surface_sheet
+from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, conditions, each_file
+from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.task import in_si, shown, task
+
+Spacing = Annotated[
+    str | float | None, Parameter(help="Distance of pixels, for files that lack it; one or 'x,y'.", kind="LENGTH")
+]
+LengthUnit = Annotated[str | None, Parameter(help="For files that lack it, such as um.", kind="UNIT")]
+
+
+@task
+def surface(
+    files: Files,
+    *,
+    spacing: Spacing = None,
+    length_unit: LengthUnit = None,
+    form: Annotated[
+        int, Parameter(help="Degree of the form that is removed: 1 tilt, 2 curvature.", lowest=0, highest=12)
+    ] = 1,
+    robust: Annotated[bool, Parameter(help="Weight pixels far from the form less.")] = False,
+    short_cutoff: Annotated[
+        Number | None, Parameter(help="Remove shorter waves, as noise.", unit="m", quantity="short_cutoff_length")
+    ] = None,
+    long_cutoff: Annotated[
+        Number | None, Parameter(help="Remove longer waves, as waviness.", unit="m", quantity="long_cutoff_length")
+    ] = None,
+    test_sheet: TestSheet = None,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> MeasuredFiles:
+    """Surfaces: parameters of ISO 25178-2 and of profiles, spectra, and summits for the contact models.
+
+    Example: sonolube measure surface plate.opd --long-cutoff 25um --report plate.html
+    """
+    spacing_x, spacing_y = spacings(spacing, name=shown("spacing"))
+    settings = SurfaceSettings(
+        spacing_x=spacing_x,
+        spacing_y=spacing_y,
+        length_unit=length_unit,
+        degree=form,
+        robust=robust,
+        short_cutoff_length=in_si("short_cutoff", short_cutoff),
+        long_cutoff_length=in_si("long_cutoff", long_cutoff),
+    )
+    sheets, refused = each_file(files, partial(surface_sheet, settings=settings), title="measuring")
+    return MeasuredFiles(title="surfaces", sheets=sheets, refused=refused, test=conditions(test_sheet))

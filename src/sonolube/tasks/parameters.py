@@ -1,0 +1,169 @@
+"""Arguments of tasks: what an annotation says of one, types that several tasks share, and their reading."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias, overload
+
+from sonolube.tasks.files import InputFile, NamedBytes, file_path
+from sonolube.tasks.progress import Cancelled, Progress
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from sonolube.rig import Rig
+
+Number = float | str
+"""Quantity: a number in SI, or a text with its unit such as "20.3 mm/s"."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """Meaning of an argument of a task.
+
+    Parameters
+    ----------
+    help : str
+        One sentence.
+    unit : str or None
+        SI unit of a `Number`, in K a temperature difference; empty for a pure number.
+    quantity : str
+        Its name in the vocabulary, where it has one.
+    kind : str
+        What stands for the value in a help text, such as MATERIAL.
+    option : str
+        As typed on a terminal, where that is not the name with hyphens; further names of it behind spaces.
+    lowest, highest : float or None
+        Range of a number.
+    is_file : bool
+        Whether it names files that are read.
+    is_mapping : bool
+        Whether it is a mapping, of which a terminal takes KEY=VALUE once for each key.
+    is_output : bool
+        Whether it names a folder in which the task itself writes, such as the folder of all runs.
+    """
+
+    help: str
+    unit: str | None = None
+    quantity: str = ""
+    kind: str = ""
+    option: str = ""
+    lowest: float | None = None
+    highest: float | None = None
+    is_file: bool = False
+    is_mapping: bool = False
+    is_output: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigParameter:
+    """Marks the rig of a task: on a terminal its file, with entries replaced, load and source of the amplitude.
+
+    Parameters
+    ----------
+    is_optional : bool
+    without : tuple of str
+        Of "load" and "amplitude" those that change nothing of the answer.
+    """
+
+    is_optional: bool = False
+    without: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class DoorParameter:
+    """Marks what the way in gives, and no user types: progress, cancellation, what is kept, a person.
+
+    Parameters
+    ----------
+    files : str
+        Names of the files that a task keeps only where it is asked to: a terminal then has the option --keep.
+    """
+
+    files: str = ""
+
+
+RigSource: TypeAlias = "Rig | HasRig | str | Path"
+"""A rig, an answer that has one, or the path of a file."""
+
+OptionalRigSource: TypeAlias = "Rig | HasRig | str | Path | None"
+OwnRuns: TypeAlias = "InputFile | xr.Dataset"
+"""Measured runs: a table, a query such as "catalogue:material=brass", or the dataset of `sl.read_runs`."""
+
+RunsSource: TypeAlias = "InputFile | xr.Dataset | None"
+
+
+class HasRig(Protocol):
+    """Answer that has a rig, such as that of `new`."""
+
+    @property
+    def rig(self) -> "Rig":
+        """Rig of the answer."""
+
+
+Kept = str | Path | Callable[[str], Path]
+"""Folder for what a task keeps while it runs, or a function that returns it by a name that the task proposes."""
+
+RigFile = Annotated[RigSource, RigParameter()]
+RestingRig = Annotated[RigSource, RigParameter(without=("amplitude",))]
+OptionalRig = Annotated[OptionalRigSource, RigParameter(is_optional=True)]
+Watch = Annotated[Progress | None, DoorParameter()]
+Stop = Annotated[Cancelled | None, DoorParameter()]
+Keep = Annotated[Kept | None, DoorParameter()]
+Pin = Annotated[str | None, Parameter(help="Material of the pin, for the heat; by default the rig's.", kind="MATERIAL")]
+Disc = Annotated[
+    str | None, Parameter(help="Material of the disc, for the heat; by default the rig's.", kind="MATERIAL")
+]
+Backend = Annotated[
+    Literal["cpu", "gpu"],
+    Parameter(
+        help="Processor for the steady vibrations; gpu needs an NVIDIA GPU and sonolube[gpu], and falls back to cpu."
+    ),
+]
+Sizes = Annotated[
+    Mapping[str, str | float] | None,
+    Parameter(help="A size of the part, such as length=127mm.", kind="SIZE=VALUE", option="--set", is_mapping=True),
+]
+
+
+def rig_of(source: RigSource) -> "Rig":
+    """Rig of a task: itself, that of an answer such as of `new`, or read where the path of its file is given."""
+    from sonolube.rig import Rig, read_rig
+
+    if isinstance(source, Rig):
+        return source
+    return read_rig(source) if isinstance(source, str | Path) else source.rig
+
+
+def optional_rig(source: OptionalRigSource) -> "Rig | None":
+    """Rig of a task that does without one."""
+    return None if source is None else rig_of(source)
+
+
+@overload
+def runs_of(runs: OwnRuns) -> "xr.Dataset": ...
+@overload
+def runs_of(runs: RunsSource) -> "xr.Dataset | None": ...
+def runs_of(runs: RunsSource) -> "xr.Dataset | None":
+    """Measured runs of a table or of a query of the catalogue; a dataset as it is."""
+    if runs is None or not isinstance(runs, str | Path | NamedBytes):
+        return runs
+    if not isinstance(runs, NamedBytes) and str(runs).startswith("catalogue:"):
+        from sonolube.laboratory.catalogue import catalogued_runs
+
+        return catalogued_runs(str(runs))
+    from sonolube.measurement.measured_runs import read_runs
+
+    return read_runs(file_path(runs))
+
+
+def kept(keep: Kept | None, name: str) -> Path | None:
+    """Folder for what a task keeps, under a name where the way in asks for one; None where nothing is kept."""
+    return keep(name) if callable(keep) else keep if keep is None else Path(keep)
+
+
+def file_stem(source: "RunsSource | RigSource | Sequence[InputFile]") -> str:
+    """Name of a file without folder and ending, for the names of the files of an answer."""
+    if isinstance(source, NamedBytes):
+        source = source.name
+    return Path(source).stem if isinstance(source, str | Path) else "own"

@@ -1,0 +1,1 @@
+"""Task of a part by finite elements, and parts by name or STEP file."""

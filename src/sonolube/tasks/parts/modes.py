@@ -1,0 +1,335 @@
+"""Task `modes`: natural modes of a part by finite elements, with pictures, grids, shapes and animations."""
+
+import shlex
+import tomllib
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.models.fem import ConvergedModes
+from sonolube.models.fem.figures import ShapedSurface, mode_figure, shaped_surface
+from sonolube.models.fem.mode_files import (
+    SupportedBody,
+    elastic_rows,
+    frequency_text,
+    mode_animation,
+    mode_title,
+    modes_grid,
+    shapes_table,
+    structure_modes,
+)
+from sonolube.report import Drawing
+from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.blocks import Block, Rows
+from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.number_table import number_table
+from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
+from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, Axis, Part, PartSizes, named_transducer, part_name
+from sonolube.tasks.parts.part_modes import (
+    DEFAULT_MATERIAL,
+    PartModes,
+    SupportedPart,
+    modes_dataset,
+    part_modes,
+    supported_part,
+)
+from sonolube.tasks.progress import stage
+from sonolube.tasks.task import in_si, is_given, refuse_unused, shown, task
+from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_BODY_UNITS = {"body_mass": "kg", "body_stiffness": "N/m", "body_damping": "N s/m"}
+
+
+@task
+def modes(
+    part: Part,
+    *,
+    sizes: Sizes = None,
+    material: Annotated[
+        str, Parameter(help="Material of the part; transducers have their own.", kind="NAME")
+    ] = DEFAULT_MATERIAL,
+    youngs_modulus: Annotated[
+        Number | None,
+        Parameter(
+            help="Young's modulus instead of the material's.",
+            unit="Pa",
+            quantity="youngs_modulus",
+            option="--young-modulus",
+        ),
+    ] = None,
+    poisson_ratio: Annotated[
+        Number | None,
+        Parameter(help="Instead of the material's Poisson's ratio.", unit="", quantity="poisson_ratio", kind="RATIO"),
+    ] = None,
+    density: Annotated[
+        Number | None, Parameter(help="Density instead of the material's.", unit="kg/m3", quantity="density")
+    ] = None,
+    count: Annotated[int, Parameter(help="Number of elastic modes.", kind="NUMBER")] = 6,
+    clamp: Annotated[Sequence[str], Parameter(help="A face held still, such as -x.", kind="FACE")] = (),
+    axis: Annotated[Axis | None, Parameter(help="The part's axis; its longest by default.")] = None,
+    tolerance: Annotated[
+        Number, Parameter(help="Largest relative error of a frequency.", unit="", kind="RATIO")
+    ] = 0.005,
+    points: Annotated[
+        InputFile | None,
+        Parameter(help="Points x, y, z in mm at which to write the shapes.", kind="POINTS.csv", is_file=True),
+    ] = None,
+    toward: Annotated[Axis | None, Parameter(help="Component at the points; that of the axis by default.")] = None,
+    contact: Annotated[
+        str | None,
+        Parameter(help="Write the modes for a rig file, with the contact at an output such as tip.", kind="OUTPUT"),
+    ] = None,
+    body_mass: Annotated[
+        Number | None, Parameter(help="Of a body that rests on the contact; held where absent.", unit="kg")
+    ] = None,
+    body_stiffness: Annotated[
+        Number, Parameter(help="Of the spring that holds that body; none where absent.", unit="N/m")
+    ] = "0N/m",
+    body_damping: Annotated[Number, Parameter(help="Of the damper beside it.", unit="N s/m")] = "0N s/m",
+    vtu: Annotated[bool, Parameter(help="Write the modes for ParaView too.")] = False,
+    animate: Annotated[bool, Parameter(help="Draw each mode as an animated GIF too.")] = False,
+    progress: Watch = None,
+    cancelled: Stop = None,
+) -> "ModesAnswer":
+    """Natural modes of a part: frequencies with their errors, names and pictures.
+
+    Example: sonolube modes block --set length=127mm --set width=60.96mm --set thickness=25.4mm
+    """
+    name = part_name(part)
+    _refuse_unused(name, points=points, contact=contact, body_mass=body_mass)
+    if contact is not None:
+        _require_output(name, sizes or {}, contact)
+    given = {
+        "youngs_modulus": in_si("youngs_modulus", youngs_modulus),
+        "poisson_ratio": in_si("poisson_ratio", poisson_ratio),
+        "density": in_si("density", density),
+    }
+    supported = supported_part(
+        part,
+        sizes or {},
+        material=material,
+        properties={each: value for each, value in given.items() if value is not None},
+        clamp=clamp,
+    )
+    body = _body(body_mass, body_stiffness, body_damping)
+    scanned = None if points is None else _points_in_metres(points)
+    with stage("meshing and solving") as advance:
+        solved = part_modes(supported, count=count, axis=axis, tolerance=in_si("tolerance", tolerance), advance=advance)
+        structure = None
+        if supported.transducer is not None and contact is not None:
+            meshes = len(solved.found.nodes)
+            advance("reduction", meshes, meshes + 1)
+            command = _command(
+                name,
+                sizes or {},
+                {
+                    "count": count,
+                    "clamp": clamp,
+                    "tolerance": tolerance,
+                    "contact": contact,
+                    "body_mass": body_mass,
+                    "body_stiffness": body_stiffness,
+                    "body_damping": body_damping,
+                },
+            )
+            structure = structure_modes(solved.found, supported.transducer, contact=contact, body=body, command=command)
+    return ModesAnswer(
+        solved=solved,
+        points=scanned,
+        direction=toward or solved.axis,
+        with_grid=vtu,
+        with_animations=animate,
+        structure=structure,
+    )
+
+
+def _refuse_unused(part: str, *, points: InputFile | None, contact: str | None, body_mass: Number | None) -> None:
+    """Refuse arguments that the part and the others leave without effect."""
+    if part in ALL_TRANSDUCERS:
+        own = ("material", "youngs_modulus", "poisson_ratio", "density")
+        refuse_unused(*own, because=f"for {part}, which has its own; it is for other parts")
+    if points is None:
+        refuse_unused("toward", because=f"without {shown('points')}, at which the component is written")
+    if contact is None:
+        refuse_unused("body_mass", because=f"without {shown('contact')}, on which it rests")
+    if body_mass is None:
+        refuse_unused("body_stiffness", "body_damping", because=f"without {shown('body_mass')}, which it holds")
+
+
+def _require_output(part: str, sizes: PartSizes, contact: str) -> None:
+    """Refuse a contact of a part without a drive, or at an output that it lacks."""
+    if part not in ALL_TRANSDUCERS:
+        known = ", ".join(ALL_TRANSDUCERS)
+        raise InvalidInput(f"{shown('contact')} {contact}: {part} has no drive; it is for transducers: {known}")
+    outputs = named_transducer(part, sizes).outputs
+    if contact not in outputs:
+        raise UnknownName.among(outputs, kind=f"output of {part}", name=contact)
+
+
+def _body(mass: Number | None, stiffness: Number, damping: Number) -> SupportedBody | None:
+    """Body that rests on the contact; None where it is held."""
+    if mass is None:
+        return None
+    return SupportedBody(
+        body_mass=in_si("body_mass", mass),
+        spring_stiffness=in_si("body_stiffness", stiffness),
+        viscous_damping=in_si("body_damping", damping),
+    )
+
+
+def _points_in_metres(points: InputFile) -> Floats:
+    """Points in m from a CSV table of x, y and z in mm, shape (p, 3)."""
+    table = number_table(file_path(points))
+    if table.shape[1] != 3 or not np.all(np.isfinite(table)):
+        raise InvalidInput(f"{part_name(points)}: needs the three columns x, y and z in mm, got {table.shape[1]}")
+    return np.asarray(1e-3 * table)
+
+
+def _command(part: str, sizes: PartSizes, arguments: Mapping[str, Any]) -> str:
+    """Command that computes the same modes again, without the options of its files."""
+    words = ["sonolube", "modes", part]
+    for name, size in sizes.items():
+        words += ["--set", f"{name}={_typed(size, quantity(name).unit)}"]
+    for name, value in arguments.items():
+        if is_given(name) and value is not None:
+            for each in value if isinstance(value, list | tuple) else [value]:
+                words += [f"--{name.replace('_', '-')}", _typed(each, _BODY_UNITS.get(name, ""))]
+    return " ".join(shlex.quote(word) if " " in word else word for word in words)
+
+
+def _typed(value: Number, unit: str) -> str:
+    """Value as a terminal takes it."""
+    return value if isinstance(value, str) else f"{value}{unit}"
+
+
+@answer
+class ModesAnswer(Answer):
+    """Natural frequencies of a part with their errors, and its elastic modes as pictures and files."""
+
+    solved: PartModes
+    points: Floats | None
+    direction: str
+    with_grid: bool
+    with_animations: bool
+    structure: str | None
+
+    @property
+    def part(self) -> SupportedPart:
+        """Part with its materials and supports."""
+        return self.solved.part
+
+    @property
+    def found(self) -> ConvergedModes:
+        """Modes on the last mesh."""
+        return self.solved.found
+
+    @property
+    def names(self) -> Sequence[str]:
+        """Names of all modes."""
+        return self.solved.names
+
+    def blocks(self) -> Sequence[Block]:
+        """Name and natural frequency with its error of every elastic mode."""
+        found, rigid = self.found, self.found.modes.rigid_body_count
+        support = f"{rigid} rigid motions, " if rigid else "held, "
+        nodes = f"{found.nodes[-1]} nodes in the last of {len(found.nodes)} meshes"
+        return [
+            f"{self.part.name} of {self.part.material}: {support}{nodes}",
+            Rows([(self.names[row], self._frequency(row)) for row in self._rows()]),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Number of rigid motions, nodes of the meshes, and name, frequency and error of every elastic mode."""
+        found = self.found
+        return {
+            "part": self.part.name,
+            "material": self.part.material,
+            "rigid_motions": found.modes.rigid_body_count,
+            "nodes": list(found.nodes),
+            **({} if self.structure is None else {"structure": tomllib.loads(self.structure)}),
+            "modes": [
+                {
+                    "name": self.names[row],
+                    "text": self._frequency(row),
+                    "uncertainty": {
+                        "value": float(found.natural_frequency[row] * found.frequency_error[row]),
+                        "unit": "Hz",
+                    },
+                    **si(
+                        {
+                            "natural_frequency": float(found.natural_frequency[row]),
+                            "frequency_error": float(found.frequency_error[row]),
+                        }
+                    ),
+                }
+                for row in self._rows()
+            ],
+        }
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Dimensions of a transducer that no source prints."""
+        return self.part.assumptions
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Picture of every elastic mode."""
+        return {self._file_name(row): Drawing(draw=partial(self._figure, row), forms=("png",)) for row in self._rows()}
+
+    def files(self) -> Mapping[str, str | bytes]:
+        """Shapes at points, structure for a rig file, grid and animations, as far as they are wanted."""
+        files: dict[str, str | bytes] = {}
+        stem = Path(self.part.name).stem
+        if self.points is not None:
+            table = shapes_table(self.found, self.names, self.points, direction=self.direction)
+            files[f"{stem}-shapes.csv"] = table
+        if self.structure is not None:
+            files[f"{stem}-modes.toml"] = self.structure
+        if self.with_grid:
+            files[f"{stem}-modes.vtu"] = modes_grid(self.found, self.names)
+        if self.with_animations:
+            with stage("animating") as advance:
+                for done, row in enumerate(self._rows()):
+                    advance(self.names[row], done, len(self._rows()))
+                    animation = mode_animation(self._surface(row), title=self._title(row))
+                    files[f"{self._file_name(row)}.gif"] = animation
+        return files
+
+    def dataset(self) -> "xr.Dataset":
+        """Return frequencies, errors and shapes of the elastic modes, with the surface of the part."""
+        return modes_dataset(self.solved).assign_attrs(self.notes())
+
+    def _rows(self) -> range:
+        """Indices of the elastic modes."""
+        return elastic_rows(self.found)
+
+    def _surface(self, row: int) -> ShapedSurface:
+        """Surface of the part with the shape of a mode."""
+        return shaped_surface(self.found.model.mesh, self.found.modes.shapes[row])
+
+    def _figure(self, row: int) -> "Figure":
+        """Picture of a mode."""
+        return mode_figure(self._surface(row), title=self._title(row))
+
+    def _title(self, row: int) -> str:
+        """Name and natural frequency of a mode."""
+        return mode_title(self.found, self.names, row)
+
+    def _frequency(self, row: int) -> str:
+        """Natural frequency of a mode with its error."""
+        found = self.found
+        return frequency_text(
+            frequency=float(found.natural_frequency[row]), relative_error=float(found.frequency_error[row])
+        )
+
+    def _file_name(self, row: int) -> str:
+        """Name of the picture of a mode: part, number among the elastic modes, and name of the mode."""
+        number = row - self.found.modes.rigid_body_count + 1
+        return f"{Path(self.part.name).stem}-{number}-{self.names[row].replace(' ', '-')}"

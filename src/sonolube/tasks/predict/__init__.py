@@ -1,0 +1,1 @@
+"""Tasks that predict what a rig or a part does."""

@@ -1,0 +1,23 @@
+"""Task `contact`: separation, real contact area and stiffness of a rig's contact at rest."""
+
+from typing import Annotated
+
+from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
+from sonolube.rig import contact_point
+from sonolube.tasks.parameters import Parameter, RestingRig, rig_of
+from sonolube.tasks.results.rig_record import RigRecord
+from sonolube.tasks.task import task
+
+_STIFFNESS = Parameter(help=f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}.", kind="MODEL")
+
+
+@task
+def contact(
+    rig: RestingRig, *, tangential_stiffness: Annotated[str, _STIFFNESS] = DEFAULT_TANGENTIAL_STIFFNESS
+) -> RigRecord:
+    """Contact of the rig at rest: separation, real area, stiffness.
+
+    Example: sonolube contact examples/rigs/poisson_al_steel.toml --load 40N
+    """
+    known = rig_of(rig)
+    return RigRecord(rig=known, result=contact_point(known, tangential_stiffness_model=tangential_stiffness))

@@ -1,0 +1,233 @@
+"""Task `new`: a first rig from what is known before a test."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from shlex import quote
+from typing import TYPE_CHECKING, Annotated, Any
+
+from sonolube.errors import InvalidInput
+from sonolube.facts.materials import material
+from sonolube.rig import Rig
+from sonolube.rig.new_rig.known_surface import KnownSurface
+from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text, rig_of_known
+from sonolube.rig.new_rig.stated_text import pin_shape, reader, speed_of, surface_of, vibration_of
+from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.blocks import Block, Table
+from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.parameters import Number, Parameter
+from sonolube.tasks.task import shown, task
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DEFAULT_SHAPE = "flat 3mm"
+"""End of the pin where none is given."""
+
+DEFAULT_FINISH = "ground"
+"""Finish of both surfaces where none is given."""
+
+_ONE_OF = (
+    ("pin_finish", "pin_scan"),
+    ("disc_finish", "scan"),
+    ("decay_length", "stiffness"),
+    ("amplitude", "actuator"),
+)
+
+
+@task
+def new(
+    *,
+    pin: Annotated[str, Parameter(help="Material of the pin, or its class: 100Cr6, 304, steel.", kind="MATERIAL")],
+    disc: Annotated[str, Parameter(help="Material of the disc, or its class.", kind="MATERIAL")],
+    load: Annotated[Number, Parameter(help="Normal load.", unit="N")],
+    speed: Annotated[Number, Parameter(help="Sliding speed: 0.2m/s, or '100 rpm' with the track.", unit="m/s")],
+    frequency: Annotated[Number, Parameter(help="Frequency of the vibration.", unit="Hz")],
+    amplitude: Annotated[
+        Number | None, Parameter(help="Vibration amplitude normal to the contact, zero to peak.", unit="m")
+    ] = None,
+    actuator: Annotated[
+        str | None, Parameter(help="Actuator of `sonolube actuators`, in place of the amplitude.", kind="NAME")
+    ] = None,
+    voltage: Annotated[Number | None, Parameter(help="Voltage of the actuator, peak to peak.", unit="V")] = None,
+    shape: Annotated[
+        str | None,
+        Parameter(
+            help="End of the pin: 'flat 3mm' (its diameter, default), 'ball 5mm' (its radius), 'ball radius 5mm',"
+            " 'ball diameter 10mm'.",
+            kind="SHAPE",
+        ),
+    ] = None,
+    track_radius: Annotated[
+        Number | None, Parameter(help="Radius of the track on the disc, for a speed in rpm.", unit="m")
+    ] = None,
+    track_diameter: Annotated[Number | None, Parameter(help="Its diameter, in place of the radius.", unit="m")] = None,
+    finish: Annotated[
+        str | None,
+        Parameter(
+            help="Finish of pin and disc: 'ground' (default), N6, 'ground N6', 'Ra 0.4' (in um), 0.4um (as Ra),"
+            " 'Rz 3.2um'.",
+            kind="FINISH",
+        ),
+    ] = None,
+    pin_finish: Annotated[str | None, Parameter(help="Finish of the pin.", kind="FINISH")] = None,
+    disc_finish: Annotated[str | None, Parameter(help="Finish of the disc.", kind="FINISH")] = None,
+    scan: Annotated[
+        InputFile | None, Parameter(help="Scan of the disc, in place of its finish.", kind="FILE", is_file=True)
+    ] = None,
+    pin_scan: Annotated[
+        InputFile | None, Parameter(help="Scan of the pin, in place of its finish.", kind="FILE", is_file=True)
+    ] = None,
+    friction: Annotated[
+        Number | None,
+        Parameter(
+            help="Coefficient of dry friction, where it was measured; else the range of the pair.",
+            unit="",
+            kind="NUMBER",
+        ),
+    ] = None,
+    decay_length: Annotated[
+        Number | None,
+        Parameter(
+            help="Length over which the force of the worn contact falls by a factor of e, where it is known; else that "
+            "of published tests.",
+            unit="m",
+        ),
+    ] = None,
+    stiffness: Annotated[
+        Number | None,
+        Parameter(
+            help="Measured normal stiffness of the contact under the load, such as 1.5MN/m, in place of the decay "
+            "length.",
+            unit="N/m",
+            kind="STIFFNESS",
+        ),
+    ] = None,
+) -> "NewRig":
+    """A first rig file from what is known before a test: asks on a terminal for what the options leave out.
+
+    Example: sonolube new rig.toml --pin m50 --disc m50 --load 5N --speed 0.2m/s --frequency 20kHz --amplitude 3um
+    """
+    every = {"amplitude": amplitude, "actuator": actuator, "voltage": voltage, "pin_finish": pin_finish}
+    refuse_two_of_one(every | {"pin_scan": pin_scan, "disc_finish": disc_finish, "scan": scan})
+    refuse_two_of_one({"decay_length": decay_length, "stiffness": stiffness})
+    if amplitude is None and actuator is None:
+        raise InvalidInput(f"give {shown('amplitude')}, or {shown('actuator')} with its {shown('voltage')}")
+    sliding = speed_of(
+        _text(speed, "m/s") or "",
+        track_radius=_text(track_radius, "m"),
+        track_diameter=_text(track_diameter, "m"),
+        name=shown("speed"),
+        radius_name=shown("track_radius"),
+        diameter_name=shown("track_diameter"),
+    )
+    known = KnownRig(
+        pin=material(pin).name,
+        disc=material(disc).name,
+        shape=pin_shape(shape or DEFAULT_SHAPE, name=shown("shape")),
+        normal_load=_read("load", load, "N"),
+        sliding_speed=sliding.sliding_speed,
+        speed_reason=sliding.reason,
+        frequency=_read("frequency", frequency, "Hz"),
+        vibration=vibration_of(stated_vibration(amplitude, actuator, voltage), name=shown("amplitude")),
+        pin_surface=_surface(pin_scan, pin_finish or finish),
+        disc_surface=_surface(scan, disc_finish or finish),
+        friction_coefficient=_read_optional("friction", friction, ""),
+        decay_length=_read_optional("decay_length", decay_length, "m"),
+        normal_stiffness=_read_optional("stiffness", stiffness, "N/m"),
+    )
+    rig = rig_of_known(known)
+    return NewRig(rig=rig, rig_text=new_rig_text(known), least_known=least_known(rig))
+
+
+@answer
+class NewRig(Answer):
+    """New rig with what it assumes, the inputs known least, and its file; `target` is where a terminal writes it."""
+
+    rig: Rig
+    rig_text: str
+    least_known: Sequence[LeastKnown]
+    target: Path | None = None
+
+    def blocks(self) -> Sequence[Block]:
+        """Title, the inputs known least with how to measure them, and the next command."""
+        heads = ("least known", "distribution", "to measure it")
+        rows = [(one.key, one.text, one.remedy) for one in self.least_known]
+        following = [] if self.target is None else [f"  next: sonolube predict {quote(str(self.target))}"]
+        return [self.rig.title, Table(heads, rows), *following]
+
+    def written_to(self, target: Path) -> "NewRig":
+        """Return the answer for a file."""
+        return replace(self, target=target)
+
+    def object(self) -> dict[str, Any]:
+        """Title, text of the file and the inputs known least."""
+        return {
+            "rig": self.rig.title,
+            "text": self.rig_text,
+            "uncertainty": {key: law.text for key, law in self.rig.uncertainty.items()},
+            "least_known": {one.key: one.remedy for one in self.least_known},
+        }
+
+    def dataset(self) -> "xr.Dataset":
+        """Return the uncertain entries of the rig: medians and 80 % intervals in SI, and their distributions."""
+        import xarray as xr
+
+        laws, levels = self.rig.uncertainty, [0.1, 0.5, 0.9]
+        return xr.Dataset(
+            {
+                "quantile": (("entry", "level"), [law.quantile(levels) for law in laws.values()]),
+                "distribution": ("entry", [law.text for law in laws.values()]),
+            },
+            coords={"entry": list(laws), "level": levels},
+            attrs={"title": self.rig.title, **self.notes()},
+        )
+
+    def files(self) -> Mapping[str, str]:
+        """Rig file."""
+        return {"rig.toml" if self.target is None else self.target.name: self.rig_text}
+
+
+def refuse_two_of_one(given: Mapping[str, object]) -> None:
+    """Refuse two arguments of `new` for one thing, and an actuator without its voltage.
+
+    Parameters
+    ----------
+    given : mapping of str to object
+        Values of arguments by name; None for what was not given.
+
+    Raises
+    ------
+    InvalidInput
+        For the first such pair.
+    """
+    for pair in _ONE_OF:
+        if all(given.get(name) is not None for name in pair):
+            raise InvalidInput(f"give either {' or '.join(map(shown, pair))}, got both", key=pair[1])
+    if (given.get("actuator") is None) != (given.get("voltage") is None):
+        raise InvalidInput(f"{shown('actuator')} and {shown('voltage')} belong together: give both or neither")
+
+
+def stated_vibration(amplitude: Number | None, actuator: str | None, voltage: Number | None) -> str:
+    """What vibrates the contact as one text: an amplitude, or an actuator and its voltage."""
+    return _text(amplitude, "m") or "" if actuator is None else f"{actuator} {_text(voltage, 'V')}"
+
+
+def _text(value: Number | None, unit: str) -> str | None:
+    """Quantity as text; None as it is."""
+    return f"{float(value)} {unit}" if isinstance(value, int | float) else value
+
+
+def _read(name: str, value: Number, unit: str) -> float:
+    """Positive number in SI that a rig can have."""
+    return reader(unit, name=shown(name))(_text(value, unit) or "")
+
+
+def _read_optional(name: str, value: Number | None, unit: str) -> float | None:
+    """The same; None where nothing was given."""
+    return None if value is None else _read(name, value, unit)
+
+
+def _surface(scan: InputFile | None, finish: str | None) -> KnownSurface:
+    """Surface by its scan or its finish."""
+    return surface_of(str(file_path(scan)) if scan is not None else finish or DEFAULT_FINISH)

@@ -1,0 +1,80 @@
+"""Task `response`: linear response of a rig, amplitude per volt and electrical impedance over frequency."""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.models.dynamics import modes
+from sonolube.report import Drawing
+from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, structure_in_contact
+from sonolube.rig.figures import response_figure
+from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.result_datasets import response_arrays
+from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.blocks import Block, Rows
+from sonolube.tasks.parameters import Number, Parameter, RestingRig, rig_of
+from sonolube.tasks.task import in_si, shown, task
+from sonolube.units import format_si
+
+
+@task
+def response(
+    rig: RestingRig,
+    *,
+    lowest: Annotated[Number, Parameter(help="Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Parameter(help="Highest frequency.", unit="Hz", option="--to")] = "100kHz",
+) -> "ResponseAnswer":
+    """Linear response: tip amplitude per volt and electrical impedance over frequency.
+
+    Example: sonolube response examples/rigs/tribometer.toml --from 15kHz --to 35kHz
+    """
+    low, high = in_si("lowest", lowest), in_si("highest", highest)
+    if not 0 < low < high:
+        raise InvalidInput(f"{shown('lowest')} {lowest} must lie above 0 Hz and below {shown('highest')} {highest}")
+    known = rig_of(rig)
+    result = frequency_response(known, frequency=frequency_grid(known, lowest=low, highest=high))
+    natural = modes(structure_in_contact(known))
+    return ResponseAnswer(rig=known, result=result, natural_frequency=natural.natural_frequency[~natural.rigid])
+
+
+@answer
+class ResponseAnswer(Answer):
+    """Linear response of a rig: natural frequencies and the largest amplitude per volt."""
+
+    rig: Rig
+    result: FrequencyResponse
+    natural_frequency: Floats
+
+    def blocks(self) -> Sequence[Block]:
+        """Natural frequencies and the largest amplitude per volt."""
+        frequency, amplitude = self._largest()
+        found = ", ".join(format_si(f, "Hz", digits=4) for f in self.natural_frequency.tolist()) or "none"
+        at = format_si(frequency, "Hz", digits=4)
+        largest = f"{format_si(amplitude, 'm')} per volt peak to peak at {at}"
+        return [
+            f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}, small motions",
+            Rows([("natural frequencies", found), ("largest amplitude", largest)]),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Natural frequencies, and frequency and value of the largest amplitude per volt."""
+        frequency, amplitude = self._largest()
+        return {
+            "rig": self.rig.title,
+            "resonances": [{"value": f, "unit": "Hz"} for f in self.natural_frequency.tolist()],
+            **si({"frequency": frequency, "amplitude_per_volt": amplitude}),
+        }
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Response over frequency."""
+        return {f"{self.rig.name}-response": Drawing(draw=lambda: response_figure(self.rig, self.result))}
+
+    def files(self) -> Mapping[str, LabelledArrays]:
+        """Response over frequency as netCDF."""
+        return {f"{self.rig.name}-response.nc": response_arrays(self.rig, self.result)}
+
+    def _largest(self) -> tuple[float, float]:
+        """Frequency and value of the largest amplitude per volt."""
+        best = int(self.result.amplitude_per_volt.argmax())
+        return float(self.result.frequency[best]), float(self.result.amplitude_per_volt[best])

@@ -1,0 +1,30 @@
+"""Task `simulate`: steady vibration of a rig's drive, structure and contact, with the friction and wear under it."""
+
+from sonolube import rig as rigs
+from sonolube.report import Drawing
+from sonolube.rig.figures import simulation_figure
+from sonolube.rig.result_datasets import simulation_arrays
+from sonolube.tasks.parameters import RigFile, Stop, Watch, rig_of
+from sonolube.tasks.progress import stage
+from sonolube.tasks.results.measured import measured_on
+from sonolube.tasks.results.rig_record import RigRecord
+from sonolube.tasks.task import task
+
+
+@task
+def simulate(rig: RigFile, *, progress: Watch = None, cancelled: Stop = None) -> RigRecord:
+    """Multi-scale model: drive, structure and contact in one steady vibration, and the friction and wear under it.
+
+    Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
+    """
+    known = rig_of(rig)
+    with stage("simulating"):
+        result = rigs.simulate(known)
+    name, labelled = f"{known.name}-simulation", simulation_arrays(known, result)
+    return RigRecord(
+        rig=known,
+        result=result,
+        measured=measured_on(known, vibration_amplitude=result.vibration.vibration_amplitude),
+        drawings={name: Drawing(draw=lambda: simulation_figure(labelled))},
+        datasets={f"{name}.nc": labelled},
+    )

@@ -1,0 +1,72 @@
+"""Task `thermal`: heat of friction and vibration in a rig's contact, and its temperature over a test."""
+
+from typing import Annotated
+
+from sonolube.errors import InvalidInput
+from sonolube.models.thermal.flash_models import FLASH_MODELS
+from sonolube.report import Drawing
+from sonolube.rig import temperature_point, thermal_solid
+from sonolube.rig.figures import temperature_figure
+from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
+from sonolube.tasks.results.rig_record import RigRecord
+from sonolube.tasks.task import in_si, plausible, shown, task
+
+_PIN = Parameter(help="Material of the pin, which the contact stays on; by default the rig's.", kind="MATERIAL")
+_DISC = Parameter(help="Material of the disc, which the contact moves over; by default the rig's.", kind="MATERIAL")
+_CONDUCTANCE = Parameter(help="Thermal conductance from the pin to its surroundings.", unit="W/K", kind="CONDUCTANCE")
+_VIBRATION_HEAT = Parameter(
+    help="Heat of the vibration in the contact; several, such as 1mW,5mW, one after another, each for as long.",
+    unit="W",
+)
+_RATIO = Parameter(
+    help="Friction with vibration over that without, such as a measured one, instead of the friction model's.",
+    unit="",
+    quantity="friction_ratio",
+    kind="RATIO",
+)
+_FLASH_MODEL = Parameter(help=f"Model of the flash temperature: {', '.join(FLASH_MODELS)}.", kind="MODEL")
+
+
+@task
+def thermal(
+    rig: RigFile,
+    *,
+    pin: Annotated[str | None, _PIN] = None,
+    disc: Annotated[str | None, _DISC] = None,
+    duration: Annotated[Number, Parameter(help="Duration of the test.", unit="s")] = "50s",
+    heat_capacity: Annotated[
+        Number, Parameter(help="Heat capacity of the pin.", unit="J/K", kind="CAPACITY")
+    ] = "1.5J/K",
+    conductance: Annotated[Number, _CONDUCTANCE] = "0.05W/K",
+    dry: Annotated[Number, Parameter(help="Time at the start of the test without vibration.", unit="s")] = "0s",
+    vibration_heat: Annotated[Number, _VIBRATION_HEAT] = "0W",
+    friction_ratio: Annotated[Number | None, _RATIO] = None,
+    flash_model: Annotated[str, _FLASH_MODEL] = "quadrature",
+) -> RigRecord:
+    """Heat of friction and vibration: flash, bulk and their share in each body.
+
+    Example: sonolube thermal examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
+    """
+    known = rig_of(rig)
+    levels = vibration_heat.split(",") if isinstance(vibration_heat, str) else [vibration_heat]
+    result = temperature_point(
+        known,
+        pin=thermal_solid(_material(pin or known.pin_material, "pin")),
+        disc=thermal_solid(_material(disc or known.disc_material, "disc")),
+        heat_capacity=plausible("heat_capacity", heat_capacity),
+        thermal_conductance=plausible("conductance", conductance),
+        duration=plausible("duration", duration),
+        dry_duration=plausible("dry", dry),
+        vibration_heat_rate=[plausible("vibration_heat", level) for level in levels],
+        friction_ratio=in_si("friction_ratio", friction_ratio),
+        flash_model=flash_model,
+    )
+    drawing = Drawing(draw=lambda: temperature_figure(known, result))
+    return RigRecord(rig=known, result=result, drawings={f"{known.name}-thermal": drawing})
+
+
+def _material(name: str | None, role: str) -> str:
+    """Material of a body, given or of the rig."""
+    if name is None:
+        raise InvalidInput(f'{shown(role)}: missing; give it, or contact.softer.role = "pin" or "disc" in the rig file')
+    return name

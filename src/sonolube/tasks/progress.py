@@ -1,0 +1,95 @@
+"""Progress of a task, reported to who called it, and its cancellation."""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from contextvars import ContextVar
+
+from sonolube.errors import SonolubeError
+
+Advance = Callable[[str, int, int], None]
+"""Called with what is done now, the number done and their total, zero where it is unknown."""
+
+Progress = Callable[[str, int, int], None]
+"""Called with the stage and what is done in it, the number done and their total."""
+
+Cancelled = Callable[[], bool]
+"""Whether the task is to stop; asked at every report of progress."""
+
+Observer = Callable[[str], AbstractContextManager[Advance]]
+"""Opened for each stage, by its title."""
+
+
+class TaskCancelled(SonolubeError):
+    """A task that was cancelled; it has written nothing."""
+
+
+def _unseen(title: str) -> AbstractContextManager[Advance]:
+    """Observer that shows nothing."""
+    return nullcontext(lambda what, done, total: None)
+
+
+_OBSERVER: ContextVar[Observer] = ContextVar("observer", default=_unseen)
+_CANCELLED: ContextVar[Cancelled] = ContextVar("cancelled", default=lambda: False)
+
+
+@contextmanager
+def observed(observer: Observer) -> Iterator[None]:
+    """Show the progress of tasks by an observer inside a `with` block."""
+    before = _OBSERVER.set(observer)
+    try:
+        yield
+    finally:
+        _OBSERVER.reset(before)
+
+
+@contextmanager
+def watched(progress: Progress | None, cancelled: Cancelled | None) -> Iterator[None]:
+    """Report progress to a function, and ask another whether to stop, inside a `with` block; where they are given."""
+    with ExitStack() as stack:
+        if progress is not None:
+
+            def observer(title: str) -> AbstractContextManager[Advance]:
+                return nullcontext(
+                    lambda what, done, total: progress(f"{title}: {what}".removesuffix(": "), done, total)
+                )
+
+            stack.enter_context(observed(observer))
+        if cancelled is not None:
+            before = _CANCELLED.set(cancelled)
+            stack.callback(_CANCELLED.reset, before)
+        yield
+
+
+@contextmanager
+def stage(title: str) -> Iterator[Advance]:
+    """Report the progress of a stage of a task inside a `with` block.
+
+    Parameters
+    ----------
+    title : str
+        Such as "sweeping".
+
+    Yields
+    ------
+    callable
+        Called with what is done now, the number done and their total.
+
+    Raises
+    ------
+    TaskCancelled
+        By a report, or at the end, if the task is to stop.
+    """
+    cancelled = _CANCELLED.get()
+
+    def stop_if_cancelled() -> None:
+        if cancelled():
+            raise TaskCancelled(f"{title}: cancelled")
+
+    with _OBSERVER.get()(title) as advance:
+
+        def report(what: str, done: int, total: int) -> None:
+            stop_if_cancelled()
+            advance(what, done, total)
+
+        yield report
+        stop_if_cancelled()

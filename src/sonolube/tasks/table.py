@@ -1,0 +1,146 @@
+"""Table of all tasks, one line each: panel of the help, name, module and function, and the files of its answer."""
+
+import ast
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from sonolube.tasks.answer import Answer
+
+_PREDICT: Final = "Predict a rig"
+_PART: Final = "Predict a part"
+_DESIGN: Final = "Design"
+_MEASURE: Final = "Measure"
+_COMPARE: Final = "Compare and identify"
+_LAB: Final = "Laboratory"
+_LOOKUP: Final = "Look up"
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One task.
+
+    Parameters
+    ----------
+    panel : str
+        Heading under which it is listed.
+    name : str
+        As typed on a terminal; two words for a task of a group, in Python joined by a dot.
+    where : str
+        Module below `sonolube.tasks` and function in it, as "predict.friction:friction".
+    writes : str
+        Names of the files of its answer with spaces between, * for what is not known before the computation; an
+        argument in braces stands for its name without folder and ending.
+    has_report : bool
+        Whether the page of its answer is written on request, under a name of its own.
+    folder : str
+        Folder of the files where none is named, which is not tried before the task runs; empty for the usual one.
+    writes_on_request : bool
+        Whether the files are written only where a folder is named.
+    """
+
+    panel: str
+    name: str
+    where: str
+    writes: str = ""
+    has_report: bool = False
+    folder: str = ""
+    writes_on_request: bool = False
+
+    @property
+    def function(self) -> "Callable[..., Answer]":
+        """Function of the task, imported with its module."""
+        module, _, name = self.where.partition(":")
+        function: Callable[..., Any] = getattr(import_module(f"sonolube.tasks.{module}"), name)
+        return function
+
+    @property
+    def summary(self) -> str:
+        """Docstring of the function, read from the source without importing the module."""
+        return docstring("sonolube.tasks", self.where)
+
+
+def docstring(package: str, where: str) -> str:
+    """Docstring of a function, such as "predict.friction:friction", read without importing its module."""
+    module, _, name = where.partition(":")
+    source = files(package).joinpath(f"{module.replace('.', '/')}.py").read_text(encoding="utf-8")
+    nodes = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef) and node.name == name)
+    return ast.get_docstring(next(nodes)) or ""
+
+
+TASKS: Final = (
+    Task(_PREDICT, "new", "predict.new:new"),
+    Task(_PREDICT, "predict", "predict.predict:predict", "{rig}-prediction.*"),
+    Task(_PREDICT, "contact", "predict.contact:contact"),
+    Task(_PREDICT, "friction", "predict.friction:friction"),
+    Task(_PREDICT, "wear", "predict.wear:wear"),
+    Task(_PREDICT, "simulate", "predict.simulate:simulate", "{rig}-simulation.*"),
+    Task(_PREDICT, "response", "predict.response:response", "{rig}-response.*"),
+    Task(_PREDICT, "transient", "predict.transient:transient", "{rig}-transient.*"),
+    Task(_PREDICT, "thermal", "predict.thermal:thermal", "{rig}-thermal.*"),
+    Task(_PREDICT, "regime", "predict.regime:regime", "{rig}-regime.*"),
+    Task(_PART, "modes", "parts.modes:modes", "{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.*"),
+    Task(
+        _PART,
+        "impedance compute",
+        "impedance.computed_impedance:compute",
+        "{part}-impedance.* {part}-impedance-free.* {part}-impedance-clamped.* {part}-modes-*.vtu",
+    ),
+    Task(
+        _DESIGN,
+        "sweep",
+        "design.sweep:sweep",
+        "sweep.nc sweep.json sweep.html sweep.png sweep.svg sweep.pdf {rig}-{of}.*",
+    ),
+    Task(_DESIGN, "map", "design.map:map", "map.html {rig}-{kind}.* {rig}-{kind}-measured.*"),
+    Task(_DESIGN, "plan", "design.plan:plan", "{rig}-plan.* {rig}-plan-runs.csv {rig}-plan/*"),
+    Task(_DESIGN, "uncertainty", "design.uncertainty:uncertainty", "uncertainty.html {rig}-uncertainty-*.*"),
+    Task(_DESIGN, "optimise", "design.optimise:optimise", "optimise.html {rig}-optimum.* {rig}-optimum-*.*"),
+    Task(_DESIGN, "control", "design.control:control", "control.html {rig}-control.* {rig}-control-*.*"),
+    Task(_DESIGN, "efficiency", "design.efficiency:efficiency", "efficiency.html {runs}-efficiency.*"),
+    Task(_DESIGN, "horn design", "horn.tuned_horn:design", "{part}-axis.* {part}-mode.*"),
+    Task(_DESIGN, "horn face", "horn.poisson_horn_face:face", "horn-{horn}-face.*"),
+    Task(_MEASURE, "measure friction", "measure.recorded_friction:friction", has_report=True),
+    Task(_MEASURE, "measure rotation", "measure.hall_rotation:rotation", has_report=True),
+    Task(_MEASURE, "measure calibration", "measure.gauge_calibration:calibration", has_report=True),
+    Task(_MEASURE, "measure surface", "measure.scanned_surface:surface", has_report=True),
+    Task(_MEASURE, "measure groove", "measure.worn_groove:groove", has_report=True),
+    Task(_MEASURE, "measure impedance", "measure.impedance_fit:impedance", has_report=True),
+    Task(_MEASURE, "measure vibration", "measure.driven_vibration:vibration", has_report=True),
+    Task(_MEASURE, "measure stiffness", "measure.resonance_stiffness:stiffness", "{pressed}-stiffness.*"),
+    Task(_COMPARE, "compare", "compare.compare:compare", "models.csv models.nc models-*.*"),
+    Task(_COMPARE, "fit", "compare.fit:fit", "{runs}-fit.*"),
+    Task(_COMPARE, "identify rig", "identify.rig_of_facts:rig"),
+    Task(_COMPARE, "identify decay-length", "identify.decay_length_of_run:decay_length", "{file}-decay-length.*"),
+    Task(_COMPARE, "literature", "compare.literature:literature", "map-of-studies.* studies.csv"),
+    Task(_COMPARE, "reproduce", "compare.reproduce:reproduce", "reproduction.html validation.json figures/*"),
+    Task(_LAB, "lab run", "lab.protocol_run:run"),
+    Task(_LAB, "lab virtual", "lab.protocol_run:virtual"),
+    Task(_LAB, "lab hold", "lab.friction_hold:hold"),
+    Task(_LAB, "lab runs", "lab.run_list:runs"),
+    Task(_LAB, "lab show", "lab.shown_run:show", "{run}-channels.*", writes_on_request=True),
+    Task(_LAB, "lab recover", "lab.recovery:recover"),
+    Task(_LAB, "lab export", "lab.recording_export:export", "{run}.* {run}-*"),
+    Task(_LAB, "lab check", "lab.device_check:check"),
+    Task(_LOOKUP, "materials", "lookup.materials:materials"),
+    Task(_LOOKUP, "actuators", "lookup.actuators:actuators"),
+    Task(_LOOKUP, "published", "lookup.published:published"),
+    Task(
+        _LOOKUP,
+        "example",
+        "lookup.example:example",
+        "examples/*.csv examples/*.toml examples/facts/*.toml examples/lab/*.* examples/mappings/*.toml"
+        " examples/protocols/*.toml examples/rigs/*.toml examples/rigs/modes/*.toml",
+        folder=".",
+    ),
+    Task(_LOOKUP, "schema", "lookup.schema:schema"),
+)
+"""Every task, in the order of the help."""
+
+
+def task_named(name: str) -> Task:
+    """Task of a name, such as "measure friction"."""
+    return next(each for each in TASKS if each.name == name)

@@ -1,0 +1,43 @@
+"""Task `control` in Python: the numbers of the command, quantities in SI, and refusals."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from pytest import raises
+
+from sonolube.compilation import few_points
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.tasks.design.control import control
+
+
+def test_quantities_as_text_and_in_si_give_the_answer_of_the_command(
+    rigs: Path, on_terminal: Callable[..., dict[str, Any]]
+) -> None:
+    path = rigs / "collar.toml"
+    with few_points():  # as the terminal computes; compiled kernels round the last digits otherwise
+        by_text = control(path, friction="1.5N", duration="40ms", warming="20 K", noise="5 mN")
+    options = ("--friction", "1.5N", "--duration", "40ms", "--warming", "20K", "--noise", "5mN")
+    assert by_text.json_object() == on_terminal("control", path, *options)
+    coefficient = 1.5 / by_text.rig.normal_load
+    with few_points():
+        in_si = control(path, friction=coefficient, duration=0.04, warming=20.0, noise=0.005)
+    assert in_si.object() == by_text.object()
+
+
+def test_arguments_are_refused_by_their_names(rigs: Path) -> None:
+    path = rigs / "collar.toml"
+    for arguments, line in (
+        ({"friction": -1.0}, "^friction -1.0 must be positive, a coefficient such as"),
+        ({"rate": 0.0}, "^rate 0.0 and duration 0.2s must be positive"),
+        ({"delay": "1s"}, "^delay 1s must not exceed duration 0.2s"),
+        ({"efficiency": 1e-9}, "^efficiency has no meaning for feed_forward model; it is for efficiency"),
+        ({"quality": 40.0}, "^quality has no meaning for a rig whose file has the table structure"),
+        ({"warming_time": "1ms"}, "^warming_time has no meaning without warming"),
+        ({"delay": "1mm"}, "^delay 1mm is a length"),
+        ({"factor": 0.0}, "^factor must be finite and lie between 0.01 and 100, got 0.0"),
+    ):
+        with raises(InvalidInput, match=line):
+            control(path, **arguments)
+    with raises(UnknownName, match="unknown feed_forward 'modell'; did you mean model"):
+        control(path, feed_forward="modell")  # type: ignore[arg-type]

@@ -1,0 +1,62 @@
+"""Task `map` in Python: the numbers of the command, axes in SI, runs as bytes, and refusals."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pytest import raises
+
+import sonolube as sl
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.tasks.design.map import map as map_of
+from sonolube.tasks.files import NamedBytes
+
+VOLTAGE = "drive.voltage_peak_to_peak"
+OVER = {"sliding.sliding_speed": "20mm/s:200mm/s:3", "contact.normal_load": "5N", VOLTAGE: "10V,20V"}
+RUNS = "\n".join(
+    [
+        "sliding_speed [mm/s],actuator_power [W],friction_reduction [%]",
+        *(f"{speed},{watt},{60 - speed / 4 + watt}" for speed in (50, 100, 150) for watt in (1, 3, 5)),
+    ]
+)
+
+
+@pytest.fixture
+def rig(rigs: Path) -> sl.Rig:
+    return sl.read_rig(rigs / "power_map.toml")
+
+
+def test_other_axes_as_text_and_in_si_make_the_map_of_the_command(
+    rig: sl.Rig, rigs: Path, on_terminal: Callable[..., dict[str, Any]]
+) -> None:
+    mapped = sl.map(rig, over=OVER)
+    options = [word for key, values in OVER.items() for word in ("--over", f"{key}={values}")]
+    assert mapped.json_object() == on_terminal("map", rigs / "power_map.toml", *options, "--form", "png")
+    found = mapped.dataset()
+    assert found["friction_reduction"].sizes == {"normal_load": 1, "voltage_peak_to_peak": 2, "sliding_speed": 3}
+    assert found.attrs["assumptions"]
+    assert found.attrs["caveats"]
+    numbers = {"sliding.sliding_speed": np.linspace(0.02, 0.2, 3), "contact.normal_load": 5.0, VOLTAGE: (10.0, 20.0)}
+    assert map_of(rig, over=numbers).dataset().equals(found)
+    assert mapped.plot().axes
+
+
+def test_runs_may_be_bytes_and_the_map_stays_that_of_the_model(rig: sl.Rig, tmp_path: Path) -> None:
+    (tmp_path / "runs.csv").write_text(RUNS, encoding="utf-8")
+    by_path, by_bytes = (
+        map_of(rig, over=OVER, runs=runs) for runs in (tmp_path / "runs.csv", NamedBytes("runs.csv", RUNS.encode()))
+    )
+    assert list(by_path.figures()) == ["power_map-velocity-power", "power_map-velocity-power-measured"]
+    assert by_path.json_object() == by_bytes.json_object()
+    assert by_bytes.dataset().equals(map_of(rig, over=OVER).dataset())
+
+
+def test_arguments_are_refused_by_their_names(rig: sl.Rig) -> None:
+    with raises(UnknownName, match="unknown kind 'velocity-powr'; did you mean velocity-power"):
+        map_of(rig, kind="velocity-powr")  # type: ignore[arg-type]
+    with raises(UnknownName, match="unknown form 'pgn'"):
+        map_of(rig, form=["pgn"])  # type: ignore[list-item]
+    with raises(InvalidInput, match=r"^over drive\.frequency: no axis of a velocity-power map"):
+        map_of(rig, over={"drive.frequency": [1e3, 2e3]})

@@ -1,0 +1,69 @@
+"""Look-ups in Python: the same table as on a terminal, as JSON, text and dataset."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+
+from sonolube.errors import UnknownName
+from sonolube.facts.materials import material
+from sonolube.tasks.answer import Answer
+from sonolube.tasks.lookup.actuators import actuators
+from sonolube.tasks.lookup.materials import materials
+from sonolube.tasks.lookup.published import published
+from sonolube.tasks.lookup.schema import schema
+
+Program = Callable[..., Any]
+CALLS = [
+    (materials, ()),
+    (materials, ("AISI 304",)),
+    (actuators, ()),
+    (actuators, ("sa050510",)),
+    (published, ()),
+    (published, ("2.5",)),
+    (schema, ("tasks",)),
+]
+
+
+@pytest.mark.parametrize(("function", "arguments"), CALLS)
+def test_the_answer_in_python_is_that_of_the_terminal(
+    function: Callable[..., Answer], arguments: tuple[str, ...], sonolube: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    answer = function(*arguments)
+    assert answer.json_object() == sonolube(function.__name__, *arguments, "--json").answer
+    assert f"{answer}\n" == sonolube(function.__name__, *arguments).out
+
+
+def test_lists_have_no_line_that_a_terminal_would_break() -> None:
+    for answer in (materials(), actuators(), published(), published("2.5"), materials("brass")):
+        assert max(map(len, str(answer).splitlines())) <= 80
+
+
+def test_properties_of_materials_are_a_dataset_in_si() -> None:
+    data = materials().dataset()
+    assert data["youngs_modulus"].sel(material="aluminium_2024") == 73e9
+    assert data["youngs_modulus"].attrs == {"units": "Pa", "long_name": "Young's modulus"}
+    assert np.isnan(data["youngs_modulus"].sel(material="uncoated_steel"))
+    assert materials("2024")["density"].item() == material("aluminium_2024").properties["density"].value
+
+
+def test_actuators_and_tables_are_datasets_in_si() -> None:
+    assert actuators()["stroke"].sel(actuator="sa050510").item() == approx(14e-6)
+    speeds = published("2.5")["sliding_speed"]
+    assert speeds.values == approx([20.3e-3, 40.6e-3, 87e-3])
+    assert speeds.attrs["units"] == "m/s"
+
+
+def test_an_unknown_name_is_answered_with_the_closest() -> None:
+    with raises(UnknownName, match="did you mean sa050510"):
+        actuators("sa05051")
+
+
+def test_a_schema_is_json_as_text() -> None:
+    answer = schema("devices")
+    assert json.loads(str(answer)) == answer.object()
+    assert "<pre>" in answer._repr_html_()

@@ -1,0 +1,77 @@
+"""Task `new` in Python: the rig and file of the command, which other tasks take."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pytest import approx, mark, raises
+
+import sonolube as sl
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.tasks.files import NamedBytes
+
+KNOWN: dict[str, Any] = {"pin": "brass", "disc": "304", "load": "5 N", "speed": "0.2 m/s", "frequency": "20 kHz"}
+KNOWN |= {"amplitude": "3 um", "finish": "ground N6"}
+
+
+def test_a_new_rig_is_that_of_the_command_and_predicts_with_its_own_materials(
+    tmp_path: Path, on_terminal: Callable[..., dict[str, Any]]
+) -> None:
+    options = [text for key, value in KNOWN.items() for text in (f"--{key}", value)]
+    command, found = on_terminal("new", "rig.toml", *options), sl.new(**KNOWN)
+    assert found.json_object() == command
+    assert (tmp_path / "rig.toml").read_text() == found.files()["rig.toml"]
+    assert found.rig.table() == sl.read_rig(tmp_path / "rig.toml").table()
+    prediction = sl.predict(found)
+    assert "Heat of friction" in prediction.object()["statement"][-1]
+    with_names = sl.predict(found.rig, pin="brass", disc="304")
+    assert prediction["mean_temperature_rise"].equals(with_names["mean_temperature_rise"])
+
+
+def test_numbers_in_si_give_the_file_of_the_texts() -> None:
+    in_si = KNOWN | {"load": 5.0, "speed": np.float64(0.2), "frequency": 20e3, "amplitude": 3e-6}
+    assert sl.new(**in_si).files() == sl.new(**KNOWN).files()
+    turning = KNOWN | {"speed": "60 rpm"}
+    assert sl.new(**turning, track_radius=0.015).files() == sl.new(**turning, track_diameter="30 mm").files()
+    driven = KNOWN | {"amplitude": None, "actuator": "sa050510"}
+    by_text = sl.new(**driven, voltage="40 V", friction="0.4", stiffness="1.5 MN/m")
+    assert sl.new(**driven, voltage=40.0, friction=0.4, stiffness=1.5e6).files() == by_text.files()
+
+
+def test_a_scan_may_be_bytes(tmp_path: Path) -> None:
+    heights = 1e-6 * np.random.default_rng(0).standard_normal((64, 64))
+    header = "Channel: Height\nWidth: 64 um\nHeight: 64 um\nValue units: m"
+    np.savetxt(tmp_path / "plate.asc", heights, header=header)
+    by_path = sl.new(**KNOWN, scan=tmp_path / "plate.asc")
+    content = NamedBytes("plate.asc", (tmp_path / "plate.asc").read_bytes())
+    assert sl.new(**KNOWN, scan=content).files() == by_path.files() != sl.new(**KNOWN).files()
+
+
+def test_the_dataset_has_the_spread_of_what_nobody_measured() -> None:
+    quantile = sl.new(**KNOWN)["quantile"].sel(entry="friction.friction_coefficient").to_numpy()
+    low, high = quantile[[0, 2]]
+    assert quantile[1] == approx((low + high) / 2)  # uniform
+
+
+@mark.parametrize(
+    ("change", "line"),
+    [
+        ({"load": -5.0}, r"^load -5\.0 N must be positive"),
+        ({"load": float("nan")}, "^load 'nan N' is not a number"),
+        ({"speed": "60 rpm"}, "^speed 60 rpm is a rotational speed: give track_radius or track_diameter too"),
+        ({"amplitude": None}, "^give amplitude, or actuator with its voltage"),
+        ({"voltage": 40.0}, "^actuator and voltage belong together"),
+        ({"actuator": "sa050510", "voltage": 40.0}, "^give either amplitude or actuator, got both"),
+        ({"decay_length": 1e-6, "stiffness": 1e6}, "^give either decay_length or stiffness, got both"),
+        ({"shape": "cone 3mm"}, "^shape 'cone 3mm' must be 'flat'"),
+    ],
+)
+def test_arguments_are_refused_by_their_names(change: dict[str, Any], line: str) -> None:
+    with raises(InvalidInput, match=line):
+        sl.new(**KNOWN | change)
+
+
+def test_an_unknown_material_is_refused_with_the_nearest() -> None:
+    with raises(UnknownName, match="unknown material 'stee'; did you mean steel"):
+        sl.new(**KNOWN | {"pin": "stee"})

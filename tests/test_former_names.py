@@ -1,0 +1,63 @@
+"""Names of earlier versions: one line that names the new place; names of today: tasks, whatever was imported before."""
+
+import subprocess
+import sys
+
+import pytest
+from pytest import mark, raises
+
+import sonolube as sl
+
+
+@mark.parametrize(
+    ("statement", "place"),
+    [
+        ("import sonolube.contact", "sonolube.models.contact"),
+        ("from sonolube.friction.models import FRICTION_MODELS", "sonolube.models.friction"),
+        ("from sonolube import fem", "sonolube.models.fem"),
+        ("import sonolube.materials.record", "sonolube.facts.materials"),
+        ("from sonolube.reproduce import claims", "sonolube.reproduction"),
+        ("import sonolube.lab.runner", "sonolube.laboratory"),
+        ("from sonolube.workbench import modes", "sonolube.tasks"),
+    ],
+)
+def test_an_import_of_a_former_room_names_the_new_one(statement: str, place: str) -> None:
+    with raises(ModuleNotFoundError, match=rf"is now {place}"):
+        exec(statement)
+
+
+@mark.parametrize(("name", "place"), [("new_rig", "sonolube.new"), ("fit_runs", "sonolube.fit"), ("fem", "models.fem")])
+def test_a_former_attribute_names_the_new_one(name: str, place: str) -> None:
+    with raises(AttributeError, match=place):
+        getattr(sl, name)
+
+
+def test_a_name_that_never_was_is_unknown() -> None:
+    with raises(AttributeError, match="no_such_task"):
+        _ = sl.no_such_task  # type: ignore[attr-defined]
+    with raises(ModuleNotFoundError, match="No module named"):
+        exec("import sonolube.no_such_room")
+
+
+ROOMS = """
+import importlib, pkgutil, sonolube
+for module in pkgutil.walk_packages(sonolube.__path__, "sonolube."):
+    if ".gpu" not in module.name and "__main__" not in module.name:
+        importlib.import_module(module.name)
+"""
+NAMES = """
+import sonolube as sl
+from sonolube.tasks.table import TASKS
+for task in TASKS:
+    found = sl
+    for word in task.name.replace("-", "_").split():
+        found = getattr(found, word)
+    assert callable(found), task.name
+    assert found is task.function, task.name
+"""
+
+
+@pytest.mark.parametrize("code", [ROOMS + NAMES, NAMES + ROOMS + NAMES], ids=["rooms first", "tasks first"])
+def test_every_task_has_the_name_of_its_command_whatever_was_imported_before(code: str) -> None:
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert found.returncode == 0, found.stderr
