@@ -107,7 +107,7 @@ class Answer(ABC):
         """Content with caveats and assumptions, as all ways in show it; where brief, assumptions are only counted."""
         assumptions = [f"  assumed {key}: {reason}" for key, reason in self.assumptions().items()]
         if brief and assumptions:
-            assumptions = [f"  {len(assumptions)} assumptions, which --brief leaves out"]
+            assumptions = [f"  {len(assumptions)} assumptions of the rig file are not listed"]
         first, *rest = self.blocks() or [""]
         return [
             *([first] if first else []),

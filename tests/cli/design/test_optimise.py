@@ -8,6 +8,8 @@ import pytest
 import xarray as xr
 from pytest import approx
 
+from sonolube.rig import read_rig
+
 pytestmark = pytest.mark.usefixtures("compiled_kernels")
 
 Program = Callable[..., Any]
@@ -60,3 +62,12 @@ def test_a_target_that_makes_no_design_is_refused_in_one_line(
 ) -> None:
     assert line in sonolube("optimise", rigs / "tribometer.toml", *arguments, "--out", tmp_path / "none").refusal
     assert not (tmp_path / "none").exists()
+
+
+def test_the_rig_file_of_the_optimum_has_the_entries_that_were_replaced(
+    sonolube: Program, rigs: Path, tmp_path: Path
+) -> None:
+    options = ("--target-friction", "0.25", "--set", "contact.roughness.rms_height=1um", "--out", tmp_path)
+    assert sonolube("optimise", rigs / "tribometer.toml", *options).code == 0
+    written = read_rig(tmp_path / "tribometer-optimum.toml")
+    assert written.contact.roughness.rms_height == approx(1e-6)

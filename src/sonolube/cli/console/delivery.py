@@ -59,7 +59,8 @@ def deliver(
     written = [] if folder is None else _write(answer, folder, report)
     if as_json:
         content = answer.json_object()
-        _print(json.dumps(content if answer.is_lookup else content | {"files": list(map(str, written))}, indent=2))
+        content = content if answer.is_lookup else content | {"files": list(map(str, written))}
+        _print(json.dumps(content, indent=2, allow_nan=False))
     else:
         width = line_width()
         lines = [*text_lines(answer.every_block(brief=brief), width=width), *_file_lines(written, folder or Path())]

@@ -22,7 +22,7 @@ from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.input_files import input_text
 from sonolube.models.actuator import MatchingNetwork
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.rig import Rig
+from sonolube.rig import Rig, read_rig
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows, Table
 from sonolube.tasks.results.rig_text import operating_point, rig_settings
@@ -139,7 +139,9 @@ class OptimisationAnswer(Answer):
     def files(self) -> "Mapping[str, str | xr.Dataset]":
         """All designs as netCDF, and the best as a rig file."""
         content = self.rig.content()
-        source = tomli_w.dumps(content) if self.rig.file is None else input_text(self.rig.file)
+        file = self.rig.file
+        is_unchanged = file is not None and read_rig(file).content() == content
+        source = input_text(file) if file is not None and is_unchanged else tomli_w.dumps(content)
         return {
             f"{self._name}.nc": designs_dataset(self.optimum),
             f"{self._name}.toml": design_text(source, content, self.optimum.problem, self.optimum.best),
