@@ -69,7 +69,7 @@ def test_python_gives_the_numbers_and_lines_of_the_terminal(
     with few_points():  # as on a terminal; the other way agrees to 1e-9
         again = function(name)(**{each: answer.call.arguments[each] for each in answer.call.given})
     assert without_files(json.loads(again.to_json())) == without_files(printed)
-    assert again.text(width=None) == answer.text(width=None)
+    assert again.text(line_length=None) == answer.text(line_length=None)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -20,7 +20,7 @@ def test_columns_of_a_grid_begin_one_under_the_other() -> None:
 
 
 def test_the_widest_column_is_wrapped_and_the_others_stay() -> None:
-    assert text_lines([Table(("name", "reason"), [("a", "one two three four")])], width=20) == [
+    assert text_lines([Table(("name", "reason"), [("a", "one two three four")])], line_length=20) == [
         "  name  reason",
         "  a     one two",
         "        three four",
@@ -29,19 +29,19 @@ def test_the_widest_column_is_wrapped_and_the_others_stay() -> None:
 
 def test_a_table_that_is_too_wide_is_written_one_cell_below_the_other() -> None:
     heads = [f"quantity{number}" for number in range(9)]
-    lines = text_lines([Table(heads, [[f"{number}" for number in range(9)]] * 2)], width=40)
+    lines = text_lines([Table(heads, [[f"{number}" for number in range(9)]] * 2)], line_length=40)
     assert lines[:2] == ["  quantity0  0", "  quantity1  1"]
     assert lines.count("") == 1
     assert len(lines) == 2 * 9 + 1
 
 
 def test_a_sentence_is_wrapped_with_its_rest_indented() -> None:
-    assert text_lines(["  caveat: one two three"], width=18) == ["  caveat: one two", "    three"]
+    assert text_lines(["  caveat: one two three"], line_length=18) == ["  caveat: one two", "    three"]
 
 
 @given(st.lists(st.lists(CELL, min_size=3, max_size=3), min_size=1, max_size=4))
 def test_no_line_is_wider_than_asked_for_and_no_word_is_lost(rows: list[list[str]]) -> None:
-    lines = text_lines([Table(("one", "two", "three"), rows), Rows([(row[0], row[1]) for row in rows])], width=60)
+    lines = text_lines([Table(("one", "two", "three"), rows), Rows([(row[0], row[1]) for row in rows])], line_length=60)
     assert max(map(len, lines)) <= 60
     words = " ".join(lines).split()
     assert all(word in words for row in rows for cell in row for word in cell.split())

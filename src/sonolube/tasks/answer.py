@@ -188,9 +188,9 @@ class Answer(ABC):
             fit_to_style(figure)
         return shown_in_notebooks(figure)
 
-    def text(self, *, width: int | None = 80) -> str:
-        """Return the answer as text, as a terminal prints it; not wrapped where the width is None."""
-        return "\n".join(text_lines(self._shown(), width=width))
+    def text(self, *, line_length: int | None = 80) -> str:
+        """Return the answer as text, as a terminal prints it; not wrapped where the length is None."""
+        return "\n".join(text_lines(self._shown(), line_length=line_length))
 
     def __str__(self) -> str:
         return self.text()

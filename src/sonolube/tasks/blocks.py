@@ -59,13 +59,13 @@ Block = str | Rows | Table | Verbatim
 """Part of an answer; a text is one line, which is indented where it begins with spaces."""
 
 
-def text_lines(blocks: Iterable[Block], *, width: int | None = None) -> list[str]:
+def text_lines(blocks: Iterable[Block], *, line_length: int | None = None) -> list[str]:
     """Lines of text of blocks.
 
     Parameters
     ----------
     blocks : iterable of Block
-    width : int, optional
+    line_length : int, optional
         Longest line; cells and lines are wrapped to it where that leaves them readable.
 
     Returns
@@ -75,44 +75,44 @@ def text_lines(blocks: Iterable[Block], *, width: int | None = None) -> list[str
     lines: list[str] = []
     for block in blocks:
         if isinstance(block, Rows):
-            lines += aligned(block.rows, width=width)
+            lines += aligned(block.rows, line_length=line_length)
         elif isinstance(block, Table):
-            lines += grid([block.heads, *block.rows] if any(block.heads) else block.rows, width=width)
+            lines += grid([block.heads, *block.rows] if any(block.heads) else block.rows, line_length=line_length)
         elif isinstance(block, Verbatim):
             lines += block.text.splitlines()
         else:
-            lines += wrapped(block, width=width)
+            lines += wrapped(block, line_length=line_length)
     return lines
 
 
-def wrapped(line: str, *, width: int | None) -> list[str]:
+def wrapped(line: str, *, line_length: int | None) -> list[str]:
     """Line wrapped to a width, what follows indented below its first word."""
-    if width is None or len(line) <= width:
+    if line_length is None or len(line) <= line_length:
         return [line]
     indent = line[: len(line) - len(line.lstrip())]
-    return wrap(line, width, subsequent_indent=indent + _INDENT, break_long_words=False, break_on_hyphens=False)
+    return wrap(line, line_length, subsequent_indent=indent + _INDENT, break_long_words=False, break_on_hyphens=False)
 
 
-def aligned(rows: Sequence[Row], *, width: int | None = None) -> list[str]:
+def aligned(rows: Sequence[Row], *, line_length: int | None = None) -> list[str]:
     """Names and values as lines of text, the values one under the other and wrapped to a width."""
     names, values = [name for name, _ in rows], [value for _, value in rows]
     widths = [max(map(len, names), default=0), max(map(len, values), default=0)]
-    if width is not None:  # a value without spaces, such as a path, is wider than the others
+    if line_length is not None:  # a value without spaces, such as a path, is wider than the others
         longest = max(map(_longest_word, names), default=0), max(map(_longest_word, values), default=0)
-        _narrowed(widths, (longest[0], min(longest[1], _LEAST_ROOM)), width - len(_INDENT) - len(_GAP))
+        _narrowed(widths, (longest[0], min(longest[1], _LEAST_ROOM)), line_length - len(_INDENT) - len(_GAP))
     return [line for row in rows for line in _row_lines(row, widths)]
 
 
-def grid(rows: Sequence[Sequence[str]], *, width: int | None = None) -> list[str]:
+def grid(rows: Sequence[Sequence[str]], *, line_length: int | None = None) -> list[str]:
     """Rows of cells as lines of text, columns aligned to the left; the widest columns are wrapped to a width."""
     if not rows:
         return []
     columns = list(zip(*rows, strict=True))
     widths = [max(map(len, column)) for column in columns]
-    if width is not None:
-        room = width - len(_INDENT) - len(_GAP) * (len(widths) - 1)
+    if line_length is not None:
+        room = line_length - len(_INDENT) - len(_GAP) * (len(widths) - 1)
         if not _narrowed(widths, [max(map(_longest_word, column)) for column in columns], room):
-            return _one_below_the_other(rows, width)
+            return _one_below_the_other(rows, line_length)
     return [line for row in rows for line in _row_lines(row, widths)]
 
 
@@ -139,14 +139,14 @@ def _row_lines(row: Sequence[str], widths: Sequence[int]) -> list[str]:
     return lines
 
 
-def _one_below_the_other(rows: Sequence[Sequence[str]], width: int) -> list[str]:
+def _one_below_the_other(rows: Sequence[Sequence[str]], line_length: int) -> list[str]:
     """Rows of a table that is too wide, each as its heads with its cells one below the other."""
     heads, *others = rows
     names = max(map(len, heads))
     lines = []
     for row in others:
         for head, cell in zip(heads, row, strict=True):
-            lines += wrapped(f"{_INDENT}{head:<{names}}{_GAP}{cell}", width=width)
+            lines += wrapped(f"{_INDENT}{head:<{names}}{_GAP}{cell}", line_length=line_length)
         lines.append("")
     return lines[:-1]
 

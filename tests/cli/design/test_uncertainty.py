@@ -116,7 +116,7 @@ def test_directions_that_the_facts_leave_free_are_listed(rigs: Path) -> None:
     rig = rigs / "tribometer.toml"
     result = propagate(rig, samples=32, joint_samples=structure.draws_by_key())
     answer = UncertaintyAnswer(rig=read_rig(rig), result=result, structure=structure)
-    text = answer.text(width=None)
+    text = answer.text(line_length=None)
     assert "structure.arm_damping" in text
     assert "; no fact settles it" in text
     assert "left free by the facts, to a factor of e and more: arm_damping^+0.99\n" in text

@@ -220,7 +220,7 @@ def test_a_refused_file_among_others_is_listed_and_one_alone_is_an_error(recordi
     (reason,) = answer.refusals().values()
     assert list(answer.refusals()) == ["bad.csv"]
     assert answer.has_result
-    assert f"  refused: {reason}" in answer.text(width=None)
+    assert f"  refused: {reason}" in answer.text(line_length=None)
     assert "/" not in reason  # no private folder
     assert not measure.friction([bad]).has_result
     with raises(SonolubeError, match=r"^bad\.csv: "):

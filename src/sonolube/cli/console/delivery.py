@@ -62,8 +62,10 @@ def deliver(
         content = content if answer.is_lookup else content | {"files": list(map(str, written))}
         _print(json.dumps(content, indent=2, allow_nan=False))
     else:
-        width = line_width()
-        lines = [*text_lines(answer.every_block(brief=brief), width=width), *_file_lines(written, folder or Path())]
+        lines = [
+            *text_lines(answer.every_block(brief=brief), line_length=line_width()),
+            *_file_lines(written, folder or Path()),
+        ]
         if lines:
             _print(printable("\n".join(lines)))
     for reason in answer.refusals().values():
