@@ -52,3 +52,16 @@ def test_protocols_allow_the_trough_of_a_drive_of_negative_bias() -> None:
     for protocol in run_protocols(plan).values():
         assert protocol.limits.voltage_maximum >= 1.2 * swing
         assert protocol.limits.voltage_maximum == approx(1.2 * swing, rel=0.2)
+
+
+def test_the_limit_of_the_force_is_three_times_dry_friction_rounded_up_to_three_digits() -> None:
+    rig = replace(RIG, friction_coefficient=0.4251)
+    plan = plan_tests(
+        rig,
+        factors(rig),
+        question=Question(),
+        procedure=Procedure(intrinsic_distance=1.0, vibrated_distance=1.0),
+        points=1,
+    )
+    for protocol in run_protocols(plan).values():  # 3 x 0.4251 x 5 N = 6.3765 N
+        assert protocol.limits.friction_force_maximum == approx(6.38, abs=1e-12)

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from pytest import approx, raises
 
+import sonolube as sl
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.rig import read_rig
 from sonolube.tasks.answer import Answer
@@ -112,3 +113,9 @@ def test_a_transient_reports_its_progress_and_is_cancelled(tribometer: Path) -> 
     with raises(TaskCancelled, match="marching"):
         transient(tribometer, duration=0.01, cancelled=lambda: True)
     assert transient(tribometer, duration=0.01).object()["vibration_amplitude"]["value"] == approx(2.5e-6, rel=0.1)
+
+
+def test_the_interval_beside_a_friction_ratio_rises_and_is_that_of_the_prediction(tribometer: Path) -> None:
+    low, high = sl.friction(tribometer).object()["predicted_friction_ratio"]["interval_80"]
+    assert 0 <= low < high
+    assert [low, high] == approx(sl.predict(tribometer).object()["friction_ratio"]["interval_80"])
