@@ -132,13 +132,13 @@ class ReportFigure:
 
 
 @contextmanager
-def figure_style(style: str) -> Iterator[None]:
+def figure_style(style: str | None) -> Iterator[None]:
     """Draw all figures of this context in a style.
 
     Parameters
     ----------
-    style : str
-        Key of `FIGURE_STYLES`.
+    style : str or None
+        Key of `FIGURE_STYLES`; that in use where None.
 
     Raises
     ------
@@ -146,6 +146,8 @@ def figure_style(style: str) -> Iterator[None]:
         If there is no such style.
     """
     global _in_use
+    if style is None:
+        style = _in_use
     if style not in FIGURE_STYLES:
         raise UnknownName.among(FIGURE_STYLES, kind="style of figures", name=style)
     before, _in_use = _in_use, style
@@ -172,7 +174,7 @@ def publication_style(style: str | None = None) -> Iterator[None]:
     import matplotlib as mpl
     from cycler import cycler
 
-    with figure_style(_in_use if style is None else style):
+    with figure_style(style):
         settings = _COMMON | dict(FIGURE_STYLES[_in_use].settings) | {"axes.prop_cycle": cycler(color=COLOURS)}
         with mpl.rc_context(settings):  # type: ignore[arg-type]
             yield

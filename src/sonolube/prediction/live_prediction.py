@@ -140,7 +140,7 @@ class LivePrediction:
                 )
                 for name, each in curves.items()
             },
-            **({} if own is None else _along("run", _measured(own, found))),
+            **({} if own is None else _along("run", _measured(own, found, inputs))),
             **_along("input", _described(uncertain) | _shares_left(uncertain, logs, drawn)),
             **_along("measure", _measures(better)),
         }
@@ -303,11 +303,21 @@ def _shares_left(
     return found
 
 
-def _measured(own: OwnRuns, found: RigPrediction) -> dict[str, Floats]:
-    """Own runs as they entered the prediction, with what was predicted before them."""
+def _measured(own: OwnRuns, found: RigPrediction, inputs: RigInputs) -> dict[str, Floats]:
+    """Own runs as they entered the prediction, moved to the operating point, and what was predicted before them."""
     tested = own.tested
     assert found.check is not None
+    at = tested.at.conditions
+    predicted = np.median(found.ratios(at), axis=0)
+    moved = {
+        name: tested.friction_ratio + np.median(found.ratios(inputs.at(**along).conditions), axis=0) - predicted
+        for name, along in (
+            ("amplitude", {"vibration_amplitude": at.vibration_amplitude}),
+            ("speed", {"sliding_speed": at.sliding_speed}),
+        )
+    }
     return {
+        **{f"measured_ratio_moved_over_{name}": np.maximum(values, 0.0) for name, values in moved.items()},
         "measured_friction_ratio": tested.friction_ratio,
         "measured_uncertainty": tested.uncertainty,
         "measured_vibration_amplitude": tested.at.conditions.vibration_amplitude,

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from sonolube.charts import Axis, Chart, Panel, Points, draw_chart
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
 from sonolube.prediction.calibration import blind_calibration, calibrations, mean_ratio_calibration
 from sonolube.prediction.closures import Conditions
 from sonolube.prediction.evidence import TestedRig, published_rigs
-from sonolube.prediction.figures import calibration_figure, draw_bands
+from sonolube.prediction.figures import calibration_figure, ratio_bands
 from sonolube.prediction.posterior import Posterior, published_population
 from sonolube.prediction.predictive import ratio_draws
 from sonolube.prediction.scores import LEVELS, PROBABILITIES, central_interval
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _PANELS: Final = (
-    ("A", "sliding_speed", 1e3, "sliding speed (mm/s)", "Table 2.3: steel on aluminium, 2.5 µm"),
-    ("B", "vibration_amplitude", 1e6, "vibration amplitude (µm)", "Table 4.2: steel on steel, 65.5 mm/s"),
+    ("A", "sliding_speed", 1e3, "Sliding speed", "mm/s", "Table 2.3: steel on aluminium, 2.5 µm"),
+    ("B", "vibration_amplitude", 1e6, "Vibration amplitude", "µm", "Table 4.2: steel on steel, 65.5 mm/s"),
 )
 _POINTS: Final = 40
 _DRAWS: Final = 2000
@@ -47,7 +48,7 @@ def published_prediction_figures() -> Iterator[ReportFigure]:
         title="Friction ratio predicted before any test on the rig",
         caption="Bands: 50, 80 and 95 % predictive intervals, learned from the tests on all other rigs. Points: Tables"
         " 2.3 and 4.2 with their printed scatter.",
-        draw=unseen_figure,
+        draw=lambda: draw_chart(unseen_chart()),
     )
     yield ReportFigure(
         name="prediction-calibration",
@@ -97,33 +98,30 @@ def blind_figure() -> "Figure":
     axes.errorbar(places, ratios, errors, fmt="o", color=COLOURS[1], ms=5, capsize=2, label="measured")
     names = [one.rig for one in predictions]
     labels = [f"{name}-{names[: place + 1].count(name)}" for place, name in enumerate(names)]
-    axes.set(xticks=places, xticklabels=labels, ylabel="friction ratio", xlabel="published test", ylim=(-0.1, 1.45))
+    axes.set(xticks=places, xticklabels=labels, ylabel="Friction ratio", xlabel="Published test", ylim=(-0.1, 1.45))
     figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return figure
 
 
-def unseen_figure() -> "Figure":
-    """Draw Tables 2.3 and 4.2 with the prediction from the other rigs.
+def unseen_chart() -> Chart:
+    """Tables 2.3 and 4.2 with the prediction from the other rigs.
 
     Returns
     -------
-    Figure
+    Chart
     """
-    figure, panels = subplots(1, 2, figsize=(6.85, 3.3), sharey=True)
-    for axes, (name, condition, scale, label, title) in zip(panels, _PANELS, strict=True):
+    panels = []
+    for name, condition, scale, label, unit, title in _PANELS:
         rig, posterior = _unseen(name)
         places = getattr(rig.at.conditions, condition)
         curve = np.geomspace(0.6 * places.min(), 1.5 * places.max(), _POINTS)
         at = replace(rig.at, conditions=_along(rig.at.conditions, condition, curve))
-        ratios = ratio_draws(posterior, at, count=_DRAWS)
-        draw_bands(axes, scale * curve, np.quantile(ratios, LEVELS, axis=0))
-        style = {"fmt": "o", "color": COLOURS[1], "ms": 5, "capsize": 2}
-        axes.errorbar(scale * places, rig.friction_ratio, rig.uncertainty, label="measured", **style)
-        axes.set(xlabel=label, xlim=(scale * curve[0], scale * curve[-1]), ylim=(-0.05, 1.1))
-        axes.set_title(title, fontsize=9)
-    panels[0].set_ylabel("friction ratio")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
-    return figure
+        bands = ratio_bands(scale * curve, np.quantile(ratio_draws(posterior, at, count=_DRAWS), LEVELS, axis=0))
+        measured = Points(x=scale * places, y=rig.friction_ratio, y_error=rig.uncertainty, label="measured", colour=1)
+        x = Axis(label=label, unit=unit, lowest=scale * float(curve[0]), highest=scale * float(curve[-1]))
+        y = Axis(label="Friction ratio", lowest=-0.05, highest=1.1)
+        panels.append(Panel(x=x, y=y, parts=(*bands, measured), title=title))
+    return Chart(panels=tuple(panels), size=(6.85, 3.3), columns=2, legend="top", legend_columns=5, shares_y=True)
 
 
 def runs_figure() -> "Figure":
@@ -136,10 +134,10 @@ def runs_figure() -> "Figure":
     counts, widths, shares = zip(*_widths_by_runs(), strict=True)
     figure, (left, right) = subplots(1, 2, figsize=(6.85, 2.9))
     left.plot(counts, widths, MARKERS[0] + "-", color=COLOURS[0])
-    left.set(xlabel="own runs known", ylabel="median width of the 80 % interval", ylim=(0, None), xticks=counts)
+    left.set(xlabel="Own runs known", ylabel="Median width of the 80 % interval", ylim=(0, None), xticks=counts)
     right.plot(counts, shares, MARKERS[1] + "-", color=COLOURS[1])
     right.axhline(0.8, color="0.4", lw=0.8, ls=":")
-    right.set(xlabel="own runs known", ylabel="share of tests within", ylim=(0, 1.05), xticks=counts)
+    right.set(xlabel="Own runs known", ylabel="Share of tests within", ylim=(0, 1.05), xticks=counts)
     return figure
 
 

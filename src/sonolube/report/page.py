@@ -8,6 +8,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from sonolube import __version__
+from sonolube.charts import Chart, draw_chart
 from sonolube.figure import fit_to_style, publication_style, render_figure
 from sonolube.printable_text import printable
 
@@ -22,21 +23,35 @@ _DEPENDENCIES = ("numpy", "scipy", "numba", "xarray", "matplotlib")  # whose ver
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Drawing:
-    """A figure that is drawn when its files are written.
+    """A figure that is made when it is shown or written: a chart, or a picture that is no chart.
 
     Parameters
     ----------
-    draw : callable
-        Returns the figure.
+    chart : callable, optional
+        Returns the figure as data.
+    draw : callable, optional
+        Returns the figure, where it has no chart.
     caption : str
         Text under the figure on a page.
     forms : tuple of str
         Formats of its files: "png", "svg" or "pdf"; none for a figure without a file of its own.
     """
 
-    draw: "Callable[[], Figure]"
+    chart: Callable[[], Chart] | None = None
+    draw: "Callable[[], Figure] | None" = None
     caption: str = ""
     forms: tuple[str, ...] = ("png", "svg", "pdf")
+
+    def figure(self) -> "Figure":
+        """Draw the figure in the style in use, with the width of a column or of the page."""
+        with publication_style():
+            if self.chart is not None:
+                figure = draw_chart(self.chart())
+            else:
+                assert self.draw is not None
+                figure = self.draw()
+            fit_to_style(figure)
+        return figure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -93,9 +108,7 @@ def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
     -------
     dict of str to bytes
     """
-    with publication_style():
-        figure = drawing.draw()
-        fit_to_style(figure)
+    figure = drawing.figure()
     return {form: render_figure(figure, form) for form in forms}
 
 

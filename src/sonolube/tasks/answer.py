@@ -175,7 +175,7 @@ class Answer(ABC):
         UnknownName
             If it has none of that title.
         """
-        from sonolube.figure import fit_to_style, publication_style, shown_in_notebooks
+        from sonolube.figure import figure_style, shown_in_notebooks
 
         drawings = self.figures()
         if not drawings:
@@ -183,10 +183,8 @@ class Answer(ABC):
         names = [name for name in drawings if title is None or _plain(name).endswith(_plain(title))]
         if not names:
             raise UnknownName.among(drawings, kind="figure", name=title or "")
-        with publication_style(style):
-            figure = drawings[names[0]].draw()
-            fit_to_style(figure)
-        return shown_in_notebooks(figure)
+        with figure_style(style):
+            return shown_in_notebooks(drawings[names[0]].figure())
 
     def text(self, *, line_length: int | None = 80) -> str:
         """Return the answer as text, as a terminal prints it; not wrapped where the length is None."""

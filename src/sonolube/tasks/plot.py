@@ -5,23 +5,26 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
-from sonolube.figure import fit_to_style, publication_style, shown_in_notebooks
+from sonolube.figure import figure_style, shown_in_notebooks
+from sonolube.report import Drawing
 from sonolube.tasks.answer import Answer
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-_FIGURES: Mapping[str, str] = MappingProxyType(
+    from sonolube.charts import Chart
+
+_CHARTS: Mapping[str, str] = MappingProxyType(
     {
-        "comparison": "sonolube.validation.figures:comparison_figure",
-        "map": "sonolube.design.map_figures:map_figure",
-        "prediction": "sonolube.prediction.figures:prediction_figure",
-        "simulation": "sonolube.rig.figures:simulation_figure",
-        "sweep": "sonolube.design.sweep_figures:sweep_figure",
+        "comparison": "sonolube.validation.figures:comparison_chart",
+        "map": "sonolube.design.map_figures:map_chart",
+        "prediction": "sonolube.prediction.figures:prediction_chart",
+        "simulation": "sonolube.rig.figures:simulation_chart",
+        "sweep": "sonolube.design.sweep_figures:sweep_chart",
     }
 )
-"""Functions that draw a dataset, by its attribute `result`."""
+"""Functions that return the chart of a dataset, by its attribute `result`."""
 
 
 def plot(result: "Answer | xr.Dataset", *, title: str | None = None, style: str | None = None) -> "Figure":
@@ -52,18 +55,16 @@ def plot(result: "Answer | xr.Dataset", *, title: str | None = None, style: str 
     if isinstance(result, Answer):
         return result.plot(title, style=style)
     kind = str(getattr(result, "attrs", {}).get("result", type(result).__name__))
-    if kind not in _FIGURES:
-        raise InvalidInput(f"plot draws answers of tasks, and datasets of {', '.join(_FIGURES)}, got {kind}")
-    with publication_style(style):
-        figure = _drawer(kind)(result)
-        fit_to_style(figure)
-    return shown_in_notebooks(figure)
+    if kind not in _CHARTS:
+        raise InvalidInput(f"plot draws answers of tasks, and datasets of {', '.join(_CHARTS)}, got {kind}")
+    with figure_style(style):
+        return shown_in_notebooks(Drawing(chart=lambda: _chart_of(kind)(result)).figure())
 
 
-def _drawer(kind: str) -> "Callable[[xr.Dataset], Figure]":
-    """Function that draws datasets of a kind."""
+def _chart_of(kind: str) -> "Callable[[xr.Dataset], Chart]":
+    """Function that returns the chart of datasets of a kind."""
     from importlib import import_module
 
-    module, _, name = _FIGURES[kind].partition(":")
-    drawer: Callable[[xr.Dataset], Figure] = getattr(import_module(module), name)
-    return drawer
+    module, _, name = _CHARTS[kind].partition(":")
+    chart: Callable[[xr.Dataset], Chart] = getattr(import_module(module), name)
+    return chart

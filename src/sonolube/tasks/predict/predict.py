@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 import numpy as np
 
 from sonolube.measurement.measured_runs import runs_help
-from sonolube.prediction.figures import prediction_figure
+from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.rig_statement import interval
 from sonolube.prediction.scores import PROBABILITIES
@@ -129,7 +129,7 @@ class PredictionAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction ratio over amplitude and speed with its intervals."""
-        return {f"{self.rig.name}-prediction": Drawing(draw=lambda: prediction_figure(self.prediction))}
+        return {f"{self.rig.name}-prediction": Drawing(chart=lambda: prediction_chart(self.prediction))}
 
     def files(self) -> Mapping[str, LabelledArrays]:
         """Draws and curves."""

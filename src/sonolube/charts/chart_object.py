@@ -1,0 +1,121 @@
+"""A chart as an object for JSON, and its numbers as tables."""
+
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from sonolube.charts.chart import Axis, Band, Bars, Chart, Field, Line, Panel, Part, Points
+from sonolube.figure import COLOURS
+
+_DIGITS = 6  # significant ones, more than a screen resolves
+
+
+def chart_object(chart: Chart) -> dict[str, Any]:
+    """Return a chart as an object for JSON.
+
+    Parameters
+    ----------
+    chart : Chart
+
+    Returns
+    -------
+    dict
+        The fields of chart, panels, axes and parts by their names, each with its kind, such as "line"; axes and fields
+        also with label and unit as one text. Colours are written as "#0072b2"; numbers have six digits, and None stands
+        for NaN. Empty fields are left out.
+    """
+    return _record_object(chart)
+
+
+def chart_tables(chart: Chart) -> list[dict[str, Any]]:
+    """Return the numbers of a chart as tables, one for each part with numbers.
+
+    Parameters
+    ----------
+    chart : Chart
+
+    Returns
+    -------
+    list of dict
+        With "title", "heads" and "rows" of text; fields have a row for each y and a column for each x.
+    """
+    tables = []
+    for panel in chart.panels:
+        for part in panel.parts:
+            columns = _columns(panel, part)
+            if columns:
+                title = ", ".join(filter(None, (panel.title or panel.y.label, getattr(part, "label", ""))))
+                rows = [list(row) for row in zip(*columns.values(), strict=True)]
+                tables.append({"title": title, "heads": list(columns), "rows": rows})
+    return tables
+
+
+def _record_object(record: Any) -> dict[str, Any]:
+    """Fields of a record that are not empty."""
+    found = {"kind": type(record).__name__.lower()}
+    if isinstance(record, Axis):
+        found["text"] = record.text
+    if isinstance(record, Field):
+        found["scale_text"] = record.scale_text
+    for each in fields(record):
+        value = getattr(record, each.name)
+        if each.name == "colour":
+            found[each.name] = colour_code(value)
+        elif isinstance(value, np.ndarray) or (value is not None and value not in (False, "", ())):
+            found[each.name] = _plain(value)
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """Value of a field for JSON."""
+    if is_dataclass(value):
+        return _record_object(value)
+    if isinstance(value, np.ndarray):
+        return _numbers(value)
+    return [_plain(each) for each in value] if isinstance(value, tuple) else value
+
+
+def _numbers(values: Any) -> Any:
+    """Array as nested lists, with None for NaN."""
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim > 1:
+        return [_numbers(row) for row in array]
+    return [float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None for value in array]
+
+
+def colour_code(colour: int | str) -> str:
+    """Return a colour as "#rrggbb"."""
+    if isinstance(colour, int):
+        return COLOURS[colour % len(COLOURS)].lower()
+    return "#" + f"{round(255 * float(colour)):02x}" * 3
+
+
+def _columns(panel: Panel, part: Part) -> dict[str, list[str]]:
+    """Columns of text of a part by their heads; empty for what has no numbers of its own."""
+    x, y = panel.x, panel.y
+    if isinstance(part, Line):
+        return {x.text: _texts(part.x, x), y.text: _texts(part.y, y)}
+    if isinstance(part, Band):
+        ends = {f"{end} {y.text}": _texts(values, y) for end, values in (("lowest", part.low), ("highest", part.high))}
+        return {x.text: _texts(part.x, x), **ends}
+    if isinstance(part, Points):
+        columns = {x.text: _texts(part.x, x), y.text: _texts(part.y, y)}
+        if part.y_error is not None and np.ndim(part.y_error) == 1:
+            columns["±"] = _texts(part.y_error)
+        return columns | ({"source": list(part.sources)} if part.sources else {})
+    if isinstance(part, Field):
+        columns = {f"{y.text} \\ {x.text}": _texts(part.y)}
+        for place, values in zip(_texts(part.x), np.transpose(part.values), strict=True):
+            columns[place] = [part.words[int(value)] for value in values] if part.words else _texts(values)
+        return columns
+    if isinstance(part, Bars):
+        across, along = (y, x) if part.along == "x" else (x, y)
+        return {across.text: _texts(part.places, across), along.text: _texts(part.lengths)}
+    return {}
+
+
+def _texts(values: Any, axis: Axis | None = None) -> list[str]:
+    """Numbers as text, or the words that an axis has in their place."""
+    words = {} if axis is None else dict(zip(axis.ticks or range(len(axis.words)), axis.words, strict=False))
+    return [words.get(float(value), f"{value:.4g}" if np.isfinite(value) else "") for value in values]
