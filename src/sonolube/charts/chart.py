@@ -1,6 +1,6 @@
 """Types of a figure as data: chart, panels, axes and their parts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from sonolube.checks import Floats
@@ -278,3 +278,8 @@ class Chart:
     legend_title: str = ""
     shares_x: bool = False
     shares_y: bool = False
+
+    def with_parts(self, place: int, *parts: Part) -> "Chart":
+        """Return the chart with further parts in one of its panels."""
+        changed = replace(self.panels[place], parts=(*self.panels[place].parts, *parts))
+        return replace(self, panels=(*self.panels[:place], changed, *self.panels[place + 1 :]))
