@@ -59,7 +59,7 @@ class Line:
         Number of a dash pattern; 0 is solid.
     marker : int or None
         Number of a marker at each value.
-    width : float
+    weight : float
         Of the line, relative to the usual one.
     is_stepped : bool
         Whether a value holds until the next.
@@ -73,7 +73,7 @@ class Line:
     colour: Colour = 0
     dash: int = 0
     marker: int | None = None
-    width: float = 1.0
+    weight: float = 1.0
     is_stepped: bool = False
     has_halo: bool = False
 
@@ -200,7 +200,7 @@ class Bars:
     Parameters
     ----------
     places, lengths : ndarray, shape (n,)
-    thickness : float
+    breadth : float
         In the unit of the places.
     along : {"x", "y"}
         Axis along which they extend.
@@ -212,7 +212,7 @@ class Bars:
 
     places: Floats
     lengths: Floats
-    thickness: float = 0.6
+    breadth: float = 0.6
     along: Literal["x", "y"] = "x"
     label: str = ""
     colour: Colour = 0

@@ -102,7 +102,7 @@ def _line(part: Line, axes: "Axes") -> None:
     from matplotlib import rcParams
     from matplotlib.patheffects import Normal, Stroke
 
-    width = part.width * float(rcParams["lines.linewidth"])
+    width = part.weight * float(rcParams["lines.linewidth"])
     axes.plot(
         part.x,
         part.y,
@@ -234,7 +234,7 @@ def _bars(part: Bars, axes: "Axes") -> None:
     drawn = draw(
         part.places,
         part.lengths,
-        part.thickness,
+        part.breadth,
         color=_colour(part.colour),
         hatch=part.hatch or None,
         edgecolor="white",

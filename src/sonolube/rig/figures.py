@@ -131,7 +131,7 @@ def start_up_chart(rig: "Rig", result: "StartUp") -> Chart:
     x, y = Axis(label="Time", unit="ms"), Axis(label="Displacement\nof the tip", unit="µm")
     return Chart(
         panels=(
-            Panel(x=x, y=y, parts=(Line(x=1e3 * time, y=micrometres, width=0.5),)),
+            Panel(x=x, y=y, parts=(Line(x=1e3 * time, y=micrometres, weight=0.5),)),
             Panel(x=x, y=y, parts=(Line(x=1e3 * dense, y=interpolated(dense)),), title="the last four periods"),
         ),
         size=(5.2, 4.6),

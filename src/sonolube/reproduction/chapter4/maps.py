@@ -210,8 +210,8 @@ def _ridge() -> "Figure":
     x = 1e3 * speeds
     chart = map_chart(extended_power_map()).with_parts(
         0,
-        Line(x=x, y=np.array(sufficient), label="all friction, D 4.3", colour=1, dash=3, width=1.4, has_halo=True),
-        Line(x=x, y=highest, label="highest of the tests", colour="0.2", dash=2, width=0.9, has_halo=True),
+        Line(x=x, y=np.array(sufficient), label="all friction, D 4.3", colour=1, dash=3, weight=1.4, has_halo=True),
+        Line(x=x, y=highest, label="highest of the tests", colour="0.2", dash=2, weight=0.9, has_halo=True),
     )
     (panel,) = chart.panels
     y = replace(panel.y, logarithmic=True, lowest=0.2)
