@@ -7,7 +7,8 @@ import pytest
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import RUN_COLUMNS, read_runs, run_caveats
+from sonolube.measurement.measured_runs import read_runs, run_caveats
+from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting, with_columns
 from sonolube.units import to_si
 from sonolube.vocabulary import quantities
