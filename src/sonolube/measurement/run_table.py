@@ -255,8 +255,8 @@ def _in_si(
         stated = found.unit if found else _bracketed(source.column)
     if unit and not stated:
         raise InvalidInput(
-            f"{path}: line {line}: {column.shown} has no unit; expected {unit_description(unit)}: put it into the heading,"
-            f" such as {_example(column.name, unit)}"
+            f"{path}: line {line}: {column.shown} has no unit; expected {unit_description(unit)}: put it into the"
+            f" heading, such as {_example(column.name, unit)}"
         )
     gain, offset, _ = si_conversion(stated, unit=unit, name=f"{path}: line {line}: {column.shown}")
     numbers = np.array([_number(path, *row, column, sign, missing) for row in rows])

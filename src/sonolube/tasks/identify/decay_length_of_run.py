@@ -202,7 +202,7 @@ class DecayLengthAnswer(Answer):
 
 
 def _is_table(file: Path, mapping: RecordingMapping | None) -> bool:
-    """Whether a file is a table of switches: text whose head, or its mapping, names the sliding distance and no time."""
+    """Whether a file is a table of switches: its mapping or its head names the sliding distance and no time."""
     if mapping is not None and "sliding_distance" in mapping.channels:
         return mapping.axis is None
     with refuse_unreadable(file), open_input(file) as stream:
