@@ -153,6 +153,6 @@ def _derive_uncertainty(columns: dict[str, Floats]) -> None:
 
 def _skipped(empty: np.ndarray, lines: Sequence[int]) -> str:
     """Caveat about the rows without a result."""
-    left_out = [str(lines[row]) for row in np.flatnonzero(empty)]
+    left_out = [str(lines[int(row)]) for row in np.flatnonzero(empty)]
     named = ", ".join(left_out[:_MOST_LINES]) + (", ..." if len(left_out) > _MOST_LINES else "")
     return f"{len(left_out)} of {empty.size} runs have no friction yet and are left out (line {named})"
