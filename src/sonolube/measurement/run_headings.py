@@ -26,8 +26,11 @@ _LUBRICANT: Final = re.compile(
     r"lubric|schmier|\boils?\b|\b\w*öl\b|grease|\bfett\b|coolant|emulsion|\bfluid|\bdry\b|trocken"
 )
 _UNIT: Final = re.compile(r"\b(?:units?|einheit(?:en)?)\b")
-_SETTING: Final = re.compile(r"voltage|spannung|amplitude|frequency|frequenz|speed|geschwindigkeit|drehzahl|rpm")
+_SETTING: Final = re.compile(
+    r"voltage|spannung|amplitude|frequency|frequenz|speed|velocity|geschwindigkeit|drehzahl|rpm"
+)
 _NOT_BY_LIKENESS: Final = "direction"  # a text that no estimate uses: only a table that spells it so means that
+_PARTS: Final = ("%", "‰")  # units of pure numbers
 _UNITS: Final = frozenset(
     {unit for factors in COMMON_FACTORS.values() for unit in factors if unit}
     | {"°", "deg", "°c", "degc", "rpm", "1/min", "µm", "μm", "µm/s", "μm/s"}
@@ -69,13 +72,10 @@ def run_heading(label: str) -> RunHeading | None:
         return RunHeading(own[1], own[2] or "")
     if len(text) > _LONGEST:
         return None
-    known = _names()
-    if name := known.get(_plain(text)):
-        return RunHeading(name)
-    for pattern in _WITH_UNIT:
-        if (found := pattern.fullmatch(text)) and (name := known.get(_plain(found[1]))):
-            return RunHeading(name, found[2].strip())
-    return next(_with_unit_behind(text), None)
+    with_unit = list(_with_unit(text))
+    whole = _names().get(_plain(text))
+    by_whole = RunHeading(whole) if whole else None
+    return next(filter(fits, with_unit), None) or by_whole or next(iter(with_unit), None)
 
 
 def fits(found: RunHeading) -> bool:
@@ -107,13 +107,17 @@ def meaning_at_stake(label: str) -> str:
     return ""
 
 
-def _with_unit_behind(text: str) -> Iterator[RunHeading]:
-    """Headings whose unit follows the name behind a blank or an underscore, the longest name first."""
+def _with_unit(text: str) -> Iterator[RunHeading]:
+    """Headings of a known name before a unit; behind a blank or an underscore only what is a unit of the quantity."""
+    for pattern in _WITH_UNIT:
+        if (found := pattern.fullmatch(text)) and (name := _names().get(_plain(found[1]))):
+            yield RunHeading(name, found[2].strip())
     for gap in reversed(list(re.finditer(r"[\s_]+", text))):
         if name := _names().get(_plain(text[: gap.start()])):
-            found = RunHeading(name, text[gap.end() :])
-            if name not in TEXT_NAMES and quantities()[name].unit and fits(found):
-                yield found
+            found_behind = RunHeading(name, text[gap.end() :])
+            is_number = name not in TEXT_NAMES and not quantities()[name].unit
+            if fits(found_behind) and (not is_number or found_behind.unit in _PARTS):
+                yield found_behind
 
 
 def _plain(text: str) -> str:
