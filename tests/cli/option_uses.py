@@ -701,9 +701,9 @@ def write_inputs(place: Path) -> None:
             f'[axis]\ncolumn = "time (s)"\nunit = "s"\ngain = 2.0\n{more}[channels.{quantity}]\n'
             f'column = "{column.get(name, "left (um)")}"\nunit = "{unit}"\ngain = {gain}\n'
         )
-    for name, column, gain in (("halved", "friction_force [N]", 0.5), ("reduced", "friction_reduction [%]", 0.9)):
-        quantity, unit = column.strip("]").split(" [")
-        lines = f"[channels.{quantity}]", f'column = "{column}"', f'unit = "{unit}"', f"gain = {gain}"
+    for name, heading, gain in (("halved", "friction_force [N]", 0.5), ("reduced", "friction_reduction [%]", 0.9)):
+        quantity, unit = heading.strip("]").split(" [")
+        lines = f"[channels.{quantity}]", f'column = "{heading}"', f'unit = "{unit}"', f"gain = {gain}"
         (place / f"{name}.toml").write_text("\n".join(lines))
     for name, outcome in (("first", "completed"), ("second", "stopped")):
         facts: dict[str, str | float] = {
