@@ -16,6 +16,7 @@ from .tasks.design.sweep import sweep as sweep
 from .tasks.design.uncertainty import uncertainty as uncertainty
 from .tasks.lookup.actuators import actuators as actuators
 from .tasks.lookup.example import example as example
+from .tasks.lookup.mapping import mapping as mapping
 from .tasks.lookup.materials import materials as materials
 from .tasks.lookup.published import published as published
 from .tasks.lookup.schema import schema as schema

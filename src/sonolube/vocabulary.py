@@ -5,7 +5,7 @@ names; tests compare the units in their docstrings with it.
 """
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -30,6 +30,8 @@ class Quantity:
         Technical term for the quantity, as written along an axis.
     text_unit : str
         Unit in text and figures where it is not the SI unit with a prefix, such as mm3/m of a wear rate; else empty.
+    also : tuple of str
+        Other headings of its columns in tables of measurements, in English and German; of no other quantity.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Quantity:
     unit: str
     meaning: str
     text_unit: str = ""
+    also: tuple[str, ...] = ()
 
     @property
     def axis_label(self) -> str:
@@ -48,7 +51,12 @@ class Quantity:
 def quantities() -> Mapping[str, Quantity]:
     """Return all quantities of the vocabulary by name."""
     text = files("sonolube").joinpath("vocabulary.toml").read_text(encoding="utf-8")
-    return MappingProxyType({name: Quantity(name=name, **entry) for name, entry in tomllib.loads(text).items()})
+    return MappingProxyType({name: _quantity(name, **entry) for name, entry in tomllib.loads(text).items()})
+
+
+def _quantity(name: str, *, also: Sequence[str] = (), **entry: str) -> Quantity:
+    """Quantity of an entry of the file."""
+    return Quantity(name=name, also=tuple(also), **entry)
 
 
 def quantity(name: str) -> Quantity:

@@ -81,7 +81,7 @@ MODES = {
         (RIG, "--runs", OWN_RUNS, "--pin", "m50", "--disc", "m50"),
         {
             **{"--runs": RUNS, "--laboratory": f"{RIG}={OWN_RUNS}", "--pin": "aluminium_2024"},
-            **{"--disc": "aluminium_2024", "--seed": "1", **VIBRATED},
+            **{"--disc": "aluminium_2024", "--seed": "1", "--mapping": "FOLDER/halved.toml", **VIBRATED},
         },
         ("--lubricant",),
     ),
@@ -93,6 +93,7 @@ MODES = {
         ),
         {
             "--runs": OWN_RUNS,
+            "--mapping": "FOLDER/halved.toml",
             "--speed": "30,60mm/s",
             "--load": "2,3N",
             "--vibration": "1.2:2.5:3um",
@@ -165,6 +166,7 @@ MODES = {
             "--load": "4N",
             "--large-amplitude": "3um",
             "--rotation-speed": "0.5 1/s",
+            "--mapping": "FOLDER/halved.toml",
             "--seed": "1",
         },
     ),
@@ -313,6 +315,7 @@ MODES = {
         (OWN_RUNS, "--rig", RIG, "--model", "asperity-stick-slip-fitted"),
         {
             "--rig": str(RIGS / "tribometer_uncertain.toml"),
+            "--mapping": "FOLDER/halved.toml",
             "--model": "kinematic",
             "--amplitude": "computed",
             "--set": "contact.roughness.rms_height=3um",
@@ -324,6 +327,7 @@ MODES = {
         {
             "--over": "contact.normal_load=3N",
             "--runs": RUNS,
+            "--mapping": "FOLDER/reduced.toml",
             "--form": "svg",
             "--load": "2N",
             "--amplitude": "per-volt",
@@ -423,6 +427,7 @@ MODES = {
         (RUNS, "--rig", str(RIGS / "power_map.toml")),
         {
             "--rig": RIG,
+            "--mapping": "FOLDER/reduced.toml",
             "--target-friction": "0.5N",
             "--speed": "40mm/s",
             "--level": "0.9",
@@ -585,7 +590,13 @@ MODES = {
     "compare": Mode(
         "compare",
         (RIG, "--model", "kinematic"),
-        {"--model": "asperity-stick-slip", "--runs": OWN_RUNS, "--set": "sliding.sliding_speed=50mm/s"} | AMPLITUDE,
+        {
+            "--model": "asperity-stick-slip",
+            "--runs": OWN_RUNS,
+            "--mapping": "FOLDER/halved.toml",
+            "--set": "sliding.sliding_speed=50mm/s",
+        }
+        | AMPLITUDE,
     ),
     "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
     "lab run": Mode(
@@ -649,8 +660,12 @@ MODES = {
     "lab check": Mode(
         "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
     ),
+    "mapping": Mode("mapping", (OWN_RUNS,), {"--column": "friction_force [N]=-"}),
     "literature": Mode(
         "literature", (RIG,), {"--set": "contact.normal_load=2N", "--table": "FOLDER/studies.csv"} | AMPLITUDE
+    ),
+    "literature with a table": Mode(
+        "literature", ("--table", "FOLDER/studies.csv"), {"--mapping": "FOLDER/reduced.toml"}
     ),
     "literature without a rig": Mode("literature", (), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
 }
@@ -686,6 +701,10 @@ def write_inputs(place: Path) -> None:
             f'[axis]\ncolumn = "time (s)"\nunit = "s"\ngain = 2.0\n{more}[channels.{quantity}]\n'
             f'column = "{column.get(name, "left (um)")}"\nunit = "{unit}"\ngain = {gain}\n'
         )
+    for name, heading, gain in (("halved", "friction_force [N]", 0.5), ("reduced", "friction_reduction [%]", 0.9)):
+        quantity, unit = heading.strip("]").split(" [")
+        lines = f"[channels.{quantity}]", f'column = "{heading}"', f'unit = "{unit}"', f"gain = {gain}"
+        (place / f"{name}.toml").write_text("\n".join(lines))
     for name, outcome in (("first", "completed"), ("second", "stopped")):
         facts: dict[str, str | float] = {
             "pin_material": "brass",

@@ -138,17 +138,17 @@ def test_a_friction_that_no_vibration_gives_is_refused(friction: str, capsys: Ca
 @pytest.mark.parametrize(
     ("table", "line"),
     [
-        ("", "needs a head and at least one run"),
+        ("", "is empty"),
         (HEAD, "needs a head and at least one run"),
-        (RUNS.replace(",", ";"), "separate columns by commas"),
-        (RUNS.replace("mm/s", "%"), "sliding_speed 40.0 % is a pure number; expected a speed"),
+        (RUNS.replace(",", " "), "must name a quantity"),
+        (RUNS.replace("mm/s", "%"), "line 1: sliding_speed: % is a pure number; expected a speed"),
         (RUNS.replace("mm/s", "furlong"), "is a length; expected a speed"),
         ("\n".join([HEAD, *(f"{row},3" for row in ROWS)]), "line 2: has 5 cells where 4 columns are named"),
         ("\n".join([f"{HEAD},{HEAD}", *(f"{row},{row}" for row in ROWS)]), "two columns are named sliding_speed"),
         ("\n".join([HEAD, "1e300,1,3,50", *ROWS]), "sliding_speed '1e300' lies beyond any run"),
-        ("\n".join([HEAD, "nan,1,3,50", *ROWS]), "line 2: sliding_speed"),
+        ("\n".join([HEAD, "inf,1,3,50", *ROWS]), "line 2: sliding_speed"),
         ("\n".join([HEAD, "40,some,3,50", *ROWS]), "line 2: actuator_power 'some' is no number"),
-        ("\n".join([HEAD, '"40,1,3,50', *ROWS]), "..."),
+        ("\n".join([HEAD, '"40,1,3,50', *ROWS]), "line 2: unexpected end of data"),
     ],
 )
 def test_a_table_of_runs_is_refused_by_line_and_column(table: str, line: str, capsys: CaptureFixture[str]) -> None:

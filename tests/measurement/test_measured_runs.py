@@ -7,7 +7,8 @@ import pytest
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import RUN_COLUMNS, read_runs, run_caveats
+from sonolube.measurement.measured_runs import read_runs, run_caveats
+from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting, with_columns
 from sonolube.units import to_si
 from sonolube.vocabulary import quantities
@@ -85,8 +86,8 @@ def test_equal_rows_count_and_are_said_unless_their_names_differ(tmp_path: Path)
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("sliding_speed [N],friction_ratio\n1,0.5\n", r"line 2: sliding_speed"),
-        ("speed [mm/s],friction_ratio\n1,0.5\n", r"column 'speed \[mm/s\]' must name a quantity"),
+        ("sliding_speed [N],friction_ratio\n1,0.5\n", r"line 1: sliding_speed: N is a force; expected a speed"),
+        ("voltage [V],friction_ratio\n1,0.5\n", r"column 'voltage \[V\]' must name a quantity"),
         ("run,run,friction_ratio\n1,1,0.5\n", "two columns are named run"),
         ("friction_force [N],intrinsic_friction_force [N]\n1,-2\n", "intrinsic_friction_force must be positive"),
         ("run\n1\n", r"needs a column friction_reduction \[%\]"),

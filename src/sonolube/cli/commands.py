@@ -52,7 +52,7 @@ class Command:
         return docstring("sonolube.tasks" if self.task else "sonolube.cli", self.where)
 
 
-_OWN_FUNCTIONS = {"new": "new:new", "identify rig": "identify_rig:identify_rig"}
+_OWN_FUNCTIONS = {"new": "new:new", "identify rig": "identify_rig:identify_rig", "mapping": "mapping:mapping"}
 """Tasks of which a terminal has a function of its own, below `sonolube.cli`."""
 
 _TERMINAL_ONLY = (Command(_LAB, "lab watch", "lab.watch:watch"), Command(_LOOKUP, "doctor", "lookup.doctor:doctor"))

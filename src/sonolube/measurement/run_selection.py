@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import heading
+from sonolube.measurement.run_columns import heading
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias, overload
+from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias
 
-from sonolube.tasks.files import InputFile, NamedBytes, file_path
+from sonolube.tasks.files import InputFile, NamedBytes
 from sonolube.tasks.progress import Cancelled, Progress
 
 if TYPE_CHECKING:
@@ -138,23 +138,6 @@ def rig_of(source: RigSource) -> "Rig":
 def optional_rig(source: OptionalRigSource) -> "Rig | None":
     """Rig of a task that does without one."""
     return None if source is None else rig_of(source)
-
-
-@overload
-def runs_of(runs: OwnRuns) -> "xr.Dataset": ...
-@overload
-def runs_of(runs: RunsSource) -> "xr.Dataset | None": ...
-def runs_of(runs: RunsSource) -> "xr.Dataset | None":
-    """Measured runs of a table or of a query of the catalogue; a dataset as it is."""
-    if runs is None or not isinstance(runs, str | Path | NamedBytes):
-        return runs
-    if not isinstance(runs, NamedBytes) and str(runs).startswith("catalogue:"):
-        from sonolube.laboratory.catalogue import catalogued_runs
-
-        return catalogued_runs(str(runs))
-    from sonolube.measurement.measured_runs import read_runs
-
-    return read_runs(file_path(runs))
 
 
 def kept(keep: Kept | None, name: str) -> Path | None:

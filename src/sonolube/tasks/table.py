@@ -136,6 +136,7 @@ TASKS: Final = (
         " examples/protocols/*.toml examples/rigs/*.toml examples/rigs/modes/*.toml",
         folder=".",
     ),
+    Task(_LOOKUP, "mapping", "lookup.mapping:mapping", "{file}-mapping.toml"),
     Task(_LOOKUP, "schema", "lookup.schema:schema"),
 )
 """Every task, in the order of the help."""

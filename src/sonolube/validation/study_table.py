@@ -10,7 +10,8 @@ import numpy as np
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.published import PreviousStudy, previous_studies
-from sonolube.measurement.measured_runs import RUN_COLUMNS, read_runs, run_caveats
+from sonolube.measurement.measured_runs import read_runs, run_caveats
+from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.run_selection import checked_ratios, setting
 from sonolube.units import convert
 from sonolube.validation.previous_study_map import DIRECTIONS, StudyPoint, speed_range

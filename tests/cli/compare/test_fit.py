@@ -67,7 +67,7 @@ def test_one_table_of_runs_serves_every_command(command: str, tmp_path: Path, so
     [
         ("sliding_speed [mm/s],friction_ratio\n20,0.5\n", "1 run under one condition (20 mm/s) rank no models"),
         ("sliding_speed [mm/s]\n20\n", "needs a column friction_reduction [%]"),
-        ("sliding_speed [N],friction_ratio\n20,0.5\n", "line 2: sliding_speed"),
+        ("sliding_speed [N],friction_ratio\n20,0.5\n", "line 1: sliding_speed"),
         ("sliding_speed [mm/s],friction_ratio\n20,\n30,\n", "no run has a result yet: fill in"),
         ("sliding_speed [mm/s],friction_ratio\n20,7\n30,0.5\n", "friction ratio of 7"),
         ("voltage_peak_to_peak [V],friction_ratio\n20,0.7\n30,0.5\n", "or a rig file that scales them (--rig)"),

@@ -49,9 +49,9 @@ def test_runs_by_voltage_and_load_have_their_place_by_power_and_stress(
 @pytest.mark.parametrize(
     ("head", "row", "line"),
     [
-        ("speed,friction_reduction [%]", "1,2", "column 'speed' must name a quantity"),
+        ("speed,friction_reduction [%]", "1,2", "column 'speed' has no unit; expected a speed"),
         ("sliding_speed [mm/s],friction_reduction [%]", "x,2", "line 2: sliding_speed 'x' is no number"),
-        ("sliding_speed [N],friction_reduction [%]", "1,2", "line 2: sliding_speed"),
+        ("sliding_speed [N],friction_reduction [%]", "1,2", "line 1: sliding_speed"),
         ("sliding_speed [mm/s]", "1", "needs a column friction_reduction"),
         ("sliding_speed [mm/s],friction_reduction [%]", "1,2", "need a column actuator_power"),
     ],

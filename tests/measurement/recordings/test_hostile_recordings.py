@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, TextLayout, read_mapping
 from sonolube.measurement.recordings.reader import read_recording
 
@@ -105,6 +106,20 @@ def test_every_file_of_the_corpus_is_read_or_refused_by_name(path: Path) -> None
 def test_mutations_are_read_or_refused(pattern: str, mapping: RecordingMapping | None, tmp_path: Path) -> None:
     count = int(os.environ.get("SONOLUBE_FUZZ", "400"))
     fuzz(sorted(CORPUS.glob(pattern)), count=count, folder=tmp_path, mapping=mapping)
+
+
+def test_mutations_of_tables_of_runs_are_read_or_refused(tmp_path: Path) -> None:
+    rng = random.Random(2)
+    german = (
+        "# Lauf\nGeschwindigkeit (mm/s);Amplitude [µm];Reibkraft in N;Reibkraft ohne Ultraschall / N\n20,5;2;0,5;1\n"
+    )
+    contents = [path.read_bytes() for path in sorted(MAPPINGS.parent.glob("*-runs.csv"))]
+    contents += [german.encode(encoding) for encoding in ("utf-8", "utf-16", "cp1252")]
+    path = tmp_path / "mutated.csv"
+    for _ in range(int(os.environ.get("SONOLUBE_FUZZ", "400"))):
+        path.write_bytes(mutated(rng.choice(contents), rng))
+        refusal = refusal_of(lambda: read_runs(path))
+        assert refusal is None or (refusal.startswith(f"{path}: ") and "\n" not in refusal)
 
 
 def test_mutations_of_a_mapping_are_read_or_refused(tmp_path: Path) -> None:

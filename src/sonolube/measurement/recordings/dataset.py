@@ -96,6 +96,9 @@ def _damaged(
 
 def _selected(table: RawTable, mapping: RecordingMapping, path: Path) -> RawTable:
     """Return the columns that the selection of a mapping chooses."""
+    if left_out := set(mapping.selection.without):
+        kept = [column for label, column in table.by_label.items() if left_out.isdisjoint((label, column.label))]
+        table = replace(table, columns=tuple(kept))
     group = mapping.selection.group
     numbered = list(table.by_label)
     entries = [

@@ -16,7 +16,7 @@ from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
 from sonolube.measurement.recordings.text_columns import column_values, is_text
 from sonolube.measurement.recordings.text_file import decoded_text
-from sonolube.measurement.recordings.text_tables import TextTable, text_tables
+from sonolube.measurement.recordings.text_tables import TextTable, require_rows, text_tables
 from sonolube.measurement.recordings.written_units import si_conversion
 
 _UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
@@ -93,13 +93,8 @@ def _part(
     table: TextTable, mapping: RecordingMapping | None, sign: str, missing: frozenset[str], path: Path
 ) -> list[RawColumn]:
     """Return the columns of one table: those that the mapping requests, or all numeric ones."""
+    require_rows(table, mapping.rows if mapping else {}, path)
     indices = {label: index for index, label in enumerate(numbered_labels(table.labels))}
-    required = dict(mapping.rows) if mapping else {}
-    for label, cell in required.items():
-        index = column_of_label(indices, label, path)
-        table.rows[:] = [row for row in table.rows if row[1][index].strip() == cell]
-    if not table.rows:
-        raise InvalidInput(f"{path}: holds no rows" + (f" with {required}" if required else ""))
     requested = _requested_labels(mapping, table.labels)
     columns = []
     for place, label in enumerate(table.labels if requested is None else requested):

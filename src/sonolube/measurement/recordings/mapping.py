@@ -1,4 +1,4 @@
-"""Mapping of an instrument's columns to vocabulary quantities: column, unit, calibration and text layout (TOML)."""
+"""Mapping of the columns of a file to vocabulary quantities: column, unit, calibration and text layout (TOML)."""
 
 import re
 from collections.abc import Collection, Mapping, Sequence
@@ -10,6 +10,7 @@ from typing import Any
 from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName, suggestion
 from sonolube.measurement.recordings.repeated_labels import numbered_labels
+from sonolube.measurement.run_columns import TEXT_NAMES
 from sonolube.toml_text import read_toml
 from sonolube.units import to_si
 from sonolube.vocabulary import quantity
@@ -18,7 +19,7 @@ AXIS_QUANTITIES = ("time", "revolutions")
 """Quantities that can be the axis of a recording."""
 
 _KEYS = {"title", "recognised_by", "selection", "axis", "text", "channels", "rows"}
-_SELECTION_KEYS = {"group", "channels", "sections"}
+_SELECTION_KEYS = {"group", "channels", "sections", "without"}
 _AXIS_KEYS = {"quantity", "column", "unit", "gain", "offset", "sample_rate"}
 _TEXT_KEYS = {
     "separator", "decimal_sign", "lines_to_skip", "missing", "encoding", "header", "units_row", "comment", "section",
@@ -40,11 +41,14 @@ class Selection:
         Channels by label, or by name where only one group has it; empty for all. Columns of the time come along.
     sections : tuple of str
         Sections of a text export, by name or by number from 1, joined in the order of the file; empty for all.
+    without : tuple of str
+        Columns to leave out, by label, of those that no channel of the mapping is read from.
     """
 
     group: str = ""
     channels: tuple[str, ...] = ()
     sections: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -169,7 +173,7 @@ class RecordingMapping:
     Parameters
     ----------
     channels : mapping of str to ChannelSource
-        Source of each channel, by its vocabulary name.
+        Source of each channel, by its vocabulary name, or that of a text of a table of runs.
     axis : ChannelSource or None
         Column of the axis (independent variable); None where `sample_rate` or the file states it.
     axis_quantity : str
@@ -210,7 +214,8 @@ class RecordingMapping:
 
     def __post_init__(self) -> None:
         for name in self.channels:
-            quantity(name)
+            if name not in TEXT_NAMES:
+                quantity(name)
         _require_pattern("recognised_by", self.recognised_by)
         if self.axis_quantity not in AXIS_QUANTITIES:
             raise InvalidInput(f"axis.quantity must be one of {', '.join(AXIS_QUANTITIES)}, got {self.axis_quantity!r}")
@@ -292,7 +297,7 @@ def _mapping(content: dict[str, Any]) -> RecordingMapping:
     if "missing" in text:
         text["missing"] = _texts(text["missing"], "text.missing")
     selection = _section(content, "selection", _SELECTION_KEYS)
-    for key in ("channels", "sections"):
+    for key in ("channels", "sections", "without"):
         selection[key] = _texts(selection.get(key, []), f"selection.{key}")
     return RecordingMapping(
         title=str(content.get("title", "")),

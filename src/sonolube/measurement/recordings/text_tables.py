@@ -3,7 +3,7 @@
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -12,6 +12,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.limits import require_channels
 from sonolube.measurement.recordings.mapping import TextLayout
 from sonolube.measurement.recordings.raw_table import one_line
+from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
 from sonolube.measurement.recordings.text_columns import NumberedCells
 
 _SEPARATORS = "\t;,|"
@@ -52,7 +53,9 @@ class TextTable:
     separator: str
 
 
-def text_tables(text: str, layout: TextLayout, sections: tuple[str, ...], path: Path) -> list[TextTable]:
+def text_tables(
+    text: str, layout: TextLayout, sections: tuple[str, ...], path: Path, *, allows_short_rows: bool = False
+) -> list[TextTable]:
     """Return the tables of a text export in order: one, or one per section.
 
     Parameters
@@ -65,6 +68,8 @@ def text_tables(text: str, layout: TextLayout, sections: tuple[str, ...], path: 
         The sections to return, by name or number; empty for all that hold rows.
     path : Path
         Of the file, for messages.
+    allows_short_rows : bool
+        Whether cells at the end of a row may be left out.
 
     Returns
     -------
@@ -86,10 +91,34 @@ def text_tables(text: str, layout: TextLayout, sections: tuple[str, ...], path: 
     if layout.section and not parts:
         raise InvalidInput(f"{path}: has no section, a line with {layout.section!r}")
     chosen = [parts[index] for index in _chosen([name for name, _, _ in parts], sections, path)]
-    tables = [_table(name, lines, first, end, layout, path) for name, first, end in chosen]
+    tables = [_table(name, lines, first, end, layout, path, allows_short_rows) for name, first, end in chosen]
     if sections and (empty := next((table for table in tables if not table.rows), None)):
         raise InvalidInput(f"{path}: line {empty.line}: section {empty.section!r} holds no rows")
     return [table for table in tables if table.rows] or tables[:1]
+
+
+def require_rows(table: TextTable, required: Mapping[str, str], path: Path) -> None:
+    """Keep only the rows of a table that have required cells.
+
+    Parameters
+    ----------
+    table : TextTable
+    required : mapping of str to str
+        Cell by the label of its column.
+    path : Path
+        Of the file, for messages.
+
+    Raises
+    ------
+    InvalidInput
+        If a column is missing, or no row is left.
+    """
+    indices = {label: index for index, label in enumerate(numbered_labels(table.labels))}
+    for label, cell in required.items():
+        index = column_of_label(indices, label, path)
+        table.rows[:] = [row for row in table.rows if "".join(row[1][index : index + 1]).strip() == cell]
+    if not table.rows:
+        raise InvalidInput(f"{path}: holds no rows" + (f" with {dict(required)}" if required else ""))
 
 
 def _sections(lines: list[str], layout: TextLayout) -> list[tuple[str, int, int]]:
@@ -121,7 +150,9 @@ def _chosen(names: list[str], sections: tuple[str, ...], path: Path) -> list[int
     return sorted(indices)
 
 
-def _table(name: str, lines: list[str], first: int, end: int, layout: TextLayout, path: Path) -> TextTable:
+def _table(
+    name: str, lines: list[str], first: int, end: int, layout: TextLayout, path: Path, allows_short_rows: bool
+) -> TextTable:
     """Return the table between two lines."""
     header = _header_line(lines, first, end, layout, path)
     separator = layout.separator or _detected_separator(lines[header : header + 1])
@@ -134,7 +165,7 @@ def _table(name: str, lines: list[str], first: int, end: int, layout: TextLayout
         raise InvalidInput(f"{path}: line {line}: no column names")
     require_channels(len(labels), path, kind="columns")
     units = [one_line(cell) for cell in _next_row(rows, line + 1)[1]] if layout.units_row else []
-    body, unread = _body(rows, len(labels), layout, path)
+    body, unread = _body(rows, len(labels), path, allows_short_rows)
     return TextTable(
         section=name,
         begun=_begun("".join(lines[first - 1 if layout.section else 0 : header]), layout, path)
@@ -201,7 +232,7 @@ def _rows(
 
 
 def _body(
-    rows: Iterator[NumberedCells | None], width: int, layout: TextLayout, path: Path
+    rows: Iterator[NumberedCells | None], width: int, path: Path, allows_short_rows: bool
 ) -> tuple[list[NumberedCells], int]:
     """Return the rows of a table up to its end, and the number of rows that follow it."""
     body: list[NumberedCells] = []
@@ -211,7 +242,7 @@ def _body(
                 break
             continue
         line, cells = row
-        if len(cells) < width or any(cell.strip() for cell in cells[width:]):
+        if (len(cells) < width and not allows_short_rows) or any(cell.strip() for cell in cells[width:]):
             raise InvalidInput(f"{path}: line {line}: has {len(cells)} cells where {width} columns are named")
         body.append(row)
     return body, sum(row is not None for row in rows)

@@ -5,13 +5,14 @@ from itertools import combinations
 from math import hypot, isfinite
 from typing import TYPE_CHECKING, Annotated, Any
 
-from sonolube.measurement.measured_runs import runs_help
+from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.compare.own_runs import run_blocks, runs_object
-from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig, runs_of
+from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
 from sonolube.units import format_si
@@ -51,6 +52,7 @@ def compare(
     *,
     model: Annotated[Sequence[str], Parameter(help="Only this model; may come again.", kind="NAME")] = (),
     runs: Annotated[RunsSource, _RUNS] = None,
+    mapping: MappedRuns = None,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "ComparisonAnswer":
@@ -58,7 +60,7 @@ def compare(
 
     Example: sonolube compare examples/rigs/tribometer.toml --model asperity-stick-slip --model kinematic
     """
-    known, own_runs = optional_rig(rig), runs_of(runs)
+    known, own_runs = optional_rig(rig), runs_of(runs, mapping)
     point = None if known is None else vibrated_rig(known)
     table = None if own_runs is None else run_conditions(own_runs, known)
     with stage("comparing") as advance:

@@ -6,12 +6,13 @@ from typing import Annotated, Any
 
 import xarray as xr
 
-from sonolube.measurement.measured_runs import runs_help
+from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
 from sonolube.rig import Rig, steady_vibration
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Table
-from sonolube.tasks.parameters import OptionalRig, OwnRuns, Parameter, Stop, Watch, file_stem, optional_rig, runs_of
+from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.parameters import OptionalRig, OwnRuns, Parameter, Stop, Watch, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
 from sonolube.units import format_si
@@ -35,6 +36,7 @@ def fit(
     runs: Annotated[OwnRuns, _RUNS],
     *,
     rig: OptionalRig = None,
+    mapping: MappedRuns = None,
     model: Annotated[Sequence[str], Parameter(help="Only this model; may come again.", kind="NAME")] = (),
     progress: Watch = None,
     cancelled: Stop = None,
@@ -43,7 +45,7 @@ def fit(
 
     Example: sonolube fit examples/tribometer-runs.csv --rig examples/rigs/tribometer.toml
     """
-    known, table = optional_rig(rig), runs_of(runs)
+    known, table = optional_rig(rig), runs_of(runs, mapping)
     with stage("fitting") as advance:
         result = fit_runs(table, known, models=compared_models(model), advance=advance)
     volts = None if known is None or "voltage_peak_to_peak" not in table else _volts_per_amplitude(known)

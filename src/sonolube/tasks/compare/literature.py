@@ -11,7 +11,8 @@ from sonolube.rig import Rig, friction_point
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block
 from sonolube.tasks.files import NamedBytes
-from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, optional_rig, runs_of
+from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, optional_rig
 from sonolube.tasks.task import task
 from sonolube.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint, study_map
@@ -28,7 +29,9 @@ _TABLE = Parameter(
 
 
 @task
-def literature(rig: OptionalRig = None, *, table: Annotated[RunsSource, _TABLE] = None) -> "LiteratureAnswer":
+def literature(
+    rig: OptionalRig = None, *, table: Annotated[RunsSource, _TABLE] = None, mapping: MappedRuns = None
+) -> "LiteratureAnswer":
     """Earlier studies the dissertation reviews, as a list, a table and a map over speed and pressure, with your rig.
 
     Example: sonolube literature examples/rigs/tribometer.toml
@@ -37,7 +40,7 @@ def literature(rig: OptionalRig = None, *, table: Annotated[RunsSource, _TABLE] 
     point = outside = None
     if known is not None:
         point, outside = _point(known)
-    runs = runs_of(table)
+    runs = runs_of(table, mapping)
     title = table.name if isinstance(table, NamedBytes) else str(table)
     others, caveats = ((), ()) if runs is None else studies_of_runs(runs, title=title)
     return LiteratureAnswer(

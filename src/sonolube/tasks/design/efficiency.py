@@ -10,7 +10,8 @@ from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.design.friction_target import friction_force
-from sonolube.tasks.parameters import Number, OwnRuns, Parameter, RigParameter, RigSource, file_stem, rig_of, runs_of
+from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.parameters import Number, OwnRuns, Parameter, RigParameter, RigSource, file_stem, rig_of
 from sonolube.tasks.results.rig_text import rig_settings
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.units import format_si
@@ -33,6 +34,7 @@ def efficiency(
     runs: Annotated[OwnRuns, Parameter(help="Measured runs, a row each.", kind="RUNS.csv", is_file=True)],
     *,
     rig: Annotated[RigSource, RigParameter(without=("load", "amplitude"))],
+    mapping: MappedRuns = None,
     target_friction: Annotated[
         str | float | None,
         Parameter(help="Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.", kind="FRICTION"),
@@ -51,7 +53,11 @@ def efficiency(
     if target_friction is not None:
         target = friction_force("target_friction", target_friction, normal_load=known.normal_load)
     calibration = calibrate_efficiency(
-        known, runs_of(runs), friction_force=target, sliding_speed=in_si("speed", speed), confidence_level=level
+        known,
+        runs_of(runs, mapping),
+        friction_force=target,
+        sliding_speed=in_si("speed", speed),
+        confidence_level=level,
     )
     return EfficiencyAnswer(rig=known, calibration=calibration, name=f"{file_stem(runs)}-efficiency")
 

@@ -13,13 +13,14 @@ from sonolube.design.maps import default_axes, panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import runs_help
+from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows
-from sonolube.tasks.parameters import Backend, Parameter, RigFile, RunsSource, Stop, Watch, rig_of, runs_of
+from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.parameters import Backend, Parameter, RigFile, RunsSource, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.results.rig_text import amplitude_object, amplitude_rows, friction_model_text, rig_settings
@@ -64,6 +65,7 @@ def map(  # noqa: A001 - the command's name
     ] = "velocity-power",
     over: Annotated[Values | None, _OVER] = None,
     runs: Annotated[RunsSource, _RUNS] = None,
+    mapping: MappedRuns = None,
     form: Annotated[
         Sequence[Literal["png", "pdf", "svg", "html"]],
         Parameter(help="png, pdf, svg or an interactive html; may come again."),
@@ -79,7 +81,7 @@ def map(  # noqa: A001 - the command's name
     known = rig_of(rig)
     refuse_replaced(known, over or {})
     axes = _axes(known, kind, over or {})
-    measured = runs_of(runs)
+    measured = runs_of(runs, mapping)
     if measured is not None:
         require_mappable(measured, kind=kind)
     with stage("mapping"):

@@ -14,7 +14,8 @@ from sonolube.prediction.inputs import RigInputs, rig_inputs
 from sonolube.rig import Rig
 from sonolube.tasks.design.factor_values import factor_values
 from sonolube.tasks.design.plan_answer import PlanAnswer
-from sonolube.tasks.parameters import Disc, Number, Parameter, Pin, RigFile, RunsSource, rig_of, runs_of
+from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.parameters import Disc, Number, Parameter, Pin, RigFile, RunsSource, rig_of
 from sonolube.tasks.task import in_si, shown, task
 
 _SPEEDS, _AMPLITUDES = 7, 5  # values of a range without a count
@@ -32,6 +33,7 @@ def plan(
             help="Own earlier runs: they give the scatter and update the prediction.", kind="RUNS.csv", is_file=True
         ),
     ] = None,
+    mapping: MappedRuns = None,
     speed: Annotated[
         str | None,
         Parameter(
@@ -105,7 +107,7 @@ def plan(
             actuator_power=in_si("amplifier_power", amplifier_power),
             mean_temperature_rise=in_si("temperature_rise", temperature_rise),
         ),
-        runs=runs_of(runs),
+        runs=runs_of(runs, mapping),
         pin=pin,
         disc=disc,
         seed=seed,

@@ -20,11 +20,13 @@ from sonolube.identification.decay_length.verdict import HYPOTHESES
 from sonolube.input_files import open_input
 from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.measured_runs import read_runs
+from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.own_tables import Mapped, mapping_of
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch, file_stem
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -34,6 +36,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _HEAD = 4096  # bytes of a file in which a table names its columns
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_DISTANCES = ("sliding_distance", "sliding distance", "gleitweg")
+_TIMES = ("time", "zeit")
 _FEW_DRAWS = 30.0  # effective, below which probabilities are coarse
 _CAPTION = (
     "Readings at the switches of the vibration over the sliding distance, with the most probable course of each"
@@ -69,6 +74,7 @@ def decay_length(
     rotation_speed: Annotated[
         Number | None, Parameter(help="Of the disc, to remove its wobble from a recording.", unit="1/s")
     ] = None,
+    mapping: Mapped = None,
     seed: Annotated[int, Parameter(help="Seed of the sampling; equal seeds give equal results.", lowest=0)] = 0,
     progress: Watch = None,
     cancelled: Stop = None,
@@ -91,14 +97,14 @@ def decay_length(
         natural_frequency=in_si("free_frequency", free_frequency),
         modal_mass=in_si("modal_mass", modal_mass),
     )
-    path = file_path(file)
+    path, columns = file_path(file), mapping_of(mapping)
     with stage("weighing"):
-        if _is_table(path):
+        if _is_table(path, columns):
             refuse_unused("rotation_speed", because="for a table of switches; it is for recordings")
-            table = switch_table(read_runs(path))
+            table = switch_table(read_runs(path, mapping=columns))
         else:
             table = recorded_switches(
-                read_recording(path),
+                read_recording(path, mapping=columns),
                 sliding_speed=conditions.sliding_speed,
                 rotation_speed=in_si("rotation_speed", rotation_speed),
             )
@@ -195,11 +201,15 @@ class DecayLengthAnswer(Answer):
         return {f"{self.name}.nc": decision_dataset(self.table, self.decision)}
 
 
-def _is_table(file: Path) -> bool:
-    """Whether a file is a table of switches: text whose head names the sliding distance and no time."""
+def _is_table(file: Path, mapping: RecordingMapping | None) -> bool:
+    """Whether a file is a table of switches: its mapping or its head names the sliding distance and no time."""
+    if mapping is not None and "sliding_distance" in mapping.channels:
+        return mapping.axis is None
     with refuse_unreadable(file), open_input(file) as stream:
-        head = stream.read(_HEAD).split(b"\n")[0]
-    return b"sliding_distance" in head and b"time" not in head
+        head = stream.read(_HEAD)
+    lines = head.decode("utf-16" if head[:2] in _UTF_16 else "latin-1", errors="ignore").splitlines()
+    labels = next((line.lower() for line in lines if line.strip() and not line.startswith("#")), "")
+    return any(name in labels for name in _DISTANCES) and not any(name in labels for name in _TIMES)
 
 
 def _interval(found: Interval, unit: str) -> dict[str, Any]:

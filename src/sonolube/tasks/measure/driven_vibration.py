@@ -5,16 +5,9 @@ from typing import Annotated
 
 from sonolube.report.measured.vibration import VibrationSettings, has_voltage, proportion_sheet, vibration_sheet
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.measure.measured_files import (
-    Files,
-    Mapped,
-    MeasuredFiles,
-    TestSheet,
-    column_mapping,
-    conditions,
-    each_file,
-)
+from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, conditions, each_file
 from sonolube.tasks.number_table import number_table
+from sonolube.tasks.own_tables import Mapped
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.task import in_si, task
 

@@ -14,7 +14,6 @@ from sonolube.report.measured.calibration import (
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.measure.measured_files import (
     Files,
-    Mapped,
     MeasuredFiles,
     TestSheet,
     column_mapping,
@@ -22,6 +21,7 @@ from sonolube.tasks.measure.measured_files import (
     each_file,
     files_of,
 )
+from sonolube.tasks.own_tables import Mapped
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 

@@ -4,15 +4,8 @@ from functools import partial
 from typing import Annotated
 
 from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
-from sonolube.tasks.measure.measured_files import (
-    Files,
-    Mapped,
-    MeasuredFiles,
-    TestSheet,
-    column_mapping,
-    conditions,
-    each_file,
-)
+from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, conditions, each_file
+from sonolube.tasks.own_tables import Mapped
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.task import in_si, task
 

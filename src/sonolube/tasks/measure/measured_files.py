@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.measurement.recordings.instrument_mappings import mapping_by_name
-from sonolube.measurement.recordings.mapping import RecordingMapping, Selection
+from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.report import (
     Drawing,
     MeasurementReport,
@@ -26,6 +25,7 @@ from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
 from sonolube.tasks.measure.sheets import sheet_blocks, sheets_dataset
+from sonolube.tasks.own_tables import mapping_of
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.progress import stage
 
@@ -38,14 +38,6 @@ if TYPE_CHECKING:
 Files = Annotated[
     Sequence[InputFile] | InputFile,
     Parameter(help="Files, or folders whose files are taken.", kind="FILES...", is_file=True),
-]
-Mapped = Annotated[
-    InputFile | None,
-    Parameter(
-        help="Of the columns: umt, anton-paar, t-11, rtec, pin-on-disc, or a file.",
-        kind="NAME|MAPPING.toml",
-        is_file=True,
-    ),
 ]
 Group = Annotated[str | None, Parameter(help="Of the channels, in TDMS, HDF5 and MATLAB files.", kind="GROUP")]
 Channels = Annotated[Sequence[str], Parameter(help="To read, as labelled; may come again.", kind="LABEL")]
@@ -116,11 +108,12 @@ def column_mapping(
     mapping: InputFile | None, *, group: str | None = None, channels: Sequence[str] = (), sections: Sequence[str] = ()
 ) -> RecordingMapping | None:
     """Meaning of the columns by the name or file of a mapping, with the parts to read; None where none was given."""
-    found = None if mapping is None else mapping_by_name(str(file_path(mapping)))
+    found = mapping_of(mapping)
     if not (group or channels or sections):
         return found
     own = found or RecordingMapping(channels={})
-    selection = Selection(
+    selection = replace(
+        own.selection,
         group=group or own.selection.group,
         channels=tuple(channels or own.selection.channels),
         sections=tuple(sections or own.selection.sections),

@@ -14,7 +14,6 @@ from sonolube.tasks.measure.measured_files import (
     Channels,
     Files,
     Group,
-    Mapped,
     MeasuredFiles,
     Sections,
     TestSheet,
@@ -24,6 +23,7 @@ from sonolube.tasks.measure.measured_files import (
     files_of,
     reason_of,
 )
+from sonolube.tasks.own_tables import Mapped
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 

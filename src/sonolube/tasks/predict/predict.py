@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import numpy as np
 
-from sonolube.measurement.measured_runs import runs_help
+from sonolube.measurement.run_columns import runs_help
 from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.rig_statement import interval
@@ -15,7 +15,8 @@ from sonolube.rig import Rig
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Table
-from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of, runs_of
+from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
 from sonolube.tasks.results.measured import Measurement, measured_on
 from sonolube.tasks.task import task
 from sonolube.units import format_si
@@ -45,6 +46,7 @@ def predict(
     rig: RigFile,
     *,
     runs: Annotated[RunsSource, Parameter(help=runs_help("Own measured runs"), kind="RUNS.csv", is_file=True)] = None,
+    mapping: MappedRuns = None,
     laboratory: Annotated[Laboratory, _LABORATORY] = None,
     pin: Pin = None,
     disc: Disc = None,
@@ -58,7 +60,7 @@ def predict(
     known = rig_of(rig)
     result = LivePrediction(
         known,
-        runs=runs_of(runs),
+        runs=runs_of(runs, mapping),
         laboratory_runs=_rigs_with_runs(laboratory),
         pin=pin,
         disc=disc,
@@ -72,12 +74,7 @@ def predict(
 def _rigs_with_runs(laboratory: Laboratory) -> "list[tuple[Rig, xr.Dataset]]":
     """Rigs of a laboratory with the runs of each."""
     pairs = laboratory.items() if isinstance(laboratory, Mapping) else laboratory or ()
-    found = []
-    for rig, table in pairs:
-        known, runs = rig_of(rig), runs_of(table)
-        if runs is not None:
-            found.append((known, runs))
-    return found
+    return [(rig_of(rig), runs_of(table)) for rig, table in pairs if table is not None]
 
 
 @answer

@@ -1,0 +1,44 @@
+"""Command `mapping`: the task with a question on a terminal for each column that its heading does not tell."""
+
+from typing import Any
+
+from sonolube.cli.console.questions import Question, ask, is_terminal
+from sonolube.cli.generated import command_of
+from sonolube.errors import InvalidInput
+from sonolube.measurement.run_table import run_text
+from sonolube.tasks.lookup.mapping import LEFT_OUT, meaning, samples, stated_columns
+from sonolube.tasks.table import task_named
+
+
+def _completed(given: dict[str, Any]) -> dict[str, Any]:
+    """Arguments with the answers to questions for columns of unknown meaning."""
+    if "file" not in given:
+        raise InvalidInput("missing FILE, a table of runs or a text export of an instrument")
+    if not is_terminal():
+        return given
+    path = given["file"]
+    table, _ = run_text(path)
+    answers = dict(given.get("column") or {})
+    for label, found in stated_columns(table, answers, path).items():
+        if found is None:
+            answers[label] = _asked(label, samples(table, label))
+    return given | {"column": answers}
+
+
+def _asked(label: str, cells: list[str]) -> str:
+    """Statement about a column that can be read."""
+    holds = "; ".join(cells) or "empty cells"
+    question = Question(
+        option=f"column {label!r}",
+        text=f"Column {label!r} ({holds}): quantity and unit, such as 'friction_force N', or - to leave it out",
+        default=LEFT_OUT,
+    )
+
+    def read(text: str) -> str:
+        meaning(text, label)
+        return text
+
+    return ask(question, read)
+
+
+mapping = command_of(task_named("mapping"), complete=_completed)

@@ -1,0 +1,315 @@
+"""Tables of runs as text files: the columns by a mapping or by their headings, numbers in SI, texts as they are."""
+
+import io
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.measurement.file_format import read_head
+from sonolube.measurement.numeric_text import detected_decimal_sign, parse_number
+from sonolube.measurement.recordings.delimited import DelimitedText
+from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, TextLayout
+from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
+from sonolube.measurement.recordings.text_columns import NumberedCells
+from sonolube.measurement.recordings.text_file import decoded_text
+from sonolube.measurement.recordings.text_tables import TextTable, require_rows, text_tables
+from sonolube.measurement.recordings.written_units import si_conversion
+from sonolube.measurement.run_columns import TEXT_NAMES, heading
+from sonolube.measurement.run_headings import meaning_at_stake, run_heading
+from sonolube.units import unit_description
+from sonolube.vocabulary import quantities
+
+_PREAMBLE: Final = re.compile(r'"?\s*(?:[#%](?!\s*[;,\t|])|//)|[\s;,"|]*\Z')  # comments, and lines without any text
+_SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)  # with which Excel tells its separator
+_LARGEST: Final = 1e30  # in any unit; keeps squares of quantities within the range of floats
+_MOST_RUNS: Final = 100_000
+_QUOTED: Final = 40  # characters of a cell in an error message
+_MOST_NAMED: Final = 12  # columns in a caveat
+_SPREADSHEET: Final = b"PK\x03\x04"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunTable:
+    """Columns of a table of runs.
+
+    Parameters
+    ----------
+    columns : mapping of str to ndarray, shape (rows,)
+        Quantities in SI by name, NaN where a cell is empty.
+    texts : mapping of str to list of str
+        Texts by name.
+    lines : list of int
+        Of the file, for each row.
+    caveats : tuple of str
+        Assumptions of the reader, and columns that are left out.
+    """
+
+    columns: Mapping[str, Floats]
+    texts: Mapping[str, list[str]]
+    lines: list[int]
+    caveats: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """Column of a table: its name in the result, place, label, and source."""
+
+    name: str
+    place: int
+    source: ChannelSource
+
+    @property
+    def shown(self) -> str:
+        """Name as messages have it: that of the quantity where the heading has it too, else the heading."""
+        label = self.source.column
+        return self.name if re.fullmatch(rf"{self.name}\W*.*", label) else f"column {_quoted(label)}"
+
+
+@dataclass(slots=True)
+class _Assignment:
+    """Columns that are read, and the labels of those that are not."""
+
+    columns: list[_Column] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+
+
+def run_table(path: Path, *, mapping: RecordingMapping | None = None) -> RunTable:
+    """Columns of a table of runs in a text file.
+
+    Parameters
+    ----------
+    path : Path
+        Text as `DelimitedText` reads it, in UTF-8, UTF-16 or Windows-1252, between commas, semicolons, tabs or bars,
+        with either decimal sign. Lines before the headings that begin with #, % or //, or are empty, are passed over.
+    mapping : RecordingMapping or None
+        Names columns that their headings do not, and those to leave out.
+
+    Returns
+    -------
+    RunTable
+
+    Raises
+    ------
+    InvalidInput
+        In one line with the file, the line and the column, if the file is no text, a heading of unknown meaning looks
+        like a setting, a direction, a lubricant or a unit, a unit is missing, unknown or of another kind, a cell is no
+        number, or two columns are one quantity.
+    """
+    table, caveats = run_text(path, mapping)
+    found = assigned_columns(path, table.line, table.labels, table.rows, mapping=mapping, separator=table.separator)
+    return replace(found, caveats=(*caveats, *found.caveats))
+
+
+def run_text(path: Path, mapping: RecordingMapping | None = None) -> tuple[TextTable, tuple[str, ...]]:
+    """Labels and rows of the text of a table of runs, with the caveats of its decoding; parameters as `run_table`."""
+    head = read_head(path)
+    if head.startswith(_SPREADSHEET):
+        raise InvalidInput(f"{path}: is a spreadsheet or archive; save the table as CSV")
+    if not DelimitedText().recognises(head, path):
+        raise InvalidInput(f"{path}: not a table of comma-separated values")
+    layout = mapping.text if mapping else TextLayout()
+    text, caveats = decoded_text(path, encoding=layout.encoding)
+    if not (layout.lines_to_skip or layout.header or layout.section):
+        layout = _below_preamble(text, layout)
+    tables = text_tables(text, layout, mapping.selection.sections if mapping else (), path, allows_short_rows=True)
+    if len(tables) > 1:
+        raise InvalidInput(f"{path}: has {len(tables)} sections; choose one by selection.sections of the mapping")
+    table = tables[0]
+    if not table.rows:
+        raise InvalidInput(f"{path}: needs a head and at least one run")
+    if len(table.rows) > _MOST_RUNS:
+        raise InvalidInput(f"{path}: has {len(table.rows)} rows, but at most {_MOST_RUNS} runs are read")
+    require_rows(table, mapping.rows if mapping else {}, path)
+    return table, caveats
+
+
+def assigned_columns(
+    path: Path,
+    line: int,
+    labels: Sequence[str],
+    rows: Sequence[NumberedCells],
+    *,
+    mapping: RecordingMapping | None = None,
+    separator: str = ",",
+) -> RunTable:
+    """Columns of a table of runs by its labels and rows.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file, for messages.
+    line : int
+        Of the labels.
+    labels : sequence of str
+    rows : sequence of (int, list of str)
+        Line and cells of each; cells at the end may be missing.
+    mapping : RecordingMapping or None
+        As `run_table`.
+    separator : str
+        Between cells; behind commas a decimal sign is a point.
+
+    Returns
+    -------
+    RunTable
+    """
+    assigned = _by_mapping(path, labels, mapping) if mapping else _Assignment()
+    _by_headings(path, line, labels, assigned, mapping)
+    layout = mapping.text if mapping else TextLayout()
+    numbers = [each for each in assigned.columns if each.name not in TEXT_NAMES]
+    sign = layout.decimal_sign or (
+        "."
+        if separator == ","
+        else detected_decimal_sign(_cell(cells, each.place) for _, cells in rows for each in numbers)
+    )
+    missing = frozenset(layout.missing)
+    return RunTable(
+        columns={each.name: _in_si(path, line, each, rows, sign, missing) for each in numbers},
+        texts={
+            each.name: [_cell(cells, each.place) for _, cells in rows]
+            for each in assigned.columns
+            if each.name in TEXT_NAMES
+        },
+        lines=[number for number, _ in rows],
+        caveats=_left_out_caveat(assigned.left_out),
+    )
+
+
+def _below_preamble(text: str, layout: TextLayout) -> TextLayout:
+    """Layout with the lines before the headings to skip, and the separator that one of them states."""
+    skipped = 0
+    for text_line in io.StringIO(text, newline=""):
+        if stated := _SEPARATOR_LINE.fullmatch(text_line.strip("\r\n")):
+            layout = replace(layout, separator=layout.separator or stated[1])
+        elif not _PREAMBLE.match(text_line):
+            break
+        skipped += 1
+    return replace(layout, lines_to_skip=skipped)
+
+
+def _by_mapping(path: Path, labels: Sequence[str], mapping: RecordingMapping) -> _Assignment:
+    """Columns that a mapping names."""
+    places = {label: place for place, label in enumerate(numbered_labels(labels))}
+    assigned = _Assignment()
+    for name, source in mapping.for_labels(labels).channels.items():
+        if not (source.optional and source.column not in places):
+            assigned.columns.append(_Column(name, column_of_label(places, source.column, path), source))
+    return assigned
+
+
+def _by_headings(
+    path: Path, line: int, labels: Sequence[str], assigned: _Assignment, mapping: RecordingMapping | None
+) -> None:
+    """Add the other columns by their headings; those of unknown meaning are left out, or refused where it matters."""
+    mapped = {each.place for each in assigned.columns}
+    names = {each.name for each in assigned.columns}
+    without = {
+        *(mapping.selection.without if mapping else ()),
+        *(mapping.axis.labels if mapping and mapping.axis else ()),
+    }
+    known: dict[str, str] = {}
+    for place, (label, numbered) in enumerate(zip(labels, numbered_labels(labels), strict=True)):
+        if place in mapped:
+            continue
+        found = run_heading(label)
+        if not without.isdisjoint((label, numbered)) or (found is not None and found.name in names):
+            assigned.left_out.append(numbered)
+        elif found is None:
+            _require_harmless(path, line, place, label)
+            assigned.left_out.append(numbered)
+        else:
+            if found.name in known:
+                first = known[found.name]
+                both = "" if first == label else f", {_quoted(first)} and {_quoted(label)}"
+                raise InvalidInput(f"{path}: two columns are named {found.name}{both}")
+            known[found.name] = label
+            source = ChannelSource(column=label, unit=found.unit)
+            assigned.columns.append(_Column(found.name, place, source))
+
+
+def _require_harmless(path: Path, line: int, place: int, label: str) -> None:
+    """Refuse a column of unknown meaning that must not be left out unasked."""
+    if not label:
+        raise InvalidInput(f"{path}: line {line}: column {place + 1} has no heading; name it, or delete the column")
+    if stake := meaning_at_stake(label):
+        raise InvalidInput(
+            f"{path}: line {line}: column {_quoted(label)} must name a quantity, such as sliding_speed [mm/s]: it looks"
+            f" like {stake}; map it (sonolube mapping), or delete the column"
+        )
+
+
+def _in_si(
+    path: Path, line: int, column: _Column, rows: Sequence[NumberedCells], sign: str, missing: frozenset[str]
+) -> Floats:
+    """Numbers of a column in SI, NaN where a cell is empty."""
+    source = column.source
+    unit = quantities()[column.name].unit
+    stated = source.unit
+    if stated is None:
+        found = run_heading(source.column)
+        stated = found.unit if found else _bracketed(source.column)
+    if unit and not stated:
+        raise InvalidInput(
+            f"{path}: line {line}: {column.shown} has no unit; expected {unit_description(unit)}: put it into the"
+            f" heading, such as {_example(column.name, unit)}"
+        )
+    gain, offset, _ = si_conversion(stated, unit=unit, name=f"{path}: line {line}: {column.shown}")
+    numbers = np.array([_number(path, *row, column, sign, missing) for row in rows])
+    return offset + gain * (numbers * source.gain + source.offset)
+
+
+def _bracketed(label: str) -> str:
+    """Unit in brackets at the end of a label."""
+    found = re.search(r"[\[(]([^\[\]()]*)[\])]\s*\Z", label[-_QUOTED:])
+    return found[1] if found else ""
+
+
+def _example(name: str, unit: str) -> str:
+    """Heading with a unit, the usual one where the quantity is among the columns of runs."""
+    try:
+        return heading(name)
+    except KeyError:
+        return f"{name} [{unit}]"
+
+
+def _number(path: Path, line: int, cells: Sequence[str], column: _Column, sign: str, missing: frozenset[str]) -> float:
+    """Number in a cell of a row, in the unit of its column; NaN where it is empty."""
+    cell = _cell(cells, column.place)
+    if not cell or cell in missing:
+        return float("nan")
+    number = parse_number(cell, decimal_sign=sign)
+    if number is None:
+        raise InvalidInput(f"{path}: line {line}: {column.shown} {_quoted(cell)} is no number{_sign_hint(cell, sign)}")
+    if not abs(number) <= _LARGEST:
+        raise InvalidInput(f"{path}: line {line}: {column.shown} {_quoted(cell)} lies beyond any run")
+    return number
+
+
+def _sign_hint(cell: str, sign: str) -> str:
+    """What else a cell may be: a number of the other decimal sign."""
+    other = {".": ",", ",": "."}[sign]
+    return f" with the decimal sign {sign!r}; give text.decimal_sign in a mapping" if other in cell else ""
+
+
+def _left_out_caveat(labels: Sequence[str]) -> tuple[str, ...]:
+    """Caveat about the columns that are not read."""
+    if not labels:
+        return ()
+    named = ", ".join(map(_quoted, labels[:_MOST_NAMED])) + (", ..." if len(labels) > _MOST_NAMED else "")
+    return (f"{len(labels)} {'column is' if len(labels) == 1 else 'columns are'} left out: {named}",)
+
+
+def _cell(cells: Sequence[str], place: int) -> str:
+    """Text of a cell; empty where the row is shorter."""
+    return cells[place].strip() if place < len(cells) else ""
+
+
+def _quoted(cell: str) -> str:
+    """Cell in quotation marks, shortened where it is long."""
+    text = cell.strip()
+    return repr(text if len(text) <= _QUOTED else text[:_QUOTED] + "...")

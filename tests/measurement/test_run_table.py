@@ -1,0 +1,195 @@
+"""Tables of runs as programs save them: encodings, separators, headings, mappings, and refusals in one line."""
+
+import csv
+from pathlib import Path
+
+import pytest
+from hypothesis import given, strategies as st
+from pytest import approx, raises
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import read_runs, run_caveats
+from sonolube.measurement.recordings.mapping import read_mapping
+from sonolube.measurement.recordings.mapping_toml import mapping_toml
+from sonolube.measurement.run_headings import meaning_at_stake, run_heading
+from sonolube.units import to_si
+from sonolube.vocabulary import quantities
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SHARED = Path(__file__).parents[3] / "shared" / "data" / "friction"
+ROWS = (
+    ("Versuch", "Geschwindigkeit (mm/s)", "Amplitude [µm]", "Normalkraft / N", "friction ratio"),
+    ("a", "20.5", "2.25", "3", "0.5"),
+    ("b", "41", "", "3", "0.75"),
+)
+
+
+def text(separator: str, sign: str) -> str:
+    return "\n".join(separator.join(cell.replace(".", sign) for cell in row) for row in ROWS) + "\n"
+
+
+def written(folder: Path, content: str | bytes, name: str = "runs.csv") -> Path:
+    path = folder / name
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return path
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize(("separator", "sign"), [(",", "."), (";", "."), (";", ","), ("\t", ",")])
+@pytest.mark.parametrize("preamble", ["", '# Messung 3\n\n% "a;b"\n', "sep={}\n"])
+def test_a_table_is_the_same_however_it_was_saved(
+    encoding: str, separator: str, sign: str, preamble: str, tmp_path: Path
+) -> None:
+    content = preamble.format(separator) + text(separator, sign)
+    runs = read_runs(written(tmp_path, content.encode(encoding)))
+    assert runs["sliding_speed"].to_numpy() == approx([0.0205, 0.041])
+    assert runs["vibration_amplitude"].to_numpy() == approx([2.25e-6, float("nan")], nan_ok=True)
+    assert runs["normal_load"].to_numpy() == approx([3, 3])
+    assert runs["friction_reduction"].to_numpy() == approx([0.5, 0.25])
+    assert list(runs["run"].to_numpy()) == ["a", "b"]
+    assert all("Windows-1252" in caveat for caveat in run_caveats(runs))
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*-runs.csv")), ids=lambda path: path.name)
+def test_example_tables_have_the_numbers_of_a_plain_reading(path: Path) -> None:
+    with path.open(newline="") as stream:
+        heads, *rows = csv.reader(stream)
+    runs = read_runs(path)
+    for place, head in enumerate(heads):
+        name, _, unit = head.rstrip("]").partition(" [")
+        expected = [to_si(f"{row[place]} {unit}", unit=quantities()[name].unit, name=name) for row in rows]
+        assert runs[name].to_numpy().tolist() == approx(expected, rel=1e-15)
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="files of instruments are not here")
+def test_a_table_of_an_instrument_without_runs_is_refused_in_one_line() -> None:
+    for path in sorted(SHARED.glob("*.csv")):
+        with raises(InvalidInput, match=str(path)) as refusal:
+            read_runs(path)
+        assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("label", "name", "unit"),
+    [
+        ("sliding_speed [mm/s]", "sliding_speed", "mm/s"),
+        ("Load [N]", "normal_load", "N"),
+        ("Normal force (N)", "normal_load", "N"),
+        ("normal_force [N]", "normal_force", "N"),
+        ("Geschwindigkeit (mm/s)", "sliding_speed", "mm/s"),
+        ("speed / mm s-1", "sliding_speed", "mm s-1"),
+        ("speed, mm/s", "sliding_speed", "mm/s"),
+        ("speed mm/s", "sliding_speed", "mm/s"),
+        ("Reibkraft in mN", "friction_force", "mN"),
+        ("load_N", "normal_load", "N"),
+        ("SLIDING SPEED (mm·s⁻¹)", "sliding_speed", "mm·s⁻¹"),
+        ("µ", "friction_coefficient", ""),
+        ("μ [-]", "friction_coefficient", "-"),
+        ("Friction reduction (%)", "friction_reduction", "%"),
+        ("Reibungsminderung %", "friction_reduction", "%"),
+        ("Friction-ratio", "friction_ratio", ""),
+        ("Reibkraft (ohne Ultraschall)", "intrinsic_friction_force", ""),
+        ("Flächenpressung [MPa]", "nominal_pressure", "MPa"),
+        ("Reibkraft (ohne Ultraschall) [N]", "intrinsic_friction_force", "N"),
+        ("Temperatur [°C]", "temperature", "°C"),
+    ],
+)
+def test_headings_name_their_quantity_and_unit(label: str, name: str, unit: str) -> None:
+    found = run_heading(label)
+    assert found is not None
+    assert (found.name, found.unit) == (name, unit)
+
+
+def test_other_headings_of_the_vocabulary_belong_to_one_quantity_each() -> None:
+    every = [each.casefold() for known in quantities().values() for each in known.also]
+    assert len(every) == len(set(every))
+    assert not set(every) & set(quantities())
+
+
+def test_unknown_columns_are_left_out_with_one_caveat(tmp_path: Path) -> None:
+    content = "Operator,friction_ratio,Humidity [%],#\nAnn,0.5,40,1\n"
+    runs = read_runs(written(tmp_path, content))
+    assert run_caveats(runs) == ("3 columns are left out: 'Operator', 'Humidity [%]', '#'",)
+    assert set(runs.data_vars) == {"friction_ratio", "friction_reduction"}
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "message"),
+    [
+        ("Richtung", "längs", "line 1: column 'Richtung' .* looks like a direction; map it"),
+        ("Direction", "along", "column 'Direction' .* a direction"),
+        ("Schmierstoff", "PAO", "column 'Schmierstoff' .* a lubricant"),
+        ("Oil", "PAO", "column 'Oil' .* a lubricant"),
+        ("Einheit", "N", "column 'Einheit' .* a unit"),
+        ("mm/s", "3", "column 'mm/s' .* a unit"),
+        ("Voltage [V]", "3", r"column 'Voltage \[V\]' .* a setting"),
+        ("Amplitude p-p [um]", "3", r"column 'Amplitude p-p \[um\]' .* a setting"),
+        ("Load", "3", "line 1: column 'Load' has no unit; expected a force"),
+        ("Load [kilo]", "3", r"line 1: column 'Load \[kilo\]'.*unknown unit 'kilo'"),
+        ("speed [rpm]", "3", r"line 1: column 'speed \[rpm\]'.* a frequency; expected a speed"),
+        ("Load [N]", "x", r"line 2: column 'Load \[N\]' 'x' is no number"),
+        ("Load [N]", "1e31", r"line 2: column 'Load \[N\]' '1e31' lies beyond any run"),
+        ("Load [N];normal_load [N]", "1;2", "two columns are named normal_load, 'Load "),
+        ("", "1", "column 1 has no heading"),
+    ],
+)
+def test_columns_that_change_a_run_are_refused_by_name(head: str, row: str, message: str, tmp_path: Path) -> None:
+    path = written(tmp_path, f"{head};friction_ratio\n{row};0.5\n")
+    with raises(InvalidInput, match=message) as refusal:
+        read_runs(path)
+    assert str(refusal.value).startswith(f"{path}: ")
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"PK\x03\x04" + bytes(100), "save the table as CSV"),
+        (bytes(100), "not a table"),
+        (b"friction_ratio\n", "needs a head and at least one run"),
+        (b"", "is empty"),
+        (b"# only a comment\n", "no column names"),
+        (b"friction_ratio\n0.5\n0,7\n", "line 3: friction_ratio '0,7' is no number with the decimal sign"),
+    ],
+)
+def test_what_is_no_table_is_refused(content: bytes, message: str, tmp_path: Path) -> None:
+    with raises(InvalidInput, match=message):
+        read_runs(written(tmp_path, content))
+
+
+def test_a_mapping_names_columns_calibrates_them_and_leaves_others_out(tmp_path: Path) -> None:
+    path = written(tmp_path, "Nummer;Kraft MW;Kraft 0;v [mm/s];Richtung\n1;0,5;1,0;20;x\n")
+    mapping = written(
+        tmp_path,
+        '[channels.run]\ncolumn = "Nummer"\n[channels.friction_force]\ncolumn = ["F", "Kraft MW"]\nunit = "N"\n'
+        'gain = 2.0\noffset = -0.4\n[channels.intrinsic_friction_force]\ncolumn = "Kraft 0"\nunit = "kN"\n'
+        '[channels.sliding_speed]\ncolumn = "v [mm/s]"\n[selection]\nwithout = ["Richtung"]\n',
+        "mapping.toml",
+    )
+    with raises(InvalidInput, match="column 'Richtung'"):
+        read_runs(path)
+    runs = read_runs(path, mapping=mapping)
+    assert float(runs["friction_force"][0]) == approx(0.6)
+    assert float(runs["intrinsic_friction_force"][0]) == approx(1000)
+    assert float(runs["sliding_speed"][0]) == approx(0.02)
+    assert str(runs["run"][0].item()) == "1"
+    assert run_caveats(runs) == ("1 column is left out: 'Richtung'",)
+
+
+def test_a_mapping_of_a_column_that_is_not_there_is_refused_by_name(tmp_path: Path) -> None:
+    mapping = written(tmp_path, '[channels.friction_force]\ncolumn = "Kraft"\n', "mapping.toml")
+    with raises(InvalidInput, match="has no column 'Kraft'"):
+        read_runs(written(tmp_path, "friction_ratio\n0.5\n"), mapping=mapping)
+
+
+@pytest.mark.parametrize("path", sorted((EXAMPLES / "mappings").glob("*.toml")), ids=lambda path: path.name)
+def test_a_mapping_that_is_written_is_read_back(path: Path, tmp_path: Path) -> None:
+    known = read_mapping(path)
+    assert read_mapping(written(tmp_path, mapping_toml(known), path.name)) == known
+
+
+@given(label=st.text(max_size=60))
+def test_any_heading_is_known_or_not(label: str) -> None:
+    found = run_heading(label)
+    assert found is None or found.name
+    assert isinstance(meaning_at_stake(label), str)
