@@ -169,10 +169,12 @@ def _shaded_points(part: Points, axes: "Axes") -> Any:
     field = next((each for each in axes.collections if each.get_array() is not None), None)
     style: dict[str, Any] = {"s": 30 * part.size, "marker": MARKERS[part.marker % len(MARKERS)], "zorder": 4}
     colours: dict[str, Any] = {"norm": field.norm, "cmap": field.get_cmap()} if field else {"cmap": "viridis"}
+    if field is None and part.scale_ends is not None:
+        colours |= {"vmin": part.scale_ends[0], "vmax": part.scale_ends[1]}
     drawn = axes.scatter(part.x, part.y, c=part.shades, edgecolors="white", clip_on=False, **style, **colours)
     if part.label:
         axes.scatter([], [], facecolors="0.6", edgecolors="black", label=part.label, **style)
-    return None if field else drawn
+    return drawn if field is None and part.scale_text else None
 
 
 @_draw.register(Rule)
@@ -282,9 +284,16 @@ def _set_axis(axes: "Axes", name: str, axis: Axis, *, is_labelled: bool) -> None
     one.set_tick_params(labelbottom=True) if is_labelled and name == "x" else None
     if axis.reciprocal is not None:
         constant, label = axis.reciprocal
-        functions = (lambda value: constant / np.maximum(value, 1e-9),) * 2
-        other = getattr(axes, f"secondary_{name}axis")("top" if name == "x" else "right", functions=functions)
-        getattr(other, f"set_{name}label")(label)
+        _add_second_axis(axes, name, label, (lambda value: constant / np.maximum(value, 1e-9),) * 2)
+    if axis.proportional is not None:
+        factor, label = axis.proportional
+        _add_second_axis(axes, name, label, (lambda value: factor * value, lambda value: value / factor))
+
+
+def _add_second_axis(axes: "Axes", name: str, label: str, functions: tuple[Any, Any]) -> None:
+    """Give a panel an axis on the other side, by the function of its value and the inverse."""
+    other = getattr(axes, f"secondary_{name}axis")("top" if name == "x" else "right", functions=functions)
+    getattr(other, f"set_{name}label")(label)
 
 
 def _number_decades(axis: Any, ends: tuple[float, float]) -> None:
