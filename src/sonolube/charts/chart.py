@@ -21,7 +21,7 @@ class Axis:
         Of all numbers along the axis; empty for pure numbers.
     logarithmic : bool
     lowest, highest : float or None
-        Ends, in the unit; those of the parts with a margin where None. Runs downwards where `lowest` is the greater one.
+        Ends, in the unit; those of the parts with a margin where None. Runs downwards where `lowest` is greater.
     ticks : tuple of float
         Places of numbers or words; chosen by the drawing where empty.
     words : tuple of str

@@ -32,7 +32,8 @@ def comparison_sheet(with_vibration: Sequence[sheet.Sheet], without_vibration: S
         [value.value for test in sheets if (value := _value(test, level))]
         for sheets in (with_vibration, without_vibration)
     )
-    figure = figures.comparison(still, vibrated, level)
+    pairs = zip((without_vibration, with_vibration), (still, vibrated), strict=True)
+    figure = figures.comparison(*(list(zip((test.title for test in of), by, strict=True)) for of, by in pairs), level)
     sections = [
         sheet.attempted(partial(_reduction, vibrated, still), what="interval of the reduction"),
         sheet.attempted(partial(_significance, vibrated, still), what="significance"),
