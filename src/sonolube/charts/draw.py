@@ -23,6 +23,7 @@ _PLACES: dict[str, Any] = {
 }
 _MARKER = 4.5  # points
 _RATIO = 3.0  # of the ends of a logarithmic axis, below which also 1.2, 1.4, ... are numbered
+_MOST_EDGED = 30  # bars
 _MOST_WIDE = 60  # characters of a line of a title per 5 inches
 
 
@@ -58,16 +59,19 @@ def draw_chart(chart: Chart) -> "Figure":
             shades = _draw(part, axes)
             if shades is not None and isinstance(part, Field | Points):
                 scales.append(_Scale(axes=axes, shades=shades, part=part))
-        _set_axis(axes, "x", panel.x, is_labelled=not chart.shares_x or place + chart.columns >= len(chart.panels))
-        _set_axis(axes, "y", panel.y, is_labelled=not chart.shares_y or place % chart.columns == 0)
+        width, height = _size(chart, place)
+        is_lowest, is_first = place + chart.columns >= len(chart.panels), place % chart.columns == 0
+        _set_axis(axes, "x", panel.x, text=_wrapped(panel.x.text, width) if is_lowest or not chart.shares_x else "")
+        _set_axis(axes, "y", panel.y, text=_wrapped(panel.y.text, 0.85 * height) if is_first or not chart.shares_y else "")
         if panel.has_equal_scales:
             axes.set_aspect("equal")
         if panel.title:
-            axes.set_title(_wrapped(panel.title, chart.size[0] / chart.columns), fontsize=8)
+            axes.set_title(_wrapped(panel.title, width), fontsize=8)
         if chart.legend == "panels" and axes.get_legend_handles_labels()[1]:
             axes.legend(loc="best")
     _draw_scales(figure, grid, scales)
     _draw_legend(figure, grid, chart)
+    figure.align_ylabels()
     if chart.title:
         figure.suptitle(_wrapped(chart.title, chart.size[0]), fontsize=9)
     return figure
@@ -127,6 +131,7 @@ def _band(part: Band, axes: "Axes") -> None:
         color=_colour(part.colour),
         alpha=part.opacity,
         linewidth=0.0,
+        zorder=2,  # as of lines, so that the order of the parts decides
         label=part.label or None,
     )
 
@@ -242,6 +247,7 @@ def _bars(part: Bars, axes: "Axes") -> None:
         color=_colour(part.colour),
         hatch=part.hatch or None,
         edgecolor="white",
+        linewidth=1.0 if len(part.places) <= _MOST_EDGED else 0.0,
         error_kw={"elinewidth": 1, "capsize": 2},
         label=part.label or None,
         **{f"{part.along}err": part.error},
@@ -264,8 +270,16 @@ def _colour(colour: Colour) -> str:
     return COLOURS[colour % len(COLOURS)] if isinstance(colour, int) else colour
 
 
-def _set_axis(axes: "Axes", name: str, axis: Axis, *, is_labelled: bool) -> None:
-    """Give an axis of a panel its label, scale, ends and ticks."""
+def _size(chart: Chart, place: int) -> tuple[float, float]:
+    """Width and height of a panel with what is written beside it, in inches."""
+    rows = -(-len(chart.panels) // chart.columns)
+    row, column = divmod(place, chart.columns)
+    widths, heights = chart.widths or (1.0,) * chart.columns, chart.heights or (1.0,) * rows
+    return chart.size[0] * widths[column] / sum(widths), chart.size[1] * heights[row] / sum(heights)
+
+
+def _set_axis(axes: "Axes", name: str, axis: Axis, *, text: str) -> None:
+    """Give an axis of a panel its label, scale, ends and ticks; an empty label where it shares that of another."""
     one = getattr(axes, f"{name}axis")
     if axis.logarithmic:
         getattr(axes, f"set_{name}scale")("log")
@@ -279,9 +293,8 @@ def _set_axis(axes: "Axes", name: str, axis: Axis, *, is_labelled: bool) -> None
         one.set_ticks([], minor=True)
     elif not axis.logarithmic:
         one.get_major_formatter().set_useOffset(False)
-    if is_labelled:
-        one.set_label_text(axis.text)
-    one.set_tick_params(labelbottom=True) if is_labelled and name == "x" else None
+    one.set_label_text(text)
+    one.set_tick_params(labelbottom=True) if text and name == "x" else None
     if axis.reciprocal is not None:
         constant, label = axis.reciprocal
         _add_second_axis(axes, name, label, (lambda value: constant / np.maximum(value, 1e-9),) * 2)
@@ -294,6 +307,9 @@ def _add_second_axis(axes: "Axes", name: str, label: str, functions: tuple[Any, 
     """Give a panel an axis on the other side, by the function of its value and the inverse."""
     other = getattr(axes, f"secondary_{name}axis")("top" if name == "x" else "right", functions=functions)
     getattr(other, f"set_{name}label")(label)
+    if getattr(axes, f"get_{name}scale")() == "log":
+        first, last = map(functions[0], getattr(axes, f"get_{name}lim")())
+        _number_decades(getattr(other, f"{name}axis"), (first, last))
 
 
 def _number_decades(axis: Any, ends: tuple[float, float]) -> None:
@@ -301,10 +317,11 @@ def _number_decades(axis: Any, ends: tuple[float, float]) -> None:
     from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
     ratio = max(ends) / min(ends)
+    is_short = min(ends) >= 1e-3 and max(ends) < 1e4  # of the numbers
     if ratio < _RATIO:
         axis.set_major_locator(MaxNLocator(5))
     else:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if ratio < 1e4 else (1,)))
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if ratio < (1e4 if is_short else 30) else (1,)))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter("{x:g}")  # not as formulas, which take ten times as long to draw
 
@@ -348,5 +365,5 @@ def _draw_legend(figure: "Figure", grid: Any, chart: Chart) -> None:
 
 def _wrapped(text: str, width: float) -> str:
     """Title in lines that fit a width in inches."""
-    most = max(20, int(_MOST_WIDE * width / 5))
+    most = max(14, int(_MOST_WIDE * width / 5))
     return "\n".join(part for line in text.split("\n") for part in wrap(line, most) or [""])

@@ -27,7 +27,7 @@ def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -
     model = 1e3 * circuit_admittance(fitted, frequency=fine)
     measured = 1e3 * spectrum.admittance
     parts = (
-        Points(x=measured.real, y=measured.imag, label="measured", colour="0.45", is_faint=True),
+        Points(x=measured.real, y=measured.imag, label="measured", colour="0.45", size=0.8),
         Line(x=model.real, y=model.imag, label="fitted", colour=1, width=0.85),
     )
     panel = Panel(
