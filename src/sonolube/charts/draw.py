@@ -21,10 +21,11 @@ _PLACES: dict[str, Any] = {
     "bottom": "outside lower center",
     "right": "outside right upper",
 }
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MARKER = 4.5  # points
 _RATIO = 3.0  # of the ends of a logarithmic axis, below which also 1.2, 1.4, ... are numbered
 _MOST_EDGED = 30  # bars
-_MOST_WIDE = 60  # characters of a line of a title per 5 inches
+_MOST_WIDE = 70  # characters of a line of a title per 5 inches
 
 
 def draw_chart(chart: Chart) -> "Figure":
@@ -61,8 +62,9 @@ def draw_chart(chart: Chart) -> "Figure":
                 scales.append(_Scale(axes=axes, shades=shades, part=part))
         width, height = _size(chart, place)
         is_lowest, is_first = place + chart.columns >= len(chart.panels), place % chart.columns == 0
-        _set_axis(axes, "x", panel.x, text=_wrapped(panel.x.text, width) if is_lowest or not chart.shares_x else "")
-        _set_axis(axes, "y", panel.y, text=_wrapped(panel.y.text, 0.85 * height) if is_first or not chart.shares_y else "")
+        across, up = _wrapped(panel.x.text, 0.85 * width), _wrapped(panel.y.text, 0.85 * height)
+        _set_axis(axes, "x", panel.x, text=across if is_lowest or not chart.shares_x else "")
+        _set_axis(axes, "y", panel.y, text=up if is_first or not chart.shares_y else "")
         if panel.has_equal_scales:
             axes.set_aspect("equal")
         if panel.title:
@@ -146,7 +148,7 @@ def _points(part: Points, axes: "Axes") -> Any:
             part.x, part.y, ".", color=colour, ms=2.5, alpha=0.6, rasterized=True, zorder=1, label=part.label or None
         )
     else:
-        axes.errorbar(
+        _, caps, bars = axes.errorbar(
             part.x,
             part.y,
             yerr=part.y_error,
@@ -163,6 +165,8 @@ def _points(part: Points, axes: "Axes") -> Any:
             zorder=3,
             label=part.label or None,
         )
+        for each in (*caps, *bars):
+            each.set_clip_on(True)  # however far beyond the axes they reach
     box = {"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.8}
     for x, y, text in zip(part.x, part.y, part.texts, strict=False):
         axes.annotate(text, (x, y), (6, -3), textcoords="offset points", fontsize=7, bbox=box, zorder=6)
@@ -171,12 +175,15 @@ def _points(part: Points, axes: "Axes") -> Any:
 
 def _shaded_points(part: Points, axes: "Axes") -> Any:
     """Points coloured by a value, on the scale of the field below them or, which is returned, on one of their own."""
+    from matplotlib.collections import PathCollection
+
     field = next((each for each in axes.collections if each.get_array() is not None), None)
+    edge = "black" if field is None or isinstance(field, PathCollection) else "white"
     style: dict[str, Any] = {"s": 30 * part.size, "marker": MARKERS[part.marker % len(MARKERS)], "zorder": 4}
     colours: dict[str, Any] = {"norm": field.norm, "cmap": field.get_cmap()} if field else {"cmap": "viridis"}
     if field is None and part.scale_ends is not None:
         colours |= {"vmin": part.scale_ends[0], "vmax": part.scale_ends[1]}
-    drawn = axes.scatter(part.x, part.y, c=part.shades, edgecolors="white", clip_on=False, **style, **colours)
+    drawn = axes.scatter(part.x, part.y, c=part.shades, edgecolors=edge, linewidths=0.7, clip_on=False, **style, **colours)
     if part.label:
         axes.scatter([], [], facecolors="0.6", edgecolors="black", label=part.label, **style)
     return drawn if field is None and part.scale_text else None
@@ -291,6 +298,9 @@ def _set_axis(axes: "Axes", name: str, axis: Axis, *, text: str) -> None:
         places = axis.ticks or tuple(map(float, range(len(axis.words))))
         one.set_ticks(places, labels=axis.words or [f"{place:.4g}" for place in places])
         one.set_ticks([], minor=True)
+        if not any(axis.words) and axis.words:
+            one.set_tick_params(length=0)
+            axes.spines["bottom" if name == "x" else "left"].set_visible(False)
     elif not axis.logarithmic:
         one.get_major_formatter().set_useOffset(False)
     one.set_label_text(text)
@@ -323,7 +333,17 @@ def _number_decades(axis: Any, ends: tuple[float, float]) -> None:
     else:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5) if ratio < (1e4 if is_short else 30) else (1,)))
     axis.set_minor_locator(NullLocator())
-    axis.set_major_formatter("{x:g}")  # not as formulas, which take ten times as long to draw
+    axis.set_major_formatter(_number_text)  # not as formulas, which take ten times as long to draw
+
+
+def _number_text(value: float, place: int | None = None) -> str:
+    """Number of a logarithmic axis, by a power of ten where it is long."""
+    if 1e-3 <= value < 1e5:
+        return f"{value:g}"
+    factor, _, exponent = f"{value:.2e}".partition("e")
+    factor = f"{float(factor):g}"
+    power = "10" + str(int(exponent)).translate(_SUPERSCRIPTS)
+    return power if factor == "1" else f"{factor}·{power}"
 
 
 def _draw_scales(figure: "Figure", grid: Any, scales: list[_Scale]) -> None:

@@ -11,8 +11,8 @@ import pytest
 from tests.laboratory.closed_loop.lagged_rig import LaggedRig
 from tests.laboratory.simulated_rig import Fault, MemoryRecord
 
-from sonolube.checks import Floats
 from sonolube.charts import draw_chart
+from sonolube.checks import Floats
 from sonolube.design.control import (
     Amplifier,
     ControlDesign,

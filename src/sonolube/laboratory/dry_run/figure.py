@@ -23,17 +23,15 @@ def dry_run_chart(found: DryRun) -> Chart:
     Returns
     -------
     Chart
-        A panel each for speed, voltage, the frequency where it is swept, and the temperatures with a rig; recordings are
-        shaded, prompts dotted lines.
+        A panel each for speed, voltage, the frequency where it is swept, and the temperatures with a rig; recordings
+        are shaded, prompts dotted lines.
     """
     unit, scale = next((unit, scale) for least, unit, scale in _UNITS if found.duration >= least)
     time = np.array([point.setting.time for point in found.points]) / scale
-    x = Axis(
-        label="Time without prompts", unit=unit, lowest=float(-0.01 * time[-1]), highest=float(1.01 * time[-1])
-    )
+    x = Axis(label="Time without prompts", unit=unit, lowest=float(-0.01 * time[-1]), highest=float(1.01 * time[-1]))
     curves = [_speed(time, found), _voltage(time, found), *_frequency(time, found), *_temperatures(found, scale)]
     prompts = sorted({point.setting.time / scale for point in found.points if point.setting.kind == "prompt"})
-    panels = []
+    panels: list[Panel] = []
     for axis, lines in curves:
         is_first = not panels
         marks: list[Part] = []

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule
-from sonolube.checks import Complexes
+from sonolube.checks import Complexes, Floats
 from sonolube.measurement.contact_stiffness.analysis import MeasuredContactStiffness
 from sonolube.measurement.contact_stiffness.resonance_fit import ResonanceFit
 from sonolube.report.measured.sheet import captioned
@@ -36,6 +36,6 @@ def _named(found: MeasuredContactStiffness) -> list[tuple[str, ResonanceFit]]:
     return [*free, ("pressed", found.pressed), *([] if found.large is None else [("large drive", found.large)])]
 
 
-def _level(fit: ResonanceFit, values: Complexes) -> Complexes:
+def _level(fit: ResonanceFit, values: Complexes) -> Floats:
     """Magnitude over the greatest one of the spectrum."""
     return np.asarray(np.abs(values) / np.max(np.abs(fit.spectrum.response)))

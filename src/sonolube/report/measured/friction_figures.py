@@ -135,7 +135,7 @@ def comparison(without: Sequence[tuple[str, float]], with_vibration: Sequence[tu
     parts: list[Part] = []
     for place, (tests, name) in enumerate([(without, "without"), (with_vibration, "with")]):
         values = np.array([value for _, value in tests])
-        spread = 0.04 * (np.arange(values.size) - (values.size - 1) / 2)
+        spread = np.array([0.04 * (index - (values.size - 1) / 2) for index in range(values.size)])
         parts += [
             Points(
                 x=place + spread,

@@ -10,8 +10,8 @@ from sonolube.design.control import ControlDesign
 from sonolube.laboratory.closed_loop import (
     HeldFriction,
     HoldMetrics,
-    held_friction_dataset,
     held_friction_chart,
+    held_friction_dataset,
     hold_metrics,
 )
 from sonolube.laboratory.records import Run
