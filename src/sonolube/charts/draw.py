@@ -62,7 +62,7 @@ def draw_chart(chart: Chart) -> "Figure":
                 scales.append(_Scale(axes=axes, shades=shades, part=part))
         width, height = _size(chart, place)
         is_lowest, is_first = place + chart.columns >= len(chart.panels), place % chart.columns == 0
-        across, up = _wrapped(panel.x.text, 0.85 * width), _wrapped(panel.y.text, 0.85 * height)
+        across, up = _wrapped(panel.x.text, width), _wrapped(panel.y.text, 0.85 * height)
         _set_axis(axes, "x", panel.x, text=across if is_lowest or not chart.shares_x else "")
         _set_axis(axes, "y", panel.y, text=up if is_first or not chart.shares_y else "")
         if panel.has_equal_scales:
@@ -161,7 +161,7 @@ def _points(part: Points, axes: "Axes") -> Any:
             markersize=size,
             elinewidth=1.0,
             capsize=2,
-            clip_on=False,
+            clip_on=not part.x.size,  # what has no place would be laid out at the origin
             zorder=3,
             label=part.label or None,
         )
