@@ -183,7 +183,9 @@ def _shaded_points(part: Points, axes: "Axes") -> Any:
     colours: dict[str, Any] = {"norm": field.norm, "cmap": field.get_cmap()} if field else {"cmap": "viridis"}
     if field is None and part.scale_ends is not None:
         colours |= {"vmin": part.scale_ends[0], "vmax": part.scale_ends[1]}
-    drawn = axes.scatter(part.x, part.y, c=part.shades, edgecolors=edge, linewidths=0.7, clip_on=False, **style, **colours)
+    drawn = axes.scatter(
+        part.x, part.y, c=part.shades, edgecolors=edge, linewidths=0.7, clip_on=False, **style, **colours
+    )
     if part.label:
         axes.scatter([], [], facecolors="0.6", edgecolors="black", label=part.label, **style)
     return drawn if field is None and part.scale_text else None
