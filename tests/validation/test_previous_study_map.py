@@ -28,4 +28,5 @@ def test_the_map_has_units_on_both_axes_and_a_point_of_the_users_own() -> None:
     assert "own rig" in axes.get_legend_handles_labels()[1]
     assert "stated" in aside.get_xlabel()
     (own,) = (part for part in chart.panels[1].parts if isinstance(part, Points) and part.label == "own rig")
-    assert (own.x, own.y, own.shades) == (0.05, 1e6, 50.0)
+    assert own.shades is not None
+    assert (own.x.item(), own.y.item(), own.shades.item()) == (0.05, 1e6, 50.0)
