@@ -41,7 +41,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
     """Empty files of a figure whose parts are drawn, but not rendered; without the option it is rendered."""
-    plt.close(drawing.draw())
+    plt.close(drawing.figure())
     return dict.fromkeys(forms, b"")
 
 

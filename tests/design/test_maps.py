@@ -11,7 +11,7 @@ from scipy.special import i0e
 from sonolube.design import (
     frequency_voltage_map,
     gaussian_process_map,
-    map_figure,
+    map_chart,
     map_page,
     saturation_power,
     velocity_power_map,
@@ -90,7 +90,7 @@ def test_every_kind_of_map_is_drawn(kind: str) -> None:
         "power": lambda: velocity_power_map(RIG, sliding_speed=SPEEDS, normal_load=LOADS, voltage_peak_to_peak=VOLTS),
         "frequency": lambda: frequency_voltage_map(RIG, frequency=[21e3, 22e3, 23e3], voltage_peak_to_peak=VOLTS),
     }[kind]()
-    shown = [axes for axes in map_figure(computed).axes if axes.get_title()]
+    shown = [panel for panel in map_chart(computed).panels if panel.title]
     assert len(shown) == {"stress": 5, "power": 1, "frequency": 0}[kind]  # the same at all seven loads
 
 
@@ -99,7 +99,7 @@ def test_panels_that_differ_are_all_drawn() -> None:
     slope = computed["normal_load"] / computed["normal_load"].max() / 10
     changed = computed.assign(friction_reduction=slope + computed["friction_reduction"])
     assert panels_text(computed).startswith("the same at each normal load from 3 N to 9 N")
-    assert len([axes for axes in map_figure(changed).axes if axes.get_title()]) == 7
+    assert len([panel for panel in map_chart(changed).panels if panel.title]) == 7
 
 
 def test_an_interactive_map_is_self_contained_or_names_the_package_to_install() -> None:

@@ -12,10 +12,11 @@ import xarray as xr
 from pytest import approx, mark, raises
 from scipy.stats import norm
 
+from sonolube.charts import Panel, Points
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import si_value
 from sonolube.measurement.measured_runs import read_runs
-from sonolube.prediction import LivePrediction, interval, predict, prediction_figure
+from sonolube.prediction import LivePrediction, interval, predict, prediction_chart
 from sonolube.rig import Distribution, LogNormal, Rig, friction_point, read_rig
 from sonolube.tasks.predict.new import new
 
@@ -263,16 +264,33 @@ def test_a_rig_that_cannot_be_predicted_is_refused(change: dict[str, object], me
 
 
 def test_the_figure_shows_bands_published_tests_and_own_runs(tmp_path: Path) -> None:
-    figure = prediction_figure(predict(rig(), runs=read_runs(runs_file(tmp_path, "2,20,0.5"))))
-    (legend,) = figure.legends
-    labels = [text.get_text() for text in legend.get_texts()]
+    over_amplitude, over_speed = charted(tmp_path, "2,20.3,0.5")
+    labels = [getattr(part, "label", "") for part in over_amplitude.parts]
     assert labels[:3] == ["95 % interval", "80 % interval", "50 % interval"]
     assert "own runs" in labels
+    assert "own runs" not in [getattr(part, "label", "") for part in over_speed.parts]  # at another amplitude
+
+
+def test_a_run_at_another_speed_is_moved_to_that_of_the_operating_point(tmp_path: Path) -> None:
+    over_amplitude, over_speed = charted(tmp_path, "2.5,100,0.8")
+    (moved,) = (part for part in over_amplitude.parts if getattr(part, "label", "").startswith("own runs"))
+    (measured,) = (part for part in over_speed.parts if getattr(part, "label", "") == "own runs")
+    assert isinstance(moved, Points)
+    assert isinstance(measured, Points)
+    assert "moved to the operating point" in moved.label
+    assert moved.is_hollow
+    assert measured.y[0] == approx(0.8)
+    assert measured.x[0] == approx(100)
+    assert 0 <= moved.y[0] < 0.7  # slower sliding has less friction
+    assert "0.8 at 2.5 um, 100 mm/s" in moved.sources[0]
 
 
 def test_runs_above_a_ratio_of_one_lie_within_the_figure(tmp_path: Path) -> None:
-    figure = prediction_figure(predict(rig(), runs=read_runs(runs_file(tmp_path, "2.5,20.3,1.3")), draws=200))
-    assert all(axes.get_ylim()[1] > 1.35 for axes in figure.axes)
+    assert all((panel.y.highest or 0) > 1.35 for panel in charted(tmp_path, "2.5,20.3,1.3"))
+
+
+def charted(folder: Path, run: str) -> tuple[Panel, ...]:
+    return prediction_chart(predict(rig(), runs=read_runs(runs_file(folder, run)), draws=400)).panels
 
 
 def test_no_sampler_is_imported_for_a_prediction() -> None:

@@ -9,10 +9,11 @@ import xarray as xr
 from pytest import approx
 from scipy.special import i0
 
+from sonolube.charts import draw_chart
 from sonolube.errors import InvalidInput
 from sonolube.figure import publication_style, render_figure
 from sonolube.rig import (
-    STUDY_FIGURES,
+    STUDY_CHARTS,
     Rig,
     frequency_study,
     least_power_study,
@@ -58,7 +59,7 @@ def test_every_variable_says_its_unit_and_what_it_is(of: str) -> None:
 @pytest.mark.parametrize("of", STUDIES)
 def test_a_study_is_drawn_and_comes_back_from_its_file(of: str, tmp_path: Path) -> None:
     with publication_style():
-        assert len(render_figure(STUDY_FIGURES[of](STUDIES[of]), "svg")) > 10_000
+        assert len(render_figure(draw_chart(STUDY_CHARTS[of](STUDIES[of])), "svg")) > 10_000
     path = write_netcdf(STUDIES[of], path=tmp_path / "study.nc")
     with xr.open_dataset(path, engine="h5netcdf") as read:
         xr.testing.assert_identical(read.load(), STUDIES[of])

@@ -13,9 +13,10 @@ import xarray as xr
 from pytest import CaptureFixture, raises
 
 import sonolube as sl
+from sonolube.charts import draw_chart
 from sonolube.cli import main
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.rig.figures import simulation_figure
+from sonolube.rig.figures import simulation_chart
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TRIBOMETER = EXAMPLES / "rigs" / "tribometer.toml"
@@ -42,7 +43,7 @@ def test_importing_the_package_is_fast_to_complete_and_loads_nothing() -> None:
 def test_an_answer_its_dataset_and_its_file_draw_the_figure_of_the_room(tmp_path: Path) -> None:
     found = sl.simulate(TRIBOMETER)
     stored = xr.load_dataset(found.to_netcdf(tmp_path / "simulation.nc"))
-    room = simulation_figure(stored).axes[0]
+    room = draw_chart(simulation_chart(stored)).axes[0]
     for drawable in (found, found.dataset(), stored):
         drawn = sl.plot(drawable).axes[0]
         assert drawn.get_ylabel() == room.get_ylabel()

@@ -1,6 +1,6 @@
 """Types of a figure as data: chart, panels, axes and their parts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from sonolube.checks import Floats
@@ -62,7 +62,7 @@ class Line:
         Number of a dash pattern; 0 is solid.
     marker : int or None
         Number of a marker at each value.
-    width : float
+    weight : float
         Of the line, relative to the usual one.
     is_stepped : bool
         Whether a value holds until the next.
@@ -76,7 +76,7 @@ class Line:
     colour: Colour = 0
     dash: int = 0
     marker: int | None = None
-    width: float = 1.0
+    weight: float = 1.0
     is_stepped: bool = False
     has_halo: bool = False
 
@@ -206,7 +206,7 @@ class Bars:
     Parameters
     ----------
     places, lengths : ndarray, shape (n,)
-    thickness : float
+    breadth : float
         In the unit of the places.
     along : {"x", "y"}
         Axis along which they extend.
@@ -218,7 +218,7 @@ class Bars:
 
     places: Floats
     lengths: Floats
-    thickness: float = 0.6
+    breadth: float = 0.6
     along: Literal["x", "y"] = "x"
     label: str = ""
     colour: Colour = 0
@@ -284,3 +284,8 @@ class Chart:
     legend_title: str = ""
     shares_x: bool = False
     shares_y: bool = False
+
+    def with_parts(self, place: int, *parts: Part) -> "Chart":
+        """Return the chart with further parts in one of its panels."""
+        changed = replace(self.panels[place], parts=(*self.panels[place].parts, *parts))
+        return replace(self, panels=(*self.panels[:place], changed, *self.panels[place + 1 :]))

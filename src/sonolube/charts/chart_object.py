@@ -62,7 +62,7 @@ def _record_object(record: Any) -> dict[str, Any]:
         value = getattr(record, each.name)
         if each.name == "colour":
             found[each.name] = colour_code(value)
-        elif isinstance(value, np.ndarray) or (value is not None and value not in (False, "", ())):
+        elif isinstance(value, np.ndarray) or not (value is None or value is False or value in ("", ())):
             found[each.name] = _plain(value)
     return found
 

@@ -23,6 +23,7 @@ _PLACES: dict[str, Any] = {
 }
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MARKER = 4.5  # points
+_NUMBER_WIDTH, _NUMBER_HEIGHT = 0.38, 0.22  # inches that a number at a tick takes
 _RATIO = 3.0  # of the ends of a logarithmic axis, below which also 1.2, 1.4, ... are numbered
 _MOST_EDGED = 30  # bars
 _MOST_WIDE = 70  # characters of a line of a title per 5 inches
@@ -72,10 +73,8 @@ def draw_chart(chart: Chart) -> "Figure":
         if chart.legend == "panels" and axes.get_legend_handles_labels()[1]:
             axes.legend(loc="best")
     _draw_scales(figure, grid, scales)
-    _draw_legend(figure, grid, chart)
+    _draw_texts(figure, grid, chart)
     figure.align_ylabels()
-    if chart.title:
-        figure.suptitle(_wrapped(chart.title, chart.size[0]), fontsize=9)
     return figure
 
 
@@ -109,7 +108,7 @@ def _line(part: Line, axes: "Axes") -> None:
     from matplotlib import rcParams
     from matplotlib.patheffects import Normal, Stroke
 
-    width = part.width * float(rcParams["lines.linewidth"])
+    width = part.weight * float(rcParams["lines.linewidth"])
     axes.plot(
         part.x,
         part.y,
@@ -226,13 +225,12 @@ def _field(part: Field, axes: "Axes") -> Any:
 def _draw_words(part: Field, axes: "Axes") -> None:
     """Cells of a quantity without order, each name with a colour."""
     from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
 
     colours = ListedColormap(_CATEGORIES[: len(part.words)])
     ends: dict[str, Any] = {"vmin": -0.5, "vmax": len(part.words) - 0.5}
     axes.pcolormesh(part.x, part.y, part.values, cmap=colours, rasterized=True, **ends)
     for number in np.unique(part.values[np.isfinite(part.values)]).astype(int):
-        axes.add_patch(Patch(color=_CATEGORIES[number], label=part.words[number]))
+        axes.scatter([], [], marker="s", s=50, color=_CATEGORIES[number], label=part.words[number])
 
 
 def _draw_contour_lines(part: Field, axes: "Axes") -> None:
@@ -252,7 +250,7 @@ def _bars(part: Bars, axes: "Axes") -> None:
     drawn = draw(
         part.places,
         part.lengths,
-        part.thickness,
+        part.breadth,
         color=_colour(part.colour),
         hatch=part.hatch or None,
         edgecolor="white",
@@ -295,7 +293,7 @@ def _set_axis(axes: "Axes", name: str, axis: Axis, *, text: str) -> None:
     if axis.lowest is not None or axis.highest is not None:
         getattr(axes, f"set_{name}lim")(axis.lowest, axis.highest)
     if axis.logarithmic and not axis.ticks:
-        _number_decades(one, getattr(axes, f"get_{name}lim")())
+        _number_decades(one, getattr(axes, f"get_{name}lim")(), most=_room(axes, name))
     if axis.ticks or axis.words:
         places = axis.ticks or tuple(map(float, range(len(axis.words))))
         one.set_ticks(places, labels=axis.words or [f"{place:.4g}" for place in places])
@@ -321,19 +319,24 @@ def _add_second_axis(axes: "Axes", name: str, label: str, functions: tuple[Any, 
     getattr(other, f"set_{name}label")(label)
     if getattr(axes, f"get_{name}scale")() == "log":
         first, last = map(functions[0], getattr(axes, f"get_{name}lim")())
-        _number_decades(getattr(other, f"{name}axis"), (first, last))
+        _number_decades(getattr(other, f"{name}axis"), (first, last), most=_room(axes, name))
 
 
-def _number_decades(axis: Any, ends: tuple[float, float]) -> None:
-    """Write the numbers of a logarithmic axis in full; also 2 and 5 over few decades, and more over less than one."""
+def _room(axes: "Axes", name: str) -> float:
+    """How many numbers an axis has room for."""
+    place, (width, height) = axes.get_position(), axes.get_figure().get_size_inches()  # type: ignore[union-attr]
+    return float(place.width * width / _NUMBER_WIDTH if name == "x" else place.height * height / _NUMBER_HEIGHT)
+
+
+def _number_decades(axis: Any, ends: tuple[float, float], *, most: float) -> None:
+    """Write the numbers of a logarithmic axis in full; also 2 and 5 where there is room; more below a decade."""
     from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
     ratio = max(ends) / min(ends)
-    is_short = min(ends) >= 1e-3 and max(ends) < 1e4  # of the numbers
     if ratio < _RATIO:
         axis.set_major_locator(MaxNLocator(5))
     else:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if ratio < (1e4 if is_short else 30) else (1,)))
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if 3 * np.log10(ratio) < most else (1,)))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(_number_text)  # not as formulas, which take ten times as long to draw
 
@@ -366,23 +369,26 @@ def _draw_scale(figure: "Figure", place: Any, scale: _Scale) -> None:
         bar.set_ticks(part.levels[:: max(1, (part.levels.size - 1) // 5)].tolist())
 
 
-def _draw_legend(figure: "Figure", grid: Any, chart: Chart) -> None:
-    """Labels of all panels, each once, beside the panels."""
-    if chart.legend in ("panels", "none"):
-        return
+def _draw_texts(figure: "Figure", grid: Any, chart: Chart) -> None:
+    """Title, and the labels of all panels, each once, beside the panels; a title over a legend is part of it."""
+    title = _wrapped(chart.title, chart.size[0])
     entries: dict[str, Any] = {}
-    for axes in grid.flat:
+    for axes in grid.flat if chart.legend not in ("panels", "none") else ():
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
+    if title and not (entries and chart.legend == "top"):
+        figure.suptitle(title, fontsize=9)
     if entries:
-        columns = 1 if chart.legend == "right" else min(chart.legend_columns, len(entries))
-        figure.legend(
+        heading = title if chart.legend == "top" else chart.legend_title
+        legend = figure.legend(
             list(entries.values()),
             list(entries),
             loc=_PLACES[chart.legend],
-            ncols=columns,
-            title=chart.legend_title or None,
+            ncols=1 if chart.legend == "right" else min(chart.legend_columns, len(entries)),
+            title=heading or None,
+            title_fontsize=9,
         )
+        legend.get_title().set_multialignment("center")
 
 
 def _wrapped(text: str, width: float) -> str:

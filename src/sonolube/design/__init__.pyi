@@ -1,5 +1,5 @@
 from .gaussian_process import GaussianProcessMap as GaussianProcessMap, gaussian_process_map as gaussian_process_map
-from .map_figures import map_figure as map_figure, map_page as map_page, measured_map_figure as measured_map_figure
+from .map_figures import map_chart as map_chart, map_page as map_page, measured_map_chart as measured_map_chart
 from .maps import (
     MAP_LAYOUTS as MAP_LAYOUTS,
     MAPS as MAPS,

@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.design.gaussian_process import FEWEST_RUNS, gaussian_process_map
-from sonolube.design.maps import MAP_LAYOUTS
+from sonolube.design.maps import MAP_LAYOUTS, same_panels
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.run_selection import setting, with_columns
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _STAND_INS = {"actuator_power": "voltage_peak_to_peak"}  # that give an axis
 _BY_THE_RIG = ("nominal_pressure",)  # axes that a rig gives where no column does
 _POINTS = 61  # of the interpolated map along each axis
+_MATCH = 1e-3  # relative difference of a load or voltage below which a run belongs to a panel as it is
 _UNCERTAINTY = "friction_reduction_uncertainty"
 
 
@@ -60,6 +62,9 @@ def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["
     Returns
     -------
     xarray.Dataset
+        The runs with a place, each with the number of its `panel`, -1 for none, and `shown_friction_reduction`: as
+        measured where its load or voltage is that of the panel, else moved to the nearest panel by the difference of
+        the model (`is_moved`).
     tuple of str
 
     Raises
@@ -76,7 +81,59 @@ def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["
         pressure = setting(runs, "normal_load", rig.normal_load) / rig.contact.nominal_area
         runs = runs.assign({up: ("run", setting(runs, up, pressure))})
     placed, skipped = with_columns(runs, across, up)
-    return placed, (*run_caveats(runs), *skipped)
+    shown, beyond = _on_panels(placed, rig, computed)
+    return shown, (*run_caveats(runs), *skipped, *beyond)
+
+
+def _on_panels(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
+    """Runs with the nearest panel and the reduction there, and caveats about those that are moved or beyond it."""
+    panel = MAP_LAYOUTS[computed.attrs["map"]][2]
+    count = runs.sizes["run"]
+    place, shift = np.zeros(count, int), np.zeros(count)
+    name = ""
+    if panel is not None and not same_panels(computed):
+        name = quantity(panel).meaning.partition(",")[0].lower()
+        values, own = computed[panel].values, setting(runs, panel, _rigs_own(rig, panel))
+        place = np.argmin(np.abs(values - own[:, None]), axis=1)
+        matching = np.isclose(own, values[place], rtol=_MATCH)
+        shift = np.where(matching, 0.0, _model(computed, runs, values[place]) - _model(computed, runs, own))
+    moved, beyond = shift != 0.0, np.isnan(shift)
+    shown = runs.assign(
+        panel=("run", np.where(beyond, -1, place)),
+        is_moved=("run", moved & ~beyond),
+        shown_friction_reduction=("run", runs["friction_reduction"].values + np.nan_to_num(shift)),
+    )
+    caveats = []
+    if (moved & ~beyond).any():
+        number = f"{int((moved & ~beyond).sum())} of {count} runs"
+        caveats.append(f"{number} are drawn at the {name} of the nearest panel, moved there by the model")
+    if beyond.any():
+        caveats.append(
+            f"{int(beyond.sum())} of {count} runs are not drawn: their {name} lies beyond the panels of the map"
+        )
+    return shown, tuple(caveats)
+
+
+def _rigs_own(rig: Rig, panel: str) -> float:
+    """Load or voltage of a rig, for runs that state none."""
+    if panel == "normal_load":
+        return rig.normal_load
+    voltage = None if rig.drive is None else rig.drive.voltage_peak_to_peak
+    return np.nan if voltage is None else voltage
+
+
+def _model(computed: "xr.Dataset", runs: "xr.Dataset", at: Floats) -> Floats:
+    """Reduction on a map at the places of runs and at values of the quantity of its panels; NaN beyond it."""
+    from scipy.interpolate import RegularGridInterpolator
+
+    across, up, panel = MAP_LAYOUTS[computed.attrs["map"]]
+    assert panel is not None
+    if computed.sizes[panel] < 2:
+        return np.full(at.size, np.nan)
+    values = computed["friction_reduction"].transpose(panel, computed[up].dims[0], computed[across].dims[0]).values
+    axes = tuple(computed[name].values for name in (panel, up, across))
+    interpolated = RegularGridInterpolator(axes, values, bounds_error=False)
+    return np.asarray(interpolated(np.stack([at, runs[up].values, runs[across].values], axis=1)), float)
 
 
 def runs_map(runs: "xr.Dataset", *, kind: str) -> "xr.Dataset | None":

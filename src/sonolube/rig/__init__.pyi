@@ -76,7 +76,7 @@ from .simulation import (
     wear_point as wear_point,
 )
 from .start_up_transient import StartUp as StartUp, start_up as start_up
-from .study_figures import STUDY_FIGURES as STUDY_FIGURES
+from .study_figures import STUDY_CHARTS as STUDY_CHARTS
 from .vibration import (
     SteadyVibration as SteadyVibration,
     gap_motion as gap_motion,

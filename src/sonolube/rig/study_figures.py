@@ -6,156 +6,175 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sonolube.charts import Axis, Bars, Chart, Line, Panel, Points
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, LINES, MARKERS
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _PERIODS = 4  # voltages of which a period is drawn
-_RATIO = "Friction ratio"
+_RATIO = Axis(label="Friction ratio", lowest=0.0)
+_VOLTAGE = Axis(label="Voltage, peak to peak", unit="V")
+_FREQUENCY = Axis(label="Drive frequency", unit="kHz", logarithmic=True)
+_PERIOD = Axis(label="Time over the period")
+_LOAD = Axis(label="Normal load", unit="N")
+_TIP = Axis(label="Tip displacement", unit="µm")
 
 
-def voltage_figure(study: "xr.Dataset") -> "Figure":
+def voltage_chart(study: "xr.Dataset") -> Chart:
     """Return displacement and normal force over a period, friction ratio and amplitude over voltage."""
-    figure, ((period, force), (ratio, amplitude)) = _panels(2, 2, size=(7.2, 5.6))
     volts = study["voltage_peak_to_peak"].values
-    shown = np.unique(np.linspace(0, volts.size - 1, _PERIODS + 1).astype(int)[1:])
-    for index, point in enumerate(shown):
-        label = format_si(float(volts[point]), "V")
-        turns, x = _whole_period(study["displacement"].values[point])
-        _, f = _whole_period(study["normal_force"].values[point])
-        period.plot(turns, 1e6 * x, linestyle=LINES[index], color=COLOURS[index])
-        force.plot(turns, f, linestyle=LINES[index], color=COLOURS[index], label=label)
-    period.set(xlabel="Time over the period", ylabel="Tip displacement [µm]")
-    force.set(xlabel="Time over the period", ylabel="Normal contact force [N]")
-    force.legend(loc="upper left", title="peak to peak", title_fontsize=8)
-    ratio.plot(volts, study["friction_ratio"], color=COLOURS[0])
-    ratio.set(xlabel="Voltage, peak to peak [V]", ylabel=_RATIO)
-    ratio.set_ylim(bottom=0)
-    amplitude.plot(volts, 1e6 * study["vibration_amplitude"], color=COLOURS[0], label="amplitude")
-    amplitude.plot(volts, 1e6 * study["mean_displacement"], LINES[1], color=COLOURS[1], label="rise of the mean")
-    amplitude.set(xlabel="Voltage, peak to peak [V]", ylabel="Vibration of the tip [µm]")
-    amplitude.legend(loc="upper left")
-    return figure
+    motions, forces = [], []
+    for place, point in enumerate(np.unique(np.linspace(0, volts.size - 1, _PERIODS + 1).astype(int)[1:])):
+        style: dict[str, Any] = {"dash": place, "colour": place, "label": format_si(float(volts[point]), "V")}
+        turns, motion = _whole_period(study["displacement"].values[point])
+        motions.append(Line(x=turns, y=1e6 * motion, **style))
+        forces.append(Line(x=turns, y=_whole_period(study["normal_force"].values[point])[1], **style))
+    vibration = (
+        Line(x=volts, y=1e6 * study["vibration_amplitude"].values, label="amplitude"),
+        Line(x=volts, y=1e6 * study["mean_displacement"].values, dash=1, colour=1, label="rise of the mean"),
+    )
+    return Chart(
+        panels=(
+            Panel(x=_PERIOD, y=_TIP, parts=tuple(motions)),
+            Panel(x=_PERIOD, y=Axis(label="Normal contact force", unit="N"), parts=tuple(forces)),
+            Panel(x=_VOLTAGE, y=_RATIO, parts=(Line(x=volts, y=study["friction_ratio"].values),)),
+            Panel(x=_VOLTAGE, y=Axis(label="Vibration of the tip", unit="µm"), parts=vibration),
+        ),
+        size=(7.2, 5.6),
+        columns=2,
+    )
 
 
-def speed_figure(study: "xr.Dataset") -> "Figure":
+def speed_chart(study: "xr.Dataset") -> Chart:
     """Return the friction ratio over sliding speed and over velocity ratio."""
-    figure, ((over_speed, over_ratio),) = _panels(1, 2, size=(7.2, 3.4), sharey=True)
-    for index, curve in enumerate(_curves(study)):
-        style = _style(index)
-        over_speed.plot(curve["sliding_speed"], curve["friction_ratio"], **style, label=_label(curve))
-        over_ratio.plot(curve["velocity_ratio"], curve["friction_ratio"], **style)
-    over_speed.set(xscale="log", xlabel="Sliding speed [m/s]", ylabel=_RATIO)
-    over_speed.set_ylim(bottom=0)
-    over_ratio.set(xscale="log", xlabel="Sliding speed over peak vibration velocity")
-    over_speed.legend(loc="upper left", title="peak to peak", title_fontsize=8)
-    return figure
+    axes = (
+        ("sliding_speed", Axis(label="Sliding speed", unit="m/s", logarithmic=True)),
+        ("velocity_ratio", Axis(label="Sliding speed over peak vibration velocity", logarithmic=True)),
+    )
+    panels = tuple(Panel(x=axis, y=_RATIO, parts=_family(study, name, "friction_ratio")) for name, axis in axes)
+    return Chart(panels=panels, size=(7.2, 3.4), columns=2, legend="top", legend_columns=6, shares_y=True)
 
 
-def frequency_figure(study: "xr.Dataset") -> "Figure":
+def frequency_chart(study: "xr.Dataset") -> Chart:
     """Return amplitude and friction ratio over frequency, and friction ratio over the power of the amplifier."""
-    figure, ((amplitude, ratio, power),) = _panels(1, 3, size=(6.85, 2.7))
-    tips = []
-    for index, curve in enumerate(_curves(study)):
-        style = _style(index)
-        kilohertz = 1e-3 * curve["frequency"]
-        amplitude.plot(kilohertz, 1e6 * curve["vibration_amplitude"], **style, label=_label(curve))
-        ratio.plot(kilohertz, curve["friction_ratio"], **style)
-        power.plot(curve["actuator_power"], curve["friction_ratio"], **style)
-        best = _best(curve["friction_ratio"].values)
-        if best is not None:
-            tips.append((float(curve["actuator_power"][best]), float(curve["friction_ratio"][best])))
+    tips = [
+        (float(curve["actuator_power"][best]), float(curve["friction_ratio"][best]))
+        for curve in _curves(study)
+        if (best := _best(curve["friction_ratio"].values)) is not None
+    ]
+    over_power = _family(study, "actuator_power", "friction_ratio")
     if len(tips) > 1:
-        power.plot(*zip(*tips, strict=True), MARKERS[0], color="black", mfc="white", label="tips", zorder=3)
-        power.legend(loc="lower left")
-    amplitude.set(xscale="log", yscale="log", xlabel="Drive frequency [kHz]", ylabel="Vibration amplitude [µm]")
-    ratio.set(xscale="log", xlabel="Drive frequency [kHz]", ylabel=_RATIO)
-    power.set(xscale="log", xlabel="Power of the\namplifier, D 1.9 [W]", ylabel=_RATIO)
-    ratio.set_ylim(bottom=0)
-    power.set_ylim(bottom=0)
-    amplitude.legend(loc="upper left", title="peak to peak", title_fontsize=8)
-    return figure
+        x, y = np.array(tips).T
+        over_power = (*over_power, Points(x=x, y=y, colour="0", is_hollow=True, label="tips"))
+    amplitude = Axis(label="Vibration amplitude", unit="µm", logarithmic=True)
+    power = Axis(label="Power of the\namplifier, D 1.9", unit="W", logarithmic=True)
+    return Chart(
+        panels=(
+            Panel(x=_FREQUENCY, y=amplitude, parts=_family(study, "frequency", "vibration_amplitude", 1e-3, 1e6)),
+            Panel(x=_FREQUENCY, y=_RATIO, parts=_family(study, "frequency", "friction_ratio", 1e-3)),
+            Panel(x=power, y=_RATIO, parts=over_power),
+        ),
+        size=(6.85, 2.9),
+        columns=3,
+        legend="top",
+        legend_columns=6,
+    )
 
 
-def power_figure(study: "xr.Dataset") -> "Figure":
+def power_chart(study: "xr.Dataset") -> Chart:
     """Return the voltage and the power that one friction ratio takes over frequency."""
-    figure, ((volts,), (watts,)) = _panels(2, 1, size=(5.0, 5.2), sharex=True)
-    kilohertz = 1e-3 * study["frequency"]
-    volts.plot(kilohertz, study["voltage_peak_to_peak"], color=COLOURS[0])
-    watts.plot(kilohertz, study["actuator_power"], color=COLOURS[0], label="amplifier, D 1.9")
-    watts.plot(kilohertz, study["dissipated_power"], LINES[1], color=COLOURS[1], label="stays in rig and contact")
-    volts.set(ylabel="Voltage,\npeak to peak [V]")
-    volts.set_ylim(bottom=0)
-    watts.set(yscale="log", ylabel="Power [W]", xlabel="Drive frequency [kHz]")
-    watts.legend(loc="best")
-    return figure
+    kilohertz = 1e-3 * study["frequency"].values
+    watts = (
+        Line(x=kilohertz, y=study["actuator_power"].values, label="amplifier, D 1.9"),
+        Line(x=kilohertz, y=study["dissipated_power"].values, dash=1, colour=1, label="stays in rig and contact"),
+    )
+    x = Axis(label="Drive frequency", unit="kHz")
+    volts = Axis(label="Voltage,\npeak to peak", unit="V", lowest=0.0)
+    return Chart(
+        panels=(
+            Panel(x=x, y=volts, parts=(Line(x=kilohertz, y=study["voltage_peak_to_peak"].values),)),
+            Panel(x=x, y=Axis(label="Power", unit="W", logarithmic=True), parts=watts),
+        ),
+        size=(5.0, 5.2),
+        shares_x=True,
+    )
 
 
-def waveform_figure(study: "xr.Dataset") -> "Figure":
+def waveform_chart(study: "xr.Dataset") -> Chart:
     """Return one period of the tip under each waveform, and the friction ratio each gives."""
-    figure, ((period, ratio),) = _panels(1, 2, size=(7.2, 3.4))
     names = [str(name) for name in study["waveform"].values]
-    for index, name in enumerate(names):
-        turns, x = _whole_period(study["displacement"].values[index])
-        period.plot(turns, 1e6 * x, linestyle=LINES[index], color=COLOURS[index], label=name)
+    periods = []
+    for place, name in enumerate(names):
+        turns, motion = _whole_period(study["displacement"].values[place])
+        periods.append(Line(x=turns, y=1e6 * motion, dash=place, colour=place, label=name))
     ratios = study["friction_ratio"].values
-    for index in np.argsort(ratios):
-        ratio.bar(names[index], ratios[index], color=COLOURS[index], width=0.6)
-        ratio.annotate(f"{ratios[index]:.3g}", (names[index], ratios[index]), ha="center", va="bottom", fontsize=8)
-    period.set(xlabel="Time over the period", ylabel="Tip displacement [µm]")
-    period.legend(loc="upper center")
-    ratio.set(xlabel="Waveform, all of the same swing", ylabel=_RATIO)
-    ratio.grid(visible=False, axis="x")
-    ratio.margins(y=0.1)
-    return figure
+    order = np.argsort(ratios)
+    bars = [
+        Bars(
+            places=np.array([float(place)]),
+            lengths=ratios[[each]],
+            along="y",
+            colour=int(each),
+            texts=(f"{ratios[each]:.3g}",),
+        )
+        for place, each in enumerate(order)
+    ]
+    x = Axis(label="Waveform, all of the same swing", words=tuple(names[each] for each in order))
+    y = Axis(label="Friction ratio", lowest=0.0, highest=1.1 * float(np.nanmax(ratios)))
+    return Chart(
+        panels=(Panel(x=_PERIOD, y=_TIP, parts=tuple(periods)), Panel(x=x, y=y, parts=tuple(bars))),
+        size=(7.2, 3.4),
+        columns=2,
+    )
 
 
-def load_figure(study: "xr.Dataset") -> "Figure":
+def load_chart(study: "xr.Dataset") -> Chart:
     """Return friction reduction and the arm's natural frequency over normal load."""
-    figure, ((reduction, arm),) = _panels(1, 2, size=(7.2, 3.3))
     loads = study["normal_load"].values
-    reduction.plot(loads, 100 * study["friction_reduction"], color=COLOURS[0])
-    reduction.set(xlabel="Normal load [N]", ylabel="Friction reduction [%]", ylim=(0, 100))
-    arm.plot(loads, study["natural_frequency"], color=COLOURS[1])
-    arm.set(xlabel="Normal load [N]", ylabel="Natural frequency of the arm [Hz]")
-    return figure
+    reduction = Axis(label="Friction reduction", unit="%", lowest=0.0, highest=100.0)
+    arm = Axis(label="Natural frequency of the arm", unit="Hz")
+    return Chart(
+        panels=(
+            Panel(x=_LOAD, y=reduction, parts=(Line(x=loads, y=100 * study["friction_reduction"].values),)),
+            Panel(x=_LOAD, y=arm, parts=(Line(x=loads, y=study["natural_frequency"].values, colour=1),)),
+        ),
+        size=(7.2, 3.3),
+        columns=2,
+    )
 
 
-STUDY_FIGURES: Mapping[str, Callable[["xr.Dataset"], "Figure"]] = MappingProxyType(
+STUDY_CHARTS: Mapping[str, Callable[["xr.Dataset"], Chart]] = MappingProxyType(
     {
-        "voltage": voltage_figure,
-        "speed": speed_figure,
-        "frequency": frequency_figure,
-        "power": power_figure,
-        "waveform": waveform_figure,
-        "load": load_figure,
+        "voltage": voltage_chart,
+        "speed": speed_chart,
+        "frequency": frequency_chart,
+        "power": power_chart,
+        "waveform": waveform_chart,
+        "load": load_chart,
     }
 )
-"""Function that draws the dataset of each study."""
-
-
-def _panels(rows: int, columns: int, *, size: tuple[float, float], **shared: bool) -> "tuple[Figure, list[list[Axes]]]":
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=size)
-    return figure, figure.subplots(rows, columns, squeeze=False, **shared).tolist()  # type: ignore[call-overload]
+"""Function that returns the chart of the dataset of each study."""
 
 
 def _curves(study: "xr.Dataset") -> "list[xr.Dataset]":
+    """Parts of a study, one for each voltage."""
     return [study.isel(voltage_peak_to_peak=index) for index in range(study.sizes["voltage_peak_to_peak"])]
 
 
-def _style(index: int) -> dict[str, Any]:
-    return {"linestyle": LINES[index % len(LINES)], "color": COLOURS[index % len(COLOURS)]}
-
-
-def _label(curve: "xr.Dataset") -> str:
-    return format_si(float(curve["voltage_peak_to_peak"]), "V")
+def _family(study: "xr.Dataset", x: str, y: str, x_scale: float = 1.0, y_scale: float = 1.0) -> tuple[Any, ...]:
+    """Curve for each voltage of a study."""
+    return tuple(
+        Line(
+            x=x_scale * curve[x].values,
+            y=y_scale * curve[y].values,
+            dash=place,
+            colour=place,
+            label=f"{format_si(float(curve['voltage_peak_to_peak']), 'V')} peak to peak",
+        )
+        for place, curve in enumerate(_curves(study))
+    )
 
 
 def _whole_period(values: Floats) -> tuple[Floats, Floats]:
@@ -164,4 +183,5 @@ def _whole_period(values: Floats) -> tuple[Floats, Floats]:
 
 
 def _best(ratios: Floats) -> int | None:
+    """Place of the least ratio; None where there is none."""
     return None if np.all(np.isnan(ratios)) else int(np.nanargmin(ratios))

@@ -221,7 +221,7 @@ def _panel(one: "xr.Dataset", letters: list[str]) -> Panel:
     meaning = (
         Points(x=_NONE, y=_NONE, label="filled: fitted, k free parameters, rms error", colour="0.3"),
         Points(x=_NONE, y=_NONE, label="open: its set left out, rms error CV", colour="0.3", is_hollow=True),
-        Line(x=line, y=line, label="predicted as measured", colour="0.5", width=0.6),
+        Line(x=line, y=line, label="predicted as measured", colour="0.5", weight=0.6),
     )
     errors = f"rms {float(one['rms']):.2f}, CV {float(one['rms_cross_validated']):.2f}"
     return Panel(

@@ -56,7 +56,7 @@ def runs_prediction_chart(predictions: tuple[RunsPrediction, ...], table: RunsTa
     Chart
     """
     line = np.array([0.0, _HIGHEST])
-    parts: list[Part] = [Line(x=line, y=line, colour="0.5", width=0.6)]
+    parts: list[Part] = [Line(x=line, y=line, colour="0.5", weight=0.6)]
     for index, one in enumerate([one for one in predictions if one.rms is not None][:_MOST_PREDICTIONS]):
         reached = [(each, ratio) for each, ratio in zip(table.conditions, one.ratios, strict=True) if ratio is not None]
         points = Points(
@@ -98,7 +98,7 @@ def _runs(table: RunsTable, models: tuple[RankedModel, ...]) -> Panel:
         )
         measured.append(points)
         curves += [
-            Line(x=scale * places, y=_curve(model, members[0], name, places), colour=index, dash=dash, width=0.85)
+            Line(x=scale * places, y=_curve(model, members[0], name, places), colour=index, dash=dash, weight=0.85)
             for dash, model in enumerate(models)
         ]
     names = [
@@ -123,7 +123,7 @@ def _ranking(result: RunsFit) -> Panel:
         between = np.column_stack([fit, unseen, np.full(len(rows), np.nan)]).ravel()
         ring = "error of the fit" if is_best else ""
         parts += [
-            Line(x=between, y=np.repeat(places, 3), colour=colour, width=0.6),
+            Line(x=between, y=np.repeat(places, 3), colour=colour, weight=0.6),
             Points(x=fit, y=places, colour=colour, label=ring, sources=sources, is_hollow=True),
             Points(x=unseen, y=places, colour=colour, label=f"unseen error: {text}", sources=sources),
         ]

@@ -28,7 +28,7 @@ def held_friction_chart(record: HeldFriction, *, simulated: bool) -> Chart:
     friction = (
         Band(x=time, low=force - band, high=force + band, label="±1 deviation of samples", colour=5, opacity=0.5),
         Line(x=time, y=force, label=f"friction, {source}"),
-        Line(x=time, y=record.setpoint, label="reference", colour=6, dash=1, width=0.85),
+        Line(x=time, y=record.setpoint, label="reference", colour=6, dash=1, weight=0.85),
         Rule(value=intrinsic, along="y", label="without vibration, before", colour=1, dash=3),
     )
     drive = (

@@ -164,7 +164,7 @@ def impedance_chart(
         per_volt = 1e9 * np.abs(spectrum.response.displacement_per_volt[0])
         label = name if len(spectra) > 1 or measured is not None else ""
         for parts, values in ((magnitude, np.abs(z)), (phase, np.degrees(np.angle(z))), (motion, per_volt)):
-            parts.append(Line(x=f, y=values, label=label, colour=k, dash=k, width=0.85))
+            parts.append(Line(x=f, y=values, label=label, colour=k, dash=k, weight=0.85))
     x = Axis(label="Frequency", unit="kHz")
     panels = (
         Panel(x=x, y=Axis(label="Impedance", unit="ohm", logarithmic=True), parts=tuple(magnitude), title=title),

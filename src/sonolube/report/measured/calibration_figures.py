@@ -13,7 +13,7 @@ def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> Chart:
     um, across = 1e6 * x, Axis(label="Displacement", unit="µm")
     curves = (
         Points(x=um, y=force, label="measured", colour="0.55", is_faint=True),
-        Line(x=um, y=model, label="Preisach model", colour=1, width=0.7),
+        Line(x=um, y=model, label="Preisach model", colour=1, weight=0.7),
     )
     residual = (Points(x=um, y=force - model, is_faint=True), Rule(value=0.0, along="y", colour="0.5", dash=0))
     panels = (
@@ -29,6 +29,6 @@ def force(t: Floats, estimate: ForceEstimate) -> Chart:
     f, u = estimate.applied_force, estimate.applied_force_uncertainty
     band = Band(x=t, low=f - u, high=f + u, label="standard uncertainty", colour=5, opacity=0.6)
     time, curve = envelope(t, f)
-    parts = (band, Line(x=time, y=curve, width=0.7))
+    parts = (band, Line(x=time, y=curve, weight=0.7))
     panel = Panel(x=Axis(label="Time", unit="s"), y=Axis(label="Force", unit="N"), parts=parts)
     return Chart(panels=(panel,), size=(6.4, 3.0))

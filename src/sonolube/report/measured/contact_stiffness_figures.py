@@ -20,7 +20,7 @@ def resonances(found: MeasuredContactStiffness) -> Chart:
         f = scale * fit.spectrum.frequency
         parts += [
             Points(x=f, y=_level(fit, fit.spectrum.response), colour=place, is_faint=True),
-            Line(x=f, y=_level(fit, fit.fitted), label=name, colour=place, dash=place, width=0.85),
+            Line(x=f, y=_level(fit, fit.fitted), label=name, colour=place, dash=place, weight=0.85),
         ]
         compared = [one for one in fit.resonances if one in found.chosen]
         parts += [Rule(value=scale * one.frequency, colour=place, dash=place) for one in compared]

@@ -28,7 +28,7 @@ def trace(
     parts: list[Part] = []
     if t is not None and signal is not None:
         time, samples = envelope(t, signal)
-        parts.append(Line(x=time, y=samples, label="samples, lowest to highest", colour="0.8", width=0.5))
+        parts.append(Line(x=time, y=samples, label="samples, lowest to highest", colour="0.8", weight=0.5))
     mean, rms = windows.mean, windows.fluctuation
     parts += [
         Band(x=windows.time, low=mean - rms, high=mean + rms, label="RMS fluctuation", colour=5, opacity=0.6),
@@ -45,7 +45,7 @@ def trace(
 @captioned("Trace by cycle", "One value a cycle, as the instrument gives it.")
 def by_cycle(cycles: Floats, signal: Floats, name: str) -> Chart:
     """Signal with one value a cycle over the number of the cycle."""
-    parts = (Line(x=cycles, y=signal, width=0.6), Points(x=cycles, y=signal, is_faint=True))
+    parts = (Line(x=cycles, y=signal, weight=0.6), Points(x=cycles, y=signal, is_faint=True))
     return Chart(panels=(Panel(x=Axis(label="Cycle"), y=_axis(name), parts=parts),), size=_WIDE)
 
 
@@ -92,7 +92,7 @@ def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
     bursts = [burst for step in found for burst in step.stick_slip.bursts]
     first, last = (np.array([getattr(burst, end) for burst in bursts]) for end in ("start_time", "end_time"))
     time, samples = envelope(t, force)
-    left = (Zone(first=first, last=last, colour=1, opacity=0.35), Line(x=time, y=samples, colour="0.6", width=0.5))
+    left = (Zone(first=first, last=last, colour=1, opacity=0.35), Line(x=time, y=samples, colour="0.6", weight=0.5))
     falls = np.array([1e3 * step.stick_slip.stick_slip_amplitude for step in found])
     ends = np.array([step.stick_slip.stick_slip_amplitude_interval for step in found]).T * 1e3
     points = Points(
@@ -116,7 +116,7 @@ def loops(velocity: Floats, force: Floats) -> Chart:
     """Friction over velocity."""
     stride = max(1, velocity.size // _MOST)
     zero = (Rule(value=0.0, along="y", colour="0.5", dash=0), Rule(value=0.0, colour="0.5", dash=0))
-    parts = (Line(x=velocity[::stride], y=force[::stride], width=0.6), *zero)
+    parts = (Line(x=velocity[::stride], y=force[::stride], weight=0.6), *zero)
     return Chart(panels=(Panel(x=Axis(label="Velocity", unit="m/s"), y=_FORCE, parts=parts),), size=(4.2, 3.4))
 
 

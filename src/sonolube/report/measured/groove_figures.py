@@ -61,7 +61,7 @@ def sections(groove: Groove) -> Chart:
     """Single cross-sections, and the mean one with its edges."""
     single, mean = groove.cross_sections, groove.mean_cross_section
     chosen = np.linspace(0, single.arc_length.size - 1, _SINGLE + 2).round().astype(int)[1:-1]
-    grey = [Line(x=1e3 * single.transverse, y=1e6 * single.height[at], colour="0.7", width=0.45) for at in chosen]
+    grey = [Line(x=1e3 * single.transverse, y=1e6 * single.height[at], colour="0.7", weight=0.45) for at in chosen]
     shown = (mean.transverse >= single.transverse[0]) & (mean.transverse <= single.transverse[-1])
     edges = 1e3 * groove.groove_width * np.array([-0.5, 0.5])
     parts: tuple[Part, ...] = (
@@ -78,7 +78,7 @@ def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> Chart:
     """Heights over the unworn surface, with a line round what counts as worn."""
     _, per_metre = length_scale(levelled.x)
     x, y = _outline(per_metre * levelled.x, per_metre * levelled.y, worn)
-    return Chart(panels=(map_panel(levelled, Line(x=x, y=y, colour="1", width=0.6)),), size=(6.4, 3.6))
+    return Chart(panels=(map_panel(levelled, Line(x=x, y=y, colour="1", weight=0.6)),), size=(6.4, 3.6))
 
 
 def _outline(x: Floats, y: Floats, inside: NDArray[np.bool_]) -> tuple[Floats, Floats]:
@@ -121,7 +121,7 @@ def marks(track: TrackMarks) -> Chart:
     background = np.broadcast_to(track.background, track.wavenumber.shape)[inner]
     peak = () if track.dot_spacing is None else (Rule(value=1 / track.dot_spacing),)
     parts = (
-        Line(x=k, y=track.profile_spectral_density[inner], label="along the track", width=0.7),
+        Line(x=k, y=track.profile_spectral_density[inner], label="along the track", weight=0.7),
         Line(x=k, y=background, label="background", colour=1, dash=1),
         *peak,
     )

@@ -28,7 +28,7 @@ def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -
     measured = 1e3 * spectrum.admittance
     parts = (
         Points(x=measured.real, y=measured.imag, label="measured", colour="0.45", size=0.8),
-        Line(x=model.real, y=model.imag, label="fitted", colour=1, width=0.85),
+        Line(x=model.real, y=model.imag, label="fitted", colour=1, weight=0.85),
     )
     panel = Panel(
         x=Axis(label="Conductance", unit="mS"),
@@ -43,16 +43,16 @@ def _fit(spectrum: ImpedanceSpectrum, model: Complexes) -> Chart:
     """Magnitude and phase of the impedance, measured and fitted, above the residual of the logarithm."""
     f = spectrum.frequency / 1e3
     left_over = np.log(model / spectrum.admittance)
-    residual = [Line(x=f, y=left_over.real, label="magnitude", width=0.7)]
+    residual = [Line(x=f, y=left_over.real, label="magnitude", weight=0.7)]
     if spectrum.has_phase:
-        residual.append(Line(x=f, y=left_over.imag, label="phase", colour=2, dash=1, width=0.7))
+        residual.append(Line(x=f, y=left_over.imag, label="phase", colour=2, dash=1, weight=0.7))
     curves: list[tuple[Part, ...]] = []
     for values, fitted, is_measured in (
         (np.abs(spectrum.impedance), np.abs(1 / model), True),
         (_degrees(spectrum.impedance), _degrees(1 / model), spectrum.has_phase),
     ):
         measured = [Points(x=f, y=values, label="measured", colour="0.45", is_faint=True)] if is_measured else []
-        curves.append((*measured, Line(x=f, y=fitted, label="fitted", colour=1, width=0.85)))
+        curves.append((*measured, Line(x=f, y=fitted, label="fitted", colour=1, weight=0.85)))
     across = Axis(label="Frequency", unit="kHz")
     phase = Axis(label="Phase", unit="deg", lowest=-100.0, highest=100.0, ticks=(-90, 0, 90))
     panels = (

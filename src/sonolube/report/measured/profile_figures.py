@@ -36,7 +36,7 @@ def profile(found: ProfileEvaluation, *, spacing: float) -> Chart:
     ):
         unit, scale = length_scale(heights)
         place, height = envelope(per_metre * x[start : start + heights.size], scale * heights, bins=_BINS)
-        parts: tuple[Part, ...] = (Line(x=place, y=height, colour=colour, width=0.6), *others)
+        parts: tuple[Part, ...] = (Line(x=place, y=height, colour=colour, weight=0.6), *others)
         panels.append(Panel(x=Axis(label="x", unit=across), y=Axis(label="Height", unit=unit), parts=parts))
     return Chart(panels=tuple(panels), size=(7.4, 4.2), shares_x=True)
 
@@ -45,7 +45,7 @@ def profile(found: ProfileEvaluation, *, spacing: float) -> Chart:
 def spectrum(found: ProfileSpectrum, *, cutoff: float | None) -> Chart:
     """Power spectral density of a profile."""
     inner = (found.wavenumber > 0) & (found.profile_spectral_density > 0)
-    curve = Line(x=found.wavenumber[inner], y=found.profile_spectral_density[inner], width=0.6)
+    curve = Line(x=found.wavenumber[inner], y=found.profile_spectral_density[inner], weight=0.6)
     filtered = () if cutoff is None else (Rule(value=1 / cutoff, colour="0.3", dash=1),)
     density = Axis(label="Power spectral density", unit="m³", logarithmic=True)
     return Chart(panels=(Panel(x=WAVENUMBER, y=density, parts=(curve, *filtered)),), size=(4.6, 3.2))

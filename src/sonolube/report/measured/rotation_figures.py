@@ -17,7 +17,7 @@ def speed(rotation: DiscRotation) -> Chart:
     speeds = rotation.rotation_speed
     begun = rotation.time[: speeds.size]
     parts = (
-        Line(x=begun, y=speeds, width=0.6),
+        Line(x=begun, y=speeds, weight=0.6),
         Points(x=begun, y=speeds, is_faint=True),
         Rule(value=float(rotation.mean_rotation_speed), along="y", label="mean", colour=1, dash=1),
     )
@@ -32,7 +32,7 @@ def pulses(t: Floats, flux_density: Floats, rotation: DiscRotation) -> Chart:
     end = float(np.interp(_TURNS_SHOWN, rotation.revolutions, rotation.time))
     shown = t <= end + 0.02 * (end - t[0])
     time, reading = envelope(t[shown], flux_density[shown])
-    parts: list[Part] = [Line(x=time, y=reading, label="reading", colour="0.5", width=0.6)]
+    parts: list[Part] = [Line(x=time, y=reading, label="reading", colour="0.5", weight=0.6)]
     early = rotation.time <= end
     for which, name, place in (
         (early & ~rotation.interpolated, "pulses", 0),

@@ -31,11 +31,11 @@ def heights(surface: HeightMap) -> Chart:
     across, per_metre = length_scale(surface.x)
     row = surface.height.shape[0] // 2
     x = surface.x * per_metre
-    at = Line(x=x[[0, -1]], y=np.full(2, surface.y[row] * per_metre), colour="0", dash=1, width=0.6, has_halo=True)
+    at = Line(x=x[[0, -1]], y=np.full(2, surface.y[row] * per_metre), colour="0", dash=1, weight=0.6, has_halo=True)
     profile = Panel(
         x=Axis(label="x", unit=across),
         y=Axis(label="Height", unit=unit),
-        parts=(Line(x=x, y=surface.height[row] * scale, width=0.6),),
+        parts=(Line(x=x, y=surface.height[row] * scale, weight=0.6),),
     )
     return Chart(panels=(map_panel(surface, at), profile), size=(7.4, 3.0), columns=2, widths=(1.15, 1))
 
@@ -76,7 +76,7 @@ def abbott(curve: MaterialRatioCurve) -> Chart:
     unit, scale = length_scale(curve.height)
     counts, edges = np.histogram(scale * curve.height, bins=_BINS)
     middles, width = (edges[1:] + edges[:-1]) / 2, float(edges[1] - edges[0])
-    bars = Bars(places=middles, lengths=100 * counts / curve.height.size, thickness=width, colour=5)
+    bars = Bars(places=middles, lengths=100 * counts / curve.height.size, breadth=width, colour=5)
     stride = max(1, curve.height.size // 4000)
     ratio = Line(x=100 * curve.material_ratio[::stride], y=scale * curve.height[::stride], label="material ratio")
     y = Axis(label="Height above the mean", unit=unit)
@@ -101,9 +101,9 @@ def _core(curve: MaterialRatioCurve, scale: float) -> tuple[Part, ...]:
     top, bottom = (scale * float(height) for height in curve.height_at(material_ratio=[first, second]))
     ends = np.array([0.0, 100.0])
     return (
-        Line(x=ends, y=np.array([top, bottom]), label="equivalent line of the core", colour=1, dash=1, width=0.85),
-        Line(x=np.array([0.0, 100 * first]), y=np.full(2, top), colour=1, width=0.6),
-        Line(x=np.array([100 * second, 100.0]), y=np.full(2, bottom), colour=1, width=0.6),
+        Line(x=ends, y=np.array([top, bottom]), label="equivalent line of the core", colour=1, dash=1, weight=0.85),
+        Line(x=np.array([0.0, 100 * first]), y=np.full(2, top), colour=1, weight=0.6),
+        Line(x=np.array([100 * second, 100.0]), y=np.full(2, bottom), colour=1, weight=0.6),
         Note(x=100 * first, y=top, text=f"Smr1 {first:.0%}"),
         Note(x=100 * second, y=bottom, text=f"Smr2 {second:.0%}", side="left"),
     )

@@ -57,7 +57,7 @@ def proportion(files: Sequence[str], volts: Floats, amplitudes: Floats, fit: Amp
     low, middle, high = (1e6 * slope * line for slope in (fit.lower, fit.amplitude_per_volt, fit.upper))
     parts = (
         Band(x=line, low=low, high=high, label="95 %", colour=5, opacity=0.5),
-        Line(x=line, y=middle, label="in proportion", width=0.85),
+        Line(x=line, y=middle, label="in proportion", weight=0.85),
         Points(x=volts, y=1e6 * amplitudes, label="recordings", colour=1, marker=1, sources=tuple(files)),
     )
     panel = Panel(

@@ -5,14 +5,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sonolube.charts import Rule, draw_chart
 from sonolube.facts.published import si_value
-from sonolube.figure import COLOURS, LINES, ReportFigure
+from sonolube.figure import COLOURS, ReportFigure
 from sonolube.models.contact import decay_length
 from sonolube.reproduction.chapter3 import tribometer_response
 from sonolube.reproduction.chapter3.cube_rows import LOST_CONTACT
 from sonolube.reproduction.plots import axes_row, line_style
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, tribometer_rig
-from sonolube.rig.study_figures import frequency_figure, power_figure, speed_figure, voltage_figure, waveform_figure
+from sonolube.rig.study_figures import frequency_chart, power_chart, speed_chart, voltage_chart, waveform_chart
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,14 +41,14 @@ def parametric_study_figures() -> Iterator[ReportFigure]:
         title="Sliding speed",
         caption="Faster sliding leaves less reduction at every voltage. Against the velocity ratio the curves do "
         "not coincide, as those of a kinematic friction model would: contact memory is a second length.",
-        draw=lambda: speed_figure(tribometer_response.response_over_speed()),
+        draw=lambda: draw_chart(speed_chart(tribometer_response.response_over_speed())),
     )
     yield ReportFigure(
         name="figure-3-17-frequency",
         title="Drive frequency",
         caption="Around the resonance friction falls in a “v”; over the amplifier's power the tips of the “v”s "
         "form the envelope that the text describes. Asperity stick-slip, 20.3 mm/s.",
-        draw=lambda: frequency_figure(tribometer_response.response_over_frequency()),
+        draw=lambda: draw_chart(frequency_chart(tribometer_response.response_over_frequency())),
     )
     yield ReportFigure(
         name="figure-3-17-least-power",
@@ -55,14 +56,14 @@ def parametric_study_figures() -> Iterator[ReportFigure]:
         caption="Voltage and powers at the friction of the tests' 28 V at 22 kHz. The amplifier's power has its "
         "minimum at resonance; the dissipated power does not, for it is proportional to the square of the "
         "frequency at a given amplitude. Lines end with the last frequencies at which 200 V suffice.",
-        draw=lambda: power_figure(tribometer_response.least_power_over_frequency()),
+        draw=lambda: draw_chart(power_chart(tribometer_response.least_power_over_frequency())),
     )
     yield ReportFigure(
         name="figure-3-18-waveform",
         title="Waveform",
         caption="0 to 200 V at 22 kHz. The tip moves as a sine under all four waveforms, with the amplitude of "
         "their fundamentals: 4/π (square), 1, 8/π² (triangle) and 2/π (sawtooth).",
-        draw=lambda: waveform_figure(tribometer_response.response_over_waveform()),
+        draw=lambda: draw_chart(waveform_chart(tribometer_response.response_over_waveform())),
     )
 
 
@@ -88,14 +89,12 @@ def _start_up() -> "Figure":
 
 def _voltage() -> "Figure":
     """Draw the response over voltage with the statements of D 3.3.5."""
-    figure = voltage_figure(tribometer_response.response_over_voltage())
-    period, _, ratio, _ = figure.axes
     lost = float(decay_length(tribometer_rig().contact)) * np.log(1 / LOST_CONTACT)
-    for index, (height, label) in enumerate(
-        ((si_value("3.3.5-hopping-displacement"), "hopping, D 3.3.5"), (lost, "force at 1 % of the load"))
-    ):
-        period.axhline(1e6 * height, color="0.3", linestyle=LINES[1 + 2 * index], linewidth=1, label=label)
-    period.legend(loc="upper center")
-    ratio.axvline(si_value("3.3.5-voltage-knee"), color="0.3", linestyle=":", label="20 V, D 3.3.5")
-    ratio.legend(loc="upper right")
-    return figure
+    hopping = 1e6 * si_value("3.3.5-hopping-displacement")
+    chart = voltage_chart(tribometer_response.response_over_voltage())
+    chart = chart.with_parts(
+        0,
+        Rule(along="y", value=hopping, label="hopping, D 3.3.5", dash=1),
+        Rule(along="y", value=1e6 * lost, label="force at 1 % of the load", dash=3),
+    )
+    return draw_chart(chart.with_parts(2, Rule(value=si_value("3.3.5-voltage-knee"), label="20 V, D 3.3.5")))

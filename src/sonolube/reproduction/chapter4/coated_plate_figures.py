@@ -5,7 +5,8 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
-from sonolube.design import map_figure, velocity_power_map
+from sonolube.charts import draw_chart
+from sonolube.design import map_chart, velocity_power_map
 from sonolube.facts.published import si_value
 from sonolube.figure import ReportFigure
 from sonolube.reproduction.chapter4.maps import power_maps
@@ -28,7 +29,7 @@ def coated_plate_figures() -> Iterator[ReportFigure]:
         "changes the separation, not the reduction; the coating's own compliance would. The reduction is up to 1.2 "
         "percentage points less than on uncoated steel; in D it is greater at low voltages, and at higher ones less at "
         f"low speeds and greater at high ones. {IDENTIFIED_NOTE}.",
-        draw=lambda: map_figure(coated_power_maps()),
+        draw=lambda: draw_chart(map_chart(coated_power_maps())),
     )
 
 

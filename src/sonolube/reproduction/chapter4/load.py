@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from sonolube.charts import Zone, draw_chart
 from sonolube.facts.published import published_number, si_value
 from sonolube.figure import ReportFigure
 from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH
 from sonolube.reproduction.row import Row, RowKind, comparison_row
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
 from sonolube.rig import load_study
-from sonolube.rig.study_figures import load_figure
+from sonolube.rig.study_figures import load_chart
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,9 +72,6 @@ def load_figures() -> Iterator[ReportFigure]:
 
 def _load() -> "Figure":
     """Draw the response over load with the loads of the maximum in the text."""
-    figure = load_figure(response_over_load())
-    for axes in figure.axes:
-        low, high = si_value("4.1.2-peak-load-1"), si_value("4.1.2-peak-load-2")
-        axes.axvspan(low, high, color="0.88", zorder=0, label="D 4.1.2")
-    figure.axes[0].legend(loc="lower right")
-    return figure
+    low, high = (np.array([si_value(f"4.1.2-peak-load-{end}")]) for end in (1, 2))
+    zone = Zone(first=low, last=high, label="D 4.1.2", colour="0.88")
+    return draw_chart(load_chart(response_over_load()).with_parts(0, zone).with_parts(1, zone))

@@ -6,13 +6,15 @@ The maps here are computed: the identified tribometer with the contact of steel 
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from sonolube.charts import Line, draw_chart
 from sonolube.checks import Floats
-from sonolube.design import map_figure, velocity_power_map, velocity_stress_map
+from sonolube.design import map_chart, velocity_power_map, velocity_stress_map
 from sonolube.facts.published import column_numbers, published_number, si_value
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.reproduction.chapter4 import power_map
@@ -81,7 +83,7 @@ def map_figures() -> Iterator[ReportFigure]:
         caption="As D figures 4.9 and 4.10, by the multi-scale model on uncoated steel, at the five voltages of "
         "Table 4.1. Contours are vertical: the stress has no effect, as in the text except at the arm's "
         "resonance. For coated steel no parameter but hardness, thickness and roughness is printed.",
-        draw=lambda: map_figure(stress_maps()),
+        draw=lambda: draw_chart(map_chart(stress_maps())),
     )
     yield ReportFigure(
         name="figure-4-20-power-maps",
@@ -89,7 +91,7 @@ def map_figures() -> Iterator[ReportFigure]:
         caption="As D figures 4.11, 4.20 and the maps of appendix B on uncoated steel, by the multi-scale model, for "
         "all seven loads. More power and less speed reduce friction more, as in the text; no ridge lies within the "
         "powers of the tests.",
-        draw=lambda: map_figure(power_maps()),
+        draw=lambda: draw_chart(map_chart(power_maps())),
     )
     yield ReportFigure(
         name="figure-4-21-reduction-over-speed",
@@ -202,19 +204,15 @@ def _reduction_over_speed() -> "Figure":
 
 def _ridge() -> "Figure":
     """Draw the map of friction reduction over speed and power with its ridge and the sufficient power."""
-    from matplotlib.patheffects import Normal, Stroke
-
-    figure = map_figure(extended_power_map())
-    axes = figure.axes[0]
     speeds = _speeds()
     sufficient = [power_map.sufficient_power(power_map.example_test() | {"sliding_speed": float(v)}) for v in speeds]
-    halo = [Stroke(linewidth=3.6, foreground="white"), Normal()]
-    axes.plot(1e3 * speeds, sufficient, ":", color=COLOURS[1], lw=2, path_effects=halo, label="all friction, D 4.3")
-    highest = power_map.example_points()[-1].actuator_power
-    axes.axhline(highest, color="0.2", ls="-.", lw=1.2, path_effects=halo, label="highest of the tests")
-    axes.set(yscale="log", ylim=(0.2, None))
-    axes.yaxis.set_major_formatter("{x:g}")
-    for legend in figure.legends:
-        legend.remove()
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center")
-    return figure
+    highest = np.full(speeds.size, power_map.example_points()[-1].actuator_power)
+    x = 1e3 * speeds
+    chart = map_chart(extended_power_map()).with_parts(
+        0,
+        Line(x=x, y=np.array(sufficient), label="all friction, D 4.3", colour=1, dash=3, weight=1.4, has_halo=True),
+        Line(x=x, y=highest, label="highest of the tests", colour="0.2", dash=2, weight=0.9, has_halo=True),
+    )
+    (panel,) = chart.panels
+    y = replace(panel.y, logarithmic=True, lowest=0.2)
+    return draw_chart(replace(chart, panels=(replace(panel, y=y),)))

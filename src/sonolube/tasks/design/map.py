@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube import design
 from sonolube.checks import Floats
-from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figure
+from sonolube.design import MAP_LAYOUTS, map_chart, map_page, measured_map_chart
 from sonolube.design.gaussian_process import FEWEST_RUNS
 from sonolube.design.maps import default_axes, panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
@@ -140,12 +140,12 @@ class MapAnswer(Answer):
         runs, between = self.runs, self.interpolated
         drawings = {
             self._name: Drawing(
-                draw=lambda: map_figure(self.mapped, measured=runs), caption=self._caption(), forms=forms
+                chart=lambda: map_chart(self.mapped, measured=runs), caption=self._caption(), forms=forms
             )
         }
         if runs is not None and between is not None:
             drawings[f"{self._name}-measured"] = Drawing(
-                draw=lambda: measured_map_figure(between, runs), caption=_MEASURED_CAPTION, forms=forms
+                chart=lambda: measured_map_chart(between, runs), caption=_MEASURED_CAPTION, forms=forms
             )
         return drawings
 

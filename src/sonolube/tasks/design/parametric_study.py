@@ -1,19 +1,20 @@
 """Parametric study of `sweep --of`: friction over voltage, speed, frequency, waveform or load, or its power."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sonolube import rig as rigs
+from sonolube.charts import Chart
 from sonolube.checks import Floats, require_positive
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts
 from sonolube.errors import InvalidInput
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing
-from sonolube.rig import STUDY_FIGURES, Rig, energy_balance, frequency_grid, operating_caveats, operating_points
+from sonolube.rig import STUDY_CHARTS, Rig, energy_balance, frequency_grid, operating_caveats, operating_points
 from sonolube.rig.amplitude_source import moved_rig
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.tasks.answer import Answer, answer, si
@@ -134,12 +135,10 @@ class ParametricStudyAnswer(Answer):
     def figures(self) -> Mapping[str, Drawing]:
         """Figure of the study."""
 
-        def draw() -> Any:
-            figure = STUDY_FIGURES[self.of](self.study)
-            figure.suptitle(self.study.attrs["rig"], fontsize=9)
-            return figure
+        def chart() -> Chart:
+            return replace(STUDY_CHARTS[self.of](self.study), title=self.study.attrs["rig"])
 
-        return {self._name: Drawing(draw=draw)}
+        return {self._name: Drawing(chart=chart)}
 
     def files(self) -> "Mapping[str, xr.Dataset]":
         """Every point as netCDF."""

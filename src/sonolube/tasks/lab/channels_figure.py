@@ -30,6 +30,6 @@ def channels_chart(recording: "xr.Dataset") -> Chart:
         known = quantities().get(name)
         label = name.replace("_", " ") if known is None else known.meaning.split(",")[0]
         y = Axis(label=label[:1].upper() + label[1:], unit=str(recording[name].attrs.get("units", "1")))
-        line = Line(x=time, y=values, width=0.6, is_stepped=True)
+        line = Line(x=time, y=values, weight=0.6, is_stepped=True)
         panels.append(Panel(x=Axis(label="Time", unit="s"), y=y, parts=(line,)))
     return Chart(panels=tuple(panels), size=(_WIDTH, 0.6 + _HEIGHT * len(panels)), shares_x=True)

@@ -10,7 +10,7 @@ from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report import Drawing
 from sonolube.rig import LubricationMap, LubricationPoint, Rig, lubrication_map, lubrication_point, wear_of_materials
 from sonolube.rig.datasets import labels
-from sonolube.rig.figures import lubrication_figure
+from sonolube.rig.figures import lubrication_chart
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows, Table
 from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
@@ -107,8 +107,8 @@ class RegimeAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Map of the best method about the rig's speed and pressure."""
-        draw = lambda: lubrication_figure(self.rig, self.result, self.surroundings)  # noqa: E731
-        return {f"{self.rig.name}-regime": Drawing(draw=draw)}
+        chart = lambda: lubrication_chart(self.rig, self.result, self.surroundings)  # noqa: E731
+        return {f"{self.rig.name}-regime": Drawing(chart=chart)}
 
     def dataset(self) -> "xr.Dataset":
         """Return the coefficients of friction over `lubrication`, and the operating point."""

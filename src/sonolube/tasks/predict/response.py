@@ -8,7 +8,7 @@ from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import modes
 from sonolube.report import Drawing
 from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, structure_in_contact
-from sonolube.rig.figures import response_figure
+from sonolube.rig.figures import response_chart
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.rig.result_datasets import response_arrays
 from sonolube.tasks.answer import Answer, answer, si
@@ -68,7 +68,7 @@ class ResponseAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Response over frequency."""
-        return {f"{self.rig.name}-response": Drawing(draw=lambda: response_figure(self.rig, self.result))}
+        return {f"{self.rig.name}-response": Drawing(chart=lambda: response_chart(self.rig, self.result))}
 
     def files(self) -> Mapping[str, LabelledArrays]:
         """Response over frequency as netCDF."""

@@ -2,7 +2,7 @@
 
 from sonolube import rig as rigs
 from sonolube.report import Drawing
-from sonolube.rig.figures import simulation_figure
+from sonolube.rig.figures import simulation_chart
 from sonolube.rig.result_datasets import simulation_arrays
 from sonolube.tasks.parameters import RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
@@ -25,6 +25,6 @@ def simulate(rig: RigFile, *, progress: Watch = None, cancelled: Stop = None) ->
         rig=known,
         result=result,
         measured=measured_on(known, vibration_amplitude=result.vibration.vibration_amplitude),
-        drawings={name: Drawing(draw=lambda: simulation_figure(labelled))},
+        drawings={name: Drawing(chart=lambda: simulation_chart(labelled))},
         datasets={f"{name}.nc": labelled},
     )

@@ -6,7 +6,7 @@ from sonolube.errors import InvalidInput
 from sonolube.models.thermal.flash_models import FLASH_MODELS
 from sonolube.report import Drawing
 from sonolube.rig import temperature_point, thermal_solid
-from sonolube.rig.figures import temperature_figure
+from sonolube.rig.figures import temperature_chart
 from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
 from sonolube.tasks.results.rig_record import RigRecord
 from sonolube.tasks.task import in_si, plausible, shown, task
@@ -61,7 +61,7 @@ def thermal(
         friction_ratio=in_si("friction_ratio", friction_ratio),
         flash_model=flash_model,
     )
-    drawing = Drawing(draw=lambda: temperature_figure(known, result))
+    drawing = Drawing(chart=lambda: temperature_chart(known, result))
     return RigRecord(rig=known, result=result, drawings={f"{known.name}-thermal": drawing})
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from sonolube.report import Drawing
 from sonolube.rig import Rig, StartUp, resolved_vibration, start_up
-from sonolube.rig.figures import start_up_figure
+from sonolube.rig.figures import start_up_chart
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.rig.result_datasets import start_up_arrays
 from sonolube.tasks.answer import Answer, answer, si
@@ -67,7 +67,7 @@ class StartUpAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Displacement of the tip over time."""
-        return {f"{self.rig.name}-transient": Drawing(draw=lambda: start_up_figure(self.rig, self.result))}
+        return {f"{self.rig.name}-transient": Drawing(chart=lambda: start_up_chart(self.rig, self.result))}
 
     def files(self) -> Mapping[str, LabelledArrays]:
         """Trajectory as netCDF."""
