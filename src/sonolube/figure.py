@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 # The palette of Okabe and Ito, ordered so that neighbours also differ in lightness; each colour has a marker.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*")
 LINES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)))
 
 _AXES = ("xaxis", "yaxis", "zaxis")

@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from pytest import MonkeyPatch, approx, mark, raises
 
+from sonolube.charts import Field, Line
 from sonolube.errors import InvalidInput
 from sonolube.figure import render_figure
-from sonolube.models.surfaces import GaussianCorrelationSpectrum, gaussian_surface
+from sonolube.models.surfaces import GaussianCorrelationSpectrum, HeightMap, gaussian_surface
 from sonolube.report import (
     MeasurementReport,
     measurement_object,
@@ -24,6 +25,7 @@ from sonolube.report import (
 )
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
 from sonolube.report.measured.friction_comparison import comparison_sheet
+from sonolube.report.measured.groove_figures import height_map
 from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
 from sonolube.report.measured.sheet import Sheet, Value, quantity_value
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
@@ -66,6 +68,23 @@ def page(plate: Path, tmp_path: Path) -> str:
     friction = friction_sheet(recording_file(tmp_path / "a<b>.csv", 0.5), settings=FrictionSettings(sliding_speed=0.02))
     report = report_of(friction, surface_sheet(plate, settings=NPY))
     return measurement_page(report)
+
+
+def test_the_map_of_a_groove_runs_downwards_and_its_line_goes_round_the_worn_rectangle() -> None:
+    worn = np.zeros((200, 1500), dtype=bool)
+    worn[50:151, 300:1201] = True
+    levelled = HeightMap(height=np.where(worn, -5e-6, 0.0), spacing_x=1e-6, spacing_y=2e-6)
+    (panel,) = height_map(levelled, worn).panels
+    field, line = panel.parts
+    assert isinstance(field, Field)
+    assert isinstance(line, Line)
+    assert max(field.values.shape) <= 750
+    assert field.values.min() == approx(-5.0)
+    assert panel.y.lowest == approx(400.0)  # um, at the bottom
+    assert panel.y.highest == 0.0
+    x, y = (values[np.isfinite(values)] for values in (line.x, line.y))
+    assert (x.min(), x.max()) == approx((1e6 * levelled.x[300] - 0.5, 1e6 * levelled.x[1200] + 0.5))
+    assert (y.min(), y.max()) == approx((1e6 * levelled.y[50] - 1, 1e6 * levelled.y[150] + 1))
 
 
 def test_axes_write_micrometres_as_other_figures_do(plate: Path, tmp_path: Path, monkeypatch: MonkeyPatch) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from pytest import approx
 from scipy.special import ellipk, i0e
 
+from sonolube.charts import Points
 from sonolube.errors import InvalidInput
 from sonolube.models.contact import decay_length
 from sonolube.rig import read_rig
@@ -20,7 +21,7 @@ from sonolube.rig.linear_response import rest_separation
 from sonolube.validation.comparison import compare_models, compared_models
 from sonolube.validation.run_conditions import run_conditions
 from sonolube.validation.runs_comparison import predict_runs
-from sonolube.validation.runs_figures import runs_fit_figure
+from sonolube.validation.runs_figures import runs_fit_chart
 from sonolube.validation.runs_fit import RunsFit, fit_runs
 from sonolube.validation.runs_tables import runs_fit_dataset
 
@@ -232,10 +233,11 @@ def test_the_dataset_and_the_figure_hold_every_model() -> None:
     assert list(found["model"].to_numpy()) == [one.name for one in result.models]
     assert float(found["value"].sel(model="kinematic-fitted", parameter="amplitude_fraction")) == approx(0.4, rel=1e-3)
     assert found["unseen_ratio"].shape == (len(result.models), 9)
-    figure = runs_fit_figure(result)
-    measured, errors = figure.axes
-    assert len(measured.containers) == 3
-    assert len(errors.get_yticks()) == len(result.models)
+    measured, errors = runs_fit_chart(result).panels
+    series = [part for part in measured.parts if isinstance(part, Points)]
+    assert sum(part.x.size for part in series) == 9
+    assert len(series) == 3
+    assert errors.y.words == tuple(one.name.replace("-", " ") for one in result.models[::-1])
 
 
 def test_models_of_published_tests_predict_own_runs_without_a_fit() -> None:

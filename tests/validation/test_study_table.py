@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 from pytest import approx
 
+from sonolube.charts import Note, Points
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.figure import publication_style
 from sonolube.measurement.measured_runs import read_runs
-from sonolube.validation.previous_study_map import study_map
+from sonolube.validation.previous_study_map import study_chart
 from sonolube.validation.study_table import STUDY_COLUMNS, read_studies, study_table
 
 OWN = "study,direction,sliding_speed [mm/s],normal_load [N],nominal_area [mm2],friction_ratio,source\n{}\n"
@@ -48,18 +48,16 @@ def test_an_extended_table_adds_its_own_points_only(tmp_path: Path) -> None:
     assert point.friction_reduction == approx(0.4)
 
 
-def test_a_load_on_an_area_places_a_point_on_the_map_with_an_edge_of_its_own(tmp_path: Path) -> None:
-    import matplotlib.pyplot as plt
-
+def test_a_load_on_an_area_places_a_point_on_the_map_within_a_ring(tmp_path: Path) -> None:
     rows = 'Mine,transverse,50,10,4,0.6,"notebook, p. 3"\nElsewhere,,,,,0.3,"notebook, p. 4"'
     points, _ = read_studies(written(tmp_path, OWN.format(rows)))
     assert points[0].nominal_pressure == approx(2.5e6)
-    with publication_style():
-        figure = study_map(others=points)
-    aside, axes, _ = figure.axes
-    assert "own table" in axes.get_legend_handles_labels()[1]
-    assert any("Elsewhere" in text.get_text() for text in aside.texts)
-    plt.close(figure)
+    aside, known = study_chart(others=points).panels
+    (own,) = (part for part in known.parts if isinstance(part, Points) and part.label == "own table")
+    assert float(own.y[0]) == approx(2.5e6)
+    assert any(isinstance(part, Note) and "Elsewhere" in part.text for part in aside.parts)
+    sources = [source for part in known.parts if isinstance(part, Points) for source in part.sources]
+    assert "Mine: notebook, p. 3" in sources
 
 
 @pytest.mark.parametrize(

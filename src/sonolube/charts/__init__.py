@@ -3,6 +3,7 @@
 from sonolube.charts.chart import Axis, Band, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule, Zone
 from sonolube.charts.chart_object import chart_object, chart_tables
 from sonolube.charts.draw import draw_chart
+from sonolube.charts.thinning import envelope
 
 __all__ = [
     "Axis",
@@ -20,4 +21,5 @@ __all__ = [
     "chart_object",
     "chart_tables",
     "draw_chart",
+    "envelope",
 ]

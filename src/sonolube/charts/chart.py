@@ -21,13 +21,15 @@ class Axis:
         Of all numbers along the axis; empty for pure numbers.
     logarithmic : bool
     lowest, highest : float or None
-        Ends, in the unit; those of the parts with a margin where None.
+        Ends, in the unit; those of the parts with a margin where None. Runs downwards where `lowest` is greater.
     ticks : tuple of float
         Places of numbers or words; chosen by the drawing where empty.
     words : tuple of str
         At the ticks in place of numbers; at 0, 1, 2, ... where there are no ticks.
     reciprocal : tuple of (float, str), or None
         Constant c and label of a second axis on the other side, which shows c divided by the value.
+    proportional : tuple of (float, str), or None
+        Likewise, of one that shows c times the value.
     """
 
     label: str = ""
@@ -38,6 +40,7 @@ class Axis:
     ticks: tuple[float, ...] = ()
     words: tuple[str, ...] = ()
     reciprocal: tuple[float, str] | None = None
+    proportional: tuple[float, str] | None = None
 
     @property
     def text(self) -> str:
@@ -106,7 +109,9 @@ class Points:
     shades : ndarray, shape (n,), or None
         Values by which each is coloured as the field below is, or on a scale of their own.
     scale_text : str
-        Label of that scale, with its unit.
+        Label of that scale, with its unit; the scale is not drawn where empty.
+    scale_ends : tuple of (float, float), or None
+        Its ends; those of the values where None.
     marker, size : int, float
         Number of a marker, and its size relative to the usual one.
     is_hollow : bool
@@ -126,6 +131,7 @@ class Points:
     texts: tuple[str, ...] = ()
     shades: Floats | None = None
     scale_text: str = ""
+    scale_ends: tuple[float, float] | None = None
     is_hollow: bool = False
     is_faint: bool = False
 

@@ -21,10 +21,12 @@ _PLACES: dict[str, Any] = {
     "bottom": "outside lower center",
     "right": "outside right upper",
 }
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MARKER = 4.5  # points
 _NUMBER_WIDTH, _NUMBER_HEIGHT = 0.38, 0.22  # inches that a number at a tick takes
 _RATIO = 3.0  # of the ends of a logarithmic axis, below which also 1.2, 1.4, ... are numbered
-_MOST_WIDE = 60  # characters of a line of a title per 5 inches
+_MOST_EDGED = 30  # bars
+_MOST_WIDE = 70  # characters of a line of a title per 5 inches
 
 
 def draw_chart(chart: Chart) -> "Figure":
@@ -59,16 +61,20 @@ def draw_chart(chart: Chart) -> "Figure":
             shades = _draw(part, axes)
             if shades is not None and isinstance(part, Field | Points):
                 scales.append(_Scale(axes=axes, shades=shades, part=part))
-        _set_axis(axes, "x", panel.x, is_labelled=not chart.shares_x or place + chart.columns >= len(chart.panels))
-        _set_axis(axes, "y", panel.y, is_labelled=not chart.shares_y or place % chart.columns == 0)
+        width, height = _size(chart, place)
+        is_lowest, is_first = place + chart.columns >= len(chart.panels), place % chart.columns == 0
+        across, up = _wrapped(panel.x.text, width), _wrapped(panel.y.text, 0.85 * height)
+        _set_axis(axes, "x", panel.x, text=across if is_lowest or not chart.shares_x else "")
+        _set_axis(axes, "y", panel.y, text=up if is_first or not chart.shares_y else "")
         if panel.has_equal_scales:
             axes.set_aspect("equal")
         if panel.title:
-            axes.set_title(_wrapped(panel.title, chart.size[0] / chart.columns), fontsize=8)
+            axes.set_title(_wrapped(panel.title, width), fontsize=8)
         if chart.legend == "panels" and axes.get_legend_handles_labels()[1]:
             axes.legend(loc="best")
     _draw_scales(figure, grid, scales)
     _draw_texts(figure, grid, chart)
+    figure.align_ylabels()
     return figure
 
 
@@ -126,6 +132,7 @@ def _band(part: Band, axes: "Axes") -> None:
         color=_colour(part.colour),
         alpha=part.opacity,
         linewidth=0.0,
+        zorder=2,  # as of lines, so that the order of the parts decides
         label=part.label or None,
     )
 
@@ -140,7 +147,7 @@ def _points(part: Points, axes: "Axes") -> Any:
             part.x, part.y, ".", color=colour, ms=2.5, alpha=0.6, rasterized=True, zorder=1, label=part.label or None
         )
     else:
-        axes.errorbar(
+        _, caps, bars = axes.errorbar(
             part.x,
             part.y,
             yerr=part.y_error,
@@ -153,10 +160,12 @@ def _points(part: Points, axes: "Axes") -> Any:
             markersize=size,
             elinewidth=1.0,
             capsize=2,
-            clip_on=False,
+            clip_on=not part.x.size,  # what has no place would be laid out at the origin
             zorder=3,
             label=part.label or None,
         )
+        for each in (*caps, *bars):
+            each.set_clip_on(True)  # however far beyond the axes they reach
     box = {"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.8}
     for x, y, text in zip(part.x, part.y, part.texts, strict=False):
         axes.annotate(text, (x, y), (6, -3), textcoords="offset points", fontsize=7, bbox=box, zorder=6)
@@ -165,13 +174,20 @@ def _points(part: Points, axes: "Axes") -> Any:
 
 def _shaded_points(part: Points, axes: "Axes") -> Any:
     """Points coloured by a value, on the scale of the field below them or, which is returned, on one of their own."""
+    from matplotlib.collections import PathCollection
+
     field = next((each for each in axes.collections if each.get_array() is not None), None)
+    edge = "black" if field is None or isinstance(field, PathCollection) else "white"
     style: dict[str, Any] = {"s": 30 * part.size, "marker": MARKERS[part.marker % len(MARKERS)], "zorder": 4}
     colours: dict[str, Any] = {"norm": field.norm, "cmap": field.get_cmap()} if field else {"cmap": "viridis"}
-    drawn = axes.scatter(part.x, part.y, c=part.shades, edgecolors="white", clip_on=False, **style, **colours)
+    if field is None and part.scale_ends is not None:
+        colours |= {"vmin": part.scale_ends[0], "vmax": part.scale_ends[1]}
+    drawn = axes.scatter(
+        part.x, part.y, c=part.shades, edgecolors=edge, linewidths=0.7, clip_on=False, **style, **colours
+    )
     if part.label:
         axes.scatter([], [], facecolors="0.6", edgecolors="black", label=part.label, **style)
-    return None if field else drawn
+    return drawn if field is None and part.scale_text else None
 
 
 @_draw.register(Rule)
@@ -238,6 +254,7 @@ def _bars(part: Bars, axes: "Axes") -> None:
         color=_colour(part.colour),
         hatch=part.hatch or None,
         edgecolor="white",
+        linewidth=1.0 if len(part.places) <= _MOST_EDGED else 0.0,
         error_kw={"elinewidth": 1, "capsize": 2},
         label=part.label or None,
         **{f"{part.along}err": part.error},
@@ -260,31 +277,55 @@ def _colour(colour: Colour) -> str:
     return COLOURS[colour % len(COLOURS)] if isinstance(colour, int) else colour
 
 
-def _set_axis(axes: "Axes", name: str, axis: Axis, *, is_labelled: bool) -> None:
-    """Give an axis of a panel its label, scale, ends and ticks."""
+def _size(chart: Chart, place: int) -> tuple[float, float]:
+    """Width and height of a panel with what is written beside it, in inches."""
+    rows = -(-len(chart.panels) // chart.columns)
+    row, column = divmod(place, chart.columns)
+    widths, heights = chart.widths or (1.0,) * chart.columns, chart.heights or (1.0,) * rows
+    return chart.size[0] * widths[column] / sum(widths), chart.size[1] * heights[row] / sum(heights)
+
+
+def _set_axis(axes: "Axes", name: str, axis: Axis, *, text: str) -> None:
+    """Give an axis of a panel its label, scale, ends and ticks; an empty label where it shares that of another."""
     one = getattr(axes, f"{name}axis")
     if axis.logarithmic:
         getattr(axes, f"set_{name}scale")("log")
     if axis.lowest is not None or axis.highest is not None:
         getattr(axes, f"set_{name}lim")(axis.lowest, axis.highest)
     if axis.logarithmic and not axis.ticks:
-        place, (width, height) = axes.get_position(), axes.get_figure().get_size_inches()  # type: ignore[union-attr]
-        room = place.width * width / _NUMBER_WIDTH if name == "x" else place.height * height / _NUMBER_HEIGHT
-        _number_decades(one, getattr(axes, f"get_{name}lim")(), most=room)
+        _number_decades(one, getattr(axes, f"get_{name}lim")(), most=_room(axes, name))
     if axis.ticks or axis.words:
         places = axis.ticks or tuple(map(float, range(len(axis.words))))
         one.set_ticks(places, labels=axis.words or [f"{place:.4g}" for place in places])
         one.set_ticks([], minor=True)
+        if not any(axis.words) and axis.words:
+            one.set_tick_params(length=0)
+            axes.spines["bottom" if name == "x" else "left"].set_visible(False)
     elif not axis.logarithmic:
         one.get_major_formatter().set_useOffset(False)
-    if is_labelled:
-        one.set_label_text(axis.text)
-    one.set_tick_params(labelbottom=True) if is_labelled and name == "x" else None
+    one.set_label_text(text)
+    one.set_tick_params(labelbottom=True) if text and name == "x" else None
     if axis.reciprocal is not None:
         constant, label = axis.reciprocal
-        functions = (lambda value: constant / np.maximum(value, 1e-9),) * 2
-        other = getattr(axes, f"secondary_{name}axis")("top" if name == "x" else "right", functions=functions)
-        getattr(other, f"set_{name}label")(label)
+        _add_second_axis(axes, name, label, (lambda value: constant / np.maximum(value, 1e-9),) * 2)
+    if axis.proportional is not None:
+        factor, label = axis.proportional
+        _add_second_axis(axes, name, label, (lambda value: factor * value, lambda value: value / factor))
+
+
+def _add_second_axis(axes: "Axes", name: str, label: str, functions: tuple[Any, Any]) -> None:
+    """Give a panel an axis on the other side, by the function of its value and the inverse."""
+    other = getattr(axes, f"secondary_{name}axis")("top" if name == "x" else "right", functions=functions)
+    getattr(other, f"set_{name}label")(label)
+    if getattr(axes, f"get_{name}scale")() == "log":
+        first, last = map(functions[0], getattr(axes, f"get_{name}lim")())
+        _number_decades(getattr(other, f"{name}axis"), (first, last), most=_room(axes, name))
+
+
+def _room(axes: "Axes", name: str) -> float:
+    """How many numbers an axis has room for."""
+    place, (width, height) = axes.get_position(), axes.get_figure().get_size_inches()  # type: ignore[union-attr]
+    return float(place.width * width / _NUMBER_WIDTH if name == "x" else place.height * height / _NUMBER_HEIGHT)
 
 
 def _number_decades(axis: Any, ends: tuple[float, float], *, most: float) -> None:
@@ -297,7 +338,17 @@ def _number_decades(axis: Any, ends: tuple[float, float], *, most: float) -> Non
     else:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5) if 3 * np.log10(ratio) < most else (1,)))
     axis.set_minor_locator(NullLocator())
-    axis.set_major_formatter("{x:g}")  # not as formulas, which take ten times as long to draw
+    axis.set_major_formatter(_number_text)  # not as formulas, which take ten times as long to draw
+
+
+def _number_text(value: float, place: int | None = None) -> str:
+    """Number of a logarithmic axis, by a power of ten where it is long."""
+    if 1e-3 <= value < 1e5:
+        return f"{value:g}"
+    factor, _, exponent = f"{value:.2e}".partition("e")
+    factor = f"{float(factor):g}"
+    power = "10" + str(int(exponent)).translate(_SUPERSCRIPTS)
+    return power if factor == "1" else f"{factor}·{power}"
 
 
 def _draw_scales(figure: "Figure", grid: Any, scales: list[_Scale]) -> None:
@@ -342,5 +393,5 @@ def _draw_texts(figure: "Figure", grid: Any, chart: Chart) -> None:
 
 def _wrapped(text: str, width: float) -> str:
     """Title in lines that fit a width in inches."""
-    most = max(20, int(_MOST_WIDE * width / 5))
+    most = max(14, int(_MOST_WIDE * width / 5))
     return "\n".join(part for line in text.split("\n") for part in wrap(line, most) or [""])

@@ -6,7 +6,7 @@ from typing import Any
 
 from sonolube import __version__
 from sonolube.report.measured.sheet import Sheet, Table, Value
-from sonolube.report.page import Advance, Drawing, drawn, embedded, html
+from sonolube.report.page import Advance, drawn, embedded, html
 from sonolube.report.pin_on_disc_sheet import PinOnDiscSheet, pin_on_disc_rows
 
 
@@ -52,7 +52,7 @@ def measurement_page(report: MeasurementReport, *, advance: Advance = lambda nam
     pictures: dict[tuple[int, str], str] = {}
     for place, sheet in enumerate(report.sheets):
         for figure in sheet.figures:
-            pictures[place, figure.title] = embedded(drawn(Drawing(draw=figure.draw), forms=("png",))["png"])
+            pictures[place, figure.title] = embedded(drawn(figure.drawing, forms=("png",))["png"])
             advance(figure.title, len(pictures), total)
     return html(
         "measurement.html",

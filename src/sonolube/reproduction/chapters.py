@@ -1,10 +1,13 @@
 """Table of the reproduced sections, and the reproduction of a chapter or of the whole dissertation."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
-from functools import cache
-from typing import Final
+from functools import cache, partial
+from typing import TYPE_CHECKING, Final
 
+from sonolube.charts import Chart, draw_chart
 from sonolube.errors import UnknownName
+from sonolube.figure import ReportFigure
 from sonolube.prediction.published_figures import published_prediction_figures
 from sonolube.reproduction.chapter2.flextensional import flextensional_rows
 from sonolube.reproduction.chapter2.flextensional_figures import flextensional_figures
@@ -48,11 +51,26 @@ from sonolube.reproduction.section import ChapterFigure, Reproduction, Section
 from sonolube.validation.comparison import ComparedFit, compare_models
 from sonolube.validation.figures import comparison_figures
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 @cache
 def published_comparison() -> tuple[ComparedFit, ...]:
     """Return all model variants compared on all published tests."""
     return compare_models()
+
+
+def _comparison_figures() -> Iterator[ReportFigure]:
+    """Figures of the comparison of all model variants."""
+    for each in comparison_figures(published_comparison):
+        draw = partial(_drawn, each.chart)
+        yield ReportFigure(name=each.name, title=each.title, caption=each.caption, draw=draw)
+
+
+def _drawn(chart: "Callable[[], Chart]") -> "Figure":
+    """Draw what a function returns as data."""
+    return draw_chart(chart())
 
 
 SECTIONS: Final = (
@@ -82,7 +100,7 @@ SECTIONS: Final = (
     Section(number="3.3", figures=variant_figures),
     Section(number="4.1", figures=mechanism_figures),
     Section(number="3.3", figures=computed_motion_figures),
-    Section(number="3.3", figures=lambda: comparison_figures(published_comparison)),
+    Section(number="3.3", figures=_comparison_figures),
     Section(number="3.3", figures=published_prediction_figures),
 )
 """All reproduced sections: those of the chapters, then the friction models on the friction tests of all chapters."""

@@ -1,12 +1,13 @@
 """Axes, styles and error bars of the reproduction's figures; matplotlib is imported when a figure is drawn."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
 from sonolube.facts.published import PrintedNumber
 from sonolube.figure import COLOURS, LINES, MARKERS, subplots
+from sonolube.validation.published_tests import FrictionTest
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,6 +52,33 @@ def curve_style(index: int) -> dict[str, Any]:
 def point_style(index: int) -> dict[str, Any]:
     """Return colour and marker of the points of an index, without a line."""
     return curve_style(index) | {"linestyle": "none"}
+
+
+def draw_measured(
+    axes: "Axes",
+    tests: tuple[FrictionTest, ...],
+    abscissa: Callable[[FrictionTest], float],
+    label: str,
+    *,
+    fmt: str = "o",
+    color: str = "black",
+) -> None:
+    """Draw measured friction ratios with their uncertainties as points.
+
+    Parameters
+    ----------
+    axes : Axes
+    tests : tuple of FrictionTest
+    abscissa : callable
+        Function of a test that returns its abscissa.
+    label : str
+        Label in the legend.
+    fmt, color : str
+        Marker and colour.
+    """
+    x, ratios = [abscissa(test) for test in tests], [test.friction_ratio for test in tests]
+    errors = [test.uncertainty or 0.0 for test in tests]
+    axes.errorbar(x, ratios, yerr=errors, fmt=fmt, color=color, capsize=3, zorder=5, label=label)
 
 
 def draw_printed(

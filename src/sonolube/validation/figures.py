@@ -1,71 +1,83 @@
-"""Figures of the comparison: predicted against measured ratios, ratios over speed and amplitude, and those of a rig."""
+"""Charts of the comparison: predicted against measured ratios, ratios over speed and amplitude, and those of a rig."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
-from textwrap import wrap
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sonolube.charts import Axis, Chart, Line, Note, Panel, Points, Rule
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure, subplots
 from sonolube.validation.comparison import DATA_SETS, ComparedFit
 from sonolube.validation.published_tests import FrictionTest, friction_tests
 from sonolube.validation.tables import comparison_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _PANELS: Final = 12  # variants with a panel of predicted against measured ratios
 _CURVES: Final = 6  # variants drawn over speed and amplitude
 _POINTS: Final = 40
-_TITLE_WIDTH: Final = 22  # characters of a line above a panel
-_STYLES: Final = {
-    letter: (COLOURS[index % len(COLOURS)], (*MARKERS, "<", ">")[index]) for index, letter in enumerate(DATA_SETS)
-}
 _LOW, _HIGH = -0.1, 1.15  # limits of the ratios drawn
 _HIGHEST_OF_RIG: Final = 1.5
+_RATIO: Final = "Friction with over without vibration"
+_PAGE: Final = 6.85  # inches
+_NONE: Final = np.array([])
 
 
-def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> Iterator[ReportFigure]:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ComparisonFigure:
+    """Figure of a comparison.
+
+    Parameters
+    ----------
+    name : str
+        Of its file, without ending.
+    title : str
+    caption : str
+    chart : callable
+        Returns the figure as data.
+    """
+
+    name: str
+    title: str
+    caption: str
+    chart: Callable[[], Chart]
+
+
+def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> Iterator[ComparisonFigure]:
     """Return the figures of a comparison.
 
     Parameters
     ----------
     compared : callable
-        Function that returns the comparison; called when a figure is drawn.
+        Function that returns the comparison; called when a figure is made.
 
     Returns
     -------
-    iterator of ReportFigure
+    iterator of ComparisonFigure
     """
-
-    def assessed() -> list[ComparedFit]:
-        return [one for one in compared() if one.assessment is not None]
-
-    yield ReportFigure(
+    yield ComparisonFigure(
         name="models-predicted-against-measured",
         title="Models of friction under vibration: predicted against measured",
         caption="Filled: by the fit to all sets A to G. Open: each set by a fit to the others, where "
         "that differs; set H by the fit to all. On the line both would agree; ratios outside the frame are drawn "
         "at its edge. k fitted parameters, rms errors of the fit and of the cross-validation (CV). The "
         f"{_PANELS} models of the least error of the cross-validation.",
-        draw=lambda: predicted_against_measured_figure(comparison_dataset(compared())),
+        chart=lambda: predicted_against_measured_chart(comparison_dataset(compared())),
     )
-    yield ReportFigure(
+    yield ComparisonFigure(
         name="models-over-speed-and-amplitude",
         title="Models of friction under vibration over speed and amplitude",
         caption="Points and scatter: Tables 2.3 and 4.2. Lines: models fitted to all sets, of each family the one "
         "of the least error of the cross-validation.",
-        draw=lambda: _over_speed_and_amplitude(_best_of_each_family(assessed())[:_CURVES]),
+        chart=lambda: _over_speed_and_amplitude(_best_of_each_family(compared())[:_CURVES]),
     )
 
 
-def comparison_figure(result: "xr.Dataset") -> "Figure":
-    """Draw the friction ratio of the rig of a comparison by every model; without a rig the predicted ratios of tests.
+def comparison_chart(result: "xr.Dataset") -> Chart:
+    """Friction ratio of the rig of a comparison by every model; without a rig the predicted ratios of tests.
 
     Parameters
     ----------
@@ -74,13 +86,13 @@ def comparison_figure(result: "xr.Dataset") -> "Figure":
 
     Returns
     -------
-    Figure
+    Chart
     """
-    return rig_figure(result) if "rig_friction_ratio" in result else predicted_against_measured_figure(result)
+    return rig_chart(result) if "rig_friction_ratio" in result else predicted_against_measured_chart(result)
 
 
-def rig_figure(result: "xr.Dataset") -> "Figure":
-    """Draw the friction ratio of a rig by every applicable model, with its cross-validation error.
+def rig_chart(result: "xr.Dataset") -> Chart:
+    """Friction ratio of a rig by every applicable model, with its cross-validation error.
 
     Parameters
     ----------
@@ -89,70 +101,87 @@ def rig_figure(result: "xr.Dataset") -> "Figure":
 
     Returns
     -------
-    Figure
+    Chart
     """
     known = result.isel(model=slice(None, None, -1)).dropna("model", subset=["rig_friction_ratio"])
     names, ratios = known["model"].to_numpy(), known["rig_friction_ratio"].to_numpy()
-    errors = np.nan_to_num(known["rig_uncertainty"].to_numpy())
-    figure, axes = subplots(figsize=(5.6, 1.3 + 0.22 * names.size))
-    places = np.minimum(ratios, _HIGHEST_OF_RIG)
-    axes.errorbar(places, range(names.size), xerr=errors, fmt="o", color=COLOURS[0], ecolor="0.6", capsize=2.5)
-    for row, ratio in enumerate(ratios):
-        if ratio > _HIGHEST_OF_RIG:
-            axes.annotate(f"{ratio:.1f} →", (_HIGHEST_OF_RIG, row), ha="right", va="bottom", fontsize=7)
-    axes.axvline(1.0, color="0.5", lw=0.8, ls="--")
-    axes.set_yticks(range(names.size), labels=[name.replace("-", " ") for name in names])
-    axes.set(xlabel="Friction with over without vibration [-]", xlim=(-0.1, 1.6), ylim=(-0.7, names.size - 0.3))
-    axes.set_title(f"{result.attrs.get('rig', '')}\nbars: rms error of the cross-validation", fontsize=9)
-    return figure
+    rows = np.arange(float(names.size))
+    points = Points(
+        x=np.minimum(ratios, _HIGHEST_OF_RIG),
+        y=rows,
+        x_error=np.nan_to_num(known["rig_uncertainty"].to_numpy()),
+        sources=tuple(f"{name}: {ratio:.3g}" for name, ratio in zip(names, ratios, strict=True)),
+    )
+    beyond = [
+        Note(x=_HIGHEST_OF_RIG, y=row, text=f"{ratio:.1f} →", side="left")
+        for row, ratio in zip(rows, ratios, strict=True)
+        if ratio > _HIGHEST_OF_RIG
+    ]
+    panel = Panel(
+        x=Axis(label=_RATIO, lowest=-0.1, highest=1.6),
+        y=Axis(lowest=-0.7, highest=names.size - 0.3, words=tuple(name.replace("-", " ") for name in names)),
+        parts=(points, Rule(value=1.0, colour="0.5", dash=1), *beyond),
+        title=f"{result.attrs.get('rig', '')}\nbars: rms error of the cross-validation",
+    )
+    return Chart(panels=(panel,), size=(5.6, 1.3 + 0.22 * names.size))
 
 
-def speed_and_amplitude_panels() -> "tuple[Figure, Axes, Axes]":
-    """Return a figure with the measured ratios of Table 2.3 over sliding speed and of Table 4.2 over amplitude.
-
-    Returns
-    -------
-    Figure, Axes, Axes
-    """
-    figure, (speeds, amplitudes) = subplots(1, 2, figsize=(8.2, 4.4), sharey=True)
-    draw_measured(speeds, friction_tests("A"), lambda test: 1e3 * test.sliding_speed, "measured, Tables 2.3 and 4.2")
-    draw_measured(amplitudes, friction_tests("B"), lambda test: 1e6 * test.vibration_amplitude)
-    speeds.set(xlabel="Sliding speed [mm/s]", ylabel="Friction with over without vibration [-]", ylim=(-0.12, 1.1))
-    amplitudes.set(xlabel="Vibration amplitude [µm]")
-    speeds.set_title("Table 2.3: 2.5 µm, 3 N", fontsize=9)
-    amplitudes.set_title("Table 4.2: 65.5 mm/s, 5 N", fontsize=9)
-    return figure, speeds, amplitudes
-
-
-def draw_measured(
-    axes: "Axes",
-    tests: tuple[FrictionTest, ...],
-    abscissa: Callable[[FrictionTest], float],
-    label: str | None = None,
-    *,
-    fmt: str = "o",
-    color: str = "black",
-) -> None:
-    """Draw measured friction ratios with their uncertainties as points on axes.
+def speed_and_amplitude_panels(
+    over_speed: tuple[Line, ...], over_amplitude: tuple[Line, ...], *, logarithmic: bool = False
+) -> tuple[Panel, Panel]:
+    """Measured ratios of Table 2.3 over sliding speed and of Table 4.2 over amplitude, with curves.
 
     Parameters
     ----------
-    axes : Axes
-    tests : tuple of FrictionTest
-    abscissa : callable
-        Function of a test that returns its abscissa.
-    label : str or None
-        Label in the legend.
-    fmt, color : str
-        Marker and colour.
+    over_speed, over_amplitude : tuple of Line
+        Over the sliding speed in mm/s, and over the amplitude in um.
+    logarithmic : bool
+        Whether the axis of speed is.
+
+    Returns
+    -------
+    Panel, Panel
     """
-    x, ratios = [abscissa(test) for test in tests], [test.friction_ratio for test in tests]
-    errors = [test.uncertainty or 0.0 for test in tests]
-    axes.errorbar(x, ratios, yerr=errors, fmt=fmt, color=color, capsize=3, zorder=5, label=label)
+    speeds = _measured("A", lambda test: 1e3 * test.sliding_speed)
+    amplitudes = _measured("B", lambda test: 1e6 * test.vibration_amplitude)
+    ticks = (5, 10, 20, 50, 100, 200) if logarithmic else ()
+    ratio = Axis(label=_RATIO, lowest=-0.12, highest=1.1)
+    return (
+        Panel(
+            x=Axis(label="Sliding speed", unit="mm/s", logarithmic=logarithmic, ticks=ticks),
+            y=ratio,
+            parts=(speeds, *over_speed),
+            title="Table 2.3: 2.5 µm, 3 N",
+        ),
+        Panel(
+            x=Axis(label="Vibration amplitude", unit="µm"),
+            y=ratio,
+            parts=(amplitudes, *over_amplitude),
+            title="Table 4.2: 65.5 mm/s, 5 N",
+        ),
+    )
 
 
-def predicted_against_measured_figure(result: "xr.Dataset") -> "Figure":
-    """Draw predicted against measured ratios, one panel for each of the first models that could be assessed.
+def _measured(set_name: str, abscissa: Callable[[FrictionTest], float]) -> Points:
+    """Measured friction ratios of a set with their uncertainties."""
+    tests = friction_tests(set_name)
+    return Points(
+        x=np.array([abscissa(test) for test in tests]),
+        y=np.array([test.friction_ratio for test in tests]),
+        y_error=np.array([test.uncertainty or 0.0 for test in tests]),
+        label="measured, Tables 2.3 and 4.2",
+        colour="0",
+        sources=tuple(map(_source, tests)),
+    )
+
+
+def _source(test: FrictionTest) -> str:
+    """Label of a test, with what its set is."""
+    return f"{test.label}: {DATA_SETS[test.set_name]}"
+
+
+def predicted_against_measured_chart(result: "xr.Dataset") -> Chart:
+    """Predicted against measured ratios, one panel for each of the first models that could be assessed.
 
     Parameters
     ----------
@@ -161,75 +190,78 @@ def predicted_against_measured_figure(result: "xr.Dataset") -> "Figure":
 
     Returns
     -------
-    Figure
+    Chart
     """
-    from matplotlib.lines import Line2D
-
     assessed = result.dropna("model", subset=["rms"]).isel(model=slice(_PANELS))
     count = assessed.sizes["model"]
     columns = min(4, count)
-    rows = -(-count // columns)
     legend_columns = 1 if columns < 3 else 2
-    width = max(2.15 * columns + 0.6, 4.9)
-    height = rows * (min(width / columns, 2.6) + 0.25) + 0.4 + 1.8 / legend_columns
-    figure, grid = subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
-    for index, axes in enumerate(grid.flat[:count]):
-        _panel(axes, assessed.isel(model=index))
-    for axes in grid.flat[count:]:
-        axes.set_visible(False)
-    for axes in grid[:, 0]:
-        axes.set_ylabel("Predicted friction ratio [-]")
-    for column in range(columns):
-        lowest = max(row for row in range(rows) if row * columns + column < count)
-        grid[lowest, column].set_xlabel("Measured friction ratio [-]")
-        grid[lowest, column].tick_params(labelbottom=True)
+    width = min(max(2.15 * columns + 0.6, 4.9), _PAGE)
+    height = -(-count // columns) * (min(width / columns, 2.6) + 0.6) + 0.6 + 1.8 / legend_columns
     fitted = assessed["test"].to_numpy()[assessed["fitted_ratio"].notnull().any("model").to_numpy()]
-    handles = [
-        Line2D([], [], ls="", color=colour, marker=marker, label=f"{letter}: {DATA_SETS[letter]}")
-        for letter, (colour, marker) in ((letter, _STYLES[letter]) for letter in sorted({test[0] for test in fitted}))
-    ]
-    handles += [
-        Line2D([], [], ls="", color="0.3", marker="o", label="filled: fitted, k free parameters, rms error"),
-        Line2D([], [], ls="", color="0.3", marker="o", mfc="none", label="open: its set left out, rms error CV"),
-        Line2D([], [], color="0.5", lw=0.8, label="predicted as measured"),
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=legend_columns)
-    return figure
+    letters = sorted({test[0] for test in fitted})
+    return Chart(
+        panels=tuple(_panel(assessed.isel(model=index), letters) for index in range(count)),
+        size=(width, height),
+        columns=columns,
+        legend="bottom",
+        legend_columns=legend_columns,
+        shares_x=True,
+        shares_y=True,
+    )
 
 
-def _panel(axes: "Axes", one: "xr.Dataset") -> None:
-    """Draw the predictions of one model against the measured ratios."""
-    axes.plot([0, _HIGH], [0, _HIGH], color="0.5", lw=0.8)
-    for test in one["test"].to_numpy():
-        colour, marker = _STYLES[test[0]]  # by the letter of its set
-        row = one.sel(test=test)
-        for name, face in (("cross_validated_ratio", "none"), ("fitted_ratio", colour)):
-            if row[name].notnull():
-                place = float(row["friction_ratio"]), min(max(float(row[name]), _LOW), _HIGH)
-                axes.plot(*place, ls="", marker=marker, color=colour, mfc=face, ms=4.5, clip_on=False)
+def _panel(one: "xr.Dataset", letters: list[str]) -> Panel:
+    """Predictions of one model against the measured ratios, with a label for each set of tests."""
+    sets = np.array([test[0] for test in one["test"].to_numpy()])
+    filled = [_ratios_of_set(one, letter, sets == letter, "fitted_ratio") for letter in letters]
+    every = sorted(set(sets))
+    hollow = [_ratios_of_set(one, letter, sets == letter, "cross_validated_ratio") for letter in every]
+    line = np.array([0.0, _HIGH])
+    meaning = (
+        Points(x=_NONE, y=_NONE, label="filled: fitted, k free parameters, rms error", colour="0.3"),
+        Points(x=_NONE, y=_NONE, label="open: its set left out, rms error CV", colour="0.3", is_hollow=True),
+        Line(x=line, y=line, label="predicted as measured", colour="0.5", weight=0.6),
+    )
     errors = f"rms {float(one['rms']):.2f}, CV {float(one['rms_cross_validated']):.2f}"
-    name = "\n".join(wrap(one["model"].item().replace("-", " "), _TITLE_WIDTH))
-    axes.set_title(f"{name}\nk = {int(one['fitted_parameters'])}, {errors}", fontsize=7.5)
-    axes.set(xlim=(0, _HIGH), ylim=(_LOW, _HIGH), aspect="equal", xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
+    return Panel(
+        x=Axis(label="Measured friction ratio", lowest=0.0, highest=_HIGH, ticks=(0, 0.5, 1)),
+        y=Axis(label="Predicted friction ratio", lowest=_LOW, highest=_HIGH, ticks=(0, 0.5, 1)),
+        parts=(*hollow, *filled, *meaning),
+        title=f"{one['model'].item().replace('-', ' ')}\nk {int(one['fitted_parameters'])}, {errors}",
+        has_equal_scales=True,
+    )
 
 
-def _over_speed_and_amplitude(fits: list[ComparedFit]) -> "Figure":
-    """Draw fitted models over sliding speed and amplitude with the measured ratios of Tables 2.3 and 4.2."""
-    figure, speeds, amplitudes = speed_and_amplitude_panels()
+def _ratios_of_set(one: "xr.Dataset", letter: str, members: "np.ndarray", name: str) -> Points:
+    """Ratios of the tests of a set by one model, those outside the frame at its edge."""
+    own = one.isel(test=np.flatnonzero(members)).dropna("test", subset=[name])
+    is_fitted = name == "fitted_ratio"
+    number = list(DATA_SETS).index(letter)
+    return Points(
+        x=own["friction_ratio"].to_numpy(),
+        y=np.clip(own[name].to_numpy(), _LOW, _HIGH),
+        label=f"{letter}: {DATA_SETS[letter]}" if is_fitted else "",
+        colour=number,
+        marker=number,
+        sources=tuple(map(str, own["test"].to_numpy())),
+        is_hollow=not is_fitted,
+    )
+
+
+def _over_speed_and_amplitude(fits: list[ComparedFit]) -> Chart:
+    """Fitted models over sliding speed and amplitude with the measured ratios of Tables 2.3 and 4.2."""
     tribometer, power_map = friction_tests("A")[0], friction_tests("B")[0]
     speed, amplitude = np.geomspace(5e-3, 0.2, _POINTS), np.linspace(0.05e-6, 2.6e-6, _POINTS)
+    over_speed, over_amplitude = [], []
     for index, one in enumerate(fits):
-        colour, line = COLOURS[index % len(COLOURS)], LINES[index % len(LINES)]
-        over_speed = _ratios(one, [replace(tribometer, sliding_speed=float(v)) for v in speed])
-        over_amplitude = _ratios(one, [replace(power_map, vibration_amplitude=float(a)) for a in amplitude])
+        by_speed = _ratios(one, [replace(tribometer, sliding_speed=float(v)) for v in speed])
+        by_amplitude = _ratios(one, [replace(power_map, vibration_amplitude=float(a)) for a in amplitude])
         label = f"{one.model.name.replace('-', ' ')}, k = {len(one.parameters)}"
-        speeds.plot(1e3 * speed, over_speed, color=colour, ls=line, label=label)
-        amplitudes.plot(1e6 * amplitude, over_amplitude, color=colour, ls=line)
-    speeds.set(xscale="log", xticks=(5, 10, 20, 50, 100, 200))
-    speeds.xaxis.set_major_formatter("{x:g}")
-    speeds.minorticks_off()
-    figure.legend(loc="outside lower center", ncols=3)
-    return figure
+        over_speed.append(Line(x=1e3 * speed, y=by_speed, label=label, colour=index, dash=index))
+        over_amplitude.append(Line(x=1e6 * amplitude, y=by_amplitude, label=label, colour=index, dash=index))
+    panels = speed_and_amplitude_panels(tuple(over_speed), tuple(over_amplitude), logarithmic=True)
+    return Chart(panels=panels, size=(8.2, 4.4), columns=2, legend="bottom", shares_y=True)
 
 
 def _ratios(one: ComparedFit, tests: list[FrictionTest]) -> Floats:
@@ -238,10 +270,10 @@ def _ratios(one: ComparedFit, tests: list[FrictionTest]) -> Floats:
     return np.array(ratios, dtype=np.float64)
 
 
-def _best_of_each_family(fits: list[ComparedFit]) -> list[ComparedFit]:
-    """Return the first fit to set A of each family of models, named by the first word of their names."""
+def _best_of_each_family(fits: tuple[ComparedFit, ...]) -> list[ComparedFit]:
+    """Return the first assessed fit to set A of each family of models, named by the first word of their names."""
     families: dict[str, ComparedFit] = {}
     for one in fits:
-        if "A" in one.sets:
+        if one.assessment is not None and "A" in one.sets:
             families.setdefault(one.model.name.split("-")[0], one)
     return list(families.values())

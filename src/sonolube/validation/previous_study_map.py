@@ -6,18 +6,13 @@ are the highest stated. The tests of D are drawn at the nominal areas of its Tab
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
+from sonolube.charts import Axis, Chart, Line, Note, Panel, Part, Points, Zone
 from sonolube.facts.published import PreviousStudy, PrintedNumber, previous_studies
-from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.validation.published_tests import friction_tests
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.figure import Figure
 
 DIRECTIONS: Final = ("perpendicular", "longitudinal", "in plane", "", "transverse")
 """Directions of vibration with a marker on the map; empty where it is not stated."""
@@ -31,9 +26,8 @@ _DISSERTATION_TESTS: Final = {  # by label of the friction test
 }
 _LABELLED_LEFT: Final = ("D 2.3.4, slow", "D 4.1.2, 25.9 V")
 _SPEEDS, _PRESSURES = (1e-4, 10.0), (1e3, 1e9)  # limits of the axes in m/s and Pa
-_EDGE, _OWN_EDGE = ("black", 0.6), (COLOURS[1], 1.8)  # of the markers of the package and of a user's own table
-_OWN_UNKNOWN_PRESSURE: Final = 5.5e3  # above those of the package
-_UNKNOWN_PRESSURE, _BAND_EDGE = 2.6e3, 8e3  # ordinate of studies of unknown pressure, and edge of their band
+_BAND: Final = np.array([_PRESSURES[0], 8e3])  # of studies of unknown pressure
+_UNKNOWN, _OWN_UNKNOWN = 2.6e3, 5.5e3  # ordinate of those of the package, and of those of a user's own table
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,6 +46,8 @@ class StudyPoint:
         Lowest and highest sliding speed; None if unknown. [m/s]
     nominal_pressure : float or None
         Load over nominal area; None if unknown. [Pa]
+    source : str
+        Where the numbers are stated.
     """
 
     label: str
@@ -59,6 +55,10 @@ class StudyPoint:
     friction_reduction: float
     sliding_speed: tuple[float, float] | None
     nominal_pressure: float | None
+    source: str = ""
+
+
+_Placed: TypeAlias = tuple[StudyPoint, tuple[float, float]]  # with its place on the map
 
 
 def study_points() -> tuple[StudyPoint, ...]:
@@ -71,6 +71,7 @@ def study_points() -> tuple[StudyPoint, ...]:
             friction_reduction=1 - test.friction_ratio,
             sliding_speed=(test.sliding_speed, test.sliding_speed),
             nominal_pressure=test.normal_load / test.contact.nominal_area,
+            source=f"friction test {test.label}",
         )
         for test in friction_tests()
         if test.label in _DISSERTATION_TESTS
@@ -78,82 +79,84 @@ def study_points() -> tuple[StudyPoint, ...]:
     return (*previous, *tests)
 
 
-def study_map(added: StudyPoint | None = None, *, others: tuple[StudyPoint, ...] = ()) -> "Figure":
-    """Draw the map of friction reductions, with an additional point and further studies if given.
+def study_chart(added: StudyPoint | None = None, *, others: tuple[StudyPoint, ...] = ()) -> Chart:
+    """Map of friction reductions, with an additional point and further studies if given.
 
     Parameters
     ----------
     added : StudyPoint or None
         Point of known speed and pressure.
     others : tuple of StudyPoint
-        Of a table of the user's own, drawn with an edge in colour.
+        Of a table of the user's own, drawn within a ring.
 
     Returns
     -------
-    Figure
+    Chart
     """
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
-    shades = ScalarMappable(Normalize(0, 100), "viridis")
-    figure, (aside, axes) = subplots(1, 2, figsize=(7.6, 4.4), width_ratios=(1, 3.2))
-    axes.set(xscale="log", yscale="log", xlim=_SPEEDS, ylim=_PRESSURES)
-    axes.set(xlabel="Sliding speed [m/s]", ylabel="Nominal pressure [Pa]")
-    axes.axhspan(_PRESSURES[0], _BAND_EDGE, color="0.92", zorder=0)
-    axes.text(_SPEEDS[1] * 0.9, 1.25e3, "pressure not stated", ha="right", color="0.4", fontsize=8)
-    own = study_points()
-    points = (*own, *others)
-    edges = {id(point): _OWN_EDGE for point in others}
-    known = [point for point in points if point.sliding_speed]
-    for point in known:
-        low, high = point.sliding_speed or _SPEEDS
-        pressure = point.nominal_pressure or (_OWN_UNKNOWN_PRESSURE if id(point) in edges else _UNKNOWN_PRESSURE)
-        if high > low:
-            axes.plot([max(low, _SPEEDS[0]), high], [pressure, pressure], color=_colour(shades, point), lw=3, zorder=2)
-        _mark(axes, point, (high, pressure), shades, edge=edges.get(id(point), _EDGE))
-    _draw_unplaced(aside, [point for point in points if not point.sliding_speed], shades, edges)
-    for direction in (each for each in DIRECTIONS if any(point.direction == each for point in points)):
-        axes.plot([], [], _marker(direction), color="0.5", label=direction or "direction not stated")
-    if others:
-        axes.plot([], [], "o", color="0.85", mec=_OWN_EDGE[0], mew=_OWN_EDGE[1], label="own table")
+    points = (*study_points(), *others)
+    placed = [
+        (point, (point.sliding_speed[1], point.nominal_pressure or (_OWN_UNKNOWN if point in others else _UNKNOWN)))
+        for point in points
+        if point.sliding_speed
+    ]
+    unplaced = [point for point in points if not point.sliding_speed]
+    parts: list[Part] = [
+        Zone(first=_BAND[:1], last=_BAND[1:], along="y", colour="0.92"),
+        Note(x=0.9 * _SPEEDS[1], y=1.25e3, text="pressure not stated", side="left", colour="0.4"),
+        *(
+            Line(x=np.array([max(point.sliding_speed[0], _SPEEDS[0]), speed]), y=np.full(2, pressure), colour="0.6")
+            for point, (speed, pressure) in placed
+            if point.sliding_speed and speed > point.sliding_speed[0]
+        ),
+        *_points(placed, others, scale_text="Friction reduction [%]"),
+    ]
     if added and added.sliding_speed and added.nominal_pressure:
-        place, colour = (added.sliding_speed[1], added.nominal_pressure), _colour(shades, added)
-        axes.plot(*place, "*", ms=17, mfc=colour, mec=COLOURS[1], mew=1.5, zorder=5, ls="", label=added.label)
-    figure.colorbar(shades, ax=axes, label="Friction reduction [%]", pad=0.02)
-    figure.legend(loc="outside upper center", ncols=5, columnspacing=1.2, handletextpad=0.3)
-    return figure
+        parts.append(_shaded([(added, (added.sliding_speed[1], added.nominal_pressure))], added.label, 9, size=8.0))
+    known = Panel(
+        x=Axis(label="Sliding speed", unit="m/s", logarithmic=True, lowest=_SPEEDS[0], highest=_SPEEDS[1]),
+        y=Axis(label="Nominal pressure", unit="Pa", logarithmic=True, lowest=_PRESSURES[0], highest=_PRESSURES[1]),
+        parts=tuple(parts),
+    )
+    aside = Panel(
+        x=Axis(label="neither speed nor pressure stated", lowest=-0.1, highest=1.0, ticks=(0.0,), words=("",)),
+        y=Axis(lowest=0.5 - max(len(unplaced), 5), highest=0.5, ticks=(0.5,), words=("",)),
+        parts=_points([(point, (0.0, -float(row))) for row, point in enumerate(unplaced)], others),
+    )
+    return Chart(panels=(aside, known), size=(7.6, 4.4), columns=2, widths=(1, 3.2), legend="top", legend_columns=5)
 
 
-def _draw_unplaced(
-    axes: "Axes", points: list[StudyPoint], shades: "ScalarMappable", edges: dict[int, tuple[str, float]]
-) -> None:
-    """Draw the studies without speed and pressure in a column of their own."""
-    for height, point in enumerate(points):
-        _mark(axes, point, (0.0, -float(height)), shades, edge=edges.get(id(point), _EDGE))
-    axes.set(xlim=(-0.1, 1), ylim=(0.5 - max(len(points), 5), 0.5), xticks=[], yticks=[])
-    axes.spines[:].set_visible(False)
-    axes.set_xlabel("neither speed nor\npressure stated", color="0.4", fontsize=8)
+def _points(placed: list[_Placed], others: tuple[StudyPoint, ...], *, scale_text: str = "") -> tuple[Part, ...]:
+    """Studies by direction, shaded by their reduction, with their labels; those of the user's own within a ring."""
+    parts: list[Part] = []
+    for number, direction in enumerate(DIRECTIONS):
+        chosen = [each for each in placed if each[0].direction == direction]
+        if chosen:
+            parts.append(_shaded(chosen, direction or "direction not stated", number, scale_text=scale_text))
+    own = [place for point, place in placed if point in others]
+    if own:
+        x, y = np.array(own).T
+        parts.append(Points(x=x, y=y, label="own table", colour=1, size=2.6, is_hollow=True))
+    for point, (x_place, y_place) in placed:
+        text = f"{point.label.replace(' and ', chr(10) + 'and ', 1)}, {100 * point.friction_reduction:.0f} %"
+        side: Literal["left", "right"] = "left" if point.label in _LABELLED_LEFT else "right"
+        parts.append(Note(x=x_place, y=y_place, text=text, side=side))
+    return tuple(parts)
 
 
-def _mark(
-    axes: "Axes", point: StudyPoint, place: tuple[float, float], shades: "ScalarMappable", *, edge: tuple[str, float]
-) -> None:
-    """Draw a point with its label, its marker by direction and its colour by reduction."""
-    colour, width = edge
-    axes.plot(*place, _marker(point.direction), ms=8, color=_colour(shades, point), mec=colour, mew=width, zorder=3)
-    offset, side = (-7, "right") if point.label in _LABELLED_LEFT else (7, "left")
-    text = f"{point.label.replace(' and ', chr(10) + 'and ', 1)}, {100 * point.friction_reduction:.0f} %"
-    axes.annotate(text, place, (offset, 0), textcoords="offset points", ha=side, va="center", fontsize=7.5)
-
-
-def _colour(shades: "ScalarMappable", point: StudyPoint) -> tuple[float, ...]:
-    """Return the colour of a point by its reduction."""
-    return tuple(shades.to_rgba(np.array([100 * point.friction_reduction]))[0])
-
-
-def _marker(direction: str) -> str:
-    """Return the marker of a direction of vibration."""
-    return MARKERS[DIRECTIONS.index(direction)]
+def _shaded(placed: list[_Placed], label: str, marker: int, *, size: float = 2.2, scale_text: str = "") -> Points:
+    """Points with a marker, shaded by their friction reduction."""
+    x, y = np.array([place for _, place in placed]).T
+    return Points(
+        x=x,
+        y=y,
+        label=label,
+        marker=marker,
+        size=size,
+        shades=np.array([100 * point.friction_reduction for point, _ in placed]),
+        scale_text=scale_text,
+        scale_ends=(0.0, 100.0),
+        sources=tuple(f"{point.label}: {point.source}" for point, _ in placed),
+    )
 
 
 def _previous_study(study: PreviousStudy) -> StudyPoint:
@@ -168,6 +171,7 @@ def _previous_study(study: PreviousStudy) -> StudyPoint:
         friction_reduction=reduction.value,
         sliding_speed=speed_range(speed) if speed else None,
         nominal_pressure=pressure.value if pressure else None,
+        source=f"D {study.section}",
     )
 
 

@@ -1,19 +1,15 @@
-"""Figures of own runs: measured friction ratios with the best models as curves, and the errors of all models."""
+"""Charts of own runs: measured friction ratios with the best models as curves, and the errors of all models."""
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, LINES, MARKERS, subplots
 from sonolube.validation.ranked_models import RankedModel
 from sonolube.validation.run_conditions import RunConditions, RunsTable
 from sonolube.validation.runs_comparison import RunsPrediction
 from sonolube.validation.runs_fit import RunsFit
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _CURVES: Final = 3  # models drawn as curves
 _SERIES: Final = 4  # of measured points, each at one value of what does not run along the abscissa
@@ -21,16 +17,18 @@ _POINTS: Final = 40
 _ROWS: Final = 15  # models of a dot chart
 _WORST: Final = 0.6  # error beyond which a model is drawn at the edge
 _LABELS: Final = {
-    "strength": ("Vibration amplitude [µm]", 1e6, "µm"),
-    "velocity": ("Peak velocity of the vibration [m/s]", 1.0, "m/s"),
-    "sliding_speed": ("Sliding speed [mm/s]", 1e3, "mm/s"),
+    "strength": ("Vibration amplitude", 1e6, "µm"),
+    "velocity": ("Peak velocity of the vibration", 1.0, "m/s"),
+    "sliding_speed": ("Sliding speed", 1e3, "mm/s"),
 }
 _LOWEST, _HIGHEST = -0.05, 1.3  # ratios drawn
-_RATIO: Final = "Friction with over without vibration [-]"
+_RATIO: Final = "Friction with over without vibration"
+_MOST_PREDICTIONS: Final = 6
+_NONE: Final = np.array([])
 
 
-def runs_fit_figure(result: RunsFit) -> "Figure":
-    """Draw own runs over amplitude or speed with the best models as curves, and the unseen errors of all models.
+def runs_fit_chart(result: RunsFit) -> Chart:
+    """Own runs over amplitude or speed with the best models as curves, and the unseen errors of all models.
 
     Parameters
     ----------
@@ -38,21 +36,14 @@ def runs_fit_figure(result: RunsFit) -> "Figure":
 
     Returns
     -------
-    Figure
+    Chart
     """
-    figure, (measured, errors) = subplots(1, 2, figsize=(8.4, 4.2), width_ratios=(1.25, 1))
-    _draw_runs(measured, result.table, result.models[:_CURVES])
-    _draw_ranking(errors, result)
-    handles, labels = (
-        [*first, *second]
-        for first, second in zip(measured.get_legend_handles_labels(), errors.get_legend_handles_labels(), strict=True)
-    )
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    return figure
+    panels = (_runs(result.table, result.models[:_CURVES]), _ranking(result))
+    return Chart(panels=panels, size=(8.4, 4.2), columns=2, widths=(1.25, 1), legend="bottom")
 
 
-def runs_prediction_figure(predictions: tuple[RunsPrediction, ...], table: RunsTable) -> "Figure":
-    """Draw predicted against measured ratios of own runs, by models that published tests fitted.
+def runs_prediction_chart(predictions: tuple[RunsPrediction, ...], table: RunsTable) -> Chart:
+    """Predicted against measured ratios of own runs, by models that published tests fitted.
 
     Parameters
     ----------
@@ -62,69 +53,91 @@ def runs_prediction_figure(predictions: tuple[RunsPrediction, ...], table: RunsT
 
     Returns
     -------
-    Figure
+    Chart
     """
-    figure, axes = subplots(figsize=(5.0, 4.6))
-    axes.plot([0, _HIGHEST], [0, _HIGHEST], color="0.5", lw=0.8)
-    errors = [condition.uncertainty or 0.0 for condition in table.conditions]
-    shown = [one for one in predictions if one.rms is not None][: len(MARKERS) - 1]
-    for index, one in enumerate(shown):
-        pairs = zip(one.ratios, table.conditions, errors, strict=True)
-        points = [(condition.friction_ratio, ratio, error) for ratio, condition, error in pairs if ratio is not None]
-        x, y, spread = np.array(points).T
-        y = np.clip(y, _LOWEST, _HIGHEST)
-        name = f"{one.model.name.replace('-', ' ')}, rms {one.rms:.2f}"
-        axes.errorbar(
-            x, y, xerr=spread, fmt=MARKERS[index], color=COLOURS[index], ms=5, elinewidth=0.8, alpha=0.85, label=name
+    line = np.array([0.0, _HIGHEST])
+    parts: list[Part] = [Line(x=line, y=line, colour="0.5", weight=0.6)]
+    for index, one in enumerate([one for one in predictions if one.rms is not None][:_MOST_PREDICTIONS]):
+        reached = [(each, ratio) for each, ratio in zip(table.conditions, one.ratios, strict=True) if ratio is not None]
+        points = Points(
+            x=np.array([condition.friction_ratio for condition, _ in reached]),
+            y=np.clip(np.array([ratio for _, ratio in reached]), _LOWEST, _HIGHEST),
+            x_error=np.array([condition.uncertainty or 0.0 for condition, _ in reached]),
+            label=f"{one.model.name.replace('-', ' ')}, rms {one.rms:.2f}",
+            colour=index,
+            marker=index,
+            sources=tuple(condition.label for condition, _ in reached),
         )
-    axes.set(xlabel=f"Measured: {_RATIO[0].lower()}{_RATIO[1:]}", ylabel="Predicted, at the edge beyond it [-]")
-    axes.set(xlim=(_LOWEST, _HIGHEST), ylim=(_LOWEST, _HIGHEST), aspect="equal")
-    axes.set_title(f"{table.title}: models as published tests fitted them", fontsize=9)
-    axes.legend(loc="upper left")
-    return figure
+        parts.append(points)
+    panel = Panel(
+        x=Axis(label=f"Measured: {_RATIO[0].lower()}{_RATIO[1:]}", lowest=_LOWEST, highest=_HIGHEST),
+        y=Axis(label="Predicted, at the edge beyond it", lowest=_LOWEST, highest=_HIGHEST),
+        parts=tuple(parts),
+        title=f"{table.title}: models as published tests fitted them",
+        has_equal_scales=True,
+    )
+    return Chart(panels=(panel,), size=(5.0, 4.6))
 
 
-def _draw_runs(axes: "Axes", table: RunsTable, models: tuple[RankedModel, ...]) -> None:
-    """Draw measured ratios with their uncertainty, and models as curves, in a colour for each series."""
+def _runs(table: RunsTable, models: tuple[RankedModel, ...]) -> Panel:
+    """Measured ratios with their uncertainty, and models as curves, in a colour for each series."""
     name, other = _abscissa(table.conditions)
-    label, scale, _ = _label(name, table.conditions)
-    _, other_scale, unit = _label(other, table.conditions)
-    series = _series(table.conditions, other)
-    for index, (value, members) in enumerate(series):
-        colour = COLOURS[index % len(COLOURS)]
-        x = np.array([scale * (getattr(one, name) or np.nan) for one in members])
-        ratio, error = (
-            np.array([getattr(one, field) or 0.0 for one in members]) for field in ("friction_ratio", "uncertainty")
+    label, scale, unit = _label(name, table.conditions)
+    _, other_scale, other_unit = _label(other, table.conditions)
+    places = _places(table.conditions, name)
+    measured, curves = [], []
+    for index, (value, members) in enumerate(_series(table.conditions, other)):
+        points = Points(
+            x=np.array([scale * (getattr(one, name) or np.nan) for one in members]),
+            y=np.array([one.friction_ratio for one in members]),
+            y_error=np.array([one.uncertainty or 0.0 for one in members]),
+            label="measured" if value is None else f"measured, {other_scale * value:.3g} {other_unit}",
+            colour=index,
+            marker=index,
+            sources=tuple(one.label for one in members),
         )
-        text = "measured" if value is None else f"measured, {other_scale * value:.3g} {unit}"
-        axes.errorbar(x, ratio, error, fmt=MARKERS[index], color=colour, capsize=3, zorder=5, label=text)
-        places = _places(table.conditions, name)
-        for line, model in enumerate(models):
-            curve = _curve(model, members[0], name, places)
-            axes.plot(scale * places, curve, color=colour, ls=LINES[line], lw=1.2)
-    for line, model in enumerate(models):
-        axes.plot([], [], color="0.3", ls=LINES[line], label=model.name.replace("-", " "))
-    axes.set(xlabel=label, ylabel=_RATIO)
-    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+        measured.append(points)
+        curves += [
+            Line(x=scale * places, y=_curve(model, members[0], name, places), colour=index, dash=dash, weight=0.85)
+            for dash, model in enumerate(models)
+        ]
+    names = [
+        Line(x=_NONE, y=_NONE, label=model.name.replace("-", " "), colour="0.3", dash=dash)
+        for dash, model in enumerate(models)
+    ]
+    lowest = min((float(np.nanmin(each.y)) for each in curves if np.isfinite(each.y).any()), default=0.0)
+    lowest = min(lowest, *(one.friction_ratio - (one.uncertainty or 0.0) for one in table.conditions))
+    y = Axis(label=_RATIO, lowest=None if lowest < 0 else 0.0)
+    return Panel(x=Axis(label=label, unit=unit), y=y, parts=(*measured, *curves, *names))
 
 
-def _draw_ranking(axes: "Axes", result: RunsFit) -> None:
-    """Draw the unseen error of each model as a dot, that of its fit as a ring, and what needs no model as lines."""
+def _ranking(result: RunsFit) -> Panel:
+    """Unseen error of each model as a dot, that of its fit as a ring, and what needs no model as lines."""
     models = result.models[:_ROWS][::-1]
-    for row, model in enumerate(models):
-        colour = COLOURS[0] if model.tied or model is result.models[0] else "0.55"
-        axes.plot([min(model.rms_fit, _WORST), min(model.rms_unseen, _WORST)], [row, row], color=colour, lw=0.8)
-        axes.plot(min(model.rms_fit, _WORST), row, "o", mfc="white", color=colour, ms=5, clip_on=False)
-        axes.plot(min(model.rms_unseen, _WORST), row, "o", color=colour, ms=5, clip_on=False)
-    axes.plot([], [], "o", color=COLOURS[0], label="unseen error: first and tied")
-    axes.plot([], [], "o", color="0.55", label="unseen error: told apart")
-    axes.plot([], [], "o", mfc="white", color="0.4", label="error of the fit")
-    axes.axvline(min(result.rms_of_mean, _WORST), color="0.3", ls="--", lw=1, label="mean of the other conditions")
+    parts: list[Part] = []
+    for is_best, colour, text in ((True, 0, "first and tied"), (False, "0.55", "told apart")):
+        rows = [(row, one) for row, one in enumerate(models) if (one.tied or one is result.models[0]) == is_best]
+        places = np.array([row for row, _ in rows], dtype=np.float64)
+        fit, unseen = (np.array([min(getattr(one, of), _WORST) for _, one in rows]) for of in ("rms_fit", "rms_unseen"))
+        sources = tuple(one.name for _, one in rows)
+        between = np.column_stack([fit, unseen, np.full(len(rows), np.nan)]).ravel()
+        ring = "error of the fit" if is_best else ""
+        parts += [
+            Line(x=between, y=np.repeat(places, 3), colour=colour, weight=0.6),
+            Points(x=fit, y=places, colour=colour, label=ring, sources=sources, is_hollow=True),
+            Points(x=unseen, y=places, colour=colour, label=f"unseen error: {text}", sources=sources),
+        ]
+    parts.append(
+        Rule(value=min(result.rms_of_mean, _WORST), label="mean of the other conditions", colour="0.3", dash=1)
+    )
     if result.table.scatter is not None:
-        axes.axvline(result.table.scatter, color="0.3", ls=":", lw=1, label="scatter of repeats")
-    axes.set_yticks(range(len(models)), labels=[model.name.replace("-", " ") for model in models], fontsize=7)
-    axes.set(xlabel="rms error of the friction ratio [-]", ylim=(-0.7, len(models) - 0.3))
-    axes.set_xlim(left=0)
+        parts.append(Rule(value=result.table.scatter, label="scatter of repeats", colour="0.3"))
+    names = tuple(model.name.replace("-", " ") for model in models)
+    return Panel(
+        x=Axis(label="rms error of the friction ratio", lowest=0.0),
+        y=Axis(lowest=-0.7, highest=len(models) - 0.3, words=names),
+        parts=tuple(parts),
+    )
 
 
 def _abscissa(conditions: tuple[RunConditions, ...]) -> tuple[str, str]:

@@ -122,6 +122,7 @@ def studies_of_runs(runs: "xr.Dataset", *, title: str) -> tuple[tuple[StudyPoint
             friction_reduction=float(reduction[index]),
             sliding_speed=(float(slowest[index]), float(speed[index])) if isfinite(speed[index]) else None,
             nominal_pressure=float(pressure[index]) if isfinite(pressure[index]) else None,
+            source=sources[index],
         )
         for index, (study, direction) in enumerate(zip(texts["study"], texts["direction"], strict=True))
         if (study, direction, f"{100 * reduction[index]:.4g}") not in known

@@ -11,6 +11,7 @@ import pytest
 from tests.laboratory.closed_loop.lagged_rig import LaggedRig
 from tests.laboratory.simulated_rig import Fault, MemoryRecord
 
+from sonolube.charts import draw_chart
 from sonolube.checks import Floats
 from sonolube.design.control import (
     Amplifier,
@@ -33,7 +34,7 @@ from sonolube.laboratory.closed_loop import (
     FrictionHold,
     HeldFriction,
     SpeedStep,
-    held_friction_figure,
+    held_friction_chart,
     hold_friction,
     hold_metrics,
 )
@@ -352,11 +353,11 @@ def test_what_limits_or_devices_forbid_is_refused_before_anything_moves(changes:
 
 
 def test_the_figure_shows_friction_drive_and_speed_with_units(held: HeldFriction) -> None:
+    chart = held_friction_chart(held, simulated=True)
     with publication_style():
-        figure = held_friction_figure(held, simulated=True)
-        assert render_figure(figure, "png")
-    assert [axes.get_ylabel()[-3:] for axes in figure.axes] == ["[N]", "[V]", "/s]"]
-    assert figure.get_size_inches()[0] * 25.4 == pytest.approx(174, abs=1)
+        assert render_figure(draw_chart(chart), "png")
+    assert [panel.y.unit for panel in chart.panels] == ["N", "V", "mm/s"]
+    assert chart.size[0] * 25.4 == pytest.approx(174, abs=1)
 
 
 @pytest.mark.parametrize("seed", [0, 1])

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
+from sonolube.charts import draw_chart
 from sonolube.design.control import Amplifier
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, SetPoint, protocol_by_name_or_file, protocol_from, protocol_names
@@ -19,7 +20,7 @@ from sonolube.laboratory.dry_run import (
     HeatingAssumptions,
     drive_load,
     dry_run,
-    dry_run_figure,
+    dry_run_chart,
     dry_run_lines,
 )
 from sonolube.rig import Rig, read_rig
@@ -252,9 +253,9 @@ def test_the_lines_tell_time_speed_voltage_amplitude_current_and_force(power_map
 @pytest.mark.parametrize(("name", "panels"), [("map_test", 3), ("resonance_sweep", 4)])
 def test_the_figure_has_units_on_every_axis(power_map: Rig, name: str, panels: int) -> None:
     found = dry_run(protocol_by_name_or_file(name), rig=power_map, heating=STEEL)
+    chart = dry_run_chart(found)
     with publication_style():
-        figure = dry_run_figure(found)
-        assert render_figure(figure, "png")
-    assert len(figure.axes) == panels
-    assert all("[" in axes.get_ylabel() for axes in figure.axes)
-    assert figure.get_size_inches()[0] * 25.4 == pytest.approx(174, abs=1)
+        assert render_figure(draw_chart(chart), "png")
+    assert len(chart.panels) == panels
+    assert all(panel.y.unit for panel in chart.panels)
+    assert chart.size[0] * 25.4 == pytest.approx(174, abs=1)

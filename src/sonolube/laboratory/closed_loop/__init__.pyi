@@ -1,4 +1,4 @@
-from .figure import held_friction_figure as held_friction_figure
+from .figure import held_friction_chart as held_friction_chart
 from .loop import hold_friction as hold_friction, require_holdable as require_holdable
 from .metrics import HoldMetrics as HoldMetrics, hold_metrics as hold_metrics
 from .plan import hold_protocol as hold_protocol, recorded_channels as recorded_channels

@@ -1,17 +1,14 @@
-"""Figure of friction held in closed loop: friction with its reference, drive voltage and sliding speed over time."""
+"""Chart of friction held in closed loop: friction with its reference, drive voltage and sliding speed over time."""
 
-from typing import TYPE_CHECKING
+import numpy as np
 
-from sonolube.figure import COLOURS
+from sonolube.charts import Axis, Band, Chart, Line, Panel, Rule
 from sonolube.laboratory.closed_loop.record import HeldFriction
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-_WIDTH = 6.85  # inches: 174 mm
+_SIZE = (6.85, 5.2)  # inches: 174 mm
 
 
-def held_friction_figure(record: HeldFriction, *, simulated: bool) -> "Figure":
+def held_friction_chart(record: HeldFriction, *, simulated: bool) -> Chart:
     """Friction force with its reference, drive voltage and sliding speed over time.
 
     Parameters
@@ -22,33 +19,29 @@ def held_friction_figure(record: HeldFriction, *, simulated: bool) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
         Friction as means over the intervals, with the deviation of the samples within each as a band.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(_WIDTH, 5.2))
-    friction, drive, speed = figure.subplots(3, 1, sharex=True, height_ratios=(2, 1, 1))
-    hold, time, force = record.hold, record.time, record.friction_force
+    time, force, band = record.time, record.friction_force, record.friction_force_deviation
+    intrinsic, highest = record.intrinsic_friction_force, record.hold.controller.voltage_maximum
     source = "simulated" if simulated else "measured"
-    band = record.friction_force_deviation
-    friction.fill_between(
-        time, force - band, force + band, color=COLOURS[5], alpha=0.5, linewidth=0, label="±1 deviation of samples"
+    friction = (
+        Band(x=time, low=force - band, high=force + band, label="±1 deviation of samples", colour=5, opacity=0.5),
+        Line(x=time, y=force, label=f"friction, {source}"),
+        Line(x=time, y=record.setpoint, label="reference", colour=6, dash=1, weight=0.85),
+        Rule(value=intrinsic, along="y", label="without vibration, before", colour=1, dash=3),
     )
-    friction.plot(time, force, color=COLOURS[0], label=f"friction, {source}")
-    friction.plot(time, record.setpoint, color=COLOURS[6], linestyle="--", linewidth=1.2, label="reference")
-    friction.axhline(
-        record.intrinsic_friction_force, color=COLOURS[1], linestyle=":", label="without vibration, before"
+    drive = (
+        Line(x=time, y=record.voltage_peak_to_peak, colour=1, is_stepped=True),
+        Rule(value=highest, along="y", label="highest of the controller", colour="0.45", dash=2),
     )
-    friction.set(ylabel="Friction force [N]", ylim=(0, 1.05 * friction.get_ylim()[1]))
-    friction.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, borderaxespad=0.2)
-    drive.step(time, record.voltage_peak_to_peak, where="post", color=COLOURS[1])
-    highest = hold.controller.voltage_maximum
-    drive.axhline(highest, color="0.45", linestyle="-.", linewidth=1, label="highest of the controller")
-    drive.set(ylabel="Drive, peak\nto peak [V]", ylim=(0, 1.35 * highest))
-    drive.legend(loc="upper left")
-    speed.step(time, 1e3 * record.sliding_speed, where="post", color=COLOURS[0])
-    speed.set(ylabel="Sliding speed\n[mm/s]", xlabel="Time under control [s]")
-    speed.set_ylim(0, 1.15e3 * float(record.sliding_speed.max(initial=0.0)) or 1.0)
-    speed.margins(x=0)
-    return figure
+    speed = (Line(x=time, y=1e3 * record.sliding_speed, is_stepped=True),)
+    greatest = float(np.nanmax([*(force + band), *record.setpoint, intrinsic]))
+    fastest = 1.15e3 * float(record.sliding_speed.max(initial=0.0)) or 1.0
+    x = Axis(label="Time under control", unit="s", lowest=float(time[0]), highest=float(time[-1]))
+    panels = (
+        Panel(x=x, y=Axis(label="Friction force", unit="N", lowest=0.0, highest=1.1 * greatest), parts=friction),
+        Panel(x=x, y=Axis(label="Drive, peak to peak", unit="V", lowest=0.0, highest=1.35 * highest), parts=drive),
+        Panel(x=x, y=Axis(label="Sliding speed", unit="mm/s", lowest=0.0, highest=fastest), parts=speed),
+    )
+    return Chart(panels=panels, size=_SIZE, heights=(2, 1, 1), legend="top", legend_columns=4, shares_x=True)

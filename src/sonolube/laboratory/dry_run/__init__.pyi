@@ -1,5 +1,5 @@
 from .amplifier_load import DriveLoad as DriveLoad, drive_load as drive_load
-from .figure import dry_run_figure as dry_run_figure
+from .figure import dry_run_chart as dry_run_chart
 from .heating import Heating as Heating, HeatingAssumptions as HeatingAssumptions
 from .planned_run import dry_run as dry_run
 from .record import (

@@ -1,23 +1,20 @@
-"""Figure of a dry run: speed, drive voltage and temperatures over the time line."""
+"""Chart of a dry run: speed, drive voltage and temperatures over the time line."""
 
-from typing import TYPE_CHECKING
+from typing import Final
 
 import numpy as np
 
-from sonolube.figure import COLOURS
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Rule, Zone
+from sonolube.checks import Floats
 from sonolube.laboratory.dry_run.record import DryRun
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_UNITS = ((2 * 3600.0, "h", 3600.0), (180.0, "min", 60.0), (0.0, "s", 1.0))
-_WIDTH = 6.85  # inches: 174 mm
-_MOST_PROMPTS = 40  # that are marked
+_UNITS: Final = ((2 * 3600.0, "h", 3600.0), (180.0, "min", 60.0), (0.0, "s", 1.0))
+_WIDTH: Final = 6.85  # inches: 174 mm
+_MOST_PROMPTS: Final = 40  # that are marked
 
 
-def dry_run_figure(found: DryRun) -> "Figure":
-    """Speed of the sliding, drive voltage and temperature rises of a protocol over time.
+def dry_run_chart(found: DryRun) -> Chart:
+    """Speed of the sliding, drive and temperature rises of a protocol over time.
 
     Parameters
     ----------
@@ -25,80 +22,78 @@ def dry_run_figure(found: DryRun) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Two panels without a rig, three with one; recordings are bars, prompts dotted lines.
+    Chart
+        A panel each for speed, voltage, the frequency where it is swept, and the temperatures with a rig; recordings
+        are shaded, prompts dotted lines.
     """
-    from matplotlib.figure import Figure
-
     unit, scale = next((unit, scale) for least, unit, scale in _UNITS if found.duration >= least)
-    count = 2 if found.heating is None else 3
-    figure = Figure(figsize=(_WIDTH, 1.2 + 1.45 * count))
-    panels = figure.subplots(count, 1, sharex=True)
     time = np.array([point.setting.time for point in found.points]) / scale
-    _draw_speed(panels[0], time, found)
-    _draw_drive(panels[1], time, found)
-    if found.heating is not None:
-        _draw_temperature(panels[2], found, scale)
-    _mark_recordings(panels[0], found, scale)
+    x = Axis(label="Time without prompts", unit=unit, lowest=float(-0.01 * time[-1]), highest=float(1.01 * time[-1]))
+    curves = [_speed(time, found), _voltage(time, found), *_frequency(time, found), *_temperatures(found, scale)]
     prompts = sorted({point.setting.time / scale for point in found.points if point.setting.kind == "prompt"})
-    for axes in panels:
-        for number, place in enumerate(prompts[:_MOST_PROMPTS]):
-            label = "prompt" if axes is panels[0] and number == 0 else None
-            axes.axvline(place, color="0.35", linestyle=":", linewidth=0.9, label=label, zorder=0.5)
-        axes.margins(x=0)
-    panels[0].legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, borderaxespad=0.2)
-    panels[-1].set(xlabel=f"Time without prompts [{unit}]")
-    panels[-1].set_xlim(-0.01 * time[-1], 1.01 * time[-1])
-    return figure
+    panels: list[Panel] = []
+    for axis, lines in curves:
+        is_first = not panels
+        marks: list[Part] = []
+        if is_first and found.recordings:
+            start, lasts = (np.array([getattr(each, of) for each in found.recordings]) for of in ("start", "duration"))
+            marks.append(
+                Zone(first=start / scale, last=(start + lasts) / scale, label="recorded", colour=2, opacity=0.25)
+            )
+        marks += [
+            Rule(value=place, label="prompt" if is_first and not number else "", colour="0.35")
+            for number, place in enumerate(prompts[:_MOST_PROMPTS])
+        ]
+        panels.append(Panel(x=x, y=axis, parts=(*marks, *lines)))
+    size = (_WIDTH, 1.2 + 1.45 * len(panels))
+    return Chart(panels=tuple(panels), size=size, legend="top", legend_columns=5, shares_x=True)
 
 
-def _draw_speed(axes: "Axes", time: "np.ndarray", found: DryRun) -> None:
+def _speed(time: Floats, found: DryRun) -> tuple[Axis, tuple[Line, ...]]:
     """Sliding speed, or speed of the disc where the groove is unknown."""
-    known = all(point.sliding_speed is not None for point in found.points)
+    is_known = all(point.sliding_speed is not None for point in found.points)
     speeds = [
-        1e3 * (point.sliding_speed or 0.0) if known else 60 * (point.setting.rotation_speed or 0.0)
+        1e3 * (point.sliding_speed or 0.0) if is_known else 60 * (point.setting.rotation_speed or 0.0)
         for point in found.points
     ]
-    axes.step(time, speeds, where="post", color=COLOURS[0], label="speed")
-    axes.set(ylabel="Sliding speed\n[mm/s]" if known else "Speed of\nthe disc [rpm]")
-    axes.set_ylim(0, 1.15 * max(speeds) or 1.0)
+    label, unit = ("Sliding speed", "mm/s") if is_known else ("Speed of the disc", "rpm")
+    return _from_zero(label, unit, speeds), (Line(x=time, y=np.array(speeds), is_stepped=True),)
 
 
-def _draw_drive(axes: "Axes", time: "np.ndarray", found: DryRun) -> None:
-    """Peak-to-peak voltage, and the frequency where it is swept."""
+def _voltage(time: Floats, found: DryRun) -> tuple[Axis, tuple[Line, ...]]:
+    """Peak-to-peak voltage."""
     volts = [point.setting.voltage_peak_to_peak for point in found.points]
-    axes.step(time, volts, where="post", color=COLOURS[1], label="voltage")
-    axes.set(ylabel="Drive, peak\nto peak [V]")
-    axes.set_ylim(0, 1.15 * max(volts) or 1.0)
+    line = Line(x=time, y=np.array(volts), colour=1, is_stepped=True)
+    return _from_zero("Drive, peak to peak", "V", volts), (line,)
+
+
+def _frequency(time: Floats, found: DryRun) -> list[tuple[Axis, tuple[Line, ...]]]:
+    """Frequency of the drive, where it is swept."""
     frequency = np.array([np.nan if f is None else f for f in (point.setting.frequency for point in found.points)])
     driven = frequency[np.isfinite(frequency)]
-    if driven.size and np.ptp(driven) > 0:
-        beside = axes.twinx()
-        beside.step(time, 1e-3 * frequency, where="post", color=COLOURS[6], linestyle="--")
-        beside.set(ylabel="Frequency [kHz]\n(dashed)")
-        beside.grid(visible=False)
+    if not driven.size or np.ptp(driven) == 0:
+        return []
+    return [(Axis(label="Frequency", unit="kHz"), (Line(x=time, y=1e-3 * frequency, colour=6, is_stepped=True),))]
 
 
-def _draw_temperature(axes: "Axes", found: DryRun, scale: float) -> None:
+def _temperatures(found: DryRun, scale: float) -> list[tuple[Axis, tuple[Line, ...]]]:
     """Temperature rises of contact, pin and actuator."""
     heating = found.heating
-    assert heating is not None
+    if heating is None:
+        return []
     curves = (
-        ("contact, mean", heating.contact_rise, COLOURS[1], "-"),
-        ("pin", heating.pin_rise, COLOURS[0], "--"),
-        ("actuator", heating.actuator_rise, COLOURS[6], "-."),
+        ("contact, mean", heating.contact_rise, 1, 0),
+        ("pin", heating.pin_rise, 0, 1),
+        ("actuator", heating.actuator_rise, 6, 2),
     )
-    for label, rise, colour, line in curves:
-        if rise is not None:
-            axes.plot(heating.time / scale, rise, color=colour, linestyle=line, label=label)
-    axes.set(ylabel="Computed rise\n[K]")
-    axes.set_ylim(0, None)
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=3, borderaxespad=0.2)
+    lines = tuple(
+        Line(x=heating.time / scale, y=rise, label=label, colour=colour, dash=dash)
+        for label, rise, colour, dash in curves
+        if rise is not None
+    )
+    return [(Axis(label="Computed rise", unit="K", lowest=0.0), lines)]
 
 
-def _mark_recordings(axes: "Axes", found: DryRun, scale: float) -> None:
-    """Bars along the top over the recordings."""
-    spans = [(each.start / scale, each.duration / scale) for each in found.recordings]
-    if spans:
-        transform = axes.get_xaxis_transform()
-        axes.broken_barh(spans, (0.94, 0.06), transform=transform, color=COLOURS[2], label="recorded", zorder=3)
+def _from_zero(label: str, unit: str, values: list[float]) -> Axis:
+    """Axis from zero to a little over the greatest of some values."""
+    return Axis(label=label, unit=unit, lowest=0.0, highest=1.15 * max(values) or 1.0)

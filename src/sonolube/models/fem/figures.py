@@ -1,14 +1,15 @@
-"""Figures of finite-element results: deformed mode shapes and electrical impedance spectra."""
+"""Deformed mode shapes as pictures, and electrical impedance spectra as charts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Points
 from sonolube.checks import Complexes, Floats, Integers
-from sonolube.figure import COLOURS, LINES, publication_style
+from sonolube.figure import publication_style
 from sonolube.models.fem.impedance_spectra import SupportedSpectrum
 from sonolube.models.fem.solver.element_order import change_order, transfer_field
 from sonolube.models.fem.solver.mesh import HIGHEST_ORDER, Mesh, face_triangulation
@@ -132,9 +133,9 @@ def _label_axes(axes: "Axes3D", half: Floats) -> None:
         axes.locator_params(axis=name, nbins=intervals, min_n_ticks=min(intervals, 2))
 
 
-def impedance_figure(
+def impedance_chart(
     spectra: Mapping[str, SupportedSpectrum], *, title: str, measured: tuple[Floats, Complexes] | None = None
-) -> "Figure":
+) -> Chart:
     """Magnitude and phase of the impedance, and motion of the tip per volt, over frequency.
 
     Parameters
@@ -147,31 +148,34 @@ def impedance_figure(
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5.6, 5.8))
-    magnitude, phase, motion = figure.subplots(3, 1, sharex=True, height_ratios=(1.4, 1, 1.2))
+    magnitude: list[Part] = []
+    phase: list[Part] = []
+    motion: list[Part] = []
     if measured is not None:
         frequency, impedance = measured
         within = _within(frequency, spectra)
         f, z = 1e-3 * frequency[within], impedance[within]
-        magnitude.plot(f, np.abs(z), ".", color="0.5", markersize=3, label="measured")
-        phase.plot(f, np.degrees(np.angle(z)), ".", color="0.5", markersize=3)
+        magnitude.append(Points(x=f, y=np.abs(z), label="measured", colour="0.5", is_faint=True))
+        phase.append(Points(x=f, y=np.degrees(np.angle(z)), label="measured", colour="0.5", is_faint=True))
     for k, (name, spectrum) in enumerate(spectra.items()):
-        look: dict[str, Any] = {"color": COLOURS[k], "linestyle": LINES[k], "linewidth": 1.2}
-        f = 1e-3 * spectrum.response.frequency
-        magnitude.plot(f, np.abs(spectrum.impedance), label=name, **look)
-        phase.plot(f, np.degrees(np.angle(spectrum.impedance)), **look)
-        motion.plot(f, 1e9 * np.abs(spectrum.response.displacement_per_volt[0]), **look)
-    magnitude.set(yscale="log", ylabel="Impedance [ohm]")
-    phase.set(ylabel="Phase [deg]", ylim=(-100, 100), yticks=[-90, -45, 0, 45, 90])
-    motion.set(yscale="log", ylabel="Tip motion per volt\n[nm/V]", xlabel="Frequency [kHz]")
-    if len(spectra) > 1 or measured is not None:
-        magnitude.legend(loc="best")
-    magnitude.set_title(title, fontsize=9)
-    return figure
+        f, z = 1e-3 * spectrum.response.frequency, spectrum.impedance
+        per_volt = 1e9 * np.abs(spectrum.response.displacement_per_volt[0])
+        label = name if len(spectra) > 1 or measured is not None else ""
+        for parts, values in ((magnitude, np.abs(z)), (phase, np.degrees(np.angle(z))), (motion, per_volt)):
+            parts.append(Line(x=f, y=values, label=label, colour=k, dash=k, weight=0.85))
+    x = Axis(label="Frequency", unit="kHz")
+    panels = (
+        Panel(x=x, y=Axis(label="Impedance", unit="ohm", logarithmic=True), parts=tuple(magnitude), title=title),
+        Panel(
+            x=x,
+            y=Axis(label="Phase", unit="deg", lowest=-100.0, highest=100.0, ticks=(-90, -45, 0, 45, 90)),
+            parts=tuple(phase),
+        ),
+        Panel(x=x, y=Axis(label="Tip motion per volt", unit="nm/V", logarithmic=True), parts=tuple(motion)),
+    )
+    return Chart(panels=panels, size=(5.6, 5.8), heights=(1.4, 1, 1.2), legend="top", shares_x=True)
 
 
 def _within(frequency: Floats, spectra: Mapping[str, SupportedSpectrum]) -> NDArray[np.bool_]:

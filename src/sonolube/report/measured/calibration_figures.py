@@ -1,39 +1,34 @@
-"""Figures of force gauges: calibration loops and forces over time."""
+"""Charts of force gauges: calibration loops and forces over time."""
 
-from typing import TYPE_CHECKING
-
+from sonolube.charts import Axis, Band, Chart, Line, Panel, Points, Rule, envelope
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, subplots
 from sonolube.measurement.gauge.calibration import ForceEstimate, PreisachCalibration, force_from_preisach
 from sonolube.report.measured.sheet import captioned
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 @captioned("Force over displacement", "Measured loops and those of the Preisach model; below, the residual.")
-def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> "Figure":
+def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> Chart:
     """Force over displacement, measured and by the Preisach model, above the residual."""
-    figure, (top, bottom) = subplots(2, 1, figsize=(5.0, 4.8), sharex=True, height_ratios=(3, 1))
     model = force_from_preisach(calibration, displacement=x).applied_force
-    um = 1e6 * x
-    top.plot(um, force, ".", color="0.55", markersize=3, label="measured")
-    top.plot(um, model, color=COLOURS[1], linewidth=1, label="Preisach model")
-    bottom.plot(um, force - model, ".", color=COLOURS[0], markersize=2)
-    bottom.axhline(0, color="0.5", linewidth=0.6)
-    top.set(ylabel="force (N)")
-    bottom.set(xlabel="displacement (µm)", ylabel="residual (N)")
-    top.legend()
-    return figure
+    um, across = 1e6 * x, Axis(label="Displacement", unit="µm")
+    curves = (
+        Points(x=um, y=force, label="measured", colour="0.55", is_faint=True),
+        Line(x=um, y=model, label="Preisach model", colour=1, weight=0.7),
+    )
+    residual = (Points(x=um, y=force - model, is_faint=True), Rule(value=0.0, along="y", colour="0.5", dash=0))
+    panels = (
+        Panel(x=across, y=Axis(label="Force", unit="N"), parts=curves),
+        Panel(x=across, y=Axis(label="Residual", unit="N"), parts=residual),
+    )
+    return Chart(panels=panels, size=(5.0, 4.8), heights=(3, 1), shares_x=True)
 
 
 @captioned("Force by the displacement", "With its standard uncertainty as a band.")
-def force(t: Floats, estimate: ForceEstimate) -> "Figure":
+def force(t: Floats, estimate: ForceEstimate) -> Chart:
     """Force over time with its standard uncertainty as a band."""
-    figure, axes = subplots(figsize=(6.4, 3.0))
     f, u = estimate.applied_force, estimate.applied_force_uncertainty
-    axes.fill_between(t, f - u, f + u, color=COLOURS[5], alpha=0.6, linewidth=0, label="standard uncertainty")
-    axes.plot(t, f, color=COLOURS[0], linewidth=1)
-    axes.set(xlabel="time (s)", ylabel="force (N)")
-    axes.legend()
-    return figure
+    band = Band(x=t, low=f - u, high=f + u, label="standard uncertainty", colour=5, opacity=0.6)
+    time, curve = envelope(t, f)
+    parts = (band, Line(x=time, y=curve, weight=0.7))
+    panel = Panel(x=Axis(label="Time", unit="s"), y=Axis(label="Force", unit="N"), parts=parts)
+    return Chart(panels=(panel,), size=(6.4, 3.0))

@@ -1,38 +1,33 @@
-"""Figure of a contact's stiffness: spectra free and pressed with their fitted resonances."""
-
-from typing import TYPE_CHECKING
+"""Chart of a contact's stiffness: spectra free and pressed with their fitted resonances."""
 
 import numpy as np
 
-from sonolube.checks import Complexes
-from sonolube.figure import COLOURS, LINES, subplots
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule
+from sonolube.checks import Complexes, Floats
 from sonolube.measurement.contact_stiffness.analysis import MeasuredContactStiffness
 from sonolube.measurement.contact_stiffness.resonance_fit import ResonanceFit
 from sonolube.report.measured.sheet import captioned
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 @captioned("Resonance free and pressed", "Measured (points) and fitted (lines); the marks are the resonances compared.")
-def resonances(found: MeasuredContactStiffness) -> "Figure":
+def resonances(found: MeasuredContactStiffness) -> Chart:
     """Spectra free, pressed, free again and at large drive, with fits and the resonances that were compared."""
-    figure, axes = subplots(figsize=(6.4, 3.8))
-    for place, (name, fit) in enumerate(_named(found)):
-        f = fit.spectrum.frequency
-        scale = 1e3 if f[-1] > 1e4 else 1.0
-        axes.plot(f / scale, _level(fit, fit.spectrum.response), ".", color=COLOURS[place], markersize=2, alpha=0.5)
-        axes.plot(
-            f / scale, _level(fit, fit.fitted), linestyle=LINES[place], color=COLOURS[place], linewidth=1.2, label=name
-        )
+    fits = _named(found)
+    highest = max(fit.spectrum.frequency[-1] for _, fit in fits)
+    unit, scale = ("kHz", 1e-3) if highest > 1e4 else ("Hz", 1.0)
+    parts: list[Part] = []
+    for place, (name, fit) in enumerate(fits):
+        f = scale * fit.spectrum.frequency
+        parts += [
+            Points(x=f, y=_level(fit, fit.spectrum.response), colour=place, is_faint=True),
+            Line(x=f, y=_level(fit, fit.fitted), label=name, colour=place, dash=place, weight=0.85),
+        ]
         compared = [one for one in fit.resonances if one in found.chosen]
-        for one in compared:
-            axes.axvline(one.frequency / scale, color=COLOURS[place], linestyle=LINES[place], linewidth=0.8)
-        axes.set_xlabel("frequency (kHz)" if scale > 1 else "frequency (Hz)")
-    kinds = {fit.spectrum.quantity for _, fit in _named(found)}
-    axes.set(ylabel=f"response by {', '.join(sorted(kinds))} over its maximum", yscale="log")
-    figure.legend(loc="outside upper center", ncols=4)
-    return figure
+        parts += [Rule(value=scale * one.frequency, colour=place, dash=place) for one in compared]
+    kinds = ", ".join(sorted({fit.spectrum.quantity for _, fit in fits}))
+    level = Axis(label=f"Response by {kinds} over its maximum", logarithmic=True)
+    panel = Panel(x=Axis(label="Frequency", unit=unit), y=level, parts=tuple(parts))
+    return Chart(panels=(panel,), size=(6.4, 3.8), legend="top", legend_columns=4)
 
 
 def _named(found: MeasuredContactStiffness) -> list[tuple[str, ResonanceFit]]:
@@ -41,6 +36,6 @@ def _named(found: MeasuredContactStiffness) -> list[tuple[str, ResonanceFit]]:
     return [*free, ("pressed", found.pressed), *([] if found.large is None else [("large drive", found.large)])]
 
 
-def _level(fit: ResonanceFit, values: Complexes) -> Complexes:
+def _level(fit: ResonanceFit, values: Complexes) -> Floats:
     """Magnitude over the greatest one of the spectrum."""
     return np.asarray(np.abs(values) / np.max(np.abs(fit.spectrum.response)))

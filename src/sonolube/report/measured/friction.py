@@ -1,7 +1,6 @@
 """Sheets of friction recordings: level, fluctuation, running-in, voltage steps, stick-slip, work and wobble."""
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.checks import require_positive
+from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.motor_current import MotorCalibration
 from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
@@ -33,7 +32,6 @@ from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
 _LARGE = 1 << 29  # bytes of a TDMS file beyond which it is read in blocks, for its windows only
 _CHANNELS = ("friction_force", "friction_coefficient")
@@ -169,14 +167,8 @@ def _level(recording: "xr.Dataset", name: str) -> sheet.Sheet:
 
 def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyStateOnset | None) -> sheet.Sheet:
     """Fluctuation in windows, with the trace."""
-    draw = partial(
-        figures.trace,
-        channel_values(recording, "time"),
-        channel_values(recording, windows.channel),
-        windows=windows,
-        steady=steady,
-    )
-    return sheet.Sheet(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),))
+    samples = channel_values(recording, "time"), channel_values(recording, windows.channel)
+    return _trace(*samples, windows=windows, steady=steady)
 
 
 def _fluctuation(windows: WindowStatistics) -> sheet.Value:
@@ -189,14 +181,14 @@ def _fluctuation(windows: WindowStatistics) -> sheet.Value:
     return sheet.Value(f"{windows.channel}_fluctuation", label, rms, windows.unit)
 
 
-def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> sheet.Figure:
-    """Figure of a trace with its windows."""
+def _trace(
+    t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyStateOnset | None
+) -> sheet.Sheet:
+    """Fluctuation in windows, with the trace of the samples where they are at hand."""
     span = format_si(windows.window_duration, "s")
-    return sheet.Figure(
-        title="Trace with windows",
-        caption=f"Samples in grey; mean of each window of {span}, and as a band the root mean square about it.",
-        draw=draw,
-    )
+    caption = f"Samples in grey; mean of each window of {span}, and as a band the root mean square about it."
+    trace = sheet.captioned("Trace with windows", caption)(figures.trace)
+    return sheet.Sheet(values=(_fluctuation(windows),), figures=(trace(t, signal, windows=windows, steady=steady),))
 
 
 def _cycle_figure(recording: "xr.Dataset", name: str) -> sheet.Figure:
@@ -323,8 +315,7 @@ def _streamed(path: Path, settings: FrictionSettings) -> sheet.Sheet:
                 what="steady state",
             )
         )
-    draw = partial(figures.trace, None, None, windows=windows, steady=steady)
-    sections.append(sheet.Sheet(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),)))
+    sections.append(_trace(None, None, windows=windows, steady=steady))
     with path.open("rb") as stream:
         digest = hashlib.file_digest(stream, "sha256").hexdigest()
     source = {"format": TDMS, "samples": f"{int(windows.samples.sum())}, read in blocks", "sha256": digest}

@@ -32,7 +32,7 @@ def comparison_sheet(with_vibration: Sequence[sheet.Sheet], without_vibration: S
         [value.value for test in sheets if (value := _value(test, level))]
         for sheets in (with_vibration, without_vibration)
     )
-    figure = figures.comparison(still, vibrated, level)
+    figure = figures.comparison(_named(without_vibration, still), _named(with_vibration, vibrated), level)
     sections = [
         sheet.attempted(partial(_reduction, vibrated, still), what="interval of the reduction"),
         sheet.attempted(partial(_significance, vibrated, still), what="significance"),
@@ -47,6 +47,11 @@ def comparison_sheet(with_vibration: Sequence[sheet.Sheet], without_vibration: S
 def _value(test: sheet.Sheet, name: str) -> sheet.Value | None:
     """Value of this name on a sheet; None where it has none."""
     return next((value for value in test.values if value.name == name), None)
+
+
+def _named(tests: Sequence[sheet.Sheet], values: Sequence[float]) -> list[tuple[str, float]]:
+    """Values with the titles of their tests."""
+    return [(test.title, value) for test, value in zip(tests, values, strict=True)]
 
 
 def _reduction(vibrated: Sequence[float], still: Sequence[float]) -> sheet.Sheet:

@@ -1,12 +1,12 @@
-"""Figures of friction recordings: traces, voltage steps, loops and comparisons."""
+"""Charts of friction recordings: traces, voltage steps, loops and comparisons."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Final
 
 import numpy as np
 
+from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule, Zone, envelope
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.measurement.friction.motor_current import MotorFrictionTrace
 from sonolube.measurement.friction.running_in import SteadyStateOnset
 from sonolube.measurement.friction.voltage_steps import VoltageStep
@@ -14,150 +14,160 @@ from sonolube.measurement.friction.windows import WindowStatistics
 from sonolube.report.measured.sheet import captioned
 from sonolube.vocabulary import quantities
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-_BINS = 1500  # of a trace, more than a page resolves
 _WIDE = (7.0, 3.2)
-_LABELS = {"friction_force": "friction force (N)", "friction_coefficient": "coefficient of friction"}
+_MOST: Final = 20_000  # values of a loop
+_FORCE: Final = Axis(label="Friction force", unit="N")
+_TIME: Final = Axis(label="Time", unit="s")
+_AXES: Final = {"friction_force": _FORCE, "friction_coefficient": Axis(label="Coefficient of friction")}
 
 
 def trace(
     t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyStateOnset | None
-) -> "Figure":
+) -> Chart:
     """Samples over time with the means and fluctuations of windows and the begin of the steady state."""
-    figure, axes = subplots(figsize=_WIDE)
+    parts: list[Part] = []
     if t is not None and signal is not None:
-        middle, low, high = _envelope(t, signal)
-        axes.fill_between(middle, low, high, color="0.8", linewidth=0.4, label="samples, lowest to highest")
+        time, samples = envelope(t, signal)
+        parts.append(Line(x=time, y=samples, label="samples, lowest to highest", colour="0.8", weight=0.5))
     mean, rms = windows.mean, windows.fluctuation
-    axes.fill_between(
-        windows.time, mean - rms, mean + rms, color=COLOURS[5], alpha=0.6, linewidth=0, label="RMS fluctuation"
-    )
-    axes.plot(windows.time, mean, color=COLOURS[0], label=f"mean of {windows.window_duration:g} s")
+    parts += [
+        Band(x=windows.time, low=mean - rms, high=mean + rms, label="RMS fluctuation", colour=5, opacity=0.6),
+        Line(x=windows.time, y=mean, label=f"mean of {windows.window_duration:g} s"),
+    ]
     if steady is not None and steady.steady:
         start = windows.time[0] + steady.start_time
-        axes.axvline(start, color=COLOURS[1], linestyle="--", label=f"steady after {steady.sliding_distance:.3g} m")
-    axes.set(xlabel="time (s)", ylabel=_LABELS.get(windows.channel, windows.channel))
-    figure.legend(loc="outside upper center", ncols=4)
-    return figure
+        label = f"steady after {steady.sliding_distance:.3g} m"
+        parts.append(Rule(value=start, label=label, colour=1, dash=1))
+    panel = Panel(x=_TIME, y=_axis(windows.channel), parts=tuple(parts))
+    return Chart(panels=(panel,), size=_WIDE, legend="top", legend_columns=4)
 
 
 @captioned("Trace by cycle", "One value a cycle, as the instrument gives it.")
-def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
+def by_cycle(cycles: Floats, signal: Floats, name: str) -> Chart:
     """Signal with one value a cycle over the number of the cycle."""
-    figure, axes = subplots(figsize=_WIDE)
-    axes.plot(cycles, signal, marker=".", linewidth=0.8, markersize=3)
-    axes.set(xlabel="cycle", ylabel=_LABELS.get(name, name))
-    return figure
+    parts = (Line(x=cycles, y=signal, weight=0.6), Points(x=cycles, y=signal, is_faint=True))
+    return Chart(panels=(Panel(x=Axis(label="Cycle"), y=_axis(name), parts=parts),), size=_WIDE)
 
 
 @captioned(
     "Friction over voltage",
     "Mean and its standard error at each step, and the reduction of the friction without voltage.",
 )
-def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
+def voltage_steps(steps: Sequence[VoltageStep]) -> Chart:
     """Friction and its reduction over the voltage."""
-    figure, (left, right) = subplots(1, 2, figsize=_WIDE)
-    left.errorbar(
-        [step.voltage_peak_to_peak for step in steps],
-        [step.friction_force for step in steps],
-        yerr=[step.friction_force_uncertainty for step in steps],
-        marker=MARKERS[0],
-        linestyle="none",
-        capsize=2,
-    )
     driven = [step for step in steps if step.friction_reduction is not None]
-    right.errorbar(
-        [step.voltage_peak_to_peak for step in driven],
-        [100 * (step.friction_reduction or 0.0) for step in driven],
-        yerr=[100 * (step.friction_reduction_uncertainty or 0.0) for step in driven],
-        marker=MARKERS[1],
-        color=COLOURS[1],
-        linestyle="none",
-        capsize=2,
+    force = Points(
+        x=_voltages(steps),
+        y=np.array([step.friction_force for step in steps]),
+        y_error=np.array([step.friction_force_uncertainty for step in steps]),
+        sources=tuple(map(_source, steps)),
     )
-    left.set(xlabel="voltage, peak to peak (V)", ylabel="friction force (N)")
-    right.set(xlabel="voltage, peak to peak (V)", ylabel="friction reduction (%)")
-    for axes in (left, right):
-        axes.set(xlim=(0, None), ylim=(min(0.0, axes.get_ylim()[0]), 1.06 * axes.get_ylim()[1]))
-    return figure
+    reduction = Points(
+        x=_voltages(driven),
+        y=np.array([100 * (step.friction_reduction or 0.0) for step in driven]),
+        y_error=np.array([100 * (step.friction_reduction_uncertainty or 0.0) for step in driven]),
+        sources=tuple(map(_source, driven)),
+        colour=1,
+        marker=1,
+    )
+    axes = (("Friction force", "N", force), ("Friction reduction", "%", reduction))
+    panels = [
+        Panel(
+            x=Axis(label="Voltage, peak to peak", unit="V", lowest=0.0),
+            y=Axis(label=label, unit=unit, lowest=None if (points.y < 0).any() else 0.0),
+            parts=(points,),
+        )
+        for label, unit, points in axes
+    ]
+    return Chart(panels=tuple(panels), size=_WIDE, columns=2)
 
 
 @captioned(
     "Stick-slip at the steps of the voltage",
     "Samples in grey with the bursts of stick-slip shaded; mean fall of the force in a slip with its 95 % interval.",
 )
-def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> "Figure":
+def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
     """Friction over time with the bursts of stick-slip, and the fall in a slip over the voltage."""
-    figure, (left, right) = subplots(1, 2, figsize=_WIDE, width_ratios=(2, 1))
-    middle, low, high = _envelope(t, force)
-    left.fill_between(middle, low, high, color="0.7", linewidth=0.4)
     found = [step for step in steps if step.stick_slip.detected]
-    for burst in (burst for step in found for burst in step.stick_slip.bursts):
-        left.axvspan(burst.start_time, burst.end_time, color=COLOURS[1], alpha=0.35, linewidth=0)
+    bursts = [burst for step in found for burst in step.stick_slip.bursts]
+    first, last = (np.array([getattr(burst, end) for burst in bursts]) for end in ("start_time", "end_time"))
+    time, samples = envelope(t, force)
+    left = (Zone(first=first, last=last, colour=1, opacity=0.35), Line(x=time, y=samples, colour="0.6", weight=0.5))
     falls = np.array([1e3 * step.stick_slip.stick_slip_amplitude for step in found])
     ends = np.array([step.stick_slip.stick_slip_amplitude_interval for step in found]).T * 1e3
-    right.errorbar(
-        [step.voltage_peak_to_peak for step in found],
-        falls,
-        yerr=np.abs(ends - falls),
-        marker=MARKERS[1],
-        color=COLOURS[1],
-        linestyle="none",
-        capsize=2,
+    points = Points(
+        x=_voltages(found),
+        y=falls,
+        y_error=np.abs(ends - falls),
+        sources=tuple(map(_source, found)),
+        colour=1,
+        marker=1,
     )
-    left.set(xlabel="time (s)", ylabel="friction force (N)")
-    right.set(xlabel="voltage, peak to peak (V)", ylabel="fall in a slip (mN)")
-    right.set_xlim(0, 1.05 * max(step.voltage_peak_to_peak for step in steps))
-    right.set_ylim(0, 1.15 * float(ends.max()))
-    return figure
+    voltage = Axis(label="Voltage, peak to peak", unit="V", lowest=0.0, highest=1.05 * float(_voltages(steps).max()))
+    fall = Axis(label="Fall in a slip", unit="mN", lowest=0.0, highest=1.15 * float(ends.max()))
+    panels = (Panel(x=_TIME, y=_FORCE, parts=left), Panel(x=voltage, y=fall, parts=(points,)))
+    return Chart(panels=panels, size=_WIDE, columns=2, widths=(2, 1))
 
 
 @captioned(
     "Friction over velocity", "Every cycle of the recording; the work is the area of the loop over displacement."
 )
-def loops(velocity: Floats, force: Floats) -> "Figure":
+def loops(velocity: Floats, force: Floats) -> Chart:
     """Friction over velocity."""
-    figure, axes = subplots(figsize=(4.2, 3.4))
-    stride = max(1, velocity.size // 20_000)
-    axes.plot(velocity[::stride], force[::stride], linewidth=0.8)
-    axes.axhline(0, color="0.5", linewidth=0.6)
-    axes.axvline(0, color="0.5", linewidth=0.6)
-    axes.set(xlabel="velocity (m/s)", ylabel="friction force (N)")
-    return figure
+    stride = max(1, velocity.size // _MOST)
+    zero = (Rule(value=0.0, along="y", colour="0.5", dash=0), Rule(value=0.0, colour="0.5", dash=0))
+    parts = (Line(x=velocity[::stride], y=force[::stride], weight=0.6), *zero)
+    return Chart(panels=(Panel(x=Axis(label="Velocity", unit="m/s"), y=_FORCE, parts=parts),), size=(4.2, 3.4))
 
 
 @captioned("Friction by the motor current", "Mean in each window with its standard uncertainty.")
-def motor_trace(motor: MotorFrictionTrace) -> "Figure":
+def motor_trace(motor: MotorFrictionTrace) -> Chart:
     """Friction by the motor current over time with its uncertainty."""
-    figure, axes = subplots(figsize=_WIDE)
-    axes.errorbar(
-        motor.time, motor.friction_force, yerr=motor.friction_force_uncertainty, marker=MARKERS[0], elinewidth=0.8
-    )
-    axes.set(xlabel="time (s)", ylabel="friction force (N)")
-    return figure
+    force = motor.friction_force
+    points = Points(x=motor.time, y=force, y_error=motor.friction_force_uncertainty)
+    panel = Panel(x=_TIME, y=_FORCE, parts=(Line(x=motor.time, y=force), points))
+    return Chart(panels=(panel,), size=_WIDE)
 
 
 @captioned("Tests with and without vibration", "Each test, and the mean of its kind.")
-def comparison(without: Sequence[float], with_vibration: Sequence[float], level: str) -> "Figure":
-    """Friction of single tests without and with vibration, and the mean of each kind."""
-    figure, axes = subplots(figsize=(3.8, 3.2))
+def comparison(without: Sequence[tuple[str, float]], with_vibration: Sequence[tuple[str, float]], level: str) -> Chart:
+    """Friction of single tests, by name, without and with vibration, and the mean of each kind."""
+    parts: list[Part] = []
     for place, (tests, name) in enumerate([(without, "without"), (with_vibration, "with")]):
-        spread = 0.04 * (np.arange(len(tests)) - (len(tests) - 1) / 2)
-        axes.plot(place + spread, tests, MARKERS[place], color=COLOURS[place], label=f"{name}: {len(tests)} tests")
-        axes.hlines(float(np.mean(tests)), place - 0.25, place + 0.25, color=COLOURS[place])
-    label = _LABELS.get(level) or (quantities()[level].meaning if level in quantities() else "steady friction (N)")
-    axes.set(xticks=[0, 1], xticklabels=["without", "with vibration"], ylabel=label, xlim=(-0.5, 1.5))
-    axes.set_ylim(0, 1.06 * axes.get_ylim()[1])
-    return figure
+        values = np.array([value for _, value in tests])
+        spread = np.array([0.04 * (index - (values.size - 1) / 2) for index in range(values.size)])
+        parts += [
+            Points(
+                x=place + spread,
+                y=values,
+                label=f"{name}: {values.size} tests",
+                colour=place,
+                marker=place,
+                sources=tuple(source for source, _ in tests),
+            ),
+            Line(x=place + np.array([-0.25, 0.25]), y=np.full(2, values.mean()), colour=place),
+        ]
+    kind = Axis(lowest=-0.5, highest=1.5, words=("without", "with vibration"))
+    highest = max(value for _, value in (*without, *with_vibration))
+    known = level in _AXES or level in quantities()
+    axis = _axis(level) if known else Axis(label="Steady friction", unit="N")
+    y = Axis(label=axis.label, unit=axis.unit, lowest=0.0, highest=1.12 * highest)
+    return Chart(panels=(Panel(x=kind, y=y, parts=tuple(parts)),), size=(3.8, 3.2))
 
 
-def _envelope(time: Floats, signal: Floats) -> tuple[Floats, Floats, Floats]:
-    """Middle, lowest and highest sample of bins of equal numbers, finer than a page resolves."""
-    size = max(1, -(-time.size // _BINS))
-    starts = np.arange(0, time.size, size)
-    low = np.fmin.reduceat(signal, starts)
-    high = np.fmax.reduceat(signal, starts)
-    middle = (time[starts] + time[np.minimum(starts + size, time.size) - 1]) / 2
-    return middle, low, high
+def _axis(name: str) -> Axis:
+    """Axis of a channel."""
+    if name in _AXES:
+        return _AXES[name]
+    known = quantities().get(name)
+    return Axis(label=name) if known is None else Axis(label=known.meaning, unit=known.unit)
+
+
+def _voltages(steps: Sequence[VoltageStep]) -> Floats:
+    """Voltage of each step. [V]"""
+    return np.array([step.voltage_peak_to_peak for step in steps])
+
+
+def _source(step: VoltageStep) -> str:
+    """Part of the recording that a step is."""
+    return f"{step.start_time:.4g} to {step.end_time:.4g} s"

@@ -1,7 +1,7 @@
 """Sheets of wear grooves: volume of a scan, wear of a ring and of the pin, wear reduction by vibration."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -218,20 +218,21 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
         sheet.Value("scar_diameter", "Diameter of the scar", cap.scar_diameter, "m"),
         sheet.quantity_value("tip_radius", cap.tip_radius),
     )
-    scar_map = figures.height_map(cap.levelled, cap.worn)
-    figure = replace(scar_map, title="Scar of the pin", caption="Heights over the ball; the line goes round the scar.")
+    captioned = sheet.captioned("Scar of the pin", "Heights over the ball; the line goes round the scar.")
+    figure = captioned(figures.height_map)(cap.levelled, cap.worn)
     part = sheet.Sheet(values=values, figures=(figure,), caveats=file.caveats)
     return sheet.joined([part], title=path.name, source=surface_source(file))
 
 
 def _figures(groove: Groove) -> tuple[sheet.Figure, ...]:
     """View, cross-sections, map and Abbott curve of a groove."""
-    curve = abbott(material_ratio_curve(groove.levelled))
+    map_caption = "Heights over the unworn surface; the line goes round what counts as worn."
+    curve_caption = "Of the whole field over the unworn surface; the groove is its tail."
     return (
         figures.view(groove),
         figures.sections(groove),
-        figures.height_map(groove.levelled, groove.worn),
-        replace(curve, caption="Of the whole field over the unworn surface; the groove is its tail."),
+        sheet.captioned("Map", map_caption)(figures.height_map)(groove.levelled, groove.worn),
+        sheet.captioned("Abbott curve", curve_caption)(abbott)(material_ratio_curve(groove.levelled)),
     )
 
 

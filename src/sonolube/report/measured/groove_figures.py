@@ -1,19 +1,22 @@
 """Figures of wear grooves: view, sections, map, ring and marks."""
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule, Zone
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.measurement.wear_track import WearTrack
 from sonolube.models.surfaces import HeightMap
 from sonolube.models.surfaces.grooves.groove import Groove
 from sonolube.models.surfaces.grooves.track_marks import TrackMarks
+from sonolube.report.measured import sheet
 from sonolube.report.measured.sheet import captioned
-from sonolube.report.measured.surface_figures import length_scale, show_map
+from sonolube.report.measured.surface_figures import WAVENUMBER, length_scale, map_panel
+from sonolube.report.page import Drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,9 +25,14 @@ _BLOCKS = 110  # along the longer side of a view
 _SINGLE = 9  # sections shown
 
 
-@captioned("The groove", "Heights over the unworn surface, the vertical stretched.")
-def view(groove: Groove) -> "Figure":
+def view(groove: Groove) -> sheet.Figure:
     """Three-dimensional view of the groove, the vertical stretched."""
+    caption = "Heights over the unworn surface, the vertical stretched."
+    return sheet.Figure(title="The groove", drawing=Drawing(draw=partial(_view, groove), caption=caption, forms=()))
+
+
+def _view(groove: Groove) -> "Figure":
+    """Drawing of the view."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6.4, 4.2))
@@ -49,70 +57,76 @@ def view(groove: Groove) -> "Figure":
     "Cross-sections",
     "Single sections square to the track in grey, the mean in colour, its edges where it meets the unworn surface.",
 )
-def sections(groove: Groove) -> "Figure":
+def sections(groove: Groove) -> Chart:
     """Single cross-sections, and the mean one with its edges."""
-    figure, axes = subplots(figsize=(6.4, 3.2))
-    single = groove.cross_sections
-    for at in np.linspace(0, single.arc_length.size - 1, _SINGLE + 2).round().astype(int)[1:-1]:
-        axes.plot(1e3 * single.transverse, 1e6 * single.height[at], color="0.7", linewidth=0.6)
-    mean = groove.mean_cross_section
+    single, mean = groove.cross_sections, groove.mean_cross_section
+    chosen = np.linspace(0, single.arc_length.size - 1, _SINGLE + 2).round().astype(int)[1:-1]
+    grey = [Line(x=1e3 * single.transverse, y=1e6 * single.height[at], colour="0.7", weight=0.45) for at in chosen]
     shown = (mean.transverse >= single.transverse[0]) & (mean.transverse <= single.transverse[-1])
-    axes.plot(1e3 * mean.transverse[shown], 1e6 * mean.height[shown], color=COLOURS[0], label="mean section")
-    axes.axhline(0, color=COLOURS[1], linewidth=1, linestyle="--", label="unworn surface")
     edges = 1e3 * groove.groove_width * np.array([-0.5, 0.5])
-    axes.plot(edges, [0, 0], MARKERS[1], color=COLOURS[1], label="edges")
-    axes.set(xlabel="distance from the track (mm)", ylabel="height (µm)")
-    figure.legend(loc="outside upper center", ncols=3)
-    return figure
+    parts: tuple[Part, ...] = (
+        *grey,
+        Line(x=1e3 * mean.transverse[shown], y=1e6 * mean.height[shown], label="mean section"),
+        Rule(value=0.0, along="y", label="unworn surface", colour=1, dash=1),
+        Points(x=edges, y=np.zeros(2), label="edges", colour=1, marker=1),
+    )
+    panel = Panel(x=Axis(label="Distance from the track", unit="mm"), y=Axis(label="Height", unit="µm"), parts=parts)
+    return Chart(panels=(panel,), size=(6.4, 3.2), legend="top")
 
 
-@captioned("Map", "Heights over the unworn surface; the line goes round what counts as worn.")
-def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
-    """Heights as colours, with the outline of the worn area."""
-    figure, axes = subplots(figsize=(5.0, 3.4))
-    show_map(axes, levelled)
+def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> Chart:
+    """Heights over the unworn surface, with a line round what counts as worn."""
     _, per_metre = length_scale(levelled.x)
-    x, y = per_metre * levelled.x, per_metre * levelled.y
-    axes.contour(x, y, worn.astype(float), levels=[0.5], colors="white", linewidths=0.8)
-    return figure
+    x, y = _outline(per_metre * levelled.x, per_metre * levelled.y, worn)
+    return Chart(panels=(map_panel(levelled, Line(x=x, y=y, colour="1", weight=0.6)),), size=(6.4, 3.6))
+
+
+def _outline(x: Floats, y: Floats, inside: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Line round the pixels inside, interrupted between its pieces."""
+    from contourpy import contour_generator
+
+    pieces = contour_generator(x, y, inside.astype(np.float64)).lines(0.5)
+    between = np.full((1, 2), np.nan)
+    found = np.concatenate([between, *(part for piece in pieces for part in (np.asarray(piece), between))])
+    return found[:, 0], found[:, 1]
 
 
 @captioned(
     "Sections round the ring",
     "Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
 )
-def ring(worn: WearTrack) -> "Figure":
+def ring(worn: WearTrack) -> Chart:
     """Area of the mean section of each scan, with the mean of the ring and its 95 % interval."""
-    figure, axes = subplots(figsize=(4.6, 3.0))
     area = 1e12 * worn.cross_section_area
     circumference = math.pi * worn.groove_diameter
-    low, high = (1e12 * end / circumference for end in worn.wear_volume_interval)
-    place = np.arange(1, area.size + 1)
-    axes.axhspan(low, high, color=COLOURS[5], alpha=0.4, linewidth=0, label="95 %")
-    axes.axhline(float(area.mean()), color=COLOURS[0], linewidth=1.2, label="mean")
-    axes.plot(place, area, MARKERS[1], color=COLOURS[1], label="scans")
-    axes.set(xlabel="scan", ylabel="section (µm²)", xticks=place)
-    figure.legend(loc="outside upper center", ncols=3)
-    return figure
+    low, high = (np.array([1e12 * end / circumference]) for end in worn.wear_volume_interval)
+    place = np.arange(1.0, area.size + 1)
+    parts = (
+        Zone(first=low, last=high, along="y", label="95 %", colour=5, opacity=0.4),
+        Rule(value=float(area.mean()), along="y", label="mean", colour=0, dash=0),
+        Points(x=place, y=area, label="scans", colour=1, marker=1),
+    )
+    panel = Panel(x=Axis(label="Scan", ticks=tuple(place)), y=Axis(label="Section", unit="µm²"), parts=parts)
+    return Chart(panels=(panel,), size=(4.6, 3.0), legend="top")
 
 
 @captioned(
     "Spectrum along the track",
     "Power of the groove's floor along the track over its background; the peak is the marks' spacing.",
 )
-def marks(track: TrackMarks) -> "Figure":
+def marks(track: TrackMarks) -> Chart:
     """Power spectrum along the track over its background."""
-    figure, axes = subplots(figsize=(4.6, 3.0))
     inner = track.wavenumber > 0
     k = track.wavenumber[inner]
-    axes.loglog(k, track.profile_spectral_density[inner], linewidth=1, label="along the track")
     background = np.broadcast_to(track.background, track.wavenumber.shape)[inner]
-    axes.loglog(k, background, "--", color=COLOURS[1], label="background")
-    if track.dot_spacing is not None:
-        axes.axvline(1 / track.dot_spacing, color="0.4", linewidth=0.8, linestyle=":")
-    axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m³)")
-    axes.legend()
-    return figure
+    peak = () if track.dot_spacing is None else (Rule(value=1 / track.dot_spacing),)
+    parts = (
+        Line(x=k, y=track.profile_spectral_density[inner], label="along the track", weight=0.7),
+        Line(x=k, y=background, label="background", colour=1, dash=1),
+        *peak,
+    )
+    density = Axis(label="Power spectral density", unit="m³", logarithmic=True)
+    return Chart(panels=(Panel(x=WAVENUMBER, y=density, parts=parts),), size=(4.6, 3.0))
 
 
 def _block_means(height: Floats, size: int) -> Floats:

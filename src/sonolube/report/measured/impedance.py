@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 from sonolube.identification.circuit_fit import fit_circuit
@@ -90,12 +89,12 @@ def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> sheet.
     fit = fit_circuit(
         spectrum, branches=settings.branches, residual=settings.residual, series_resistance=settings.series_resistance
     )
-    figure = sheet.Figure(
-        title="Impedance with the fitted circuit",
-        caption=f"Measured and fitted by the {fit.residual} residual, and the residual: relative in magnitude,"
+    captioned = sheet.captioned(
+        "Impedance with the fitted circuit",
+        f"Measured and fitted by the {fit.residual} residual, and the residual: relative in magnitude,"
         " radians in phase.",
-        draw=partial(figures.circuit, spectrum, fit.circuit),
     )
+    figure = captioned(figures.circuit)(spectrum, fit.circuit)
     circles = (figures.admittance_circle(spectrum, fit.circuit),) if spectrum.has_phase else ()
     values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
     return sheet.Sheet(values=values, figures=(figure, *circles), caveats=fit.caveats)
@@ -108,11 +107,11 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: St
     ends = (charge.lower, charge.upper)
     force = sheet.Value("force_per_volt", "Blocked force per volt", charge.value, "N/V", interval=ends)
     values = (*_values(fit.intervals), force, _rms(fit.residual_rms, fit.residual))
-    figure = sheet.Figure(
-        title="Impedance with the fitted stack",
-        caption=f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
-        draw=partial(figures.stack, spectrum, initial.in_structure(fit.stack)),
+    captioned = sheet.captioned(
+        "Impedance with the fitted stack",
+        f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
     )
+    figure = captioned(figures.stack)(spectrum, initial.in_structure(fit.stack))
     return sheet.Sheet(values=values, figures=(figure,), caveats=fit.caveats)
 
 

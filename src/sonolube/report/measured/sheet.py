@@ -5,14 +5,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial, wraps
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ParamSpec
+from typing import ParamSpec
 
+from sonolube.charts import Chart
 from sonolube.errors import InvalidInput
+from sonolube.report.page import Drawing
 from sonolube.units import format_like, format_quantity, format_si
 from sonolube.vocabulary import quantities, unit_of
-
-if TYPE_CHECKING:
-    from matplotlib import figure as matplotlib_figure
 
 Cell = float | str | None
 Drawn = ParamSpec("Drawn")
@@ -113,22 +112,21 @@ class Table:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Figure:
-    """Figure of a sheet, drawn when the page is made; no two of a sheet have the same title."""
+    """Figure of a sheet; no two of a sheet have the same title."""
 
     title: str
-    caption: str
-    draw: Callable[[], "matplotlib_figure.Figure"]
+    drawing: Drawing
 
 
-def captioned(
-    title: str, caption: str
-) -> Callable[[Callable[Drawn, "matplotlib_figure.Figure"]], Callable[Drawn, Figure]]:
-    """Decorator of a function that draws: it then returns the figure of a sheet with this title and caption."""
+def captioned(title: str, caption: str) -> Callable[[Callable[Drawn, Chart]], Callable[Drawn, Figure]]:
+    """Decorator of a function that returns a chart: it then returns a figure with this title and caption."""
 
-    def decorated(draw: Callable[Drawn, "matplotlib_figure.Figure"]) -> Callable[Drawn, Figure]:
-        @wraps(draw)
+    def decorated(chart: Callable[Drawn, Chart]) -> Callable[Drawn, Figure]:
+        @wraps(chart)
         def figure(*args: Drawn.args, **kwargs: Drawn.kwargs) -> Figure:
-            return Figure(title=title, caption=caption, draw=partial(draw, *args, **kwargs))
+            return Figure(
+                title=title, drawing=Drawing(chart=partial(chart, *args, **kwargs), caption=caption, forms=())
+            )
 
         return figure
 

@@ -276,7 +276,9 @@ def _waviness(levelled: surfaces.HeightMap) -> sheet.Sheet:
 
 def _figures(surface: surfaces.HeightMap) -> sheet.Sheet:
     """Heights, Abbott curve, power spectrum and autocorrelation."""
-    pictures = [figures.heights(surface), figures.abbott(surfaces.material_ratio_curve(surface))]
+    caption = "Share of the surface at or above each height, with the core by its equivalent line."
+    abbott = sheet.captioned("Abbott curve", caption)(figures.abbott)
+    pictures = [figures.heights(surface), abbott(surfaces.material_ratio_curve(surface))]
     try:
         spectrum = surfaces.radial_spectrum(surfaces.areal_spectrum(surface))
         correlation = surfaces.autocorrelation(surface)

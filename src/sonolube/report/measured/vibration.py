@@ -122,14 +122,14 @@ def proportion_sheet(sheets: Sequence[sheet.Sheet]) -> sheet.Sheet:
     -------
     Sheet
     """
-    pairs = [
-        (found["voltage_peak_to_peak"], found["vibration_amplitude"])
+    found_in = [
+        (each.title, found["voltage_peak_to_peak"], found["vibration_amplitude"])
         for each in sheets
         if "voltage_peak_to_peak" in (found := {value.name: value.value for value in each.values})
     ]
     return sheet.joined(
-        [sheet.attempted(partial(_proportion, pairs), what="proportion")],
-        title=f"amplitude over voltage, {len(pairs)} recordings",
+        [sheet.attempted(partial(_proportion, found_in), what="proportion")],
+        title=f"amplitude over voltage, {len(found_in)} recordings",
         source={},
     )
 
@@ -213,9 +213,9 @@ def _assurance(motion: Complexes, modes: Floats) -> sheet.Sheet:
     return sheet.Sheet(tables=(table,), figures=(figure,))
 
 
-def _proportion(pairs: Sequence[tuple[float, float]]) -> sheet.Sheet:
+def _proportion(found_in: Sequence[tuple[str, float, float]]) -> sheet.Sheet:
     """Line through the origin with its interval, and the significance of a curvature."""
-    volts, amplitudes = (np.array([pair[which] for pair in pairs]) for which in range(2))
+    volts, amplitudes = (np.array([each[which] for each in found_in]) for which in (1, 2))
     fit = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
     values = (
         sheet.quantity_value("amplitude_per_volt", fit.amplitude_per_volt, interval=(fit.lower, fit.upper)),
@@ -225,5 +225,5 @@ def _proportion(pairs: Sequence[tuple[float, float]]) -> sheet.Sheet:
     caveats: tuple[str, ...] = ()
     if not fit.proportional:
         caveats = (f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}",)
-    figure = figures.proportion(volts, amplitudes, fit)
+    figure = figures.proportion([name for name, *_ in found_in], volts, amplitudes, fit)
     return sheet.Sheet(values=values, figures=(figure,), caveats=caveats)

@@ -1,57 +1,68 @@
-"""Figures of vibration: operating shape, modal assurance, amplitude over voltage."""
+"""Charts of vibration: operating shape, modal assurance, amplitude over voltage."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sonolube.charts import Axis, Band, Bars, Chart, Line, Panel, Points, Rule
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.measurement.vibration import AmplitudePerVolt, OperatingDeflectionShape
 from sonolube.report.measured.sheet import captioned
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+_MOST_NUMBERED = 12  # points
 
 
 @captioned("Operating shape", "Motion in phase with the whole, scaled to 1, and the phase of each point.")
-def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> "Figure":
+def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> Chart:
     """Operating shape and phase, point by point."""
-    figure, (top, bottom) = subplots(2, 1, figsize=(6.0, 3.8), sharex=True, height_ratios=(2, 1))
-    place = np.arange(1, len(points) + 1)
-    top.plot(place, operating.shape, marker=MARKERS[0])
-    top.axhline(0, color="0.5", linewidth=0.6)
-    bottom.plot(place, (np.degrees(operating.phase) + 90) % 360 - 90, MARKERS[1], color=COLOURS[1], linestyle="none")
-    top.set(ylabel="shape, greatest 1", ylim=(-1.1, 1.1))
-    bottom.set(xlabel="point", ylabel="phase (deg)", ylim=(-100, 280), yticks=[0, 180])
-    if len(points) <= 12:
-        bottom.set_xticks(place)
-    return figure
+    place = np.arange(1.0, len(points) + 1)
+    across = Axis(label="Point", ticks=tuple(place) if place.size <= _MOST_NUMBERED else ())
+    phase = (np.degrees(operating.phase) + 90) % 360 - 90
+    motion = (
+        Line(x=place, y=operating.shape),
+        Points(x=place, y=operating.shape, sources=tuple(points)),
+        Rule(value=0.0, along="y", colour="0.5", dash=0),
+    )
+    panels = (
+        Panel(x=across, y=Axis(label="Shape, greatest 1", lowest=-1.1, highest=1.1), parts=motion),
+        Panel(
+            x=across,
+            y=Axis(label="Phase", unit="deg", lowest=-100.0, highest=280.0, ticks=(0, 180)),
+            parts=(Points(x=place, y=phase, colour=1, marker=1, sources=tuple(points)),),
+        ),
+    )
+    return Chart(panels=panels, size=(6.0, 3.8), heights=(2, 1), shares_x=True)
 
 
 @captioned(
     "Modal assurance with computed modes",
     "Modal assurance criterion of the operating shape with each mode: 1 in proportion, 0 orthogonal.",
 )
-def assurance(assurance_values: Floats) -> "Figure":
+def assurance(assurance_values: Floats) -> Chart:
     """Modal assurance criterion with each mode."""
-    figure, axes = subplots(figsize=(4.2, 2.8))
-    place = np.arange(1, assurance_values.size + 1)
-    axes.bar(place, assurance_values, width=0.6, color=COLOURS[0])
-    axes.set(xlabel="mode", ylabel="modal assurance", ylim=(0, 1.02), xticks=place)
-    return figure
+    place = np.arange(1.0, assurance_values.size + 1)
+    bars = Bars(places=place, lengths=assurance_values, along="y")
+    panel = Panel(
+        x=Axis(label="Mode", ticks=tuple(place)),
+        y=Axis(label="Modal assurance", lowest=0.0, highest=1.02),
+        parts=(bars,),
+    )
+    return Chart(panels=(panel,), size=(4.2, 2.8))
 
 
 @captioned("Amplitude over voltage", "Each recording, and the line through the origin with its 95 % interval.")
-def proportion(volts: Floats, amplitudes: Floats, fit: AmplitudePerVolt) -> "Figure":
-    """Amplitude over voltage with the line through the origin and its interval."""
-    figure, axes = subplots(figsize=(4.4, 3.2))
+def proportion(files: Sequence[str], volts: Floats, amplitudes: Floats, fit: AmplitudePerVolt) -> Chart:
+    """Amplitude over voltage, a file each, with the line through the origin and its interval."""
     line = np.array([0.0, 1.05 * volts.max()])
-    axes.fill_between(
-        line, 1e6 * fit.lower * line, 1e6 * fit.upper * line, color=COLOURS[5], alpha=0.5, linewidth=0, label="95 %"
+    low, middle, high = (1e6 * slope * line for slope in (fit.lower, fit.amplitude_per_volt, fit.upper))
+    parts = (
+        Band(x=line, low=low, high=high, label="95 %", colour=5, opacity=0.5),
+        Line(x=line, y=middle, label="in proportion", weight=0.85),
+        Points(x=volts, y=1e6 * amplitudes, label="recordings", colour=1, marker=1, sources=tuple(files)),
     )
-    axes.plot(line, 1e6 * fit.amplitude_per_volt * line, color=COLOURS[0], linewidth=1.2, label="in proportion")
-    axes.plot(volts, 1e6 * amplitudes, MARKERS[1], color=COLOURS[1], linestyle="none", label="recordings")
-    axes.set(xlabel="voltage, peak to peak (V)", ylabel="amplitude (µm)", xlim=(0, None), ylim=(0, None))
-    axes.legend()
-    return figure
+    panel = Panel(
+        x=Axis(label="Voltage, peak to peak", unit="V", lowest=0.0),
+        y=Axis(label="Amplitude", unit="µm", lowest=0.0),
+        parts=parts,
+    )
+    return Chart(panels=(panel,), size=(4.4, 3.2))

@@ -21,9 +21,8 @@ from sonolube.models.contact import (
 from sonolube.models.friction import dong_2015_half_period_ratio
 from sonolube.models.wear import cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.reproduction.cube import Horn, poisson_friction_ratio, without_yielding
-from sonolube.reproduction.plots import axes_row, draw_printed, line_style, point_style, single_axes
+from sonolube.reproduction.plots import axes_row, draw_measured, draw_printed, line_style, point_style, single_axes
 from sonolube.validation.contacts import Bodies, poisson_contact, wear_contact
-from sonolube.validation.figures import draw_measured
 from sonolube.validation.published_tests import friction_tests
 
 if TYPE_CHECKING:

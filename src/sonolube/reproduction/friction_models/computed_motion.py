@@ -23,9 +23,8 @@ from sonolube.models.contact import GapMotion, decay_length, load_balanced_motio
 from sonolube.models.dynamics import ExponentialGap, contact_motion as motion_of, steady_state, trajectory
 from sonolube.models.friction import FRICTION_MODELS
 from sonolube.reproduction.friction_models.variant_predictions import Predictions
-from sonolube.reproduction.plots import axes_row, point_style
+from sonolube.reproduction.plots import axes_row, draw_measured, point_style
 from sonolube.reproduction.tribometer_rigs import identified_structure
-from sonolube.validation.figures import draw_measured
 from sonolube.validation.published_tests import FrictionTest, friction_tests
 
 if TYPE_CHECKING:

@@ -15,10 +15,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from sonolube.charts import Chart, Line, draw_chart
 from sonolube.checks import Floats
 from sonolube.figure import ReportFigure
 from sonolube.models.contact import decay_length, separation
@@ -29,7 +30,6 @@ from sonolube.reproduction.friction_models.variant_predictions import (
     parameters_text,
     ratio_text,
 )
-from sonolube.reproduction.plots import curve_style
 from sonolube.validation.assessment import ErrorStatistics, InformationCriteria, information_criteria, prediction_errors
 from sonolube.validation.figures import speed_and_amplitude_panels
 from sonolube.validation.fitting import Fit, fit_variant
@@ -37,9 +37,6 @@ from sonolube.validation.free_parameters import IN_PLANE_MOTION, MEMORY_LENGTH, 
 from sonolube.validation.friction_model_variants import asperity_stick_slip, mindlin_stick_slip
 from sonolube.validation.model_variant import ModelVariant
 from sonolube.validation.published_tests import FrictionTest, friction_tests
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 BOTH_TABLES: Final = "AB"
 """Letters of the sets of Tables 2.3 and 4.2."""
@@ -152,7 +149,7 @@ def mechanism_figures() -> Iterator[ReportFigure]:
         f"memory length of Mindlin normal vibration has no effect above {1e3 * speeds_of_no_reduction().max():.0f} "
         "mm/s in Table 4.2; with a fitted one its slope with the amplitude is too shallow. In-plane motion there "
         "steepens it if it is at least half the normal one, a zero error of the string if it is half the friction.",
-        draw=_mechanisms_on_both_tables,
+        draw=lambda: draw_chart(_mechanisms_on_both_tables()),
     )
 
 
@@ -185,20 +182,24 @@ def _with_slack_string(test: FrictionTest, memory_length: float) -> Floats:
     return _with_zero_error(test, memory_length, SLACK if test.set_name in RIGS["power map"] else 0.0)
 
 
-def _mechanisms_on_both_tables() -> "Figure":
-    """Draw the friction ratios of both tables by each mechanism."""
-    figure, speeds, amplitudes = speed_and_amplitude_panels()
+def _mechanisms_on_both_tables() -> Chart:
+    """Friction ratios of both tables by each mechanism."""
+    lines: dict[str, list[Line]] = {"A": [], "B": []}
     for index, mechanism in enumerate(one for one in mechanisms() if one.fit.variant.name in _DRAWN):
         criteria, fit = mechanism.information, mechanism.fit
         assert criteria is not None
         label = f"{fit.variant.description}: k = {criteria.parameter_count}, AICc = {criteria.aicc:.0f}"
-        for axes, letter in ((speeds, "A"), (amplitudes, "B")):
+        for letter, found in lines.items():
             tests = friction_tests(letter)
             x = [1e3 * test.sliding_speed if letter == "A" else 1e6 * test.vibration_amplitude for test in tests]
             ratios = np.array([fit.predict(test) for test in tests], dtype=np.float64)
-            axes.plot(x, ratios, **curve_style(index), ms=4, mfc="white", label=label if letter == "A" else None)
-    figure.legend(loc="outside lower center", ncols=1, title="k parameters fitted to both tables")
-    return figure
+            found.append(Line(x=np.array(x), y=ratios, label=label, colour=index, dash=index, marker=index))
+    panels = speed_and_amplitude_panels(tuple(lines["A"]), tuple(lines["B"]))
+    title = "k parameters fitted to both tables"
+    size = (8.2, 4.4)
+    return Chart(
+        panels=panels, size=size, columns=2, legend="bottom", legend_columns=1, legend_title=title, shares_y=True
+    )
 
 
 _POWER_MAP: Final = "power map"

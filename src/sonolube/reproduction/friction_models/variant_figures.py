@@ -11,7 +11,7 @@ from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
 from sonolube.models import friction
 from sonolube.models.contact import load_balanced_motion, sinusoidal_motion
 from sonolube.reproduction.friction_models.variant_predictions import DEFAULT, reported_fits
-from sonolube.reproduction.plots import line_style, single_axes
+from sonolube.reproduction.plots import draw_measured, line_style, single_axes
 from sonolube.validation.assessment import (
     FITTED_SETS,
     SETS_WITHOUT_POWER_MAP,
@@ -19,7 +19,6 @@ from sonolube.validation.assessment import (
     assess_variant,
     prediction_errors,
 )
-from sonolube.validation.figures import draw_measured
 from sonolube.validation.fitting import Fit, fit_variant, profile_likelihood_interval
 from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
 from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, friction_tests

@@ -27,11 +27,11 @@ from sonolube.validation.comparison import (
     compared_models,
     predict_rig,
 )
-from sonolube.validation.figures import comparison_figures, rig_figure
+from sonolube.validation.figures import comparison_figures, rig_chart
 from sonolube.validation.rig_conditions import vibrated_rig
 from sonolube.validation.run_conditions import RunsTable, run_conditions
 from sonolube.validation.runs_comparison import RunsPrediction, predict_runs
-from sonolube.validation.runs_figures import runs_prediction_figure
+from sonolube.validation.runs_figures import runs_prediction_chart
 from sonolube.validation.tables import comparison_csv, comparison_dataset, parameter_text
 
 if TYPE_CHECKING:
@@ -125,12 +125,12 @@ class ComparisonAnswer(Answer):
         drawings = {}
         if any(one.assessment for one in self.fits):
             every = comparison_figures(lambda: self.fits)
-            drawings = {figure.name: Drawing(draw=figure.draw, caption=figure.caption) for figure in every}
+            drawings = {figure.name: Drawing(chart=figure.chart, caption=figure.caption) for figure in every}
         if self.rig is not None and any(one.friction_ratio is not None for one in self.predictions):
-            drawings["models-on-the-rig"] = Drawing(draw=lambda: rig_figure(self._dataset()))
+            drawings["models-on-the-rig"] = Drawing(chart=lambda: rig_chart(self._dataset()))
         table = self.table
         if table is not None and any(one.rms is not None for one in self.of_runs):
-            drawings["models-on-own-runs"] = Drawing(draw=lambda: runs_prediction_figure(self.of_runs, table))
+            drawings["models-on-own-runs"] = Drawing(chart=lambda: runs_prediction_chart(self.of_runs, table))
         return drawings
 
     def files(self) -> "Mapping[str, str | xr.Dataset]":

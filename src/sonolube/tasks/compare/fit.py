@@ -18,7 +18,7 @@ from sonolube.tasks.task import task
 from sonolube.units import format_si
 from sonolube.validation.comparison import FittedParameter, compared_models
 from sonolube.validation.ranked_models import RankedModel
-from sonolube.validation.runs_figures import runs_fit_figure
+from sonolube.validation.runs_figures import runs_fit_chart
 from sonolube.validation.runs_fit import RunsFit, fit_runs
 from sonolube.validation.runs_tables import runs_fit_dataset
 from sonolube.validation.separating_condition import NextCondition
@@ -113,7 +113,7 @@ class FitAnswer(Answer):
         if not self.fit.models:
             return {}
         caption = _CAPTION.format(runs=self.fit.table.runs)
-        return {self.name: Drawing(draw=lambda: runs_fit_figure(self.fit), caption=caption)}
+        return {self.name: Drawing(chart=lambda: runs_fit_chart(self.fit), caption=caption)}
 
     def files(self) -> Mapping[str, xr.Dataset]:
         """Every ratio, error and parameter as netCDF."""

@@ -15,7 +15,7 @@ from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, optional_rig
 from sonolube.tasks.task import task
 from sonolube.units import format_si
-from sonolube.validation.previous_study_map import StudyPoint, study_map
+from sonolube.validation.previous_study_map import StudyPoint, study_chart
 from sonolube.validation.study_table import studies_of_runs, study_table
 from sonolube.vocabulary import quantity, unit_of
 
@@ -102,7 +102,7 @@ class LiteratureAnswer(Answer):
     def figures(self) -> Mapping[str, Drawing]:
         """Friction reduction of the studies over sliding speed and nominal pressure."""
         point = None if self.outside else self.point
-        return {"map-of-studies": Drawing(draw=lambda: study_map(point, others=self.others))}
+        return {"map-of-studies": Drawing(chart=lambda: study_chart(point, others=self.others))}
 
     def files(self) -> Mapping[str, str]:
         """Points of the package as a table that users extend."""

@@ -12,7 +12,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.fem import Transducer
-from sonolube.models.fem.figures import impedance_figure
+from sonolube.models.fem.figures import impedance_chart
 from sonolube.models.fem.impedance_spectra import (
     SupportedSpectrum,
     coupled_modes_grid,
@@ -171,8 +171,8 @@ class ImpedanceAnswer(Answer):
         """Impedance and motion per volt over frequency."""
         measured = None if self.measured is None else (self.measured.frequency, self.measured.impedance)
         title = self._stem().replace("_", " ")
-        draw = lambda: impedance_figure(self.spectra, title=title, measured=measured)  # noqa: E731
-        return {f"{self._stem()}-impedance": Drawing(draw=draw)}
+        drawing = Drawing(chart=lambda: impedance_chart(self.spectra, title=title, measured=measured))
+        return {f"{self._stem()}-impedance": drawing}
 
     def files(self) -> Mapping[str, str | LabelledArrays]:
         """Table and dataset of each spectrum, and its coupled modes where they are wanted."""

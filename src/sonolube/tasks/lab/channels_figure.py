@@ -1,23 +1,19 @@
-"""Figure of the channels of a run over time, each as the range of its samples."""
+"""Chart of the channels of a run over time, each as the range of its samples."""
 
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
-from sonolube.figure import COLOURS, subplots
+from sonolube.charts import Axis, Chart, Line, Panel, envelope
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
-_POINTS: Final = 1500  # along the axis, more than a page resolves
 _WIDTH: Final = 7.0  # inch
 _HEIGHT: Final = 1.4  # inch, of a channel
 
 
-def channels_figure(recording: "xr.Dataset") -> "Figure":
-    """Figure of all channels of a recording, one below the other.
+def channels_chart(recording: "xr.Dataset") -> Chart:
+    """Chart of all channels of a recording, one below the other.
 
     Parameters
     ----------
@@ -26,19 +22,14 @@ def channels_figure(recording: "xr.Dataset") -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
     """
-    names = list(map(str, recording.data_vars))
-    time = recording["time"].to_numpy()
-    begins = np.unique(np.linspace(0, time.size, min(_POINTS, time.size), endpoint=False).astype(np.int64))
-    figure, grid = subplots(len(names), 1, sharex=True, squeeze=False, figsize=(_WIDTH, 0.6 + _HEIGHT * len(names)))
-    for axes, name in zip(grid[:, 0], names, strict=True):
-        values = recording[name].to_numpy()
-        low, high = np.fmin.reduceat(values, begins), np.fmax.reduceat(values, begins)
-        axes.fill_between(time[begins], low, high, step="post", color=COLOURS[0], linewidth=0.8)
+    panels = []
+    for name in map(str, recording.data_vars):
+        time, values = envelope(recording["time"].to_numpy(), recording[name].to_numpy())
         known = quantities().get(name)
-        symbol = name.replace("_", " ") if known is None else known.meaning.split(",")[0]
-        axes.set_ylabel(f"{symbol}\n[{recording[name].attrs.get('units', '1')}]")
-    grid[-1, 0].set_xlabel("time [s]")
-    figure.align_ylabels()
-    return figure
+        label = name.replace("_", " ") if known is None else known.meaning.split(",")[0]
+        y = Axis(label=label[:1].upper() + label[1:], unit=str(recording[name].attrs.get("units", "1")))
+        line = Line(x=time, y=values, weight=0.6, is_stepped=True)
+        panels.append(Panel(x=Axis(label="Time", unit="s"), y=y, parts=(line,)))
+    return Chart(panels=tuple(panels), size=(_WIDTH, 0.6 + _HEIGHT * len(panels)), shares_x=True)

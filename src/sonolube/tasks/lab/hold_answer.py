@@ -10,8 +10,8 @@ from sonolube.design.control import ControlDesign
 from sonolube.laboratory.closed_loop import (
     HeldFriction,
     HoldMetrics,
+    held_friction_chart,
     held_friction_dataset,
-    held_friction_figure,
     hold_metrics,
 )
 from sonolube.laboratory.records import Run
@@ -112,7 +112,7 @@ class HoldAnswer(Answer):
         if not held.time.size:
             return {}
         caption = f"Friction held at {format_si(held.hold.friction_force, 'N')} by the drive voltage."
-        return {"held-friction": Drawing(draw=lambda: held_friction_figure(held, simulated=simulated), caption=caption)}
+        return {"held-friction": Drawing(chart=lambda: held_friction_chart(held, simulated=simulated), caption=caption)}
 
     def files(self) -> "Mapping[str, xr.Dataset]":
         """Intervals of the controller as netCDF."""

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from sonolube.facts.protocol import Protocol
 from sonolube.laboratory import RunResult, State
-from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_lines, dry_run_sums
+from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_chart, dry_run_lines, dry_run_sums
 from sonolube.laboratory.records import Run
+from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows, Table
@@ -127,6 +128,10 @@ class DryRunAnswer(Answer):
             **si({"duration": self.found.duration}, unit="s"),
             "lines": dry_run_lines(self.found),
         }
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Speed, drive and temperatures over time."""
+        return {"dry-run": Drawing(chart=lambda: dry_run_chart(self.found), forms=())}
 
     def caveats(self) -> Sequence[str]:
         """What may not hold."""

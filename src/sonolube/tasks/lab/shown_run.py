@@ -80,12 +80,12 @@ class ShownRun(Answer):
         if not self.run.recordings:
             return {}
         from sonolube.report import Drawing
-        from sonolube.tasks.lab.channels_figure import channels_figure
+        from sonolube.tasks.lab.channels_figure import channels_chart
 
         title = self.run.summary.title
         caption = f"{title}: the range of the samples of each channel over time."
         name = f"{self.run.folder.resolve().name}-channels"
-        return {name: Drawing(draw=lambda: channels_figure(self.run.dataset()), caption=caption)}
+        return {name: Drawing(chart=lambda: channels_chart(self.run.dataset()), caption=caption)}
 
     def dataset(self) -> "xr.Dataset":
         """Return the recording, where there is one."""

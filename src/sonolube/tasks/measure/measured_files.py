@@ -156,9 +156,7 @@ class MeasuredFiles(Answer):
         """Figures of all sheets by title, with the name of the file where there are several."""
         several = len(self.sheets) > 1
         return {
-            f"{sheet.title}: {figure.title}" if several else figure.title: Drawing(
-                draw=figure.draw, caption=figure.caption, forms=()
-            )
+            f"{sheet.title}: {figure.title}" if several else figure.title: figure.drawing
             for sheet in self.sheets
             for figure in sheet.figures
         }

@@ -148,4 +148,4 @@ class StiffnessAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Spectra with their fitted resonances."""
-        return {self.name: Drawing(draw=self.sheet.figures[0].draw)}
+        return {self.name: Drawing(chart=self.sheet.figures[0].drawing.chart)}
