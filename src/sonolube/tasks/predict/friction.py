@@ -8,9 +8,9 @@ from sonolube.rig import friction_point
 from sonolube.rig.simulation import friction_model_named
 from sonolube.tasks.parameters import Parameter, RigFile, rig_of
 from sonolube.tasks.results.beyond_the_model import Interval, beyond_the_model
-from sonolube.tasks.results.measured import measured_on
 from sonolube.tasks.results.rig_record import RigRecord
 from sonolube.tasks.task import task
+from sonolube.validation.tests_of_rig import measured_on
 
 
 def _described(model: type[FrictionModel]) -> str:

@@ -6,9 +6,9 @@ from sonolube.rig.figures import simulation_figure
 from sonolube.rig.result_datasets import simulation_arrays
 from sonolube.tasks.parameters import RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
-from sonolube.tasks.results.measured import measured_on
 from sonolube.tasks.results.rig_record import RigRecord
 from sonolube.tasks.task import task
+from sonolube.validation.tests_of_rig import measured_on
 
 
 @task

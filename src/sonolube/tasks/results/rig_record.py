@@ -9,8 +9,8 @@ from sonolube.rig import Rig
 from sonolube.rig.datasets import result_quantities, result_texts
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows
-from sonolube.tasks.results.measured import Measurement
 from sonolube.units import format_quantity, format_si
+from sonolube.validation.tests_of_rig import Measurement
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
