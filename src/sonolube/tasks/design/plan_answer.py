@@ -10,7 +10,7 @@ from sonolube.design.test_plan.run_table import has_results, run_table
 from sonolube.facts.protocol import Protocol, protocol_text
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.report.pin_on_disc_sheet import pin_on_disc_checklist
-from sonolube.report.results import test_plan as results
+from sonolube.report.results import plan_of_tests as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows, Table

@@ -19,6 +19,7 @@ from sonolube.models.fem.impedance_spectra import (
     spectrum_table,
     supported_spectra,
 )
+from sonolube.models.fem.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
 from sonolube.rig.datasets import labelled
 from sonolube.rig.labelled_arrays import LabelledArrays
@@ -26,15 +27,7 @@ from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
-from sonolube.tasks.parts.named_parts import (
-    ALL_TRANSDUCERS,
-    PART_WIRING,
-    Axis,
-    longest_axis,
-    named_transducer,
-    part_name,
-    starting_size,
-)
+from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
 from sonolube.units import format_si

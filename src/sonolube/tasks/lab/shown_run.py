@@ -79,8 +79,8 @@ class ShownRun(Answer):
         """Channels over time."""
         if not self.run.recordings:
             return {}
+        from sonolube.laboratory.records.channels_figure import channels_figure
         from sonolube.report import Drawing
-        from sonolube.tasks.lab.channels_figure import channels_figure
 
         title = self.run.summary.title
         caption = f"{title}: the range of the samples of each channel over time."

@@ -8,6 +8,7 @@ from sonolube.prediction.figures import prediction_figure
 from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.report import Drawing
 from sonolube.report.results import prediction as results
+from sonolube.report.results.measured_on_rig import Measurement, measured_on
 from sonolube.rig import Rig
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.tasks.answer import Answer, answer
@@ -15,7 +16,6 @@ from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of, runs_of
 from sonolube.tasks.task import task
 from sonolube.units import format_si
-from sonolube.validation.tests_of_rig import Measurement, measured_on
 
 if TYPE_CHECKING:
     import xarray as xr
