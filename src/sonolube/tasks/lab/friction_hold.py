@@ -10,14 +10,16 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Limits, exact_text
 from sonolube.laboratory import RunControl
 from sonolube.laboratory.closed_loop import FrictionHold, SpeedStep, hold_friction, hold_protocol, require_holdable
+from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import read_run
+from sonolube.laboratory.run_plan import RunPlan, begin_record
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.models.actuator.drive import Drive
 from sonolube.rig import Rig
 from sonolube.tasks.design.friction_target import friction_force
 from sonolube.tasks.lab.hold_answer import HoldAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
-from sonolube.tasks.lab.run_record import ControlDoor, RunPlan, begin_record, device_file, instruments, run_stage
+from sonolube.tasks.lab.run_record import ControlDoor, device_file, run_stage
 from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -107,7 +109,7 @@ def hold(
         force=in_si("friction_limit", friction_limit),
     )
     virtual = virtual_tribometer(known, seed=seed, real_time=real_time) if file is None else None
-    devices = instruments(device_map) if virtual is None else virtual.devices
+    devices = ready_devices(Path(device_map)) if virtual is None else virtual.devices
     require_holdable(wanted, devices)
     plan = RunPlan(
         protocol=hold_protocol(wanted, devices.acquisition.channels),
