@@ -590,7 +590,7 @@ MODES = {
         {"--model": "asperity-stick-slip", "--runs": OWN_RUNS, "--set": "sliding.sliding_speed=50mm/s", "--load": "2N"}
         | AMPLITUDE,
     ),
-    "compare without a rig": Mode("compare", ("--model", "kinematic"), {**LOADED} | AMPLITUDE),
+    "compare without a rig": Mode("compare", ("--model", "kinematic"), VIBRATED),
     "lab run": Mode(
         "lab run",
         ("FOLDER/short.toml", "--rig", str(RIGS / "power_map.toml")),
@@ -652,8 +652,8 @@ MODES = {
     "lab check": Mode(
         "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
     ),
-    "literature": Mode("literature", (RIG,), {**LOADED, "--table": "FOLDER/studies.csv"} | AMPLITUDE),
-    "literature without a rig": Mode("literature", (), {**LOADED} | AMPLITUDE),
+    "literature": Mode("literature", (RIG,), VIBRATED | {"--table": "FOLDER/studies.csv"}),
+    "literature without a rig": Mode("literature", (), VIBRATED),
 }
 
 

@@ -6,9 +6,9 @@ from functools import partial
 from typing import Annotated, Any
 
 from sonolube.models.actuator import CatalogueActuator, catalogue_actuator, catalogue_names
+from sonolube.report.results.facts_dataset import facts_dataset
 from sonolube.tasks.answer import si
 from sonolube.tasks.blocks import Block, Rows, Table
-from sonolube.tasks.lookup.facts_dataset import facts_dataset
 from sonolube.tasks.lookup.listing import Listing
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import task

@@ -14,8 +14,8 @@ from sonolube.facts.materials import (
     material_families,
     material_names,
 )
+from sonolube.report.results.facts_dataset import facts_dataset
 from sonolube.tasks.blocks import Block, Table
-from sonolube.tasks.lookup.facts_dataset import facts_dataset
 from sonolube.tasks.lookup.listing import Listing
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import task
