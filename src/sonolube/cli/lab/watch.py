@@ -17,7 +17,7 @@ from sonolube.interruption import asked_by_signal
 from sonolube.laboratory.records import Observation, RunObserver, run_to_watch
 from sonolube.printable_text import printable
 from sonolube.report.results import observation as results
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.lab.run_answer import SIMULATED
 
@@ -119,24 +119,7 @@ class WatchedRun(Answer):
 
     def object(self) -> dict[str, Any]:
         """Same in SI."""
-        seen = self.seen
-        times = {"protocol_time": seen.protocol_time, "duration": seen.duration, "time_left": seen.time_left}
-        return {
-            "folder": str(seen.folder),
-            "title": seen.known.title,
-            "simulated": bool(seen.known.facts.get("simulated", False)),
-            "outcome": seen.outcome,
-            "reason": seen.reason,
-            "state": seen.state,
-            "step": seen.step,
-            "step_kind": seen.step_kind,
-            **si(times, unit="s"),
-            "means": {name: {"value": value, "unit": unit} for name, (value, unit) in seen.means.items()},
-            "set_points": si(seen.set_points),
-            "trips": list(seen.trips),
-            "gaps": seen.gaps,
-            **si({"silence": seen.silence if seen.is_running else None}, unit="s"),
-        }
+        return results.observation_object(self.seen)
 
     def caveats(self) -> Sequence[str]:
         """A writer that has died, samples that are missing, and a run that writes nothing."""

@@ -1,10 +1,10 @@
 """A run that is being recorded, as it was seen last: lines of text."""
 
-from typing import Final
+from typing import Any, Final
 
 from sonolube.laboratory.records import Observation
 from sonolube.units import format_si
-from sonolube.vocabulary import unit_of
+from sonolube.vocabulary import si, unit_of
 
 _QUIET: Final = 5.0  # s without a block or event that are reported
 _SHOWN: Final = ("friction_force", "normal_load", "temperature", "voltage_peak_to_peak")
@@ -23,6 +23,27 @@ def observation_line(seen: Observation) -> str:
     """
     parts = [seen.state, step_text(seen), time_text(seen), means_text(seen), set_points_text(seen), *warnings(seen)]
     return "; ".join(filter(None, parts))
+
+
+def observation_object(seen: Observation) -> dict[str, Any]:
+    """State, step, times, means, set points and limits of a look at a run, in SI."""
+    times = {"protocol_time": seen.protocol_time, "duration": seen.duration, "time_left": seen.time_left}
+    return {
+        "folder": str(seen.folder),
+        "title": seen.known.title,
+        "simulated": bool(seen.known.facts.get("simulated", False)),
+        "outcome": seen.outcome,
+        "reason": seen.reason,
+        "state": seen.state,
+        "step": seen.step,
+        "step_kind": seen.step_kind,
+        **si(times, unit="s"),
+        "means": {name: {"value": value, "unit": unit} for name, (value, unit) in seen.means.items()},
+        "set_points": si(seen.set_points),
+        "trips": list(seen.trips),
+        "gaps": seen.gaps,
+        **si({"silence": seen.silence if seen.is_running else None}, unit="s"),
+    }
 
 
 def step_text(seen: Observation) -> str:
