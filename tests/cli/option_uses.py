@@ -173,11 +173,9 @@ MODES = {
     "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}, ("--no-interval",)),
     "wear": Mode("wear", (RIG,), VIBRATED),
     "simulate": Mode("simulate", (RIG,), VIBRATED),
-    "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", "--set": "contact.normal_load=2N"}),
+    "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", **LOADED}),
     "transient": Mode(
-        "transient",
-        (RIG, "--duration", "0.02s"),
-        {"--duration": "0.03s", "--amplitude": "computed", "--set": "contact.normal_load=2N"},
+        "transient", (RIG, "--duration", "0.02s"), {"--duration": "0.03s", "--amplitude": "computed", **LOADED}
     ),
     "thermal": Mode(
         "thermal",
@@ -194,6 +192,7 @@ MODES = {
             "--flash-model": "tian_kennedy_1994",
             "--amplitude": "per-volt",
             "--set": "contact.normal_load=2N",
+            "--load": "2N",
         },
     ),
     "regime": Mode(
@@ -207,6 +206,7 @@ MODES = {
             "--disc": "m50",
             "--amplitude": "per-volt",
             "--set": "contact.normal_load=2N",
+            "--load": "2N",
         },
     ),
     "regime with wear": Mode(
@@ -319,6 +319,7 @@ MODES = {
             "--model": "kinematic",
             "--amplitude": "computed",
             "--set": "contact.roughness.rms_height=3um",
+            "--load": "2N",
         },
     ),
     "map": Mode(
@@ -381,6 +382,7 @@ MODES = {
             "--quality": "200",
             "--source-resistance": "50ohm",
             "--set": "sliding.sliding_speed=30mm/s",
+            "--load": "2N",
         },
     ),
     "optimise masses": Mode(
@@ -595,10 +597,11 @@ MODES = {
             "--runs": OWN_RUNS,
             "--mapping": "FOLDER/halved.toml",
             "--set": "sliding.sliding_speed=50mm/s",
+            "--load": "2N",
         }
         | AMPLITUDE,
     ),
-    "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "compare without a rig": Mode("compare", ("--model", "kinematic"), VIBRATED),
     "lab run": Mode(
         "lab run",
         ("FOLDER/short.toml", "--rig", str(RIGS / "power_map.toml")),
@@ -661,13 +664,11 @@ MODES = {
         "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
     ),
     "mapping": Mode("mapping", (OWN_RUNS,), {"--column": "friction_force [N]=-"}),
-    "literature": Mode(
-        "literature", (RIG,), {"--set": "contact.normal_load=2N", "--table": "FOLDER/studies.csv"} | AMPLITUDE
-    ),
+    "literature": Mode("literature", (RIG,), VIBRATED | {"--table": "FOLDER/studies.csv"}),
     "literature with a table": Mode(
         "literature", ("--table", "FOLDER/studies.csv"), {"--mapping": "FOLDER/reduced.toml"}
     ),
-    "literature without a rig": Mode("literature", (), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "literature without a rig": Mode("literature", (), VIBRATED),
 }
 
 
@@ -751,9 +752,3 @@ def write_inputs(place: Path) -> None:
 
 def _table(path: Path, heads: str, *columns: "np.ndarray[Any, np.dtype[np.float64]]") -> None:
     np.savetxt(path, np.stack(columns, 1), delimiter=",", header=heads, comments="", fmt="%.9g")
-
-
-_LOADED = ("response", "transient", "thermal", "regime", "optimise", "compare", "fit", "literature")
-for _mode in MODES.values():  # the load is an entry of every rig file
-    if _mode.command in _LOADED and "--set" in _mode.values:
-        object.__setattr__(_mode, "values", {**_mode.values, "--load": "2N"})

@@ -13,12 +13,13 @@ from sonolube.facts import materials
 from sonolube.facts.materials import Material
 from sonolube.models.fem import generate_mesh, medium_from_material
 from sonolube.models.fem.figures import mode_figure, shaped_surface
+from sonolube.models.fem.part_modes import longest_axis
 from sonolube.report import Drawing
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
-from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, longest_axis, part_name, step_part
+from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.units import format_si, to_si
