@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.maps import MAP_LAYOUTS, panels_text, same_panels
+from sonolube.design.map_layouts import map_layout, panels_text, same_panels
 from sonolube.extras import missing_package
+from sonolube.rig import AMPLITUDE, VOLTAGE
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ _AXES = {
     "actuator_power": (1.0, "Power of the amplifier [W]"),
     "nominal_pressure": (1e-6, "Nominal stress [MPa]"),
     "frequency": (1e-3, "Drive frequency [kHz]"),
-    "voltage_peak_to_peak": (1.0, "Voltage, peak to peak [V]"),
+    **{each.name: (each.axis_scale, each.axis_label) for each in (VOLTAGE, AMPLITUDE)},
 }
 
 
@@ -49,7 +50,7 @@ def map_figure(computed: "xr.Dataset", *, measured: "xr.Dataset | None" = None) 
     """
     from matplotlib.figure import Figure
 
-    x_name, y_name, panel = MAP_LAYOUTS[computed.attrs["map"]]
+    x_name, y_name, panel = map_layout(computed)
     parts, panel = _panels(computed, panel)
     columns = _columns(len(parts))
     rows = -(-len(parts) // columns)
@@ -101,7 +102,7 @@ def measured_map_figure(interpolated: "xr.Dataset", runs: "xr.Dataset") -> "Figu
     """
     from matplotlib.figure import Figure
 
-    x_name, y_name, _ = MAP_LAYOUTS[interpolated.attrs["map"]]
+    x_name, y_name, _ = map_layout(interpolated)
     x, y, reduction = _surface(interpolated, x_name, y_name)
     uncertainty = 100 * interpolated["friction_reduction_uncertainty"].transpose(
         interpolated[y_name].dims[0], interpolated[x_name].dims[0]
@@ -149,7 +150,7 @@ def map_page(computed: "xr.Dataset") -> str:
         from plotly.subplots import make_subplots
     except ImportError:
         raise missing_package("web", remedy="take PNG or PDF") from None
-    x_name, y_name, panel = MAP_LAYOUTS[computed.attrs["map"]]
+    x_name, y_name, panel = map_layout(computed)
     parts, panel = _panels(computed, panel)
     columns = _columns(len(parts))
     titles = None if panel is None else [_panel_title(part, panel) for part in parts]
@@ -254,7 +255,9 @@ def _surface(part: "xr.Dataset", x_name: str, y_name: str) -> tuple[Floats, Floa
 
 
 def _panel_title(part: "xr.Dataset", panel: str) -> str:
-    """Voltage and power, or load and stress, of a panel."""
+    """Voltage and power, amplitude, or load and stress, of a panel."""
+    if panel == AMPLITUDE.name:
+        return f"amplitude {AMPLITUDE.text(float(part[panel]))}"
     if panel == "voltage_peak_to_peak":
         volts, watts = float(part[panel]), float(part["actuator_power"])
         return f"{format_si(volts, 'V')}, {format_si(watts, 'W')}"

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.design.gaussian_process import FEWEST_RUNS, gaussian_process_map
-from sonolube.design.maps import MAP_LAYOUTS
+from sonolube.design.map_layouts import MAP_LAYOUTS, map_layout
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.run_selection import setting, with_columns
-from sonolube.rig import Rig
+from sonolube.rig import VOLTAGE, CommandedQuantity, Rig
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ _POINTS = 61  # of the interpolated map along each axis
 _UNCERTAINTY = "friction_reduction_uncertainty"
 
 
-def require_mappable(runs: "xr.Dataset", *, kind: str) -> None:
+def require_mappable(runs: "xr.Dataset", *, kind: str, commanded: CommandedQuantity) -> None:
     """Raise if measured runs cannot be drawn on a kind of map.
 
     Parameters
@@ -30,6 +30,8 @@ def require_mappable(runs: "xr.Dataset", *, kind: str) -> None:
         Over `run`, as `read_runs` returns them.
     kind : str
         Key of `MAP_LAYOUTS`, such as "velocity-power".
+    commanded : CommandedQuantity
+        Of the rig of the map.
 
     Raises
     ------
@@ -37,6 +39,7 @@ def require_mappable(runs: "xr.Dataset", *, kind: str) -> None:
         If a column of an axis is missing, or the runs are of several panels.
     """
     across, up, panel = MAP_LAYOUTS[kind]
+    panel = commanded.name if panel == VOLTAGE.name else panel
     for axis in (across, up):
         if axis not in runs and _STAND_INS.get(axis) not in runs and axis not in _BY_THE_RIG:
             raise InvalidInput(f"measured runs need a column {axis} for a {kind} map")
@@ -67,7 +70,7 @@ def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["
     InvalidInput
         If no run has a place.
     """
-    across, up, _ = MAP_LAYOUTS[computed.attrs["map"]]
+    across, up, _ = map_layout(computed)
     if up == "actuator_power":
         voltage = setting(runs, "voltage_peak_to_peak", np.nan)
         power = np.interp(voltage, computed["voltage_peak_to_peak"], computed[up], left=np.nan, right=np.nan)

@@ -1,4 +1,4 @@
-"""Figures of parametric studies over voltage, speed, frequency, waveform and load."""
+"""Figures of parametric studies over voltage or amplitude, speed, frequency, waveform and load."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
@@ -8,6 +8,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS
+from sonolube.rig.commanded_quantity import CommandedQuantity, quantity_of_axis
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -15,31 +16,32 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_PERIODS = 4  # voltages of which a period is drawn
+_PERIODS = 4  # voltages or amplitudes of which a period is drawn
 _RATIO = "Friction ratio"
 
 
-def voltage_figure(study: "xr.Dataset") -> "Figure":
-    """Return displacement and normal force over a period, friction ratio and amplitude over voltage."""
-    figure, ((period, force), (ratio, amplitude)) = _panels(2, 2, size=(7.2, 5.6))
-    volts = study["voltage_peak_to_peak"].values
-    shown = np.unique(np.linspace(0, volts.size - 1, _PERIODS + 1).astype(int)[1:])
+def command_figure(study: "xr.Dataset") -> "Figure":
+    """Return displacement and normal force over a period, friction ratio and amplitude over voltage or amplitude."""
+    figure, ((period, force), (ratio, response)) = _panels(2, 2, size=(7.2, 5.6))
+    quantity, levels = _command(study)
+    shown = np.unique(np.linspace(0, levels.size - 1, _PERIODS + 1).astype(int)[1:])
     for index, point in enumerate(shown):
-        label = format_si(float(volts[point]), "V")
+        label = format_si(float(levels[point]), quantity.unit)
         turns, x = _whole_period(study["displacement"].values[point])
         _, f = _whole_period(study["normal_force"].values[point])
         period.plot(turns, 1e6 * x, linestyle=LINES[index], color=COLOURS[index])
         force.plot(turns, f, linestyle=LINES[index], color=COLOURS[index], label=label)
     period.set(xlabel="Time over the period", ylabel="Tip displacement [µm]")
     force.set(xlabel="Time over the period", ylabel="Normal contact force [N]")
-    force.legend(loc="upper left", title="peak to peak", title_fontsize=8)
-    ratio.plot(volts, study["friction_ratio"], color=COLOURS[0])
-    ratio.set(xlabel="Voltage, peak to peak [V]", ylabel=_RATIO)
+    force.legend(loc="upper left", title=quantity.qualifier or quantity.word, title_fontsize=8)
+    across = quantity.axis_scale * levels
+    ratio.plot(across, study["friction_ratio"], color=COLOURS[0])
+    ratio.set(xlabel=quantity.axis_label, ylabel=_RATIO)
     ratio.set_ylim(bottom=0)
-    amplitude.plot(volts, 1e6 * study["vibration_amplitude"], color=COLOURS[0], label="amplitude")
-    amplitude.plot(volts, 1e6 * study["mean_displacement"], LINES[1], color=COLOURS[1], label="rise of the mean")
-    amplitude.set(xlabel="Voltage, peak to peak [V]", ylabel="Vibration of the tip [µm]")
-    amplitude.legend(loc="upper left")
+    response.plot(across, 1e6 * study["vibration_amplitude"], color=COLOURS[0], label="amplitude")
+    response.plot(across, 1e6 * study["mean_displacement"], LINES[1], color=COLOURS[1], label="rise of the mean")
+    response.set(xlabel=quantity.axis_label, ylabel="Vibration of the tip [µm]")
+    response.legend(loc="upper left")
     return figure
 
 
@@ -53,7 +55,8 @@ def speed_figure(study: "xr.Dataset") -> "Figure":
     over_speed.set(xscale="log", xlabel="Sliding speed [m/s]", ylabel=_RATIO)
     over_speed.set_ylim(bottom=0)
     over_ratio.set(xscale="log", xlabel="Sliding speed over peak vibration velocity")
-    over_speed.legend(loc="upper left", title="peak to peak", title_fontsize=8)
+    quantity, _ = _command(study)
+    over_speed.legend(loc="upper left", title=quantity.qualifier or quantity.word, title_fontsize=8)
     return figure
 
 
@@ -116,11 +119,15 @@ def waveform_figure(study: "xr.Dataset") -> "Figure":
 
 
 def load_figure(study: "xr.Dataset") -> "Figure":
-    """Return friction reduction and the arm's natural frequency over normal load."""
-    figure, ((reduction, arm),) = _panels(1, 2, size=(7.2, 3.3))
+    """Return friction reduction and, of a structure, the arm's natural frequency over normal load."""
+    has_arm = "natural_frequency" in study
+    figure, (panels,) = _panels(1, 2 if has_arm else 1, size=(7.2, 3.3) if has_arm else (4.0, 3.3))
     loads = study["normal_load"].values
-    reduction.plot(loads, 100 * study["friction_reduction"], color=COLOURS[0])
-    reduction.set(xlabel="Normal load [N]", ylabel="Friction reduction [%]", ylim=(0, 100))
+    panels[0].plot(loads, 100 * study["friction_reduction"], color=COLOURS[0])
+    panels[0].set(xlabel="Normal load [N]", ylabel="Friction reduction [%]", ylim=(0, 100))
+    if not has_arm:
+        return figure
+    arm = panels[1]
     arm.plot(loads, study["natural_frequency"], color=COLOURS[1])
     arm.set(xlabel="Normal load [N]", ylabel="Natural frequency of the arm [Hz]")
     return figure
@@ -128,7 +135,8 @@ def load_figure(study: "xr.Dataset") -> "Figure":
 
 STUDY_FIGURES: Mapping[str, Callable[["xr.Dataset"], "Figure"]] = MappingProxyType(
     {
-        "voltage": voltage_figure,
+        "voltage": command_figure,
+        "amplitude": command_figure,
         "speed": speed_figure,
         "frequency": frequency_figure,
         "power": power_figure,
@@ -146,8 +154,15 @@ def _panels(rows: int, columns: int, *, size: tuple[float, float], **shared: boo
     return figure, figure.subplots(rows, columns, squeeze=False, **shared).tolist()  # type: ignore[call-overload]
 
 
+def _command(study: "xr.Dataset") -> tuple[CommandedQuantity, Floats]:
+    """Quantity that sets the vibration of a study, with its values."""
+    quantity = quantity_of_axis(study.dims)
+    return quantity, study[quantity.name].values
+
+
 def _curves(study: "xr.Dataset") -> "list[xr.Dataset]":
-    return [study.isel(voltage_peak_to_peak=index) for index in range(study.sizes["voltage_peak_to_peak"])]
+    quantity, levels = _command(study)
+    return [study.isel({quantity.name: index}) for index in range(levels.size)]
 
 
 def _style(index: int) -> dict[str, Any]:
@@ -155,7 +170,8 @@ def _style(index: int) -> dict[str, Any]:
 
 
 def _label(curve: "xr.Dataset") -> str:
-    return format_si(float(curve["voltage_peak_to_peak"]), "V")
+    quantity = quantity_of_axis(curve.coords)
+    return format_si(float(curve[quantity.name]), quantity.unit)
 
 
 def _whole_period(values: Floats) -> tuple[Floats, Floats]:

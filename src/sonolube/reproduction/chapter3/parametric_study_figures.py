@@ -12,7 +12,7 @@ from sonolube.reproduction.chapter3 import tribometer_response
 from sonolube.reproduction.chapter3.cube_rows import LOST_CONTACT
 from sonolube.reproduction.plots import axes_row, line_style
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, tribometer_rig
-from sonolube.rig.study_figures import frequency_figure, power_figure, speed_figure, voltage_figure, waveform_figure
+from sonolube.rig.study_figures import command_figure, frequency_figure, power_figure, speed_figure, waveform_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,7 +88,7 @@ def _start_up() -> "Figure":
 
 def _voltage() -> "Figure":
     """Draw the response over voltage with the statements of D 3.3.5."""
-    figure = voltage_figure(tribometer_response.response_over_voltage())
+    figure = command_figure(tribometer_response.response_over_voltage())
     period, _, ratio, _ = figure.axes
     lost = float(decay_length(tribometer_rig().contact)) * np.log(1 / LOST_CONTACT)
     for index, (height, label) in enumerate(
