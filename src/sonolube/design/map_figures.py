@@ -257,7 +257,7 @@ def _surface(part: "xr.Dataset", x_name: str, y_name: str) -> tuple[Floats, Floa
 def _panel_title(part: "xr.Dataset", panel: str) -> str:
     """Voltage and power, amplitude, or load and stress, of a panel."""
     if panel == AMPLITUDE.name:
-        return f"amplitude {AMPLITUDE.text(float(part[panel]))}"
+        return f"amplitude {format_si(float(part[panel]), AMPLITUDE.unit)}"
     if panel == "voltage_peak_to_peak":
         volts, watts = float(part[panel]), float(part["actuator_power"])
         return f"{format_si(volts, 'V')}, {format_si(watts, 'W')}"

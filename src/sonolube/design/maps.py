@@ -21,10 +21,10 @@ from sonolube.rig import (
     CommandedQuantity,
     Rig,
     amplitude_labels,
-    command_settings,
     commanded_quantity,
     gridded,
-    own_command,
+    level_settings,
+    own_level,
     point_batch,
     quantity_of_axis,
     require_commanded,
@@ -293,7 +293,7 @@ def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "
                 raise InvalidInput(f"{name} must increase from value to value, got {lower:g} before {upper:g}")
     shape = tuple(array.size for array in values.values())
     mesh: dict[str, Any] = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
-    settings = command_settings(rig, mesh.pop(quantity.name))
+    settings = level_settings(rig, mesh.pop(quantity.name))
     points = point_batch(rig, **mesh, **settings, backend=backend)
     left_out = (*values, "actuator_power") if quantity is VOLTAGE else (*values, *POWERS)
     columns: dict[str, NDArray[Any]] = {
@@ -380,7 +380,7 @@ def default_axes(rig: Rig, *, kind: str) -> dict[str, Floats]:
     InvalidInput
         If the map is over frequency and the rig has none.
     """
-    quantity, own = commanded_quantity(rig), own_command(rig)
+    quantity, own = commanded_quantity(rig), own_level(rig)
     wanted = inspect.signature(MAPS[kind]).parameters
     load_is_panel = kind != "velocity-stress"
     shares = np.linspace(0.02, 1, 50) if load_is_panel else np.linspace(0.2, 1, 5)

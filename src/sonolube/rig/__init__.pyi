@@ -8,9 +8,9 @@ from .commanded_quantity import (
     AMPLITUDE as AMPLITUDE,
     VOLTAGE as VOLTAGE,
     CommandedQuantity as CommandedQuantity,
-    command_settings as command_settings,
     commanded_quantity as commanded_quantity,
-    own_command as own_command,
+    level_settings as level_settings,
+    own_level as own_level,
     quantity_of_axis as quantity_of_axis,
     require_commanded as require_commanded,
 )

@@ -29,7 +29,7 @@ class CommandedQuantity:
     unit : str
         SI unit.
     qualifier : str
-        What stands behind a value with its unit, such as "peak to peak"; empty where nothing does.
+        Extent that is meant: "peak to peak" or "zero to peak".
     axis_label : str
         Label of an axis of a figure, with its unit.
     axis_scale : float
@@ -45,8 +45,8 @@ class CommandedQuantity:
     axis_scale: float
 
     def text(self, value: float, *, digits: int = 3) -> str:
-        """Value with its unit, such as "28 V peak to peak" or "3 um"."""
-        return f"{format_si(value, self.unit, digits=digits)} {self.qualifier}".rstrip()
+        """Value with its unit, such as "28 V peak to peak"."""
+        return f"{format_si(value, self.unit, digits=digits)} {self.qualifier}"
 
 
 VOLTAGE: Final = CommandedQuantity(
@@ -65,7 +65,7 @@ AMPLITUDE: Final = CommandedQuantity(
     key="vibration.vibration_amplitude",
     word="amplitude",
     unit="m",
-    qualifier="",
+    qualifier="zero to peak",
     axis_label="Vibration amplitude [µm]",
     axis_scale=1e6,
 )
@@ -112,7 +112,7 @@ def quantity_of_axis(names: Collection[Hashable]) -> CommandedQuantity:
     return AMPLITUDE if AMPLITUDE.name in names else VOLTAGE
 
 
-def own_command(rig: Rig) -> float:
+def own_level(rig: Rig) -> float:
     """Voltage of a rig, or its amplitude where it has no voltage. [V or m]
 
     Parameters
@@ -133,13 +133,13 @@ def own_command(rig: Rig) -> float:
     return resolved_vibration(rig).sine_amplitude or 0.0
 
 
-def command_settings(rig: Rig, command: ArrayLike) -> dict[str, Any]:
+def level_settings(rig: Rig, level: ArrayLike) -> dict[str, Any]:
     """Settings of operating points for values of the commanded quantity, by name.
 
     Parameters
     ----------
     rig : Rig
-    command : array_like, any shape
+    level : array_like, any shape
         Voltages, whose offset is in the rig's own ratio to them, or amplitudes. [V or m]
 
     Returns
@@ -153,7 +153,7 @@ def command_settings(rig: Rig, command: ArrayLike) -> dict[str, Any]:
         If a value is negative or not finite, or the rig has no amplitude.
     """
     quantity = commanded_quantity(rig)
-    values = require_non_negative(**{quantity.name: command})
+    values = require_non_negative(**{quantity.name: level})
     if quantity is AMPLITUDE:
         return {quantity.name: values}
     return {quantity.name: values, "voltage_offset": _offset(rig, values)}

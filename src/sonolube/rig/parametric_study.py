@@ -16,9 +16,9 @@ from sonolube.rig.commanded_quantity import (
     POWERS,
     VOLTAGE,
     CommandedQuantity,
-    command_settings,
     commanded_quantity,
-    own_command,
+    level_settings,
+    own_level,
     require_commanded,
 )
 from sonolube.rig.datasets import gridded
@@ -68,7 +68,7 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
     ----------
     .. [1] D 3.3.5, figure 3.15.
     """
-    return _command_study(rig, VOLTAGE, voltage_peak_to_peak, "over drive voltage", advance)
+    return _level_study(rig, VOLTAGE, voltage_peak_to_peak, "over drive voltage", advance)
 
 
 def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
@@ -97,7 +97,7 @@ def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advanc
     --------
     voltage_study
     """
-    return _command_study(rig, AMPLITUDE, vibration_amplitude, "over vibration amplitude", advance)
+    return _level_study(rig, AMPLITUDE, vibration_amplitude, "over vibration amplitude", advance)
 
 
 def speed_study(
@@ -138,11 +138,11 @@ def speed_study(
     ----------
     .. [1] D 3.50, figure 3.16.
     """
-    quantity, command = _curves(rig, voltage_peak_to_peak, vibration_amplitude)
+    quantity, level = _curves(rig, voltage_peak_to_peak, vibration_amplitude)
     speeds = np.atleast_1d(require_positive(sliding_speed=sliding_speed))
-    points = _by_command(rig, command, sliding_speed=speeds, advance=advance)
+    points = _by_level(rig, level, sliding_speed=speeds, advance=advance)
     found = _values(points) | {"velocity_ratio": speeds / points.vibration_velocity}
-    return _study(rig, "over sliding speed", found, **{quantity.name: command, "sliding_speed": speeds})
+    return _study(rig, "over sliding speed", found, **{quantity.name: level, "sliding_speed": speeds})
 
 
 def frequency_study(
@@ -178,7 +178,7 @@ def frequency_study(
     require_drive(rig)
     _, volts = _curves(rig, voltage_peak_to_peak, None)
     f = np.atleast_1d(require_positive(frequency=frequency))
-    points = _by_command(rig, volts, frequency=f, advance=advance)
+    points = _by_level(rig, volts, frequency=f, advance=advance)
     return _study(rig, "over drive frequency", _values(points), voltage_peak_to_peak=volts, frequency=f)
 
 
@@ -260,22 +260,22 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     return _study(rig, "over normal load", found, normal_load=loads)
 
 
-def _command_study(
-    rig: Rig, quantity: CommandedQuantity, command: ArrayLike, title: str, advance: Advance | None
+def _level_study(
+    rig: Rig, quantity: CommandedQuantity, level: ArrayLike, title: str, advance: Advance | None
 ) -> "xr.Dataset":
     """Points over voltage or amplitude, with one period of the contact at each."""
     require_commanded(rig, quantity)
     driven = resolved_vibration(rig).driven
-    levels = np.atleast_1d(require_non_negative(**{quantity.name: command}))
-    points = operating_points(driven or rig, **command_settings(rig, levels), advance=advance)
+    levels = np.atleast_1d(require_non_negative(**{quantity.name: level}))
+    points = operating_points(driven or rig, **level_settings(rig, levels), advance=advance)
     displacement, normal_force = _sine_periods(rig, points) if driven is None else _computed_periods(driven, levels)
     found = _values(points) | {"displacement": displacement, "normal_force": normal_force}
     return _study(driven or rig, title, found, **{quantity.name: levels, "phase": _PHASE})
 
 
-def _by_command(rig: Rig, command: Floats, **others: Any) -> OperatingPoints:
+def _by_level(rig: Rig, level: Floats, **others: Any) -> OperatingPoints:
     """Points over voltage or amplitude, a row each, and over another condition."""
-    return operating_points(rig, **command_settings(rig, command[:, np.newaxis]), **others)
+    return operating_points(rig, **level_settings(rig, level[:, np.newaxis]), **others)
 
 
 def _values(points: OperatingPoints) -> dict[str, NDArray[Any]]:
@@ -300,12 +300,12 @@ def _curves(rig: Rig, volts: ArrayLike | None, amplitudes: ArrayLike | None) -> 
             require_commanded(rig, quantity)
             return quantity, np.atleast_1d(require_positive(**{quantity.name: given}))
     own = commanded_quantity(rig)
-    return own, np.atleast_1d(require_positive(**{own.name: own_command(rig)}))
+    return own, np.atleast_1d(require_positive(**{own.name: own_level(rig)}))
 
 
 def _computed_periods(rig: DrivenRig, volts: Floats) -> tuple[Floats, Floats]:
     """Return displacement and normal force of the contact over a period at each voltage; NaN where not converged."""
-    states = steady_states(rig, **command_settings(rig, volts))
+    states = steady_states(rig, **level_settings(rig, volts))
     displacement, normal_force = np.full((2, volts.size, _PHASES), np.nan)
     for point in np.flatnonzero(states.status != Status.NOT_CONVERGED):
         period = contact_motion(states, int(point), samples=_PHASES)

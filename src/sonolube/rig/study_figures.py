@@ -23,7 +23,7 @@ _RATIO = "Friction ratio"
 def command_figure(study: "xr.Dataset") -> "Figure":
     """Return displacement and normal force over a period, friction ratio and amplitude over voltage or amplitude."""
     figure, ((period, force), (ratio, response)) = _panels(2, 2, size=(7.2, 5.6))
-    quantity, levels = _command(study)
+    quantity, levels = _level(study)
     shown = np.unique(np.linspace(0, levels.size - 1, _PERIODS + 1).astype(int)[1:])
     for index, point in enumerate(shown):
         label = format_si(float(levels[point]), quantity.unit)
@@ -33,7 +33,7 @@ def command_figure(study: "xr.Dataset") -> "Figure":
         force.plot(turns, f, linestyle=LINES[index], color=COLOURS[index], label=label)
     period.set(xlabel="Time over the period", ylabel="Tip displacement [µm]")
     force.set(xlabel="Time over the period", ylabel="Normal contact force [N]")
-    force.legend(loc="upper left", title=quantity.qualifier or quantity.word, title_fontsize=8)
+    force.legend(loc="upper left", title=quantity.qualifier, title_fontsize=8)
     across = quantity.axis_scale * levels
     ratio.plot(across, study["friction_ratio"], color=COLOURS[0])
     ratio.set(xlabel=quantity.axis_label, ylabel=_RATIO)
@@ -55,8 +55,8 @@ def speed_figure(study: "xr.Dataset") -> "Figure":
     over_speed.set(xscale="log", xlabel="Sliding speed [m/s]", ylabel=_RATIO)
     over_speed.set_ylim(bottom=0)
     over_ratio.set(xscale="log", xlabel="Sliding speed over peak vibration velocity")
-    quantity, _ = _command(study)
-    over_speed.legend(loc="upper left", title=quantity.qualifier or quantity.word, title_fontsize=8)
+    quantity, _ = _level(study)
+    over_speed.legend(loc="upper left", title=quantity.qualifier, title_fontsize=8)
     return figure
 
 
@@ -154,14 +154,14 @@ def _panels(rows: int, columns: int, *, size: tuple[float, float], **shared: boo
     return figure, figure.subplots(rows, columns, squeeze=False, **shared).tolist()  # type: ignore[call-overload]
 
 
-def _command(study: "xr.Dataset") -> tuple[CommandedQuantity, Floats]:
+def _level(study: "xr.Dataset") -> tuple[CommandedQuantity, Floats]:
     """Quantity that sets the vibration of a study, with its values."""
     quantity = quantity_of_axis(study.dims)
     return quantity, study[quantity.name].values
 
 
 def _curves(study: "xr.Dataset") -> "list[xr.Dataset]":
-    quantity, levels = _command(study)
+    quantity, levels = _level(study)
     return [study.isel({quantity.name: index}) for index in range(levels.size)]
 
 

@@ -10,8 +10,8 @@ from sonolube.design.control import (
     FrictionCharacteristic,
     computed_characteristic,
     efficiency_characteristic,
-    friction_at_voltage,
-    voltage_for_friction,
+    friction_at_level,
+    level_for_friction,
 )
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.facts.metrics import EfficiencyLine, efficiency_coefficient
@@ -26,13 +26,13 @@ LINE = FrictionCharacteristic(voltage_peak_to_peak=np.array([0.0, 50.0]), fricti
 
 @given(force=st.floats(0.5, 2.0))
 def test_the_inverse_of_a_characteristic_restores_the_force(force: float) -> None:
-    volts = voltage_for_friction(LINE, friction_force=force)
-    assert friction_at_voltage(LINE, voltage_peak_to_peak=volts) == approx(force)
+    volts = level_for_friction(LINE, friction_force=force)
+    assert friction_at_level(LINE, voltage_peak_to_peak=volts) == approx(force)
 
 
 def test_friction_out_of_reach_is_refused_with_the_attainable_range() -> None:
     with raises(OutsideRange, match=r"between 0\.5 N, at 50 V, and 2 N without vibration, got 0\.1 N"):
-        voltage_for_friction(LINE, friction_force=0.1)
+        level_for_friction(LINE, friction_force=0.1)
 
 
 def test_a_characteristic_whose_forces_do_not_decrease_is_refused() -> None:

@@ -21,7 +21,7 @@ from sonolube.design.control import (
     Process,
     computed_characteristic,
     design_control,
-    friction_at_voltage,
+    friction_at_level,
     stability_margins,
     tuned_controller,
 )
@@ -57,7 +57,7 @@ class Plant:
 
     def friction(self, volts: Floats, turns: float) -> Floats:
         found = self.slow if turns < 0.17 else self.fast  # 0.111 and 0.222 turns a second
-        return friction_at_voltage(found, voltage_peak_to_peak=volts)
+        return friction_at_level(found, voltage_peak_to_peak=volts)
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +97,7 @@ def hold(of: FrictionController, **changes: Any) -> FrictionHold:
 
 
 def straight(volts: Floats, turns: float) -> Floats:
-    return friction_at_voltage(LINE, voltage_peak_to_peak=volts)
+    return friction_at_level(LINE, voltage_peak_to_peak=volts)
 
 
 @pytest.fixture(scope="module")

@@ -43,7 +43,7 @@ def held_friction_figure(record: HeldFriction, *, simulated: bool) -> "Figure":
     friction.set(ylabel="Friction force [N]", ylim=(0, 1.05 * friction.get_ylim()[1]))
     friction.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, borderaxespad=0.2)
     drive.step(time, record.voltage_peak_to_peak, where="post", color=COLOURS[1])
-    highest = hold.controller.voltage_maximum
+    highest = hold.controller.level_maximum
     drive.axhline(highest, color="0.45", linestyle="-.", linewidth=1, label="highest of the controller")
     drive.set(ylabel="Drive, peak\nto peak [V]", ylim=(0, 1.35 * highest))
     drive.legend(loc="upper left")

@@ -1,4 +1,4 @@
-"""Parametric study of `sweep --of`: friction over voltage, amplitude, speed, frequency, waveform or load, or its power."""
+"""Parametric study of `sweep --of`: friction over voltage, amplitude, speed, frequency, waveform or load, and power."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -261,7 +261,7 @@ def _present_ratio(rig: Rig) -> float:
     return float(own.friction_ratio)
 
 
-def _command_rows(study: "xr.Dataset") -> Named:
+def _level_rows(study: "xr.Dataset") -> Named:
     """Least friction, voltage or amplitude at which contact is lost, and power of the amplifier where it is known."""
     quantity = quantity_of_axis(study.dims)
     for best in _best_points(study):
@@ -333,8 +333,8 @@ def _balance(point: "xr.Dataset") -> str | None:
 
 
 _ROWS: "dict[str, Callable[[xr.Dataset], Named]]" = {
-    "voltage": _command_rows,
-    "amplitude": _command_rows,
+    "voltage": _level_rows,
+    "amplitude": _level_rows,
     "speed": _speed_rows,
     "frequency": _frequency_rows,
     "power": _power_rows,
