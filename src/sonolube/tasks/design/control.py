@@ -99,7 +99,9 @@ def control(
         because = f"for {shown('feed_forward')} {feed_forward}; it is for efficiency"
         refuse_unused("efficiency", because=because)
     if commanded_quantity(known) is AMPLITUDE:
-        refuse_unused(*_OF_VOLTAGE, because=f"for an amplitude that is commanded; give {VOLTAGE.key} to command it")
+        refuse_unused(
+            *_OF_VOLTAGE, because=f"for an amplitude that is commanded; give {VOLTAGE.key} to command a voltage"
+        )
     else:
         refuse_unused("amplitude_limit", because="for a rig whose voltage is commanded")
     if known.structure is not None:

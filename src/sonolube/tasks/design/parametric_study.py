@@ -211,14 +211,14 @@ def _curves(rig: Rig, of: str, voltages: Sequence[str], amplitudes: Sequence[str
     if voltages and of not in ("speed", "frequency"):
         raise InvalidInput(f"{shown('voltage')} has no meaning for {shown('of')} {of}; it is for speed and frequency")
     if amplitudes and of != "speed":
-        raise InvalidInput(f"{shown('amplitude')} has no meaning for {shown('of')} {of}; it is for speed")
+        raise InvalidInput(f"{shown('vibration')} has no meaning for {shown('of')} {of}; it is for speed")
     own = commanded_quantity(rig)
-    texts, others = (voltages, amplitudes) if own is VOLTAGE else (amplitudes, voltages)
+    name, texts, others = ("voltage", voltages, amplitudes) if own is VOLTAGE else ("vibration", amplitudes, voltages)
     if others:
-        raise InvalidInput(f"{rig.title}: its {own.word} sets its vibration; give {shown(own.word)} of each curve")
+        raise InvalidInput(f"{rig.title}: its {own.word} sets its vibration; give {shown(name)} of each curve")
     if not texts:
         return {}
-    read = [to_si(text, unit=own.unit, name=shown(own.word)) for text in texts]
+    read = [to_si(text, unit=own.unit, name=shown(name)) for text in texts]
     return {own.name: require_positive(**{own.name: read})}
 
 

@@ -46,7 +46,7 @@ _LABELS = {"energy_balance": "energy"}
 # arguments without meaning for one quantity
 _OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk", "backend")
 _FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg", "sweep.pdf")
-_OF_ONLY = ("lowest", "highest", "voltage", "amplitude")  # arguments without meaning for keys
+_OF_ONLY = ("lowest", "highest", "voltage", "vibration")  # arguments without meaning for keys
 
 
 @task
@@ -67,7 +67,7 @@ def sweep(
     voltage: Annotated[
         Sequence[str], Parameter(help="With of speed or frequency: drive, peak to peak, of a curve. May come again.")
     ] = (),
-    amplitude: Annotated[
+    vibration: Annotated[
         Sequence[str],
         Parameter(
             help="With of speed: amplitude of a curve, of a rig without a voltage. May come again.", kind="LENGTH"
@@ -102,7 +102,7 @@ def sweep(
         if (place := kept(keep, "")) is not None:
             expect_files(place, (f"{escape(known.name)}-{of}.*",))
         return parametric_study(
-            known, of=of, lowest=lowest, highest=highest, points=points, voltages=voltage, amplitudes=amplitude
+            known, of=of, lowest=lowest, highest=highest, points=points, voltages=voltage, amplitudes=vibration
         )
     refuse_unused(*_OF_ONLY, because=f"for {shown('over')}")
     refuse_replaced(known, over or {})
