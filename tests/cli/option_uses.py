@@ -15,6 +15,7 @@ ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "examples" / "rigs"
 RIG = str(RIGS / "tribometer.toml")
 COLLAR = str(RIGS / "collar.toml")
+FLAT = str(RIGS / "welder_flat.toml")  # without a voltage
 AMPLITUDE = {"--amplitude": "per-volt"}
 LOADED = {"--load": "2N", "--set": "contact.normal_load=2N"}
 VIBRATED = LOADED | AMPLITUDE
@@ -309,6 +310,14 @@ MODES = {
     "sweep of waveforms": Mode(
         "sweep", (RIG, "--of", "waveform"), SWEEP | {"--of": "load", "--from": "5V", "--to": "20V"}
     ),
+    "sweep of amplitude": Mode(
+        "sweep",
+        (FLAT, "--of", "amplitude", "--points", "3"),
+        {"--of": "load", "--from": "2um", "--to": "8um", "--points": "4", "--vibration": "3um", "--voltage": "3V"},
+    ),
+    "sweep of speed at amplitudes": Mode(
+        "sweep", (FLAT, "--of", "speed", "--points", "3"), {"--vibration": "30um", "--to": "0.5m/s"}
+    ),
     "sweep of load": Mode("sweep", (RIG, "--of", "load", "--points", "3"), STUDY | {"--from": "2N", "--to": "5N"}),
     "fit": Mode(
         "fit",
@@ -340,6 +349,11 @@ MODES = {
         "map",
         (str(RIGS / "power_map.toml"), "--over", "drive.voltage_peak_to_peak=5V,10V"),
         {"--kind": "frequency-voltage"},
+    ),
+    "map over amplitude": Mode(
+        "map",
+        (FLAT, "--over", "vibration.vibration_amplitude=20um,40um", "--over", "sliding.sliding_speed=10mm/s,20mm/s"),
+        {"--kind": "velocity-stress", "--over": "contact.normal_load=10N"},
     ),
     "uncertainty": Mode(
         "uncertainty",
@@ -417,6 +431,9 @@ MODES = {
     ),
     "control in the warm": Mode(
         "control", (RIG, "--duration", "0.05s", "--warming", "40K"), {"--warming-time": "0.01s"}, ("--no-track",)
+    ),
+    "control by the amplitude": Mode(
+        "control", (FLAT, "--duration", "0.05s"), {"--amplitude-limit": "20um", "--quality": "100", "--warming": "40K"}
     ),
     "control by the efficiency": Mode(
         "control", (RIG, "--duration", "0.05s", "--feed-forward", "efficiency"), {"--efficiency": "1e-9m2/N"}

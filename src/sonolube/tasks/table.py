@@ -95,7 +95,7 @@ TASKS: Final = (
         "design.sweep:sweep",
         "sweep.nc sweep.json sweep.html sweep.png sweep.svg sweep.pdf {rig}-{of}.*",
     ),
-    Task(_DESIGN, "map", "design.map:map", "map.html {rig}-{kind}.* {rig}-{kind}-measured.*"),
+    Task(_DESIGN, "map", "design.map:map", "map.html {rig}-velocity-*.* {rig}-frequency-*.*"),
     Task(_DESIGN, "plan", "design.plan:plan", "{rig}-plan.* {rig}-plan-runs.csv {rig}-plan/*"),
     Task(_DESIGN, "uncertainty", "design.uncertainty:uncertainty", "uncertainty.html {rig}-uncertainty-*.*"),
     Task(_DESIGN, "optimise", "design.optimise:optimise", "optimise.html {rig}-optimum.* {rig}-optimum-*.*"),

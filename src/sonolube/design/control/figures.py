@@ -1,5 +1,6 @@
 """Figures of friction control: closed loop over time, feed-forward map with sensitivity, and stick-slip of a slider."""
 
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def closed_loop_figure(study: ControlDesign) -> "Figure":
-    """Friction force, drive voltage and frequency of the closed loop over time.
+    """Friction force and drive voltage with its frequency, or commanded amplitude, of the closed loop over time.
 
     Parameters
     ----------
@@ -28,32 +29,45 @@ def closed_loop_figure(study: ControlDesign) -> "Figure":
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(5.6, 5.6))
-    friction, voltage, frequency = figure.subplots(3, 1, sharex=True, height_ratios=(2, 1, 1))
-    run, fixed = study.run, study.fixed_frequency_run
+    run, fixed, quantity = study.run, study.fixed_frequency_run, study.plant.quantity
+    is_electrical = run.phase is not None
+    figure = Figure(figsize=(5.6, 5.6 if is_electrical else 4.4))
+    friction, drive, *lower = figure.subplots(
+        3 if is_electrical else 2, 1, sharex=True, height_ratios=(2, 1, 1)[: 3 if is_electrical else 2]
+    )
     ms = 1e3 * run.time
     if fixed is not None:
         friction.plot(ms, fixed.friction_force, color=COLOURS[1], linestyle="--", label="frequency fixed")
-        voltage.plot(ms, fixed.voltage_peak_to_peak, color=COLOURS[1], linestyle="--")
+        drive.plot(ms, quantity.axis_scale * fixed.level, color=COLOURS[1], linestyle="--")
     friction.plot(ms, run.friction_force, color=COLOURS[0], label="friction" if fixed is None else "resonance tracked")
     friction.plot(ms, run.setpoint, color=COLOURS[6], linestyle=":", drawstyle="steps-post", label="target")
     friction.set(ylabel="Friction force [N]", ylim=(0, None))
     friction.legend(loc="best")
-    voltage.plot(ms, run.voltage_peak_to_peak, color=COLOURS[0])
-    voltage.axhline(study.voltage_maximum, color="0.5", linestyle="-.", linewidth=1, label=f"{study.limit} limit")
-    voltage.set(ylabel="Drive, peak\nto peak [V]", ylim=(0, 1.12 * study.voltage_maximum))
-    voltage.legend(loc="best")
-    frequency.plot(ms, 1e-3 * run.frequency, color=COLOURS[0], label="drive")
-    frequency.plot(ms, 1e-3 * run.resonance_frequency, color=COLOURS[2], linestyle="--", label="resonance")
-    frequency.set(ylabel="Frequency\n[kHz]", xlabel="Time [ms]", xlim=(0, float(ms[-1])))
-    frequency.ticklabel_format(axis="y", useOffset=False)
-    _require_span(frequency)
-    frequency.legend(loc="best")
+    drive.plot(ms, quantity.axis_scale * run.level, color=COLOURS[0])
+    highest = quantity.axis_scale * study.level_maximum
+    drive.axhline(highest, color="0.5", linestyle="-.", linewidth=1, label=f"{study.limit} limit")
+    drive.set(ylabel=fill(quantity.axis_label, 14), ylim=(0, 1.12 * highest))
+    drive.legend(loc="best")
+    for frequency in lower:
+        _draw_frequency(frequency, study)
+    (lower or [drive])[-1].set(xlabel="Time [ms]", xlim=(0, float(ms[-1])))
     return figure
 
 
+def _draw_frequency(frequency: "Axes", study: ControlDesign) -> None:
+    """Draw drive and resonance frequency over time."""
+    run = study.run
+    ms = 1e3 * run.time
+    frequency.plot(ms, 1e-3 * run.frequency, color=COLOURS[0], label="drive")
+    frequency.plot(ms, 1e-3 * run.resonance_frequency, color=COLOURS[2], linestyle="--", label="resonance")
+    frequency.set(ylabel="Frequency\n[kHz]")
+    frequency.ticklabel_format(axis="y", useOffset=False)
+    _require_span(frequency)
+    frequency.legend(loc="best")
+
+
 def control_design_figure(study: ControlDesign) -> "Figure":
-    r"""Feed-forward map from voltage to friction, and magnitude of the sensitivity function over frequency.
+    r"""Feed-forward map from voltage or amplitude to friction, and magnitude of the sensitivity over frequency.
 
     Parameters
     ----------
@@ -74,12 +88,13 @@ def control_design_figure(study: ControlDesign) -> "Figure":
     figure = Figure(figsize=(6.4, 3.0))
     lookup, loop = figure.subplots(1, 2)
     plant, controller = study.plant, study.controller
-    lookup.plot(plant.voltage_peak_to_peak, plant.friction_force, color=COLOURS[0], label="rig's model")
+    scale = plant.quantity.axis_scale
+    lookup.plot(scale * plant.level, plant.friction_force, color=COLOURS[0], label="rig's model")
     table = controller.intrinsic_friction_force - np.array(controller.force_reduction)
-    lookup.plot(controller.voltage_peak_to_peak, table, color=COLOURS[1], linestyle="--", label="controller's table")
-    volts = np.interp(-study.friction_force, -plant.friction_force, plant.voltage_peak_to_peak)
-    lookup.plot(volts, study.friction_force, "o", color=COLOURS[6], label="target")
-    lookup.set(xlabel="Drive, peak to peak [V]", ylabel="Friction force [N]", ylim=(0, None), xlim=(0, None))
+    lookup.plot(scale * np.array(controller.level), table, color=COLOURS[1], linestyle="--", label="controller's table")
+    level = np.interp(-study.friction_force, -plant.friction_force, plant.level)
+    lookup.plot(scale * level, study.friction_force, "o", color=COLOURS[6], label="target")
+    lookup.set(xlabel=plant.quantity.axis_label, ylabel="Friction force [N]", ylim=(0, None), xlim=(0, None))
     lookup.legend()
     nyquist = 0.5 / controller.process.sample_interval
     f = np.geomspace(1e-3 * nyquist, nyquist, 600)
@@ -110,7 +125,7 @@ def stick_slip_figure(suppression: StickSlipSuppression) -> "Figure":
     figure = Figure(figsize=(5.6, 2.8))
     axes = figure.subplots()
     axes.plot(1e3 * still.time, still.friction_force, color=COLOURS[1], linewidth=0.9, label="without vibration")
-    label = f"with {suppression.voltage_peak_to_peak:.3g} V peak to peak"
+    label = f"with {suppression.quantity.text(suppression.level)}"
     axes.plot(1e3 * vibrating.time, vibrating.friction_force, color=COLOURS[0], linestyle="--", label=label)
     axes.set(xlabel="Time [ms]", ylabel="Force in the holder [N]", xlim=(0, 0.3e3 * float(still.time[-1])))
     top = float(still.friction_force.max())

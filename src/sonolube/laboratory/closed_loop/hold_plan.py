@@ -43,7 +43,7 @@ def planned_hold(
     """
     swing = drive.voltage_peak_to_peak or 0.0
     ratio = drive.voltage_offset / swing if swing else 0.0
-    highest = _HEADROOM * (abs(ratio) + 0.5) * design.controller.voltage_maximum
+    highest = _HEADROOM * (abs(ratio) + 0.5) * design.controller.level_maximum
     rate = 1 / settings.sample_interval
     return FrictionHold(
         controller=design.controller,
