@@ -1,6 +1,7 @@
 """Dimensioned drawing of a tuned horn: side view to scale, with lengths, diameters, radii and notes."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -150,7 +151,7 @@ def _lengths(axes: "Axes", ends: Sequence[float], lengths: Sequence[float] | Flo
     for end in ends:
         axes.plot([end - _STROKE, end + _STROKE], [at - _STROKE, at + _STROKE], color="black", linewidth=0.9)
     texts = [f"{length:.2f}" for length in lengths]
-    middles = [(one + other) / 2 for one, other in zip(ends[:-1], ends[1:], strict=True)]
+    middles = [(one + other) / 2 for one, other in pairwise(ends)]
     for middle, place, text in zip(
         middles, _spread(middles, [_CHARACTER * len(text) + 2 for text in texts]), texts, strict=True
     ):

@@ -181,9 +181,7 @@ def _stepped(sizes: Mapping[str, float]) -> HornProfile:
     foot = [(length, end + fillet), (length + fillet, end)] if fillet else [(length, end)]
     along = 1 - 0.5**0.5  # of the radius, at which its dimension meets the middle of the arc
     return HornProfile(
-        vertices=_closed(
-            [(0.0, radius), (length, radius), *foot, (total, end)], {2: _QUARTER_ARC} if fillet else None
-        ),
+        vertices=_closed([(0.0, radius), (length, radius), *foot, (total, end)], {2: _QUARTER_ARC} if fillet else None),
         stations=(0.0, length, total),
         widths=((length / 2, 2 * radius), ((length + fillet + total) / 2, 2 * end)),
         fillets=((length + along * fillet, end + along * fillet, fillet),) if fillet else (),
