@@ -52,15 +52,14 @@ def horn_notes(design: HornDesign, material: Material, profile: HornProfile) -> 
     ]
 
 
-def horn_drawing(design: HornDesign, material: Material, profile: HornProfile) -> "Figure":
+def horn_drawing(profile: HornProfile, *, notes: Sequence[str]) -> "Figure":
     """Side view of a horn on its centre line, to scale, with all its dimensions in mm.
 
     Parameters
     ----------
-    design : HornDesign
-    material : Material
     profile : HornProfile
-        Of the same design.
+    notes : sequence of str
+        Lines below the view, to which that of the scale is added.
 
     Returns
     -------
@@ -73,7 +72,7 @@ def horn_drawing(design: HornDesign, material: Material, profile: HornProfile) -
     length, half = outline.max(axis=0)
     scale = next((each for each in _SCALES if each * length <= _VIEW[0] and 2 * each * half <= _VIEW[1]), _SCALES[-1])
     ratio = f"{scale:g}:1" if scale >= 1 else f"1:{1 / scale:g}"
-    notes = [*horn_notes(design, material, profile), f"scale {ratio} at a width of {_SHEET:g} mm"]
+    notes = [*notes, f"scale {ratio} at a width of {_SHEET:g} mm"]
     rows = 2 if len(profile.stations) > 2 else 1
     middle = _ROW * (len(notes) + 1 + 2 * rows) + scale * half + 3
     height = middle + scale * half + 2.5 * _ROW

@@ -46,7 +46,7 @@ def horn_axis_figure(design: HornDesign) -> "Figure":
     profile.set(ylabel="Half width\n[mm]")
     motion.plot(1e3 * (place - start), displacement / tip, color=COLOURS[0])
     motion.axhline(0, color="0.4", linewidth=0.8)
-    motion.set(ylabel="Axial displacement\nover the tip's [-]")
+    motion.set(ylabel="Axial displacement\nover the tip's [1]")
     where, highest = _curve(*_highest(along, nodal_stress(mode.model, mode.displacement) / abs(tip)))
     stress.plot(1e3 * (where - start), 1e-12 * highest, color=COLOURS[1])
     stress.set(xlabel="Distance from the driven face [mm]", ylabel="Peak stress\n[MPa per µm]", ylim=(0, None))

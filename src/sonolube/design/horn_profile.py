@@ -8,7 +8,7 @@ from math import pi, tan
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.horn import HornDesign
+from sonolube.design.horn_shapes import TunableBody
 
 _STATIONS = 5  # of an exponential horn at which its diameter is stated
 _CURVE_POINTS = 201
@@ -65,22 +65,23 @@ class HornProfile:
         return np.concatenate(points)
 
 
-def horn_profile(design: HornDesign) -> HornProfile | None:
-    """Half profile of a tuned horn of a named shape.
+def horn_profile(body: TunableBody, *, length: float) -> HornProfile | None:
+    """Half profile of a horn of a named shape.
 
     Parameters
     ----------
-    design : HornDesign
+    body : TunableBody
+    length : float
+        Of its tuned size. [m]
 
     Returns
     -------
     HornProfile or None
         None for a body from a file.
     """
-    body = design.body
     if not body.sizes:
         return None
-    return _PROFILES[body.name]({**body.sizes, body.tuned_size: design.tuned.length})
+    return _PROFILES[body.name]({**body.sizes, body.tuned_size: length})
 
 
 def profile_dxf(profile: HornProfile, lines: Iterable[str]) -> str:

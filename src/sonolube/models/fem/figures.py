@@ -21,14 +21,14 @@ MODE_COLOURS = "viridis"
 """Colour map of the displacement in pictures of modes."""
 
 _EXAGGERATION = 0.08  # of the part's length, for the largest displacement drawn
-_WIDTH, _HEIGHTS = 6.85, (2.4, 4.8)  # of a picture, in inches
+_WIDTH, _HEIGHTS = 6.85, (2.6, 4.8)  # of a picture, in inches
 _BODY_WIDTH, _TITLE_HEIGHT = 5.8, 0.56  # of it, in inches
 _MARGIN = 0.01  # about the body, of its size
 _VIEW = (32.0, 24.0)  # degrees of turn about the upward axis and of tilt
 _SLENDER = 1.5  # upward over the other sides, above which a body is laid down
 _LIGHT = (-0.3, 0.5, 0.81)  # direction to the light: right, up and to the viewer
 _DARKEST = 0.8
-_DIRECTIONS_AT, _DIRECTION_LENGTH = (0.28, -0.55), 0.2  # inches from the lower left corner of the scale
+_DIRECTIONS_AT, _DIRECTION_LENGTH = (0.28, -0.6), 0.26  # inches from the lower left corner of the scale
 _MOST_TRIANGLES = 12_000  # in a picture
 
 
@@ -130,7 +130,7 @@ def mode_figure(surface: ShapedSurface, *, title: str, amplitude: float = 1.0) -
             f"{title}\n{lengths} mm; largest displacement drawn as {_EXAGGERATION:.0%} of the part's length", fontsize=9
         )
         scale = figure.colorbar(
-            colours, ax=axes, shrink=0.64, anchor=(0.0, 1.0), pad=0.01, aspect=14, ticks=(0.0, 0.5, 1.0)
+            colours, ax=axes, shrink=0.6, anchor=(0.0, 1.0), pad=0.01, aspect=14, ticks=(0.0, 0.5, 1.0)
         )
         scale.set_label("Displacement\nover its largest [1]", fontsize=8)
         _draw_directions(scale.ax, view)

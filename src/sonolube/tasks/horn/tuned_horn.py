@@ -9,7 +9,7 @@ import numpy as np
 from sonolube.design.horn import HornDesign, amplitude_limits, face_motion, loaded_frequency, section_motion, tuned_horn
 from sonolube.design.horn_drawing import horn_drawing, horn_notes
 from sonolube.design.horn_figures import horn_axis_figure
-from sonolube.design.horn_profile import horn_profile, profile_dxf
+from sonolube.design.horn_profile import HornProfile, horn_profile, profile_dxf
 from sonolube.design.horn_shapes import TunableBody, body_from_geometry, horn_body
 from sonolube.facts import materials
 from sonolube.facts.materials import Material
@@ -208,25 +208,25 @@ class HornAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Profile, motion and stress along the axis, a picture of the mode, and a drawing of a named shape."""
-        mode, profile = self.design.tuned.mode, horn_profile(self.design)
+        mode, profile = self.design.tuned.mode, self._profile()
         title = f"{mode.names[mode.row]}, {mode.frequency:.0f} Hz"
 
         def picture() -> "Figure":
             return mode_figure(shaped_surface(mode.model.mesh, mode.displacement), title=title)
 
+        def drawing() -> "Figure":
+            assert profile is not None
+            return horn_drawing(profile, notes=horn_notes(self.design, self.material, profile))
+
         return {
             f"{self.name}-axis": Drawing(draw=lambda: horn_axis_figure(self.design)),
             f"{self.name}-mode": Drawing(draw=picture, forms=("png",)),
-            **(
-                {}
-                if profile is None
-                else {f"{self.name}-drawing": Drawing(draw=lambda: horn_drawing(self.design, self.material, profile))}
-            ),
+            **({} if profile is None else {f"{self.name}-drawing": Drawing(draw=drawing)}),
         }
 
     def files(self) -> Mapping[str, str]:
         """Tuned solid as STEP, and the half profile of a named shape as DXF."""
-        profile = horn_profile(self.design)
+        profile = self._profile()
         files = {f"{self.name}-tuned.step": step_text(self.design.geometry)}
         if profile is not None:
             files[f"{self.name}-drawing.dxf"] = profile_dxf(profile, horn_notes(self.design, self.material, profile))
@@ -246,6 +246,10 @@ class HornAnswer(Answer):
             .assign(displacement_ratio=("position", displacement / tip, about))
             .assign_coords(position=("position", place - start, along))
         )
+
+    def _profile(self) -> HornProfile | None:
+        """Half profile of a named shape."""
+        return horn_profile(self.design.body, length=self.design.tuned.length)
 
     def _stress_rows(self) -> list[tuple[str, str]]:
         """Peak stress at the amplitude that was asked for, beside each strength."""

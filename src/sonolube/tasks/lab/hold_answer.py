@@ -153,8 +153,9 @@ def _margins(design: ControlDesign) -> str:
 def _phase_text(phase: HoldMetrics) -> str:
     """How friction was held at one speed."""
     settled = "not settled" if phase.settling_time is None else f"settled after {format_si(phase.settling_time, 's')}"
+    error = format_si(phase.tracking_error, "N", scale=phase.friction_force)
     return (
-        f"{format_si(phase.friction_force, 'N')}, error {format_si(phase.tracking_error, 'N')} rms, {settled},"
+        f"{format_si(phase.friction_force, 'N')}, error {error} rms, {settled},"
         f" {phase.voltage_peak_to_peak:.3g} V peak to peak"
     )
 

@@ -20,6 +20,7 @@ from sonolube.models.fem.solver.step_trial import try_step_file
 _AXES = "xyz"
 _LEAST_VOLUME = 1e-9  # of the bounding box, below which a body counts as having no thickness
 _TIME_OF_WRITING = re.compile(r"(?<=')\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?=')")
+_NUMBER_OF_WRITING = re.compile(r"(?<= STEP translator )([\d.]+) \d+(?=')")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -91,7 +92,7 @@ def unguarded_step_geometry(path: Path) -> Geometry:
 
 
 def step_text(geometry: Geometry) -> str:
-    """Content of a STEP file of a geometry, in mm, without the time of writing.
+    """Content of a STEP file of a geometry, in mm, without time and number of writing.
 
     Parameters
     ----------
@@ -105,7 +106,7 @@ def step_text(geometry: Geometry) -> str:
         path = Path(folder) / "solid.step"
         geometry.shape.WriteStep(str(path))
         text = path.read_text(encoding="utf-8")
-    return _TIME_OF_WRITING.sub("1970-01-01T00:00:00", text, count=1)
+    return _NUMBER_OF_WRITING.sub(r"\1", _TIME_OF_WRITING.sub("1970-01-01T00:00:00", text, count=1))
 
 
 def translate(geometry: Geometry, *, by: tuple[float, float, float]) -> Geometry:
