@@ -95,7 +95,7 @@ def test_a_drawing_is_to_the_scale_that_it_states_and_symmetric() -> None:
     figure = horn_drawing(profile_of(body_of("booster")), notes=NOTES)
     (axes,) = figure.axes
     assert any("scale 1:2 " in text.get_text() for text in axes.texts)
-    corners = axes.patches[0].get_path().vertices  # type: ignore[union-attr]
+    corners = axes.patches[0].get_path().vertices
     inches = figure.dpi_scale_trans.inverted().transform(axes.transData.transform(corners))
     profile = profile_of(body_of("booster"))
     assert 25.4 * np.ptp(inches, axis=0) == approx([500 * profile.stations[-1], 500 * profile.widths[1][1]])

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,7 +23,7 @@ _CHARACTER = 1.9  # mm, width of a character with a margin
 _TEXT = 7.5  # points
 _ROW = 5.0  # mm, height of a line of text
 _STROKE = 1.0  # mm, half the oblique stroke at the ends of a dimension line
-_THIN = {"color": "0.35", "linewidth": 0.6}
+_THIN: dict[str, Any] = {"color": "0.35", "linewidth": 0.6}
 
 
 def horn_notes(design: HornDesign, material: Material, profile: HornProfile) -> list[str]:
@@ -67,6 +67,7 @@ def horn_drawing(profile: HornProfile, *, notes: Sequence[str]) -> "Figure":
         As wide as the page of a journal, on which it is to scale.
     """
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import PlaceHolderLayoutEngine
 
     outline = 1e3 * profile.outline
     length, half = outline.max(axis=0)
@@ -76,7 +77,10 @@ def horn_drawing(profile: HornProfile, *, notes: Sequence[str]) -> "Figure":
     rows = 2 if len(profile.stations) > 2 else 1
     middle = _ROW * (len(notes) + 1 + 2 * rows) + scale * half + 3
     height = middle + scale * half + 2.5 * _ROW
-    figure = Figure(figsize=(_SHEET / 25.4, height / 25.4), layout="none")
+    figure = Figure(
+        figsize=(_SHEET / 25.4, height / 25.4),
+        layout=PlaceHolderLayoutEngine(adjust_compatible=True, colorbar_gridspec=True),
+    )
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0, _SHEET), ylim=(0, height), aspect="equal")
     axes.set_axis_off()

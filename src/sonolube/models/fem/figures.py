@@ -172,11 +172,12 @@ def _draw_directions(axes: "Axes", view: Floats) -> None:
 
     figure = axes.get_figure(root=True)
     assert figure is not None
-    inches = figure.dpi_scale_trans + ScaledTranslation(0, 0, axes.transAxes)
+    inches = figure.dpi_scale_trans + ScaledTranslation(0, 0, axes.transAxes)  # type: ignore[arg-type]
     foot = np.array(_DIRECTIONS_AT)
     for name, along in zip("xyz", _DIRECTION_LENGTH * view[:2].T, strict=True):
         (line,) = axes.plot(*np.transpose([foot, foot + along]), color="black", lw=1, transform=inches, clip_on=False)
-        letter = axes.text(*(foot + 1.5 * along), name, transform=inches, fontsize=8, ha="center", va="center")
+        right, up = (foot + 1.5 * along).tolist()
+        letter = axes.text(right, up, name, transform=inches, fontsize=8, ha="center", va="center")
         line.set_in_layout(False)
         letter.set_in_layout(False)
 

@@ -299,9 +299,8 @@ class ControlAnswer(Answer):
             facts["resonance"] = _resonance_text(study)
         for name, motion, damping in _motions(self.suppression) if self.suppression else ():
             swing = format_si(motion.stick_slip_amplitude, "N", scale=study.friction_force)
-            facts[f"stick-slip {name}"] = (
-                f"{swing}, sticks {100 * motion.stick_fraction:.0f} % of the time, damping of sliding {damping:.3g} N s/m"
-            )
+            sticks = f"sticks {100 * motion.stick_fraction:.0f} % of the time"
+            facts[f"stick-slip {name}"] = f"{swing}, {sticks}, damping of sliding {damping:.3g} N s/m"
         return list(facts.items())
 
 
