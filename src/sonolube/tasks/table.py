@@ -101,7 +101,12 @@ TASKS: Final = (
     Task(_DESIGN, "optimise", "design.optimise:optimise", "optimise.html {rig}-optimum.* {rig}-optimum-*.*"),
     Task(_DESIGN, "control", "design.control:control", "control.html {rig}-control.* {rig}-control-*.*"),
     Task(_DESIGN, "efficiency", "design.efficiency:efficiency", "efficiency.html {runs}-efficiency.*"),
-    Task(_DESIGN, "horn design", "horn.tuned_horn:design", "{part}-axis.* {part}-mode.*"),
+    Task(
+        _DESIGN,
+        "horn design",
+        "horn.tuned_horn:design",
+        "{part}-axis.* {part}-mode.* {part}-drawing.* {part}-tuned.step",
+    ),
     Task(_DESIGN, "horn face", "horn.poisson_horn_face:face", "horn-{horn}-face.*"),
     Task(_MEASURE, "measure friction", "measure.recorded_friction:friction", has_report=True),
     Task(_MEASURE, "measure rotation", "measure.hall_rotation:rotation", has_report=True),

@@ -58,8 +58,9 @@ def margins_text(design: ControlDesign) -> str:
 def phase_text(one: HoldMetrics) -> str:
     """How friction was held at one speed."""
     settled = "not settled" if one.settling_time is None else f"settled after {format_si(one.settling_time, 's')}"
+    error = format_si(one.tracking_error, "N", scale=one.friction_force)
     return (
-        f"{format_si(one.friction_force, 'N')}, error {format_si(one.tracking_error, 'N')} rms, {settled},"
+        f"{format_si(one.friction_force, 'N')}, error {error} rms, {settled},"
         f" {one.voltage_peak_to_peak:.3g} V peak to peak"
     )
 

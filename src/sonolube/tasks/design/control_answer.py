@@ -183,16 +183,15 @@ class ControlAnswer(Answer):
             f"Ms {margins.sensitivity_peak:.2f}",
             "step": f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
             f"overshoot {100 * response.overshoot:.2g} %",
-            "tracking error": f"{format_si(response.tracking_error, 'N')} rms once settled",
+            "tracking error": f"{format_si(response.tracking_error, 'N', scale=study.friction_force)} rms once settled",
             "energy": _energy_text(study.energy),
         }
         if study.fixed_frequency_run is not None:
             facts["resonance"] = _resonance_text(study)
         for name, motion, damping in _motions(self.suppression) if self.suppression else ():
-            facts[f"stick-slip {name}"] = (
-                f"{format_si(motion.stick_slip_amplitude, 'N')}, sticks {100 * motion.stick_fraction:.0f} % of the"
-                f" time, damping of sliding {damping:.3g} N s/m"
-            )
+            swing = format_si(motion.stick_slip_amplitude, "N", scale=study.friction_force)
+            sticks = f"sticks {100 * motion.stick_fraction:.0f} % of the time"
+            facts[f"stick-slip {name}"] = f"{swing}, {sticks}, damping of sliding {damping:.3g} N s/m"
         return list(facts.items())
 
 
@@ -224,10 +223,12 @@ def _resonance_text(study: ControlDesign) -> str:
     assert study.fixed_frequency_run is not None
     shift = float(study.run.resonance_frequency[-1] - study.run.resonance_frequency[0])
     tracked, fixed = (
-        f"{end.level:.3g} V and {format_si(end.tracking_error, 'N')} rms"
+        f"{format_si(end.level, study.plant.quantity.unit)}"
+        f" and {format_si(end.tracking_error, 'N', scale=study.friction_force)} rms"
         for end in (final_state(study.run), final_state(study.fixed_frequency_run))
     )
-    return f"moves by {format_si(shift, 'Hz')}; tracked {tracked}, at a fixed frequency {fixed}"
+    moves = format_si(shift, "Hz", scale=study.mode.frequency)
+    return f"moves by {moves}; tracked {tracked}, at a fixed frequency {fixed}"
 
 
 def _drive_text(study: ControlDesign) -> str:
