@@ -20,12 +20,13 @@ _STEP = 5  # percent between two contour levels
 _TITLE_WIDTH = 60  # characters of a line above the one panel
 _RUNS_LABEL = "measured, reduction in %"
 _SATURATION_LABEL = "above it doubling the power gains less than 5 %"
-_AXES = {
+_AXES: dict[str, tuple[float, str]] = {
     "sliding_speed": (1e3, "Sliding speed [mm/s]"),
     "actuator_power": (1.0, "Power of the amplifier [W]"),
     "nominal_pressure": (1e-6, "Nominal stress [MPa]"),
     "frequency": (1e-3, "Drive frequency [kHz]"),
-    **{each.name: (each.axis_scale, each.axis_label) for each in (VOLTAGE, AMPLITUDE)},
+    VOLTAGE.name: (VOLTAGE.axis_scale, VOLTAGE.axis_label),
+    AMPLITUDE.name: (AMPLITUDE.axis_scale, AMPLITUDE.axis_label),
 }
 
 

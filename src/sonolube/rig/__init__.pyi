@@ -4,7 +4,7 @@ from .amplitude_source import (
     available_sources as available_sources,
     resolved_vibration as resolved_vibration,
 )
-from .commanded_quantity import (
+from .commanded import (
     AMPLITUDE as AMPLITUDE,
     VOLTAGE as VOLTAGE,
     CommandedQuantity as CommandedQuantity,

@@ -11,7 +11,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import WAVEFORMS, Status, contact_motion, modes
 from sonolube.rig.amplitude_source import amplitude_labels, moved_rig, resolved_vibration
-from sonolube.rig.commanded_quantity import (
+from sonolube.rig.commanded import (
     AMPLITUDE,
     POWERS,
     VOLTAGE,

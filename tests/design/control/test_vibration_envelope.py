@@ -46,7 +46,7 @@ def test_the_envelope_rises_like_the_amplitude_of_the_marched_structure() -> Non
         law,
         normal_load=3.0,
         frequency=f,
-        level=1.0,
+        voltage_peak_to_peak=1.0,
         periods=60,
         steps_per_period=32,
         periods_per_window=1,
