@@ -46,7 +46,7 @@ def test_the_envelope_rises_like_the_amplitude_of_the_marched_structure() -> Non
         law,
         normal_load=3.0,
         frequency=f,
-        level=1.0,
+        voltage_peak_to_peak=1.0,
         periods=60,
         steps_per_period=32,
         periods_per_window=1,
@@ -61,6 +61,7 @@ def test_the_envelope_rises_like_the_amplitude_of_the_marched_structure() -> Non
 
 def test_the_supplied_energy_is_dissipated_or_stored() -> None:
     envelope, supplied, dissipated = 3 - 2j, 0.0, 0.0
+    assert DRIVEN.motional_conductance is not None
     g, sigma = DRIVEN.motional_conductance, DRIVEN.decay_rate
 
     def stored(a: complex) -> float:
@@ -92,6 +93,7 @@ def test_the_steady_power_is_that_of_the_conductance() -> None:
         level_maximum=50.0,
     )
     run = simulate_closed_loop(loop, setpoint=np.full(200, 1.25))  # 25 V
+    assert run.electrical_energy is not None
     power = (run.electrical_energy[-1] - run.electrical_energy[-2]) / 2e-4
     volts = run.level[-1]
     assert power == approx(0.5 * mode_admittance(DRIVEN, frequency=22e3).real * (volts / 2) ** 2, rel=1e-9)

@@ -244,9 +244,9 @@ def _highest_level(rig: Rig, settings: ControlSettings, mode: VibrationMode) -> 
         return own_level(rig) if given is None else float(require_positive(amplitude_maximum=given)), AMPLITUDE.word
     if settings.amplifier is None:
         raise InvalidInput(f"{rig.title}: a drive voltage needs the limits of its amplifier")
-    admittance = mode_admittance(mode, frequency=mode.frequency)
-    highest = swing_limit(settings.amplifier, admittance=admittance, frequency=mode.frequency)
-    return highest, active_limit(settings.amplifier, admittance=admittance, frequency=mode.frequency)
+    f, admittance = mode.frequency, mode_admittance(mode, frequency=mode.frequency)
+    swing = swing_limit(settings.amplifier, admittance=admittance, frequency=f)
+    return swing, active_limit(settings.amplifier, admittance=admittance, frequency=f)
 
 
 def _feed_forward_characteristic(
