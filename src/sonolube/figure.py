@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from sonolube.errors import UnknownName
 from sonolube.files import write_atomically
-from sonolube.printable_text import printable
+from sonolube.printable_text import printable, with_micro_sign
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -230,6 +230,12 @@ def fit_to_style(figure: "Figure") -> None:
         text.set_fontsize(max(text.get_fontsize(), style.smallest_text))
 
 
+def width_in_print(width: float) -> float:
+    """Return the width in inches that a figure of this width gets in a journal: that of a column or of the page."""
+    style = FIGURE_STYLES["journal"]
+    return (style.column_width if width <= _NARROW else style.page_width) / _INCH
+
+
 def render_figure(figure: "Figure", file_format: str, *, resolution: float | None = None) -> bytes:
     """Return a figure as the content of a file, reproducible byte for byte.
 
@@ -334,12 +340,12 @@ def _take_as_text(figure: "Figure") -> None:
     for text in texts:
         if id(text) not in numbers:
             text.set_parse_math(False)
-            text.set_text(printable(text.get_text()))
+            text.set_text(with_micro_sign(printable(text.get_text())))
 
 
 def _printable_name(formatter: "FuncFormatter", value: float, place: int | None = None) -> str:
     """Name at a tick, without control characters."""
-    return printable(formatter(value, place))
+    return with_micro_sign(printable(formatter(value, place)))
 
 
 def write_figure(

@@ -5,6 +5,7 @@ import re
 # C0 and C1 controls but tab and newline, line separators, embeddings and overrides of the direction of writing,
 # surrogates (bytes of a file name that are no UTF-8), and what is no character.
 _ACTIVE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+_MICRO = re.compile(r"(?<=\d )u(?=[mNsVWFHgAPJ](?![a-z]))")
 
 
 def printable(text: str) -> str:
@@ -33,3 +34,17 @@ def _escape(character: str) -> str:
     """Escape of a character in the notation of Python."""
     code = ord(character)
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
+
+
+def with_micro_sign(text: str) -> str:
+    """Return text for figures, with units such as um as µm.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+    """
+    return _MICRO.sub("µ", text)

@@ -24,6 +24,7 @@ from sonolube.charts import (
     draw_chart,
 )
 from sonolube.figure import publication_style, render_figure
+from sonolube.printable_text import with_micro_sign
 
 X = np.array([1.0, 2.0, 4.0])
 SPEED = Axis(label="Sliding speed", unit="mm/s", logarithmic=True)
@@ -136,3 +137,16 @@ def test_parts_are_added_to_one_panel_of_a_copy() -> None:
     changed = CHART.with_parts(1, Rule(value=3.0))
     assert [len(panel.parts) for panel in changed.panels] == [6, 3, 1, 1]
     assert [len(panel.parts) for panel in CHART.panels] == [6, 2, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("2.5 um peak", "2.5 µm peak"),
+        ("3 us", "3 µs"),
+        ("run 2 under load", "run 2 under load"),
+        ("4 units", "4 units"),
+    ],
+)
+def test_units_in_figures_have_a_micro_sign(text: str, shown: str) -> None:
+    assert with_micro_sign(text) == shown

@@ -7,6 +7,7 @@ import numpy as np
 
 from sonolube.charts.chart import Axis, Band, Bars, Chart, Field, Line, Panel, Part, Points
 from sonolube.figure import COLOURS
+from sonolube.printable_text import with_micro_sign
 
 _DIGITS = 6  # significant ones, more than a screen resolves
 
@@ -73,6 +74,8 @@ def _plain(value: Any) -> Any:
         return _record_object(value)
     if isinstance(value, np.ndarray):
         return _numbers(value)
+    if isinstance(value, str):
+        return with_micro_sign(value)
     return [_plain(each) for each in value] if isinstance(value, tuple) else value
 
 
