@@ -1,6 +1,6 @@
 """Figure of an efficiency calibration: measured coefficients over sliding speed, line and bands."""
 
-from sonolube.charts import Axis, Band, Chart, Line, Panel, Points, Rule
+from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule
 from sonolube.design.efficiency import EfficiencyCalibration, efficiency_dataset
 
 _PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
@@ -20,7 +20,7 @@ def efficiency_chart(calibration: EfficiencyCalibration) -> Chart:
     line = efficiency_dataset(calibration)
     v = 1e3 * line["sliding_speed"].values
     level = f"{100 * calibration.confidence_level:g} %"
-    bands = []
+    bands: list[Part] = []
     for name, opacity, label in (("run", 0.12, f"one more run, {level}"), ("line", 0.3, f"line, {level}")):
         low, high = (_PRINTED_UNIT * line[f"{end}_{name}"].values for end in ("lowest", "highest"))
         bands.append(Band(x=v, low=low, high=high, label=label, opacity=opacity))

@@ -1,4 +1,4 @@
-"""Axes of charts over quantities of the vocabulary: units that suit the values, logarithmic scales, contour levels."""
+"""Axes of charts over quantities of the vocabulary, in units that suit their values, and levels of contours."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)  # between contour levels, times a power of 
 
 
 def scaled_axis(name: str, values: ArrayLike) -> tuple[float, Axis]:
-    """Return the scale from SI to a unit that suits the values of a quantity, and the axis in that unit.
+    """Scale from SI to a unit that suits the values of a quantity, and the axis in that unit.
 
     Parameters
     ----------
@@ -40,14 +40,15 @@ def scaled_axis(name: str, values: ArrayLike) -> tuple[float, Axis]:
     scale = 1.0
     if unit and largest:
         number, _, unit = format_quantity(largest, name, digits=9).partition(" ")
-        scale, unit = float(number) / largest, unit.replace("u", "µ", 1) if unit.startswith("u") else unit
+        unit = unit.replace("u", "µ", 1) if unit.startswith("u") else unit
+        scale = float(number) / largest
         power = 10.0 ** round(np.log10(scale))
         scale = power if abs(scale / power - 1) < _SCALE_TOLERANCE else scale
     return scale, Axis(label=label, unit=unit, logarithmic=_is_geometric(array))
 
 
 def contour_levels(values: Floats, *, steps: int = 18) -> Floats:
-    """Return round levels about all known values, at most some steps apart.
+    """Round levels of contours about all known values, ascending by equal steps.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def contour_levels(values: Floats, *, steps: int = 18) -> Floats:
     Returns
     -------
     ndarray, shape (n,)
-        Ascending, two at least.
+        Two at least.
     """
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
@@ -67,7 +68,8 @@ def contour_levels(values: Floats, *, steps: int = 18) -> Floats:
     power = 10.0 ** np.floor(np.log10(least))
     step = power * next(each for each in _STEPS if each * power >= least * (1 - 1e-9))
     first, last = np.floor(low / step + 1e-9), np.ceil(high / step - 1e-9)
-    return step * np.arange(first, max(last, first + 1) + 1)
+    levels: Floats = step * np.arange(first, max(last, first + 1) + 1)
+    return levels
 
 
 def _is_geometric(values: Floats) -> bool:

@@ -103,7 +103,7 @@ def sobol_chart(propagated: "xr.Dataset", indices: SobolIndices) -> Chart:
         error = np.maximum([fractions[order] - low, high - fractions[order]], 0)
         bars.append(
             Bars(
-                places=np.arange(len(keys)) + shift,
+                places=np.arange(len(keys), dtype=np.float64) + shift,
                 lengths=100 * fractions[order],
                 breadth=0.38,
                 error=100 * error,

@@ -12,8 +12,8 @@ from sonolube.identification import (
     SwitchConditions,
     SwitchTable,
     decide_decay_length,
-    decision_dataset,
     decision_chart,
+    decision_dataset,
 )
 
 CONDITIONS = SwitchConditions(natural_frequency=made.FREE_FREQUENCY)

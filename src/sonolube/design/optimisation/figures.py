@@ -108,7 +108,11 @@ def limits_chart(point: DesignPoint) -> Chart:
     used = {name: 100 * float(values[0]) for name, values in point.evaluation.utilisation.items() if name in LIMITS}
     used = {name: percent for name, percent in sorted(used.items(), key=lambda item: item[1]) if percent > 0}
     percents = np.array(list(used.values()))
-    bars = Bars(places=np.arange(len(used)), lengths=percents, texts=tuple(f"{each:.3g} %" for each in percents))
+    bars = Bars(
+        places=np.arange(len(used), dtype=np.float64),
+        lengths=percents,
+        texts=tuple(f"{each:.3g} %" for each in percents),
+    )
     panel = Panel(
         x=Axis(label="Share of the limit used", unit="%", lowest=0.0, highest=118.0),
         y=Axis(words=tuple(LIMITS[name] for name in used)),

@@ -11,7 +11,7 @@ _MOST_DESCRIBED = 4  # points whose conditions are written below the axis
 
 
 def plan_chart(plan: TestPlan) -> Chart:
-    """Return candidates over speed and amplitude, coloured by information, and the prediction at the points of a plan.
+    """Candidates over speed and amplitude, coloured by information, and the prediction at the points of a plan.
 
     Parameters
     ----------
