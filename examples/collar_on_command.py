@@ -31,7 +31,7 @@ for kelvin in (0.0, 50.0, 100.0, 150.0):
     )
     before_second_step = int(0.5 * study.run.time.size)
     tracked, fixed = (
-        f"{run.friction_force[before_second_step]:.3f} N, {run.voltage_peak_to_peak[before_second_step]:5.1f} V"
+        f"{run.friction_force[before_second_step]:.3f} N, {run.level[before_second_step]:5.1f} V"
         for run in (study.run, study.fixed_frequency_run or study.run)
     )
     print(f"{kelvin:4.0f} K    {study.friction_force:.1f} N             {tracked}  {fixed}")

@@ -1,7 +1,12 @@
 """Names of earlier versions: one line that names the new place; names of today: tasks, whatever was imported before."""
 
+import copy
+import pickle
+import pydoc
 import subprocess
 import sys
+from functools import wraps
+from inspect import signature
 
 import pytest
 from pytest import mark, raises
@@ -30,6 +35,30 @@ def test_an_import_of_a_former_room_names_the_new_one(statement: str, place: str
 def test_a_former_attribute_names_the_new_one(name: str, place: str) -> None:
     with raises(AttributeError, match=place):
         getattr(sl, name)
+
+
+@mark.parametrize(
+    ("statement", "place"),
+    [
+        ("sl.published.PUBLISHED_TESTS", "sonolube.facts.published"),
+        ("sl.friction.FRICTION_MODELS", "sonolube.models.friction"),
+        ("sl.wear.ArchardWear", "sonolube.models.wear"),
+        ("sl.materials.material", "sonolube.facts.materials"),
+        ("sl.reproduce.claims", "sonolube.reproduction"),
+        ("sl.lab.runner", "sonolube.laboratory"),
+    ],
+)
+def test_an_attribute_of_a_module_whose_name_a_task_has_names_the_module_of_today(statement: str, place: str) -> None:
+    with raises(AttributeError, match=rf"^[^\n]* is now {place}$"):
+        eval(statement, {"sl": sl})
+
+
+def test_a_task_is_a_function_to_signature_pickle_copy_and_help() -> None:
+    assert list(signature(sl.contact).parameters) == list(signature(sl.contact.__wrapped__).parameters) != []
+    assert pickle.loads(pickle.dumps(sl.contact)) is copy.copy(sl.contact) is sl.contact
+    assert sl.contact.__name__ == sl.contact.__qualname__ == wraps(sl.contact)(lambda: None).__name__ == "contact"
+    assert "Example: sonolube contact" in pydoc.render_doc(sl.contact)
+    assert not hasattr(sl.predict, "no_such_name")
 
 
 def test_a_name_that_never_was_is_unknown() -> None:

@@ -144,3 +144,12 @@ def test_the_units_that_are_read_without_pint_have_its_values_to_the_last_bit() 
             for number in (1.0, 0.3, 417.0):
                 expected = registry.Quantity(number, one).to(canonical_unit(unit)).magnitude
                 assert to_si(f"{number} {written}", unit=unit, name="") == number * factor == expected, written
+
+
+def test_what_only_rounding_leaves_of_a_force_is_no_force() -> None:
+    force = 0.3
+    assert format_si(3 * 0.1 - force, "N", scale=force) == "0 N"
+    assert format_si(-16.5e-12, "N", scale=force) == "0 N"
+    assert format_si(16.5e-12, "N") == "16.5 pN"
+    assert format_si(16.5e-6, "N", scale=force) == "16.5 uN"
+    assert format_si(math.nan, "N", scale=force) == "nan N"

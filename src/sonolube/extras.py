@@ -1,9 +1,11 @@
 """Optional parts of the installation: the packages that each brings, what needs them, and how it is installed."""
 
 import platform
+import re
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, requires, version
 from importlib.util import find_spec
 from types import MappingProxyType
 
@@ -116,3 +118,24 @@ def _is_found(module: str) -> bool:
         return find_spec(module) is not None
     except (ImportError, ValueError):  # a module that was set to None or has no spec
         return False
+
+
+def required_packages() -> dict[str, str]:
+    """Versions of the packages that are required.
+
+    Returns
+    -------
+    dict of str to str
+        By the name of the package; empty where one is missing.
+    """
+    required = [each for each in requires("sonolube") or () if "extra ==" not in each]
+    names = sorted(re.split(r"[^\w.-]", each)[0] for each in required)
+    return {name: installed_version(name) for name in names}
+
+
+def installed_version(package: str) -> str:
+    """Version of a package, empty where it is missing."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ""

@@ -22,6 +22,11 @@ def former_name(name: str) -> str | None:
     return f"sonolube.{name} is now sonolube.{_ROOMS[room]}{dot}{rest}" if room in _ROOMS else None
 
 
+def moved_module(name: str) -> str:
+    """Where the contents of a former module are whose name a task or a group of tasks has now; empty for others."""
+    return f"; the module sonolube.{name} is now sonolube.{_ROOMS[name]}" if name in _ROOMS else ""
+
+
 class _FormerPlaces:
     """Finder that comes last and refuses modules of former rooms."""
 

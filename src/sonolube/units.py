@@ -15,6 +15,7 @@ from sonolube.vocabulary import quantities
 _ANGLES = ("radian", "degree", "revolution", "turn", "cycle")
 _MINIMUM_MM3 = 1e-14  # m3; smaller volumes are written in um3
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_ROUNDING = 1e-9  # of the scale of a value, below which only errors of floating-point numbers remain
 _LONGEST_QUOTE = 80  # characters of a text that an error quotes
 
 _KINDS = {
@@ -121,7 +122,7 @@ def unit_description(unit: str) -> str:
     return _KINDS.get(unit, f"a value in {unit}")
 
 
-def format_si(value: float, unit: str, *, digits: int = 3) -> str:
+def format_si(value: float, unit: str, *, digits: int = 3, scale: float = 0.0) -> str:
     """Return an SI value as text with a prefixed unit, such as "2.5 um" for 2.5e-6 m; angles in degrees.
 
     Parameters
@@ -132,11 +133,15 @@ def format_si(value: float, unit: str, *, digits: int = 3) -> str:
         SI unit.
     digits : int
         Number of significant digits.
+    scale : float
+        Size of the values that it comes from, in SI: a billionth of it is rounding, and written as 0.
 
     Returns
     -------
     str
     """
+    if abs(value) < _ROUNDING * abs(scale):
+        value = 0.0
     if unit == "kg" and 0 < abs(value) < 1:
         return format_si(1e3 * value, "g", digits=digits)
     if unit == "rad":

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from types import MappingProxyType
+from typing import Any
 
 from sonolube.errors import UnknownName
 
@@ -85,3 +86,28 @@ def unit_of(name: str) -> str:
     """Return the SI unit of a name; empty for pure numbers and for names that are not in the vocabulary."""
     known = quantities().get(name)
     return known.unit if known else ""
+
+
+def si(values: Mapping[str, float | None], *, unit: str | None = None) -> dict[str, Any]:
+    """Quantities for JSON, each as its value with its SI unit.
+
+    Parameters
+    ----------
+    values : mapping of str to float or None
+        By name.
+    unit : str, optional
+        Of all values; that of the vocabulary for each name where absent.
+
+    Returns
+    -------
+    dict
+        Such as {"normal_load": {"value": 3.0, "unit": "N"}}.
+
+    Raises
+    ------
+    UnknownName
+        If a name is not in the vocabulary and no unit is given.
+    """
+    return {
+        name: {"value": value, "unit": quantity(name).unit if unit is None else unit} for name, value in values.items()
+    }

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from matplotlib.patches import Rectangle
 from pytest import approx
 
 from sonolube.charts import (
@@ -76,7 +77,7 @@ def test_matplotlib_draws_the_values_and_labels_of_a_chart() -> None:
     assert (curves.get_xlabel(), curves.get_ylabel()) == ("Sliding speed [mm/s]", "Friction ratio")
     assert curves.get_xscale() == "log"
     assert curves.get_ylim() == (0.0, 1.0)
-    assert [patch.get_width() for patch in bars.patches] == approx(X)
+    assert [patch.get_width() for patch in bars.patches if isinstance(patch, Rectangle)] == approx(X)
     assert [text.get_text() for text in bars.get_yticklabels()] == ["first", "second", "third"]
     (legend,) = figure.legends
     labels = [text.get_text() for text in legend.get_texts()]

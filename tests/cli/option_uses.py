@@ -15,6 +15,7 @@ ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "examples" / "rigs"
 RIG = str(RIGS / "tribometer.toml")
 COLLAR = str(RIGS / "collar.toml")
+FLAT = str(RIGS / "welder_flat.toml")  # without a voltage
 AMPLITUDE = {"--amplitude": "per-volt"}
 LOADED = {"--load": "2N", "--set": "contact.normal_load=2N"}
 VIBRATED = LOADED | AMPLITUDE
@@ -173,11 +174,9 @@ MODES = {
     "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}, ("--no-interval",)),
     "wear": Mode("wear", (RIG,), VIBRATED),
     "simulate": Mode("simulate", (RIG,), VIBRATED),
-    "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", "--set": "contact.normal_load=2N"}),
+    "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", **LOADED}),
     "transient": Mode(
-        "transient",
-        (RIG, "--duration", "0.02s"),
-        {"--duration": "0.03s", "--amplitude": "computed", "--set": "contact.normal_load=2N"},
+        "transient", (RIG, "--duration", "0.02s"), {"--duration": "0.03s", "--amplitude": "computed", **LOADED}
     ),
     "thermal": Mode(
         "thermal",
@@ -194,6 +193,7 @@ MODES = {
             "--flash-model": "tian_kennedy_1994",
             "--amplitude": "per-volt",
             "--set": "contact.normal_load=2N",
+            "--load": "2N",
         },
     ),
     "regime": Mode(
@@ -207,6 +207,7 @@ MODES = {
             "--disc": "m50",
             "--amplitude": "per-volt",
             "--set": "contact.normal_load=2N",
+            "--load": "2N",
         },
     ),
     "regime with wear": Mode(
@@ -309,6 +310,14 @@ MODES = {
     "sweep of waveforms": Mode(
         "sweep", (RIG, "--of", "waveform"), SWEEP | {"--of": "load", "--from": "5V", "--to": "20V"}
     ),
+    "sweep of amplitude": Mode(
+        "sweep",
+        (FLAT, "--of", "amplitude", "--points", "3"),
+        {"--of": "load", "--from": "2um", "--to": "8um", "--points": "4", "--vibration": "3um", "--voltage": "3V"},
+    ),
+    "sweep of speed at amplitudes": Mode(
+        "sweep", (FLAT, "--of", "speed", "--points", "3"), {"--vibration": "30um", "--to": "0.5m/s"}
+    ),
     "sweep of load": Mode("sweep", (RIG, "--of", "load", "--points", "3"), STUDY | {"--from": "2N", "--to": "5N"}),
     "fit": Mode(
         "fit",
@@ -319,6 +328,7 @@ MODES = {
             "--model": "kinematic",
             "--amplitude": "computed",
             "--set": "contact.roughness.rms_height=3um",
+            "--load": "2N",
         },
     ),
     "map": Mode(
@@ -339,6 +349,11 @@ MODES = {
         "map",
         (str(RIGS / "power_map.toml"), "--over", "drive.voltage_peak_to_peak=5V,10V"),
         {"--kind": "frequency-voltage"},
+    ),
+    "map over amplitude": Mode(
+        "map",
+        (FLAT, "--over", "vibration.vibration_amplitude=20um,40um", "--over", "sliding.sliding_speed=10mm/s,20mm/s"),
+        {"--kind": "velocity-stress", "--over": "contact.normal_load=10N"},
     ),
     "uncertainty": Mode(
         "uncertainty",
@@ -381,6 +396,7 @@ MODES = {
             "--quality": "200",
             "--source-resistance": "50ohm",
             "--set": "sliding.sliding_speed=30mm/s",
+            "--load": "2N",
         },
     ),
     "optimise masses": Mode(
@@ -415,6 +431,9 @@ MODES = {
     ),
     "control in the warm": Mode(
         "control", (RIG, "--duration", "0.05s", "--warming", "40K"), {"--warming-time": "0.01s"}, ("--no-track",)
+    ),
+    "control by the amplitude": Mode(
+        "control", (FLAT, "--duration", "0.05s"), {"--amplitude-limit": "20um", "--quality": "100", "--warming": "40K"}
     ),
     "control by the efficiency": Mode(
         "control", (RIG, "--duration", "0.05s", "--feed-forward", "efficiency"), {"--efficiency": "1e-9m2/N"}
@@ -595,10 +614,11 @@ MODES = {
             "--runs": OWN_RUNS,
             "--mapping": "FOLDER/halved.toml",
             "--set": "sliding.sliding_speed=50mm/s",
+            "--load": "2N",
         }
         | AMPLITUDE,
     ),
-    "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "compare without a rig": Mode("compare", ("--model", "kinematic"), VIBRATED),
     "lab run": Mode(
         "lab run",
         ("FOLDER/short.toml", "--rig", str(RIGS / "power_map.toml")),
@@ -661,13 +681,11 @@ MODES = {
         "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
     ),
     "mapping": Mode("mapping", (OWN_RUNS,), {"--column": "friction_force [N]=-"}),
-    "literature": Mode(
-        "literature", (RIG,), {"--set": "contact.normal_load=2N", "--table": "FOLDER/studies.csv"} | AMPLITUDE
-    ),
+    "literature": Mode("literature", (RIG,), VIBRATED | {"--table": "FOLDER/studies.csv"}),
     "literature with a table": Mode(
         "literature", ("--table", "FOLDER/studies.csv"), {"--mapping": "FOLDER/reduced.toml"}
     ),
-    "literature without a rig": Mode("literature", (), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "literature without a rig": Mode("literature", (), VIBRATED),
 }
 
 
@@ -751,9 +769,3 @@ def write_inputs(place: Path) -> None:
 
 def _table(path: Path, heads: str, *columns: "np.ndarray[Any, np.dtype[np.float64]]") -> None:
     np.savetxt(path, np.stack(columns, 1), delimiter=",", header=heads, comments="", fmt="%.9g")
-
-
-_LOADED = ("response", "transient", "thermal", "regime", "optimise", "compare", "fit", "literature")
-for _mode in MODES.values():  # the load is an entry of every rig file
-    if _mode.command in _LOADED and "--set" in _mode.values:
-        object.__setattr__(_mode, "values", {**_mode.values, "--load": "2N"})

@@ -1,10 +1,11 @@
 """Rigs as `new` writes them, by an amplitude and by an actuator, through every task that takes a rig alone."""
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from pytest import CaptureFixture, MonkeyPatch
+from pytest import CaptureFixture, MonkeyPatch, approx
 from tests.cli.option_uses import RUNS
 
 from sonolube.cli import main
@@ -27,10 +28,24 @@ ANSWERED = {
     "uncertainty": ("--samples", "32"),
     "literature": (),
 }
-VOLTAGE = {
+COMMANDED = {
     "map": ("--over", "sliding.sliding_speed=20mm/s,50mm/s"),
-    "control": (),
-    "sweep": ("--of", "speed", "--points", "3"),
+    "control": ("--stick-slip",),
+    "sweep of speed": ("--of", "speed", "--points", "3"),
+    "sweep of load": ("--of", "load", "--points", "3"),
+}
+BY_AMPLITUDE = {
+    "map": ("--kind", "frequency-amplitude", "--over", "vibration.vibration_amplitude=1um,3um"),
+    "sweep": ("--of", "amplitude", "--points", "3"),
+}
+BY_VOLTAGE = {
+    ("map", "--kind", "velocity-power"): "take --kind velocity-stress, velocity-amplitude or frequency-amplitude",
+    ("map", "--kind", "frequency-voltage"): "take --kind velocity-stress, velocity-amplitude or frequency-amplitude",
+    ("sweep", "--of", "voltage"): "take --of amplitude",
+    ("sweep", "--of", "speed", "--voltage", "3V"): "give --vibration of each curve",
+    ("control", "--voltage-limit", "30V"): "--voltage-limit has no meaning for an amplitude that is commanded",
+    ("control", "--warming", "40K"): "--warming has no meaning for an amplitude that is commanded",
+    ("control", "--feed-forward", "efficiency"): "take model",
 }
 STRUCTURE = {
     "response": (),
@@ -69,16 +84,46 @@ def test_a_first_rig_has_an_answer(name: str, task: str, rigs: dict[str, Path], 
     assert run(tmp_path, task, str(rigs[name]), *options) == 0
 
 
-@pytest.mark.parametrize("task", VOLTAGE)
-def test_what_needs_a_voltage_answers_with_one_and_names_it_without(
+@pytest.mark.parametrize("name", FIRST)
+@pytest.mark.parametrize("task", COMMANDED)
+def test_a_first_rig_is_commanded_by_what_it_has(name: str, task: str, rigs: dict[str, Path], tmp_path: Path) -> None:
+    assert run(tmp_path, task.partition(" ")[0], str(rigs[name]), *COMMANDED[task]) == 0
+
+
+@pytest.mark.parametrize("task", BY_AMPLITUDE)
+def test_a_rig_without_a_voltage_names_its_amplitude_alone(
     task: str, rigs: dict[str, Path], tmp_path: Path, capsys: CaptureFixture[str]
 ) -> None:
-    assert run(tmp_path, task, str(rigs["actuator"]), *VOLTAGE[task]) == 0
-    capsys.readouterr()
-    assert run(tmp_path, task, str(rigs["amplitude"]), *VOLTAGE[task]) == 2
+    assert run(tmp_path, task, str(rigs["amplitude"]), *BY_AMPLITUDE[task], "--json") == 0
+    written = capsys.readouterr().out
+    assert "vibration_amplitude" in written
+    assert "voltage" not in written
+    assert "power" not in written
+
+
+def test_files_of_a_controller_without_a_voltage_speak_of_amplitude_alone(
+    rigs: dict[str, Path], tmp_path: Path, capsys: CaptureFixture[str]
+) -> None:
+    assert run(tmp_path, "control", str(rigs["amplitude"]), "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["amplitude_maximum"]["value"] == approx(3e-6)
+    assert "electrical_energy" not in found
+    assert "amplitude limit" in found["assumptions"]
+    source = (tmp_path / "amplitude-control.c").read_text(encoding="utf-8")
+    table = (tmp_path / "amplitude-control.csv").read_text(encoding="utf-8")
+    assert "#define SONOLUBE_HIGHEST_AMPLITUDE (3e-06) /* m zero to peak */" in source
+    assert table.splitlines()[0] == "friction_force [N],vibration_amplitude [m]"
+    assert "volt" not in source.lower() + table.lower()
+
+
+@pytest.mark.parametrize("words", BY_VOLTAGE, ids=" ".join)
+def test_what_is_of_a_voltage_alone_names_the_option_that_helps(
+    words: tuple[str, ...], rigs: dict[str, Path], tmp_path: Path, capsys: CaptureFixture[str]
+) -> None:
+    assert run(tmp_path, words[0], str(rigs["amplitude"]), *words[1:]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "drive.voltage_peak_to_peak is missing" in line
-    assert "vibration.vibration_amplitude" in line
+    assert BY_VOLTAGE[words] in line
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("name", FIRST)

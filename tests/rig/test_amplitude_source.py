@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.design import MAPS, grid_plan, sweep
+from sonolube.design import MAPS, grid_plan, map_kinds, sweep
 from sonolube.design.control import computed_characteristic
 from sonolube.errors import InvalidInput
 from sonolube.models.friction import BoundaryLubricant
 from sonolube.rig import (
+    VOLTAGE,
     Rig,
     available_sources,
     friction_point,
@@ -94,7 +95,7 @@ def test_a_sweep_at_the_rigs_own_point_has_its_friction(name: str, source: str) 
     assert swept.attrs["caveats"].split("\n") == list(friction_point(rig).caveats)
 
 
-@pytest.mark.parametrize("kind", MAPS)
+@pytest.mark.parametrize("kind", map_kinds(VOLTAGE))
 @pytest.mark.parametrize(("name", "source"), VARIED)
 def test_a_map_at_the_rigs_own_point_has_its_friction(name: str, source: str, kind: str) -> None:
     rig = chosen(name, source)
@@ -115,7 +116,7 @@ def test_a_map_at_the_rigs_own_point_has_its_friction(name: str, source: str, ki
 @pytest.mark.parametrize(("name", "source"), VARIED)
 def test_the_characteristic_of_control_ends_at_the_rigs_own_friction(name: str, source: str) -> None:
     rig = chosen(name, source)
-    plant = computed_characteristic(rig, voltage_maximum=volts_of(rig), points=2)
+    plant = computed_characteristic(rig, level_maximum=volts_of(rig), points=2)
     expected = ratio_of(name, source) * rig.friction_coefficient * rig.normal_load
     assert plant.lowest_force == approx(expected, rel=CLOSE)
 

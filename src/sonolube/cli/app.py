@@ -160,7 +160,7 @@ def _with_example(reason: str) -> str:
     missing = _MISSING_FILE.search(reason.replace("\\", "/"))
     if missing is None:
         return reason
-    from sonolube.tasks.lookup.example_files import example_files
+    from sonolube.example_files import example_files
 
     names = [name for name, each in example_files().items() if each.path == missing[1]]
     return f"{reason}; to get it: sonolube example {names[0]}" if names else reason

@@ -75,8 +75,7 @@ def command_of(
     task: Task,
     *,
     more: Sequence[Extra] = (),
-    before: Callable[[Mapping[str, Any]], None] | None = None,
-    complete: Callable[[dict[str, Any]], dict[str, Any]] | None = None,
+    complete: Callable[[dict[str, Any], Mapping[str, Any]], dict[str, Any]] | None = None,
     delivery: Callable[[Any, Mapping[str, Any]], None] | None = None,
 ) -> Callable[..., None]:
     """Function of a command by its task, as typer reads it.
@@ -86,10 +85,9 @@ def command_of(
     task : Task
     more : sequence of Extra
         Arguments that only the terminal has.
-    before : callable, optional
-        Called with everything that was typed, before the task.
     complete : callable, optional
-        Returns the arguments of the task from those that were given; none is required of typer then.
+        Returns the arguments of the task from those that were given and everything that was typed; none is required of
+        typer then.
     delivery : callable, optional
         Called with the answer and everything that was typed, in place of `deliver`.
 
@@ -111,8 +109,6 @@ def command_of(
     def run(context: typer.Context, **typed: Any) -> None:
         given = frozenset(name for name in typed if _is_given(context, name))
         with argument_names(lambda name: names.get(name, name)), observed(progress), few_points(), gpu_warning():
-            if before is not None:
-                before(typed)
             arguments = {each.name: each.value(typed, names) for each in inputs if each.is_given(given)}
             if keep is not None:
                 arguments["keep"] = (
@@ -120,7 +116,7 @@ def command_of(
                 )
             if "operator" in marks:
                 arguments |= operator_arguments()
-            answer = function(**(arguments if complete is None else complete(arguments)))
+            answer = function(**(arguments if complete is None else complete(arguments, typed)))
             if delivery is not None:
                 return delivery(answer, typed)
             return deliver(

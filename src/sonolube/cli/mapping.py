@@ -1,5 +1,6 @@
 """Command `mapping`: the task with a question on a terminal for each column that its heading does not tell."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from sonolube.cli.console.questions import Question, ask, is_terminal
@@ -10,8 +11,9 @@ from sonolube.tasks.lookup.mapping import LEFT_OUT, meaning, samples, stated_col
 from sonolube.tasks.table import task_named
 
 
-def _completed(given: dict[str, Any]) -> dict[str, Any]:
+def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments with the answers to questions for columns of unknown meaning."""
+    del typed
     if "file" not in given:
         raise InvalidInput("missing FILE, a table of runs or a text export of an instrument")
     if not is_terminal():

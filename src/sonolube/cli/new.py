@@ -68,8 +68,10 @@ _INSTEAD: Final = {"amplitude": ("actuator",), "pin_finish": ("finish", "pin_sca
 """Arguments that take the place of an answer."""
 
 
-def _completed(given: dict[str, Any]) -> dict[str, Any]:
-    """Arguments with the answers to questions for those that are missing."""
+def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments with the answers to questions for those that are missing, where the file may be written."""
+    if typed["out"].exists() and not typed["force"]:
+        raise InvalidInput(f"{typed['out']}: exists; name another file, or give --force to replace it")
     refuse_two_of_one(given)
     missing = [name for name in _NEEDED if not _is_known(name, given)]
     if missing and not is_terminal():
@@ -122,19 +124,12 @@ def _delivered(answer: NewRig, typed: Mapping[str, Any]) -> None:
     deliver(answer.written_to(out), folder=out.parent, as_json=typed["json"])
 
 
-def _refuse_existing(typed: Mapping[str, Any]) -> None:
-    """Refuse to replace a file without --force."""
-    if typed["out"].exists() and not typed["force"]:
-        raise InvalidInput(f"{typed['out']}: exists; name another file, or give --force to replace it")
-
-
 _OUT: Final = Annotated[Path, typer.Argument(metavar="[OUT.toml]", help="File to write."), OutputFile()]
 _FORCE: Final = Annotated[bool, typer.Option("--force", help="Replace the file where it exists.")]
 
 new = command_of(
     task_named("new"),
     more=(Extra("out", _OUT, Path("rig.toml")), Extra("force", _FORCE, False)),
-    before=_refuse_existing,
     complete=_completed,
     delivery=_delivered,
 )

@@ -1,15 +1,17 @@
 from .gaussian_process import GaussianProcessMap as GaussianProcessMap, gaussian_process_map as gaussian_process_map
 from .map_figures import map_chart as map_chart, map_page as map_page, measured_map_chart as measured_map_chart
+from .map_layouts import MAP_LAYOUTS as MAP_LAYOUTS, map_layout as map_layout
 from .maps import (
-    MAP_LAYOUTS as MAP_LAYOUTS,
     MAPS as MAPS,
-    SATURATION_GAIN as SATURATION_GAIN,
+    frequency_amplitude_map as frequency_amplitude_map,
     frequency_voltage_map as frequency_voltage_map,
-    saturation_power as saturation_power,
+    map_kinds as map_kinds,
+    velocity_amplitude_map as velocity_amplitude_map,
     velocity_power_map as velocity_power_map,
     velocity_stress_map as velocity_stress_map,
 )
 from .parameter_sweep import CHUNK_POINTS as CHUNK_POINTS, compute_points as compute_points, sweep as sweep
+from .saturation import SATURATION_GAIN as SATURATION_GAIN, saturation_power as saturation_power
 from .sobol import (
     SobolIndices as SobolIndices,
     saltelli_sample as saltelli_sample,

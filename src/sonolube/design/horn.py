@@ -9,7 +9,7 @@ from sonolube.checks import Floats, require_positive
 from sonolube.design.horn_shapes import TunableBody
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import Material
-from sonolube.models.fem import Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
+from sonolube.models.fem import Geometry, Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
 from sonolube.models.fem.mass_loading import face_residual_compliance, mass_loaded_frequencies
 from sonolube.models.fem.solver.element_order import change_order
 from sonolube.models.fem.solver.mapping import determinant, jacobian_matrices
@@ -70,6 +70,16 @@ class HornDesign:
     def working_face(self) -> str:
         """Name of the working face."""
         return f"+{self.body.axis}"
+
+    @property
+    def total_length(self) -> float:
+        """Distance from the driven to the working face. [m]"""
+        return float(np.ptp(self.tuned.mode.model.mesh.nodes[:, DIRECTIONS.index(self.body.axis)]))
+
+    @property
+    def geometry(self) -> Geometry:
+        """Solid of the tuned length."""
+        return self.body.geometry_at(self.tuned.length)
 
 
 def tuned_horn(

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from sonolube.checks import Floats
 from sonolube.design.horn import HornDesign, face_motion, nodal_stress, section_motion
@@ -13,7 +14,8 @@ from sonolube.models.fem.solver.model import DIRECTIONS
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_SLICES = 40  # across the axis, in each of which the highest stress is drawn
+_SLICES = 40  # across the axis, in each of which the highest stress is taken
+_POINTS = 801  # of each curve
 _PLANES = 601  # in which the profile is drawn
 _INSIDE = 1e-6  # of half the length, by which the first and last plane lie inside
 
@@ -34,9 +36,9 @@ def horn_axis_figure(design: HornDesign) -> "Figure":
 
     mode, axis = design.tuned.mode, design.body.axis
     tip = float(face_motion(mode.model, mode.displacement, design.working_face, axis).mean())
-    place, displacement = section_motion(mode, axis)
     along = mode.model.mesh.nodes[:, DIRECTIONS.index(axis)]
     start = along.min()
+    place, displacement = _curve(*_motion(design))
     figure = Figure(figsize=(5.6, 5.4))
     profile, motion, stress = figure.subplots(3, 1, sharex=True, height_ratios=(1, 1.3, 1.3))
     middle, half = _profile(design)
@@ -44,9 +46,9 @@ def horn_axis_figure(design: HornDesign) -> "Figure":
     profile.set(ylabel="Half width\n[mm]")
     motion.plot(1e3 * (place - start), displacement / tip, color=COLOURS[0])
     motion.axhline(0, color="0.4", linewidth=0.8)
-    motion.set(ylabel="Axial displacement\nover the tip's [-]")
-    middles, highest = _highest(along, nodal_stress(mode.model, mode.displacement) / abs(tip))
-    stress.plot(1e3 * (middles - start), 1e-12 * highest, color=COLOURS[1])
+    motion.set(ylabel="Axial displacement\nover the tip's [1]")
+    where, highest = _curve(*_highest(along, nodal_stress(mode.model, mode.displacement) / abs(tip)))
+    stress.plot(1e3 * (where - start), 1e-12 * highest, color=COLOURS[1])
     stress.set(xlabel="Distance from the driven face [mm]", ylabel="Peak stress\n[MPa per µm]", ylim=(0, None))
     for axes in (motion, stress, profile):
         axes.axvline(1e3 * design.node_position, color="0.4", linestyle=":")
@@ -57,14 +59,31 @@ def horn_axis_figure(design: HornDesign) -> "Figure":
     return figure
 
 
+def _curve(place: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Smooth curve through values, without maxima of its own."""
+    fine = np.union1d(place, np.linspace(place[0], place[-1], _POINTS))
+    return fine, np.asarray(PchipInterpolator(place, values)(fine))
+
+
+def _motion(design: HornDesign) -> tuple[Floats, Floats]:
+    """Places of sections and their mean axial displacements, from the driven to the working face."""
+    mode, axis = design.tuned.mode, design.body.axis
+    along = mode.model.mesh.nodes[:, DIRECTIONS.index(axis)]
+    place, displacement = section_motion(mode, axis)
+    ends = (face_motion(mode.model, mode.displacement, f"{sign}{axis}", axis).mean() for sign in "-+")
+    driven, working = map(float, ends)
+    return np.r_[along.min(), place, along.max()], np.r_[driven, displacement, working]
+
+
 def _highest(along: Floats, stress: Floats) -> tuple[Floats, Floats]:
-    """Middles of slices across the axis, and the highest stress of the nodes in each."""
+    """Places of the highest stress of the nodes in slices across the axis, and of the end faces, and that stress."""
     edges = np.linspace(along.min(), along.max(), _SLICES + 1)
-    which = np.clip(np.digitize(along, edges) - 1, 0, _SLICES - 1)
-    highest = np.zeros(_SLICES)
-    np.maximum.at(highest, which, stress)
-    filled = np.unique(which)
-    return ((edges[1:] + edges[:-1]) / 2)[filled], highest[filled]
+    slices = np.digitize(along, edges[1:-1])
+    thin = 1e-6 * (edges[-1] - edges[0])
+    slices[along < edges[0] + thin], slices[along > edges[-1] - thin] = -1, _SLICES
+    order = np.lexsort((stress, slices))
+    highest = order[np.flatnonzero(np.diff(slices[order], append=_SLICES + 1))]
+    return along[highest], stress[highest]
 
 
 def _profile(design: HornDesign) -> tuple[Floats, Floats]:

@@ -6,8 +6,9 @@ import numpy as np
 
 from sonolube.charts import Axis, Chart, Field, Line, Panel, Part, Points
 from sonolube.checks import Floats
-from sonolube.design.maps import MAP_LAYOUTS, panels_text, same_panels
+from sonolube.design.map_layouts import map_layout, panels_text, same_panels
 from sonolube.extras import missing_package
+from sonolube.rig import AMPLITUDE, VOLTAGE
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -17,12 +18,12 @@ _STEP = 5  # percent between two contour levels
 _MEASURED_LABEL = "measured, reduction in %"
 _MOVED_LABEL = "measured, moved to the panel by the model"
 _SATURATION_LABEL = "above it doubling the power gains less than 5 %"
-_AXES = {
+_AXES: dict[str, tuple[float, Axis]] = {
     "sliding_speed": (1e3, Axis(label="Sliding speed", unit="mm/s")),
     "actuator_power": (1.0, Axis(label="Power of the amplifier", unit="W")),
     "nominal_pressure": (1e-6, Axis(label="Nominal stress", unit="MPa")),
     "frequency": (1e-3, Axis(label="Drive frequency", unit="kHz")),
-    "voltage_peak_to_peak": (1.0, Axis(label="Voltage, peak to peak", unit="V")),
+    **{each.name: (each.axis_scale, each.axis) for each in (VOLTAGE, AMPLITUDE)},
 }
 
 
@@ -44,7 +45,7 @@ def map_chart(computed: "xr.Dataset", *, measured: "xr.Dataset | None" = None) -
     --------
     map_page, measured_map_chart
     """
-    x_name, y_name, panel = MAP_LAYOUTS[computed.attrs["map"]]
+    x_name, y_name, panel = map_layout(computed)
     parts, panel = _panels(computed, panel)
     levels = _levels(computed, measured)
     columns = _columns(len(parts))
@@ -78,7 +79,7 @@ def measured_map_chart(interpolated: "xr.Dataset", runs: "xr.Dataset") -> Chart:
     --------
     map_chart, gaussian_process_map
     """
-    x_name, y_name, _ = MAP_LAYOUTS[interpolated.attrs["map"]]
+    x_name, y_name, _ = map_layout(interpolated)
     x, y, reduction = _surface(interpolated, x_name, y_name)
     _, _, uncertainty = _surface(interpolated, x_name, y_name, of="friction_reduction_uncertainty")
     levels = _levels(interpolated, runs)
@@ -121,7 +122,7 @@ def map_page(computed: "xr.Dataset") -> str:
         from plotly.subplots import make_subplots
     except ImportError:
         raise missing_package("web", remedy="take PNG or PDF") from None
-    x_name, y_name, panel = MAP_LAYOUTS[computed.attrs["map"]]
+    x_name, y_name, panel = map_layout(computed)
     parts, panel = _panels(computed, panel)
     columns = _columns(len(parts))
     titles = None if panel is None else [_panel_title(part, panel) for part in parts]
@@ -219,7 +220,9 @@ def _surface(
 
 
 def _panel_title(part: "xr.Dataset", panel: str) -> str:
-    """Voltage and power, or load and stress, of a panel."""
+    """Voltage and power, amplitude, or load and stress, of a panel."""
+    if panel == AMPLITUDE.name:
+        return f"amplitude {format_si(float(part[panel]), AMPLITUDE.unit)}"
     if panel == "voltage_peak_to_peak":
         volts, watts = float(part[panel]), float(part["actuator_power"])
         return f"{format_si(volts, 'V')}, {format_si(watts, 'W')}"

@@ -1,4 +1,4 @@
-"""Maps of friction reduction over sliding speed and stress, sliding speed and power, or drive frequency and voltage."""
+"""Maps of friction reduction over sliding speed or frequency, and stress, power, voltage or vibration amplitude."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -9,21 +9,30 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.checks import Floats, require_positive
+from sonolube.design.saturation import saturation_power
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.backend import Backend, device_name, usable_backend
-from sonolube.rig import NUMBERS, STATUSES, Rig, amplitude_labels, gridded, point_batch
-from sonolube.rig.driven_rig import require_drive
-from sonolube.units import format_si
-from sonolube.vocabulary import quantity
+from sonolube.rig import (
+    AMPLITUDE,
+    NUMBERS,
+    STATUSES,
+    VOLTAGE,
+    CommandedQuantity,
+    Rig,
+    amplitude_labels,
+    commanded_quantity,
+    gridded,
+    level_settings,
+    own_level,
+    point_batch,
+    quantity_of_axis,
+    require_commanded,
+)
+from sonolube.rig.commanded import POWERS
 
 if TYPE_CHECKING:
     import xarray as xr
-
-SATURATION_GAIN = 0.05
-"""Additional friction reduction per doubling of the power below which the reduction counts as saturated. []"""
-
-_SAME_PANELS = 0.005  # of the friction reduction, which nobody sees in contours of 5 %
 
 
 def velocity_stress_map(
@@ -31,34 +40,38 @@ def velocity_stress_map(
     *,
     sliding_speed: ArrayLike,
     normal_load: ArrayLike,
-    voltage_peak_to_peak: ArrayLike,
+    voltage_peak_to_peak: ArrayLike | None = None,
+    vibration_amplitude: ArrayLike | None = None,
     backend: Backend = "cpu",
 ) -> "xr.Dataset":
-    """Friction reduction over sliding speed and nominal stress, for several drive voltages.
+    """Friction reduction over sliding speed and nominal stress, for several drive voltages or amplitudes.
 
     Parameters
     ----------
     rig : Rig
-        With a drive voltage; its vibration is by the source of its amplitude.
+        Its vibration is by the source of its amplitude.
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     normal_load : array_like, shape (m,)
         Forces pressing the bodies together; the structure is kept. [N]
-    voltage_peak_to_peak : array_like, shape (p,)
+    voltage_peak_to_peak : array_like, shape (p,), optional
         Drive voltages, one per panel; the offset is scaled in the rig's own ratio. [V]
+    vibration_amplitude : array_like, shape (p,), optional
+        Amplitudes of a rig without a drive voltage, one per panel. [m]
     backend : {"cpu", "gpu"}
         Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
 
     Returns
     -------
     xarray.Dataset
-        Over `voltage_peak_to_peak`, `normal_load` and `sliding_speed`, with the coordinates `nominal_pressure` and
-        `actuator_power`.
+        Over `voltage_peak_to_peak` or `vibration_amplitude`, `normal_load` and `sliding_speed`, with the coordinate
+        `nominal_pressure`, and `actuator_power` of the voltages.
 
     Raises
     ------
     InvalidInput
-        If the rig has no drive voltage or amplitude, or values are not positive and increasing.
+        If the rig has no amplitude, the quantity given does not set its vibration, or values are not positive and
+        increasing.
 
     Warns
     -----
@@ -67,18 +80,64 @@ def velocity_stress_map(
 
     See Also
     --------
-    velocity_power_map, frequency_voltage_map
+    velocity_power_map, velocity_amplitude_map, frequency_voltage_map
 
     References
     ----------
     .. [1] D figures 4.9 and 4.10.
     """
+    given = {"voltage_peak_to_peak": voltage_peak_to_peak, "vibration_amplitude": vibration_amplitude}
+    panels = {name: values for name, values in given.items() if values is not None}
+    if len(panels) != 1:
+        raise InvalidInput("a velocity-stress map needs either voltage_peak_to_peak or vibration_amplitude")
+    return _computed_map(
+        rig, "velocity-stress", backend, **panels, normal_load=normal_load, sliding_speed=sliding_speed
+    )
+
+
+def velocity_amplitude_map(
+    rig: Rig,
+    *,
+    sliding_speed: ArrayLike,
+    vibration_amplitude: ArrayLike,
+    normal_load: ArrayLike,
+    backend: Backend = "cpu",
+) -> "xr.Dataset":
+    """Friction reduction over sliding speed and vibration amplitude, for several normal loads.
+
+    Parameters
+    ----------
+    rig : Rig
+        Without a drive voltage; its vibration is a sine.
+    sliding_speed : array_like, shape (n,)
+        Macroscopic relative speeds. [m/s]
+    vibration_amplitude : array_like, shape (m,)
+        Zero to peak, the same under every load. [m]
+    normal_load : array_like, shape (p,)
+        Forces pressing the bodies together, one per panel. [N]
+    backend : {"cpu", "gpu"}
+        A sine is computed on the CPU.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `normal_load`, `vibration_amplitude` and `sliding_speed`, with the coordinate `nominal_pressure`.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has a drive voltage or no amplitude, or values are not positive and increasing.
+
+    See Also
+    --------
+    velocity_power_map, velocity_stress_map, frequency_amplitude_map
+    """
     return _computed_map(
         rig,
-        "velocity-stress",
+        "velocity-amplitude",
         backend,
-        voltage_peak_to_peak=voltage_peak_to_peak,
         normal_load=normal_load,
+        vibration_amplitude=vibration_amplitude,
         sliding_speed=sliding_speed,
     )
 
@@ -185,51 +244,45 @@ def frequency_voltage_map(
     )
 
 
-def saturation_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike) -> Floats:
-    r"""Power beyond which doubling it reduces friction by no more than another 0.05. [W]
+def frequency_amplitude_map(
+    rig: Rig, *, frequency: ArrayLike, vibration_amplitude: ArrayLike, backend: Backend = "cpu"
+) -> "xr.Dataset":
+    """Friction reduction over frequency and vibration amplitude, at the rig's load and speed.
 
     Parameters
     ----------
-    friction_reduction : array_like, shape (..., n)
-        Friction reduction at each power, NaN where it is unknown. []
-    actuator_power : array_like, shape (n,)
-        Amplifier powers, increasing. [W]
+    rig : Rig
+        Without a drive voltage; its vibration is a sine.
+    frequency : array_like, shape (n,)
+        Frequencies of the vibration. [Hz]
+    vibration_amplitude : array_like, shape (m,)
+        Zero to peak, the same at every frequency. [m]
+    backend : {"cpu", "gpu"}
+        A sine is computed on the CPU.
 
     Returns
     -------
-    ndarray, shape (...)
-        NaN where doubling gains more up to the last power, or gains less everywhere.
+    xarray.Dataset
+        Over `vibration_amplitude` and `frequency`.
 
     Raises
     ------
     InvalidInput
-        If a power is negative or not finite.
+        If the rig has a drive voltage or no amplitude, or values are not positive and increasing.
 
-    Notes
-    -----
-    The largest root :math:`P` of
-
-    .. math:: \mu_r(2P) - \mu_r(P) = 0.05
-
-    with the friction reduction :math:`\mu_r` interpolated linearly over the power.
+    See Also
+    --------
+    velocity_amplitude_map, frequency_voltage_map
     """
-    power = require_non_negative(actuator_power=actuator_power)
-    rows = np.asarray(friction_reduction, dtype=np.float64)
-    lower = np.unique(np.concatenate([power, power / 2]))
-    lower = lower[(lower >= power[0]) & (2 * lower <= power[-1])]
-    saturation = np.full(rows.shape[:-1], np.nan)
-    for index in np.ndindex(saturation.shape):
-        excess = np.interp(2 * lower, power, rows[index]) - np.interp(lower, power, rows[index]) - SATURATION_GAIN
-        above = np.flatnonzero(excess > 0)
-        if above.size and above[-1] + 1 < lower.size and np.isfinite(excess).all():
-            last = int(above[-1])
-            fraction = excess[last] / (excess[last] - excess[last + 1])
-            saturation[index] = lower[last] + fraction * (lower[last + 1] - lower[last])
-    return saturation
+    return _computed_map(
+        rig, "frequency-amplitude", backend, vibration_amplitude=vibration_amplitude, frequency=frequency
+    )
 
 
 def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
-    """Operating points on the grid of some axes as a dataset, with amplifier power and nominal pressure."""
+    """Operating points on the grid of some axes as a dataset, with nominal pressure and, under a voltage, its power."""
+    quantity = quantity_of_axis(axes)
+    require_commanded(rig, quantity)
     backend = usable_backend(backend)
     values = {name: np.atleast_1d(require_positive(**{name: array})) for name, array in axes.items()}
     for name, array in values.items():
@@ -240,99 +293,70 @@ def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "
                 raise InvalidInput(f"{name} must increase from value to value, got {lower:g} before {upper:g}")
     shape = tuple(array.size for array in values.values())
     mesh: dict[str, Any] = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
-    offset = require_drive(rig).offset_ratio * mesh["voltage_peak_to_peak"]
-    points = point_batch(rig, **mesh, voltage_offset=offset, backend=backend)
-    columns: dict[str, NDArray[Any]] = {name: points.numbers[name].reshape(shape) for name in NUMBERS}
+    settings = level_settings(rig, mesh.pop(quantity.name))
+    points = point_batch(rig, **mesh, **settings, backend=backend)
+    left_out = (*values, "actuator_power") if quantity is VOLTAGE else (*values, *POWERS)
+    columns: dict[str, NDArray[Any]] = {
+        name: points.numbers[name].reshape(shape) for name in NUMBERS if name not in left_out
+    }
     columns["status"] = np.array(STATUSES)[points.status].reshape(shape)
     columns["reason"] = np.array(points.reasons)[points.reason].reshape(shape)
-    power = columns.pop("actuator_power")
     about = (
         {"result": "map", "rig": rig.title, "map": kind}
         | amplitude_labels(rig)
         | ({"device": device_name(backend)} if backend == "gpu" else {})
     )
     computed = gridded(columns, axes=values, title=f"Friction reduction, {rig.title}", about=about)
+    if "normal_load" in values:
+        labels = {"units": "Pa", "long_name": "Nominal contact pressure"}
+        pressure = values["normal_load"] / rig.contact.nominal_area
+        computed = computed.assign_coords(nominal_pressure=("normal_load", pressure, labels))
+    if quantity is AMPLITUDE:
+        return computed
+    return _with_power(rig, computed, points.numbers["actuator_power"].reshape(shape))
+
+
+def _with_power(rig: Rig, computed: "xr.Dataset", power: Floats) -> "xr.Dataset":
+    """Map with the amplifier power of its points, or of its voltages where only they change it."""
     labels = {"units": "W", "long_name": "Power of a linear amplifier, D 1.9"}
-    if "frequency" in values:
-        return computed.assign_coords(actuator_power=(tuple(values), power, labels))
+    dims = [str(name) for name in computed["status"].dims]
+    if "frequency" in dims:
+        return computed.assign_coords(actuator_power=(dims, power, labels))
     if not np.any(np.isfinite(power)):
         raise InvalidInput(
             f"{rig.title}: no voltage has a power, which this map is over: actuator.capacitance is missing; give it, or"
             " map frequency-voltage"
         )
-    voltage_axis = list(values).index("voltage_peak_to_peak")
-    power_by_voltage = np.moveaxis(power, voltage_axis, 0).reshape(shape[voltage_axis], -1)[:, 0]
-    pressure = {"units": "Pa", "long_name": "Nominal contact pressure"}
-    return computed.assign_coords(
-        actuator_power=("voltage_peak_to_peak", power_by_voltage, labels),
-        nominal_pressure=("normal_load", values["normal_load"] / rig.contact.nominal_area, pressure),
-    )
+    voltage_axis = dims.index("voltage_peak_to_peak")
+    power_by_voltage = np.moveaxis(power, voltage_axis, 0).reshape(power.shape[voltage_axis], -1)[:, 0]
+    return computed.assign_coords(actuator_power=("voltage_peak_to_peak", power_by_voltage, labels))
 
 
 MAPS: Mapping[str, Callable[..., "xr.Dataset"]] = MappingProxyType(
     {
         "velocity-stress": velocity_stress_map,
         "velocity-power": velocity_power_map,
+        "velocity-amplitude": velocity_amplitude_map,
         "frequency-voltage": frequency_voltage_map,
+        "frequency-amplitude": frequency_amplitude_map,
     }
 )
 """Functions that compute a map, by its kind; each takes a rig, the axes of its signature, and a backend."""
 
-MAP_LAYOUTS: Mapping[str, tuple[str, str, str | None]] = MappingProxyType(
-    {
-        "velocity-stress": ("sliding_speed", "nominal_pressure", "voltage_peak_to_peak"),
-        "velocity-power": ("sliding_speed", "actuator_power", "normal_load"),
-        "frequency-voltage": ("frequency", "voltage_peak_to_peak", None),
-    }
-)
-"""Quantities along the x axis, along the y axis, and of the panels of each kind of map."""
 
-
-def same_panels(computed: "xr.Dataset") -> bool:
-    """Whether every panel of a map shows the same friction reduction.
+def map_kinds(quantity: CommandedQuantity) -> tuple[str, ...]:
+    """Kinds of maps of rigs whose vibration is set by a quantity.
 
     Parameters
     ----------
-    computed : xarray.Dataset
-        Result of a function of `MAPS`.
+    quantity : CommandedQuantity
 
     Returns
     -------
-    bool
-        True where the panels, of which there are several, differ nowhere by more than 0.005, a tenth of a contour step,
-        and lack a result at the same points.
+    tuple of str
+        Keys of `MAPS`.
     """
-    panel = MAP_LAYOUTS[computed.attrs["map"]][2]
-    if panel is None or computed.sizes[panel] < 2:
-        return False
-    reduction = computed["friction_reduction"]
-    missing = reduction.isnull()
-    if bool((missing != missing.isel({panel: 0})).any()) or bool(missing.all()):
-        return False
-    return float(np.nanmax(np.abs(reduction - reduction.isel({panel: 0})))) <= _SAME_PANELS
-
-
-def panels_text(computed: "xr.Dataset") -> str:
-    """Sentence that stands for the panels of a map where all are the same; empty where they differ.
-
-    Parameters
-    ----------
-    computed : xarray.Dataset
-        Result of a function of `MAPS`.
-
-    Returns
-    -------
-    str
-    """
-    if not same_panels(computed):
-        return ""
-    panel = MAP_LAYOUTS[computed.attrs["map"]][2]
-    values, unit = computed[panel].values, quantity(str(panel)).unit
-    low, high = (format_si(float(value), unit) for value in (values[0], values[-1]))
-    reduction = computed["friction_reduction"]
-    apart = float(np.nanmax(np.abs(reduction - reduction.isel({panel: 0}))))
-    name = quantity(str(panel)).meaning.partition(",")[0].lower()
-    return f"the same at each {name} from {low} to {high}, within {100 * max(apart, 1e-4):.1g} percentage points"
+    return tuple(kind for kind, function in MAPS.items() if quantity.name in inspect.signature(function).parameters)
 
 
 def default_axes(rig: Rig, *, kind: str) -> dict[str, Floats]:
@@ -341,24 +365,32 @@ def default_axes(rig: Rig, *, kind: str) -> dict[str, Floats]:
     Parameters
     ----------
     rig : Rig
-        With a drive voltage.
+        With a drive.
     kind : str
-        Key of `MAPS`.
+        One of `map_kinds` of its commanded quantity.
 
     Returns
     -------
     dict of str to ndarray
-        By quantity: speeds from 10 to 200 mm/s, loads from 0.6 to 1.8 of the rig's, voltages up to the rig's,
-        frequencies within a fifth of the rig's.
+        By quantity: speeds from 10 to 200 mm/s, loads from 0.6 to 1.8 of the rig's, voltages or amplitudes up to the
+        rig's, frequencies within a fifth of the rig's.
+
+    Raises
+    ------
+    InvalidInput
+        If the map is over frequency and the rig has none.
     """
-    drive = require_drive(rig)
-    assert drive.voltage_peak_to_peak is not None
-    volts = drive.voltage_peak_to_peak or 1.0
+    quantity, own = commanded_quantity(rig), own_level(rig)
+    wanted = inspect.signature(MAPS[kind]).parameters
     load_is_panel = kind != "velocity-stress"
+    shares = np.linspace(0.02, 1, 50) if load_is_panel else np.linspace(0.2, 1, 5)
     axes = {
         "sliding_speed": np.linspace(10e-3, 0.2, 77),
         "normal_load": rig.normal_load * np.linspace(0.6, 1.8, 7 if load_is_panel else 25),
-        "voltage_peak_to_peak": volts * (np.linspace(0.02, 1, 50) if load_is_panel else np.linspace(0.2, 1, 5)),
-        "frequency": drive.frequency * np.linspace(0.8, 1.2, 161),
+        quantity.name: (own or 1 / quantity.axis_scale) * shares,
     }
-    return {name: axes[name] for name in inspect.signature(MAPS[kind]).parameters if name in axes}
+    if "frequency" in wanted:
+        if rig.drive is None:
+            raise InvalidInput(f"{rig.title}: drive.frequency is missing; give it, or map over the sliding speed")
+        axes["frequency"] = rig.drive.frequency * np.linspace(0.8, 1.2, 41 if quantity is AMPLITUDE else 161)
+    return {name: axes[name] for name in wanted if name in axes}

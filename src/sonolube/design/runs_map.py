@@ -6,11 +6,11 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.design.gaussian_process import FEWEST_RUNS, gaussian_process_map
-from sonolube.design.maps import MAP_LAYOUTS, same_panels
+from sonolube.design.map_layouts import MAP_LAYOUTS, map_layout, same_panels
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.run_selection import setting, with_columns
-from sonolube.rig import Rig
+from sonolube.rig import VOLTAGE, CommandedQuantity, Rig, own_level
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ _MATCH = 1e-3  # relative difference of a load or voltage below which a run belo
 _UNCERTAINTY = "friction_reduction_uncertainty"
 
 
-def require_mappable(runs: "xr.Dataset", *, kind: str) -> None:
+def require_mappable(runs: "xr.Dataset", *, kind: str, commanded: CommandedQuantity) -> None:
     """Raise if measured runs cannot be drawn on a kind of map.
 
     Parameters
@@ -32,6 +32,8 @@ def require_mappable(runs: "xr.Dataset", *, kind: str) -> None:
         Over `run`, as `read_runs` returns them.
     kind : str
         Key of `MAP_LAYOUTS`, such as "velocity-power".
+    commanded : CommandedQuantity
+        Of the rig of the map.
 
     Raises
     ------
@@ -39,6 +41,7 @@ def require_mappable(runs: "xr.Dataset", *, kind: str) -> None:
         If a column of an axis is missing, or the runs are of several panels.
     """
     across, up, panel = MAP_LAYOUTS[kind]
+    panel = commanded.name if panel == VOLTAGE.name else panel
     for axis in (across, up):
         if axis not in runs and _STAND_INS.get(axis) not in runs and axis not in _BY_THE_RIG:
             raise InvalidInput(f"measured runs need a column {axis} for a {kind} map")
@@ -72,7 +75,7 @@ def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["
     InvalidInput
         If no run has a place.
     """
-    across, up, _ = MAP_LAYOUTS[computed.attrs["map"]]
+    across, up, _ = map_layout(computed)
     if up == "actuator_power":
         voltage = setting(runs, "voltage_peak_to_peak", np.nan)
         power = np.interp(voltage, computed["voltage_peak_to_peak"], computed[up], left=np.nan, right=np.nan)
@@ -87,7 +90,7 @@ def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["
 
 def _on_panels(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
     """Runs with the nearest panel and the reduction there, and caveats about those that are moved or beyond it."""
-    panel = MAP_LAYOUTS[computed.attrs["map"]][2]
+    panel = map_layout(computed)[2]
     count = runs.sizes["run"]
     place, shift = np.zeros(count, int), np.zeros(count)
     name = ""
@@ -115,18 +118,17 @@ def _on_panels(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["x
 
 
 def _rigs_own(rig: Rig, panel: str) -> float:
-    """Load or voltage of a rig, for runs that state none."""
+    """Load of a rig, or its voltage or amplitude, for runs that state none."""
     if panel == "normal_load":
         return rig.normal_load
-    voltage = None if rig.drive is None else rig.drive.voltage_peak_to_peak
-    return np.nan if voltage is None else voltage
+    return own_level(rig)
 
 
 def _model(computed: "xr.Dataset", runs: "xr.Dataset", at: Floats) -> Floats:
     """Reduction on a map at the places of runs and at values of the quantity of its panels; NaN beyond it."""
     from scipy.interpolate import RegularGridInterpolator
 
-    across, up, panel = MAP_LAYOUTS[computed.attrs["map"]]
+    across, up, panel = map_layout(computed)
     assert panel is not None
     if computed.sizes[panel] < 2:
         return np.full(at.size, np.nan)

@@ -4,6 +4,16 @@ from .amplitude_source import (
     available_sources as available_sources,
     resolved_vibration as resolved_vibration,
 )
+from .commanded import (
+    AMPLITUDE as AMPLITUDE,
+    VOLTAGE as VOLTAGE,
+    CommandedQuantity as CommandedQuantity,
+    commanded_quantity as commanded_quantity,
+    level_settings as level_settings,
+    own_level as own_level,
+    quantity_of_axis as quantity_of_axis,
+    require_commanded as require_commanded,
+)
 from .contact_temperature import (
     TemperaturePoint as TemperaturePoint,
     temperature_point as temperature_point,
@@ -54,6 +64,7 @@ from .operating_point_grid import (
     steady_states as steady_states,
 )
 from .parametric_study import (
+    amplitude_study as amplitude_study,
     frequency_study as frequency_study,
     load_study as load_study,
     speed_study as speed_study,

@@ -34,18 +34,29 @@ class OperatingConditions:
         return cls(**dict(zip(CONDITIONS, columns, strict=True)))
 
 
-def conditions_of(rig: Rig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
+def conditions_of(
+    rig: Rig, given: Sequence[ArrayLike | None], *, vibration_amplitude: ArrayLike | None = None
+) -> tuple[Floats, Floats]:
     """Return the settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast.
 
     Given are peak-to-peak voltage, offset and frequency of the drive, load and sliding speed; None is the rig's own. A
-    rig without a drive voltage has 0 V, and one without a drive any frequency.
+    rig without a drive voltage has 0 V, and one without a drive any frequency. An amplitude that is commanded stands in
+    the row of the voltage, which such a rig does not have.
     """
     voltage, offset, f, load, speed = given
     drive = rig.drive or Drive(frequency=ANY_FREQUENCY)
     if drive.voltage_peak_to_peak is None and not (voltage is None and offset is None):
         raise InvalidInput(f"{rig.title}: drive.voltage_peak_to_peak is missing; give it to vary the voltage")
+    if vibration_amplitude is None:
+        level = require_non_negative(
+            voltage_peak_to_peak=(drive.voltage_peak_to_peak or 0.0) if voltage is None else voltage
+        )
+    elif drive.voltage_peak_to_peak is None:
+        level = require_non_negative(vibration_amplitude=vibration_amplitude)
+    else:
+        raise InvalidInput(f"{rig.title}: its voltage sets its amplitude; vary drive.voltage_peak_to_peak instead")
     settings = (
-        require_non_negative(voltage_peak_to_peak=(drive.voltage_peak_to_peak or 0.0) if voltage is None else voltage),
+        level,
         require_finite(voltage_offset=drive.voltage_offset if offset is None else offset),
         require_positive(frequency=drive.frequency if f is None else f),
         require_positive(normal_load=rig.normal_load if load is None else load),
@@ -56,7 +67,7 @@ def conditions_of(rig: Rig, given: Sequence[ArrayLike | None]) -> tuple[Floats, 
     except ValueError:
         shapes = ", ".join(str(array.shape) for array in settings)
         raise InvalidInput(
-            f"voltage, offset, frequency, load and speed must have matching shapes, got {shapes}"
+            f"voltage or amplitude, offset, frequency, load and speed must have matching shapes, got {shapes}"
         ) from None
     return np.stack(every[:-1]), every[-1].copy()
 

@@ -90,6 +90,7 @@ def point_batch(
     frequency: ArrayLike | None = None,
     normal_load: ArrayLike | None = None,
     sliding_speed: ArrayLike | None = None,
+    vibration_amplitude: ArrayLike | None = None,
     backend: Backend = "cpu",
     friction_tolerance: float = 1e-7,
 ) -> PointBatch:
@@ -109,6 +110,8 @@ def point_batch(
         Force pressing the bodies together; the structure stays as it is. [N]
     sliding_speed : array_like, optional
         Macroscopic relative speed. [m/s]
+    vibration_amplitude : array_like, optional
+        Amplitude of the sine at any frequency, of a rig without a drive voltage. [m]
     backend : {"cpu", "gpu"}
         Whether an NVIDIA GPU solves the vibrations that it supports.
     friction_tolerance : float
@@ -139,9 +142,9 @@ def point_batch(
     given = (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
     if used.driven is None:
         stated: dict[str, Any] = dict(zip(SETTINGS, given, strict=True))
-        return _columns(operating_points(rig, **stated))
+        return _columns(operating_points(rig, **stated, vibration_amplitude=vibration_amplitude))
     rig = used.driven
-    columns, speeds = conditions_of(rig, given)
+    columns, speeds = conditions_of(rig, given, vibration_amplitude=vibration_amplitude)
     columns, speeds = columns.reshape(4, -1), speeds.ravel()
     first, which = _distinct(columns)
     settings = OperatingConditions.of_columns(columns[:, first])

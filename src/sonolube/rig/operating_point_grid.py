@@ -135,6 +135,7 @@ def operating_points(
     frequency: ArrayLike | None = None,
     normal_load: ArrayLike | None = None,
     sliding_speed: ArrayLike | None = None,
+    vibration_amplitude: ArrayLike | None = None,
     advance: Advance | None = None,
     backend: Backend = "cpu",
 ) -> OperatingPoints:
@@ -154,6 +155,8 @@ def operating_points(
         Force pressing the bodies together; the structure stays as it is. [N]
     sliding_speed : array_like, optional
         Macroscopic relative speed. [m/s]
+    vibration_amplitude : array_like, optional
+        Amplitude of the sine at any frequency, of a rig without a drive voltage. [m]
     advance : callable, optional
         Called with the number of vibrations done, and of all.
     backend : {"cpu", "gpu"}
@@ -179,11 +182,13 @@ def operating_points(
     Steady vibrations are found in one batch, each drive and load once, whatever the number of sliding speeds.
     """
     used = resolved_vibration(rig)
-    columns, speeds = conditions_of(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
+    given = (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
+    columns, speeds = conditions_of(rig, given, vibration_amplitude=vibration_amplitude)
+    commanded = vibration_amplitude is not None
     shape = speeds.shape
     distinct, which = np.unique(columns.reshape(4, -1), axis=1, return_inverse=True)
     speeds = speeds.ravel()
-    vibration_at = stated_vibrations(rig, used, distinct)
+    vibration_at = stated_vibrations(rig, used, distinct, commanded=commanded)
     if used.driven is not None:
         rig = used.driven
         vibration_at = computed_vibrations(used.driven, distinct, backend)
@@ -196,6 +201,8 @@ def operating_points(
         if advance is not None:
             advance(setting + 1, distinct.shape[1])
     columns = columns.reshape(4, *shape)
+    if commanded:
+        columns[0] = 0.0  # without a voltage
     *vibration, closed, ratio, raw = numbers.reshape(8, *shape)
     return OperatingPoints(
         **dict(zip(CONDITIONS, columns, strict=True)),

@@ -98,17 +98,17 @@ def _of_state(states: SteadyStates, point: int) -> PointVibration:
     return PointVibration(status=known.name.lower(), reason=reason, motion=motion, numbers=numbers)
 
 
-def stated_vibrations(rig: Rig, used: ResolvedVibration, distinct: Floats) -> VibrationAt:
-    """Return the function that gives a sine of the stated amplitude under each drive and load."""
+def stated_vibrations(rig: Rig, used: ResolvedVibration, distinct: Floats, *, commanded: bool) -> VibrationAt:
+    """Return the function that gives a sine under each drive and load, of the stated or the commanded amplitude."""
 
     def vibration_at(setting: int) -> PointVibration:
-        volts, _, f, load = distinct[:, setting].tolist()
-        if rig.drive is not None and abs(f - rig.drive.frequency) > _SAME_FREQUENCY * f:
+        level, _, f, load = distinct[:, setting].tolist()
+        if not commanded and rig.drive is not None and abs(f - rig.drive.frequency) > _SAME_FREQUENCY * f:
             own = format_si(rig.drive.frequency, "Hz", digits=4)
             return PointVibration(
                 status=REFUSED, reason=f"the amplitude {used.source} holds at {own} only: choose the amplitude computed"
             )
-        amplitude = used.amplitude_at(volts)
+        amplitude = level if commanded else used.amplitude_at(level)
         try:
             rest = float(separation(rig.contact, normal_load=load))
             motion = prescribed_sine(rig, vibration_amplitude=amplitude, frequency=f, normal_load=load)

@@ -1,4 +1,4 @@
-"""Parametric studies of a rig over voltage, sliding speed, frequency, waveform and load, as labelled datasets."""
+"""Parametric studies of a rig over voltage or amplitude, speed, frequency, waveform and load, as labelled datasets."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -10,9 +10,20 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import WAVEFORMS, Status, contact_motion, modes
-from sonolube.rig.amplitude_source import amplitude_labels, moved_rig
+from sonolube.rig.amplitude_source import amplitude_labels, moved_rig, resolved_vibration
+from sonolube.rig.commanded import (
+    AMPLITUDE,
+    POWERS,
+    VOLTAGE,
+    CommandedQuantity,
+    commanded_quantity,
+    level_settings,
+    own_level,
+    require_commanded,
+)
 from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig, require_drive
+from sonolube.rig.friction_and_wear import prescribed_sine
 from sonolube.rig.linear_response import structure_in_contact
 from sonolube.rig.operating_point_batch import NUMBERS
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
@@ -33,7 +44,7 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        With a drive voltage.
     voltage_peak_to_peak : array_like, shape (n,)
         Peak-to-peak voltages; the offset keeps the rig's ratio to them. [V]
     advance : callable, optional
@@ -47,57 +58,91 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or a voltage has no meaning.
+        If the rig has no drive voltage, or a voltage has no meaning.
+
+    See Also
+    --------
+    amplitude_study
 
     References
     ----------
     .. [1] D 3.3.5, figure 3.15.
     """
-    rig = moved_rig(rig)
-    volts = np.atleast_1d(require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak))
-    offset = _offset(rig, volts)
-    points = operating_points(rig, voltage_peak_to_peak=volts, voltage_offset=offset, advance=advance)
-    displacement, normal_force = _periods(rig, volts, offset)
-    found = _values(points) | {"displacement": displacement, "normal_force": normal_force}
-    return _study(rig, "over drive voltage", found, voltage_peak_to_peak=volts, phase=_PHASE)
+    return _level_study(rig, VOLTAGE, voltage_peak_to_peak, "over drive voltage", advance)
 
 
-def speed_study(
-    rig: Rig, *, sliding_speed: ArrayLike, voltage_peak_to_peak: ArrayLike | None = None, advance: Advance | None = None
-) -> "xr.Dataset":
-    """Return operating points over sliding speed at some drive voltages.
+def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+    """Return operating points over vibration amplitude, with one period of the contact at each.
 
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        Without a drive voltage; its vibration is a sine.
+    vibration_amplitude : array_like, shape (n,)
+        Zero to peak. [m]
+    advance : callable, optional
+        Called with the number of points done, and of all.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `vibration_amplitude`, and `phase` where a period is shown.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has a drive voltage or no amplitude, or an amplitude has no meaning.
+
+    See Also
+    --------
+    voltage_study
+    """
+    return _level_study(rig, AMPLITUDE, vibration_amplitude, "over vibration amplitude", advance)
+
+
+def speed_study(
+    rig: Rig,
+    *,
+    sliding_speed: ArrayLike,
+    voltage_peak_to_peak: ArrayLike | None = None,
+    vibration_amplitude: ArrayLike | None = None,
+    advance: Advance | None = None,
+) -> "xr.Dataset":
+    """Return operating points over sliding speed at some drive voltages, or amplitudes of a rig without a voltage.
+
+    Parameters
+    ----------
+    rig : Rig
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     voltage_peak_to_peak : array_like, shape (m,), optional
         Peak-to-peak voltages, the rig's own where absent; the offset keeps its ratio to them. [V]
+    vibration_amplitude : array_like, shape (m,), optional
+        Amplitudes of a rig without a voltage, its own where absent. [m]
     advance : callable, optional
         Called with the number of vibrations done, and of all.
 
     Returns
     -------
     xarray.Dataset
-        Over `voltage_peak_to_peak` and `sliding_speed`; `velocity_ratio` is sliding speed over the highest speed of the
-        vibration.
+        Over `voltage_peak_to_peak` or `vibration_amplitude`, and `sliding_speed`; `velocity_ratio` is sliding speed
+        over the highest speed of the vibration.
 
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or a speed or voltage is not positive.
+        If the rig has no amplitude, a speed, voltage or amplitude is not positive, or the one given does not set the
+        vibration of the rig.
 
     References
     ----------
     .. [1] D 3.50, figure 3.16.
     """
-    volts = _volts(rig, voltage_peak_to_peak)
+    quantity, level = _curves(rig, voltage_peak_to_peak, vibration_amplitude)
     speeds = np.atleast_1d(require_positive(sliding_speed=sliding_speed))
-    points = _by_voltage(rig, volts, sliding_speed=speeds, advance=advance)
+    points = _by_level(rig, level, sliding_speed=speeds, advance=advance)
     found = _values(points) | {"velocity_ratio": speeds / points.vibration_velocity}
-    return _study(rig, "over sliding speed", found, voltage_peak_to_peak=volts, sliding_speed=speeds)
+    return _study(rig, "over sliding speed", found, **{quantity.name: level, "sliding_speed": speeds})
 
 
 def frequency_study(
@@ -130,9 +175,10 @@ def frequency_study(
     ----------
     .. [1] D 3.3.5, figure 3.17.
     """
-    volts = _volts(rig, voltage_peak_to_peak)
+    require_drive(rig)
+    _, volts = _curves(rig, voltage_peak_to_peak, None)
     f = np.atleast_1d(require_positive(frequency=frequency))
-    points = _by_voltage(rig, volts, frequency=f, advance=advance)
+    points = _by_level(rig, volts, frequency=f, advance=advance)
     return _study(rig, "over drive frequency", _values(points), voltage_peak_to_peak=volts, frequency=f)
 
 
@@ -164,20 +210,20 @@ def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
     drive = rig.drive
     shaped = [replace(rig, drive=replace(drive, waveform=name)) for name in WAVEFORMS]
     points = _one_by_one(shaped, operating_points, advance)
-    swing, offset = np.array([rig.voltage_peak_to_peak]), np.array([drive.voltage_offset])
-    periods = [_periods(one, swing, offset) for one in shaped]
+    periods = [_computed_periods(one, np.array([rig.voltage_peak_to_peak])) for one in shaped]
     displacement, normal_force = (np.concatenate(rows) for rows in zip(*periods, strict=True))
     found = points | {"displacement": displacement, "normal_force": normal_force}
     return _study(rig, "under waveforms of equal swing", found, waveform=np.array(list(WAVEFORMS)), phase=_PHASE)
 
 
 def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
-    """Return operating points over normal load, applied by weights that add to the mass they hang on.
+    """Return operating points over normal load; of a structure, by weights that add to the mass they hang on.
 
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure that says where the dead load hangs, and a drive voltage, its heights exponential.
+        With a sine of its amplitude, which every load has; or with a structure that says where the dead load hangs, its
+        heights exponential.
     normal_load : array_like, shape (n,)
         Forces pressing the bodies together. [N]
     advance : callable, optional
@@ -186,12 +232,13 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     Returns
     -------
     xarray.Dataset
-        Over `normal_load`; `natural_frequency` is that of the slowest vibration of the rig on its contact, the arm's.
+        Over `normal_load`; of a structure, `natural_frequency` is that of its slowest vibration on the contact, the
+        arm's.
 
     Raises
     ------
     InvalidInput
-        If the rig has no structure or none that says where the load hangs, or a load is not positive or leaves no mass.
+        If the structure does not say where the load hangs, or a load is not positive or leaves no mass.
 
     Notes
     -----
@@ -202,17 +249,33 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     .. [1] D 4.1.2, figures 4.7 and 4.8.
     """
     loads = np.atleast_1d(require_positive(normal_load=normal_load))
-    rig = moved_rig(rig)
+    driven = resolved_vibration(rig).driven
+    if driven is None:
+        found = _values(operating_points(rig, normal_load=loads, advance=advance))
+        return _study(rig, "over normal load", found, normal_load=loads)
+    rig = driven
     loaded = [_weighted(rig, float(load)) for load in loads]
     points = _one_by_one(loaded, operating_points, advance)
     found = points | {"natural_frequency": np.array([_slowest(one) for one in loaded])}
     return _study(rig, "over normal load", found, normal_load=loads)
 
 
-def _by_voltage(rig: Rig, volts: Floats, **others: Any) -> OperatingPoints:
-    """Points over voltage, a row each, and over another condition."""
-    u, offset = volts[:, np.newaxis], _offset(rig, volts)[:, np.newaxis]
-    return operating_points(rig, voltage_peak_to_peak=u, voltage_offset=offset, **others)
+def _level_study(
+    rig: Rig, quantity: CommandedQuantity, level: ArrayLike, title: str, advance: Advance | None
+) -> "xr.Dataset":
+    """Points over voltage or amplitude, with one period of the contact at each."""
+    require_commanded(rig, quantity)
+    driven = resolved_vibration(rig).driven
+    levels = np.atleast_1d(require_non_negative(**{quantity.name: level}))
+    points = operating_points(driven or rig, **level_settings(rig, levels), advance=advance)
+    displacement, normal_force = _sine_periods(rig, points) if driven is None else _computed_periods(driven, levels)
+    found = _values(points) | {"displacement": displacement, "normal_force": normal_force}
+    return _study(driven or rig, title, found, **{quantity.name: levels, "phase": _PHASE})
+
+
+def _by_level(rig: Rig, level: Floats, **others: Any) -> OperatingPoints:
+    """Points over voltage or amplitude, a row each, and over another condition."""
+    return operating_points(rig, **level_settings(rig, level[:, np.newaxis]), **others)
 
 
 def _values(points: OperatingPoints) -> dict[str, NDArray[Any]]:
@@ -230,24 +293,33 @@ def _one_by_one(
     return {name: np.stack([one[name] for one in every]) for name in _POINT}
 
 
-def _volts(rig: Rig, voltage: ArrayLike | None) -> Floats:
-    own = require_drive(rig).voltage_peak_to_peak or 0.0
-    return np.atleast_1d(require_positive(voltage_peak_to_peak=own if voltage is None else voltage))
+def _curves(rig: Rig, volts: ArrayLike | None, amplitudes: ArrayLike | None) -> tuple[CommandedQuantity, Floats]:
+    """Commanded quantity of a rig, and its value for each curve: those given, or the rig's own."""
+    for quantity, given in ((VOLTAGE, volts), (AMPLITUDE, amplitudes)):
+        if given is not None:
+            require_commanded(rig, quantity)
+            return quantity, np.atleast_1d(require_positive(**{quantity.name: given}))
+    own = commanded_quantity(rig)
+    return own, np.atleast_1d(require_positive(**{own.name: own_level(rig)}))
 
 
-def _offset(rig: Rig, volts: Floats) -> Floats:
-    """Return the voltage offset at each peak-to-peak voltage, in the rig's ratio."""
-    drive = require_drive(rig)
-    return volts * drive.offset_ratio if drive.voltage_peak_to_peak else np.full(volts.shape, drive.voltage_offset)
-
-
-def _periods(rig: Rig, volts: Floats, offset: Floats) -> tuple[Floats, Floats]:
+def _computed_periods(rig: DrivenRig, volts: Floats) -> tuple[Floats, Floats]:
     """Return displacement and normal force of the contact over a period at each voltage; NaN where not converged."""
-    states = steady_states(rig, voltage_peak_to_peak=volts, voltage_offset=offset)
+    states = steady_states(rig, **level_settings(rig, volts))
     displacement, normal_force = np.full((2, volts.size, _PHASES), np.nan)
     for point in np.flatnonzero(states.status != Status.NOT_CONVERGED):
         period = contact_motion(states, int(point), samples=_PHASES)
         displacement[point], normal_force[point] = period.displacement, period.normal_force
+    return displacement, normal_force
+
+
+def _sine_periods(rig: Rig, points: OperatingPoints) -> tuple[Floats, Floats]:
+    """Return displacement and normal force of the contact over a period of each sine; NaN where there is none."""
+    displacement, normal_force = np.full((2, points.vibration_amplitude.size, _PHASES), np.nan)
+    for point in np.flatnonzero(np.isfinite(points.vibration_amplitude)):
+        period = prescribed_sine(rig, vibration_amplitude=float(points.vibration_amplitude[point]))
+        step = period.displacement.size // _PHASES
+        displacement[point], normal_force[point] = period.displacement[::step], period.normal_force[::step]
     return displacement, normal_force
 
 
@@ -273,5 +345,11 @@ def _slowest(rig: Rig) -> float:
 
 
 def _study(rig: Rig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> "xr.Dataset":
+    known = commanded_quantity(rig)
+    values = {
+        name: array
+        for name, array in values.items()
+        if name not in axes and not (known is AMPLITUDE and name in POWERS)
+    }
     about = {"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(rig)
     return gridded(values, axes=axes, title=f"Friction {title}, {rig.title}", about=about)

@@ -1,4 +1,4 @@
-"""Figures of parametric studies over voltage, speed, frequency, waveform and load."""
+"""Figures of parametric studies over voltage or amplitude, speed, frequency, waveform and load."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
@@ -8,39 +8,39 @@ import numpy as np
 
 from sonolube.charts import Axis, Bars, Chart, Line, Panel, Points
 from sonolube.checks import Floats
-from sonolube.units import format_si
+from sonolube.rig.commanded import CommandedQuantity, quantity_of_axis
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_PERIODS = 4  # voltages of which a period is drawn
+_PERIODS = 4  # voltages or amplitudes of which a period is drawn
 _RATIO = Axis(label="Friction ratio", lowest=0.0)
-_VOLTAGE = Axis(label="Voltage, peak to peak", unit="V")
 _FREQUENCY = Axis(label="Drive frequency", unit="kHz", logarithmic=True)
 _PERIOD = Axis(label="Time over the period")
 _LOAD = Axis(label="Normal load", unit="N")
 _TIP = Axis(label="Tip displacement", unit="µm")
 
 
-def voltage_chart(study: "xr.Dataset") -> Chart:
-    """Return displacement and normal force over a period, friction ratio and amplitude over voltage."""
-    volts = study["voltage_peak_to_peak"].values
+def command_chart(study: "xr.Dataset") -> Chart:
+    """Return displacement and normal force over a period, friction ratio and amplitude over voltage or amplitude."""
+    quantity, levels = _level(study)
     motions, forces = [], []
-    for place, point in enumerate(np.unique(np.linspace(0, volts.size - 1, _PERIODS + 1).astype(int)[1:])):
-        style: dict[str, Any] = {"dash": place, "colour": place, "label": format_si(float(volts[point]), "V")}
+    for place, point in enumerate(np.unique(np.linspace(0, levels.size - 1, _PERIODS + 1).astype(int)[1:])):
+        style: dict[str, Any] = {"dash": place, "colour": place, "label": quantity.text(float(levels[point]))}
         turns, motion = _whole_period(study["displacement"].values[point])
         motions.append(Line(x=turns, y=1e6 * motion, **style))
         forces.append(Line(x=turns, y=_whole_period(study["normal_force"].values[point])[1], **style))
+    across = quantity.axis_scale * levels
     vibration = (
-        Line(x=volts, y=1e6 * study["vibration_amplitude"].values, label="amplitude"),
-        Line(x=volts, y=1e6 * study["mean_displacement"].values, dash=1, colour=1, label="rise of the mean"),
+        Line(x=across, y=1e6 * study["vibration_amplitude"].values, label="amplitude"),
+        Line(x=across, y=1e6 * study["mean_displacement"].values, dash=1, colour=1, label="rise of the mean"),
     )
     return Chart(
         panels=(
             Panel(x=_PERIOD, y=_TIP, parts=tuple(motions)),
             Panel(x=_PERIOD, y=Axis(label="Normal contact force", unit="N"), parts=tuple(forces)),
-            Panel(x=_VOLTAGE, y=_RATIO, parts=(Line(x=volts, y=study["friction_ratio"].values),)),
-            Panel(x=_VOLTAGE, y=Axis(label="Vibration of the tip", unit="µm"), parts=vibration),
+            Panel(x=quantity.axis, y=_RATIO, parts=(Line(x=across, y=study["friction_ratio"].values),)),
+            Panel(x=quantity.axis, y=Axis(label="Vibration of the tip", unit="µm"), parts=vibration),
         ),
         size=(7.2, 5.6),
         columns=2,
@@ -131,23 +131,21 @@ def waveform_chart(study: "xr.Dataset") -> Chart:
 
 
 def load_chart(study: "xr.Dataset") -> Chart:
-    """Return friction reduction and the arm's natural frequency over normal load."""
+    """Return friction reduction and, of a structure, the arm's natural frequency over normal load."""
     loads = study["normal_load"].values
     reduction = Axis(label="Friction reduction", unit="%", lowest=0.0, highest=100.0)
-    arm = Axis(label="Natural frequency of the arm", unit="Hz")
-    return Chart(
-        panels=(
-            Panel(x=_LOAD, y=reduction, parts=(Line(x=loads, y=100 * study["friction_reduction"].values),)),
-            Panel(x=_LOAD, y=arm, parts=(Line(x=loads, y=study["natural_frequency"].values, colour=1),)),
-        ),
-        size=(7.2, 3.3),
-        columns=2,
-    )
+    panels = [Panel(x=_LOAD, y=reduction, parts=(Line(x=loads, y=100 * study["friction_reduction"].values),))]
+    if "natural_frequency" in study:
+        arm = Axis(label="Natural frequency of the arm", unit="Hz")
+        panels.append(Panel(x=_LOAD, y=arm, parts=(Line(x=loads, y=study["natural_frequency"].values, colour=1),)))
+    size = (7.2, 3.3) if len(panels) > 1 else (4.0, 3.3)
+    return Chart(panels=tuple(panels), size=size, columns=len(panels))
 
 
 STUDY_CHARTS: Mapping[str, Callable[["xr.Dataset"], Chart]] = MappingProxyType(
     {
-        "voltage": voltage_chart,
+        "voltage": command_chart,
+        "amplitude": command_chart,
         "speed": speed_chart,
         "frequency": frequency_chart,
         "power": power_chart,
@@ -158,20 +156,27 @@ STUDY_CHARTS: Mapping[str, Callable[["xr.Dataset"], Chart]] = MappingProxyType(
 """Function that returns the chart of the dataset of each study."""
 
 
+def _level(study: "xr.Dataset") -> tuple[CommandedQuantity, Floats]:
+    """Quantity that sets the vibration of a study, with its values."""
+    quantity = quantity_of_axis(study.dims)
+    return quantity, study[quantity.name].values
+
+
 def _curves(study: "xr.Dataset") -> "list[xr.Dataset]":
-    """Parts of a study, one for each voltage."""
-    return [study.isel(voltage_peak_to_peak=index) for index in range(study.sizes["voltage_peak_to_peak"])]
+    quantity, levels = _level(study)
+    return [study.isel({quantity.name: index}) for index in range(levels.size)]
 
 
 def _family(study: "xr.Dataset", x: str, y: str, x_scale: float = 1.0, y_scale: float = 1.0) -> tuple[Any, ...]:
-    """Curve for each voltage of a study."""
+    """Curve for each voltage or amplitude of a study."""
+    quantity, levels = _level(study)
     return tuple(
         Line(
             x=x_scale * curve[x].values,
             y=y_scale * curve[y].values,
             dash=place,
             colour=place,
-            label=f"{format_si(float(curve['voltage_peak_to_peak']), 'V')} peak to peak",
+            label=quantity.text(float(levels[place])),
         )
         for place, curve in enumerate(_curves(study))
     )

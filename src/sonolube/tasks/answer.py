@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.tasks.blocks import Block, Rows, Table, Verbatim, text_lines
-from sonolube.vocabulary import quantity
+from sonolube.vocabulary import si as si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -209,31 +209,6 @@ class Answer(ABC):
 def answer(kind: type[_Answer]) -> type[_Answer]:
     """Class of answers as a frozen dataclass that prints as the terminal does."""
     return dataclass(frozen=True, kw_only=True, repr=False, eq=False)(kind)
-
-
-def si(values: Mapping[str, float | None], *, unit: str | None = None) -> dict[str, Any]:
-    """Quantities for JSON, each as its value with its SI unit.
-
-    Parameters
-    ----------
-    values : mapping of str to float or None
-        By name.
-    unit : str, optional
-        Of all values; that of the vocabulary for each name where absent.
-
-    Returns
-    -------
-    dict
-        Such as {"normal_load": {"value": 3.0, "unit": "N"}}.
-
-    Raises
-    ------
-    UnknownName
-        If a name is not in the vocabulary and no unit is given.
-    """
-    return {
-        name: {"value": value, "unit": quantity(name).unit if unit is None else unit} for name, value in values.items()
-    }
 
 
 def _plain(name: str) -> str:

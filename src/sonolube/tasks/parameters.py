@@ -120,6 +120,7 @@ Backend = Annotated[
         help="Processor for the steady vibrations; gpu needs an NVIDIA GPU and sonolube[gpu], and falls back to cpu."
     ),
 ]
+Interval = Annotated[bool, Parameter(help="State the error of the friction model, and the interval with it.")]
 Sizes = Annotated[
     Mapping[str, str | float] | None,
     Parameter(help="A size of the part, such as length=127mm.", kind="SIZE=VALUE", option="--set", is_mapping=True),

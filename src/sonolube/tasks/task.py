@@ -3,13 +3,14 @@
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
-from functools import wraps
+from functools import update_wrapper
 from inspect import Parameter as Argument, cleandoc, signature
 from math import inf, isfinite
 from types import NoneType
-from typing import Any, Literal, ParamSpec, TypeVar, get_args, get_origin, overload
+from typing import Any, Generic, Literal, NoReturn, ParamSpec, TypeVar, get_args, get_origin, overload
 
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
+from sonolube.former_names import moved_module
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.call import Call, Mark
 from sonolube.tasks.files import private_files, with_names_only
@@ -51,29 +52,30 @@ def marks_of(function: Callable[..., Any]) -> dict[str, Mark]:
     return marks
 
 
-def task(function: Callable[P, A]) -> Callable[P, A]:
-    """Function whose answer knows the call, and whose `progress` and `cancelled` reach what it calls.
+class TaskFunction(Generic[P, A]):
+    """Function of a task, whose answer knows the call, and whose `progress` and `cancelled` reach what it calls.
 
     Parameters
     ----------
     function : callable
         Its arguments are annotated by `sonolube.tasks.parameters`.
-
-    Returns
-    -------
-    callable
-        With the same arguments, described in its docstring.
     """
-    form, marks = signature(function), marks_of(function)
-    choices = {name: _choices(get_args(argument.annotation)[0]) for name, argument in form.parameters.items()}
 
-    @wraps(function)
-    def run(*positional: P.args, **named: P.kwargs) -> A:
-        bound = form.bind(*positional, **named)
+    def __init__(self, function: Callable[P, A]) -> None:
+        self._function, self._form, self._marks = function, signature(function), marks_of(function)
+        arguments = self._form.parameters.items()
+        self._choices = {name: _choices(get_args(argument.annotation)[0]) for name, argument in arguments}
+        update_wrapper(self, function)
+        if function.__doc__:
+            self.__doc__ = _described(function.__doc__, self._form.parameters, self._marks)
+
+    def __call__(self, *positional: P.args, **named: P.kwargs) -> A:
+        """Return the answer to the arguments."""
+        bound = self._form.bind(*positional, **named)
         given = frozenset(bound.arguments)
         bound.apply_defaults()
-        call = Call(function.__name__, dict(bound.arguments), given, marks, _NAMES.get())
-        _refuse_impossible(call, choices)
+        call = Call(self._function.__name__, dict(bound.arguments), given, self._marks, _NAMES.get())
+        _refuse_impossible(call, self._choices)
         before = _CALL.set(call)
         try:
             with (
@@ -81,7 +83,7 @@ def task(function: Callable[P, A]) -> Callable[P, A]:
                 in_notebooks(),
                 watched(bound.arguments.get("progress"), bound.arguments.get("cancelled")),
             ):
-                found = function(*positional, **named)
+                found = self._function(*positional, **named)
         except SonolubeError as failure:
             failure.args = tuple(with_names_only(each) if isinstance(each, str) else each for each in failure.args)
             raise
@@ -90,9 +92,32 @@ def task(function: Callable[P, A]) -> Callable[P, A]:
         object.__setattr__(found, "call", call)
         return found
 
-    if function.__doc__:
-        run.__doc__ = _described(function.__doc__, form.parameters, marks)
-    return run
+    def __getattr__(self, name: str) -> NoReturn:
+        """Refuse an attribute, with the place of the module that the task has its name from."""
+        own = self.__dict__.get("__name__", "")
+        raise AttributeError(f"task {own} has no attribute {name!r}{moved_module(own)}")
+
+    def __repr__(self) -> str:
+        return f"<task {self.__module__}.{self.__qualname__}>"
+
+    def __reduce__(self) -> str:
+        return self.__qualname__
+
+
+def task(function: Callable[P, A]) -> TaskFunction[P, A]:
+    """Task by its function.
+
+    Parameters
+    ----------
+    function : callable
+        Its arguments are annotated by `sonolube.tasks.parameters`.
+
+    Returns
+    -------
+    TaskFunction
+        With the same arguments, described in its docstring.
+    """
+    return TaskFunction(function)
 
 
 def in_notebooks() -> AbstractContextManager[None]:

@@ -11,8 +11,8 @@ import pytest
 from pytest import MonkeyPatch
 
 from sonolube.cli.lookup import doctor as command
-from sonolube.cli.lookup.self_checks import SELF_CHECKS
 from sonolube.extras import EXTRAS
+from sonolube.reference_solutions.self_checks import SELF_CHECKS
 
 Program = Callable[..., Any]
 

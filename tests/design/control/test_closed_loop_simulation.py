@@ -18,7 +18,7 @@ from sonolube.design.control import (
 )
 
 INTERVAL = 2e-4
-LINE = FrictionCharacteristic(voltage_peak_to_peak=np.array([0.0, 50.0]), friction_force=np.array([2.0, 0.5]))
+LINE = FrictionCharacteristic(level=np.array([0.0, 50.0]), friction_force=np.array([2.0, 0.5]))
 MODE = VibrationMode(
     natural_frequency=22e3, damping_ratio=0.02, motional_conductance=0.4, parallel_capacitance=2e-7, frequency=22e3
 )
@@ -27,9 +27,9 @@ PROCESS = Process(time_constant=MODE.time_constant, dead_time=1e-3, sample_inter
 
 def loop(*, feed_forward: bool, closed_loop_time: float | None = None) -> FrictionLoop:
     controller = tuned_controller(
-        LINE, PROCESS, voltage_maximum=50.0, feed_forward=feed_forward, closed_loop_time=closed_loop_time
+        LINE, PROCESS, level_maximum=50.0, feed_forward=feed_forward, closed_loop_time=closed_loop_time
     )
-    return FrictionLoop(plant=LINE, mode=MODE, controller=controller, tracker=None, voltage_maximum=50.0)
+    return FrictionLoop(plant=LINE, mode=MODE, controller=controller, tracker=None, level_maximum=50.0)
 
 
 def test_the_simulated_loop_obeys_its_difference_equation() -> None:

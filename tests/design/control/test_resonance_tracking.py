@@ -27,7 +27,7 @@ DRIVEN = mode_at_drive(read_rig(Path(__file__).parents[3] / "examples" / "rigs" 
 SHARP = VibrationMode(
     natural_frequency=25e3, damping_ratio=1e-4, motional_conductance=0.1, parallel_capacitance=1e-7, frequency=25e3
 )
-LINE = FrictionCharacteristic(voltage_peak_to_peak=np.array([0.0, 50.0]), friction_force=np.array([2.0, 0.5]))
+LINE = FrictionCharacteristic(level=np.array([0.0, 50.0]), friction_force=np.array([2.0, 0.5]))
 
 
 @pytest.mark.parametrize("mode", [DRIVEN, SHARP], ids=["tribometer", "sharp"])
@@ -70,8 +70,8 @@ def test_a_tracked_drive_follows_the_drifting_resonance_at_constant_voltage() ->
     parts = {
         "plant": LINE,
         "mode": DRIVEN,
-        "controller": tuned_controller(LINE, process, voltage_maximum=50.0),
-        "voltage_maximum": 50.0,
+        "controller": tuned_controller(LINE, process, level_maximum=50.0),
+        "level_maximum": 50.0,
     }
     drift = ThermalDrift(final_temperature_rise=100.0, warming_time=0.05)
     tracker = tuned_tracker(DRIVEN, sample_interval=2e-4)
@@ -79,9 +79,9 @@ def test_a_tracked_drive_follows_the_drifting_resonance_at_constant_voltage() ->
     fixed = simulate_closed_loop(FrictionLoop(**parts, tracker=None), setpoint=np.full(3000, 1.0), drift=drift)  # type: ignore[arg-type]
     shift = DRIVEN.natural_frequency * 2e-4 * 100 * (1 - np.exp(-0.6 / 0.05))
     assert tracked.frequency[-1] == approx(22e3 - shift, abs=5)
-    assert tracked.voltage_peak_to_peak[-1] == approx(LINE.voltage_peak_to_peak[1] * 1.0 / 1.5, rel=1e-3)
+    assert tracked.level[-1] == approx(LINE.level[1] * 1.0 / 1.5, rel=1e-3)
     detuned = 2 * np.pi * shift / DRIVEN.decay_rate
-    assert fixed.voltage_peak_to_peak[-1] == approx(50 / 1.5 * np.hypot(1, detuned), rel=0.02)
+    assert fixed.level[-1] == approx(50 / 1.5 * np.hypot(1, detuned), rel=0.02)
 
 
 def test_a_drive_at_which_the_phase_falls_with_frequency_is_refused() -> None:

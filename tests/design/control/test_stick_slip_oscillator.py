@@ -71,7 +71,7 @@ def test_vibration_suppresses_the_limit_cycle(volts: float, steady: bool) -> Non
         holder_damping=0.6,
         static_friction_force=1.33,
         stribeck_velocity=0.02,
-        voltage_peak_to_peak=volts,
+        level=volts,
     )
     motion = stick_slip_motion(oscillator, duration=1.0)
     assert (steady_sliding_damping(oscillator) > 0) == steady

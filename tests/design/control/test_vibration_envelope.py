@@ -26,7 +26,7 @@ from sonolube.rig.driven_rig import driven_rig
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 TRIBOMETER, COLLAR = driven_rig(read_rig(RIGS / "tribometer.toml")), read_rig(RIGS / "collar.toml")
 DRIVEN = mode_at_drive(TRIBOMETER)
-LINE = FrictionCharacteristic(voltage_peak_to_peak=np.array([0.0, 50.0]), friction_force=np.array([2.0, 0.5]))
+LINE = FrictionCharacteristic(level=np.array([0.0, 50.0]), friction_force=np.array([2.0, 0.5]))
 
 
 def test_near_its_resonance_one_mode_has_the_admittance_of_the_structure() -> None:
@@ -46,7 +46,7 @@ def test_the_envelope_rises_like_the_amplitude_of_the_marched_structure() -> Non
         law,
         normal_load=3.0,
         frequency=f,
-        voltage_peak_to_peak=1.0,
+        level=1.0,
         periods=60,
         steps_per_period=32,
         periods_per_window=1,
@@ -54,10 +54,7 @@ def test_the_envelope_rises_like_the_amplitude_of_the_marched_structure() -> Non
     rising = marched.first_harmonic_amplitude / marched.first_harmonic_amplitude[-1]
     middle = marched.time - 0.5 / f
     computed = np.array(
-        [
-            abs(next_envelope(DRIVEN, 0j, voltage_peak_to_peak=1.0, rate=DRIVEN.rate(f), duration=float(t))[0])
-            for t in middle
-        ]
+        [abs(next_envelope(DRIVEN, 0j, level=1.0, rate=DRIVEN.rate(f), duration=float(t))[0]) for t in middle]
     )
     assert computed[1:] == approx(rising[1:], abs=0.01)
 
@@ -78,7 +75,7 @@ def test_the_supplied_energy_is_dissipated_or_stored() -> None:
             return float(g / 8 * abs(steady + (a - steady) * np.exp(-r * t)) ** 2)
 
         dissipated += quad(power, 0, 2e-4, epsabs=1e-14, epsrel=1e-12)[0]
-        envelope, integral = next_envelope(DRIVEN, envelope, voltage_peak_to_peak=volts, rate=rate, duration=2e-4)
+        envelope, integral = next_envelope(DRIVEN, envelope, level=volts, rate=rate, duration=2e-4)
         supplied += g * volts * integral.real / 8
     assert supplied == approx(dissipated + stored(envelope) - start, rel=1e-9)
 
@@ -89,14 +86,14 @@ def test_the_steady_power_is_that_of_the_conductance() -> None:
         plant=LINE,
         mode=DRIVEN,
         controller=tuned_controller(
-            LINE, Process(time_constant=3e-4, dead_time=0.0, sample_interval=2e-4), voltage_maximum=50.0
+            LINE, Process(time_constant=3e-4, dead_time=0.0, sample_interval=2e-4), level_maximum=50.0
         ),
         tracker=None,
-        voltage_maximum=50.0,
+        level_maximum=50.0,
     )
     run = simulate_closed_loop(loop, setpoint=np.full(200, 1.25))  # 25 V
     power = (run.electrical_energy[-1] - run.electrical_energy[-2]) / 2e-4
-    volts = run.voltage_peak_to_peak[-1]
+    volts = run.level[-1]
     assert power == approx(0.5 * mode_admittance(DRIVEN, frequency=22e3).real * (volts / 2) ** 2, rel=1e-9)
 
 

@@ -22,7 +22,7 @@ from sonolube.design.control import (
     Process,
     computed_characteristic,
     design_control,
-    friction_at_voltage,
+    friction_at_level,
     stability_margins,
     tuned_controller,
 )
@@ -45,7 +45,7 @@ TRIBOMETER = Path(__file__).parents[3] / "examples" / "rigs" / "tribometer.toml"
 INTERVAL = 0.05  # s
 SLOW, FAST = 20.3e-3, 40.6e-3  # m/s, D Table 2.3
 SCATTER = 0.035  # N, of friction with vibration at 40.6 mm/s, D Table 2.3
-LINE = FrictionCharacteristic(voltage_peak_to_peak=np.array([0.0, 30.0]), friction_force=np.array([1.0, 0.1]))
+LINE = FrictionCharacteristic(level=np.array([0.0, 30.0]), friction_force=np.array([1.0, 0.1]))
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Plant:
 
     def friction(self, volts: Floats, turns: float) -> Floats:
         found = self.slow if turns < 0.17 else self.fast  # 0.111 and 0.222 turns a second
-        return friction_at_voltage(found, voltage_peak_to_peak=volts)
+        return friction_at_level(found, level=volts)
 
 
 @pytest.fixture(scope="module")
@@ -69,8 +69,8 @@ def plant() -> Plant:
     )
     return Plant(
         design=design_control(rig, settings),
-        slow=computed_characteristic(rig, voltage_maximum=28.0),
-        fast=computed_characteristic(replace(rig, sliding_speed=FAST), voltage_maximum=28.0),
+        slow=computed_characteristic(rig, level_maximum=28.0),
+        fast=computed_characteristic(replace(rig, sliding_speed=FAST), level_maximum=28.0),
     )
 
 
@@ -80,7 +80,7 @@ def limits(volts: str = "30 V", lasts: str = "100 s", **further: str) -> Limits:
 
 def controller(*, dead_time: float = 0.0) -> FrictionController:
     process = Process(time_constant=5e-3, dead_time=dead_time, sample_interval=INTERVAL)
-    return tuned_controller(LINE, process, voltage_maximum=30.0)
+    return tuned_controller(LINE, process, level_maximum=30.0)
 
 
 def hold(of: FrictionController, **changes: Any) -> FrictionHold:
@@ -98,7 +98,7 @@ def hold(of: FrictionController, **changes: Any) -> FrictionHold:
 
 
 def straight(volts: Floats, turns: float) -> Floats:
-    return friction_at_voltage(LINE, voltage_peak_to_peak=volts)
+    return friction_at_level(LINE, level=volts)
 
 
 @pytest.fixture(scope="module")

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from pytest import approx, mark, raises
 
@@ -61,6 +62,12 @@ def test_a_horn_in_python_has_the_numbers_of_the_command(sonolube: Program, tmp_
     ratio = data["displacement_ratio"]
     assert float(ratio[-1]) == approx(1.0, abs=0.05)
     assert float(data["position"][-1]) < found.object()["length"]["value"]
+    assert found.object()["total_length"] == {"value": approx(found.object()["length"]["value"], rel=1e-6), "unit": "m"}
+    assert {path.name.partition(".")[2] for path in tmp_path.glob("*-drawing.*")} == {"dxf", "pdf", "png", "svg"}
+    stress = np.asarray(found.plot("axis").axes[2].lines[0].get_ydata(), dtype=float).max()
+    assert 1e12 * stress == approx(found.object()["stress_per_displacement"]["value"], rel=1e-9)
+    motion = np.asarray(found.plot("axis").axes[1].lines[0].get_ydata(), dtype=float)
+    assert abs(motion[-1] / motion[0]) == approx(float(data["displacement_gain"]))
     assert abs(float(ratio[0] / ratio[-1])) == approx(1 / float(data["displacement_gain"]), rel=0.05)
 
 

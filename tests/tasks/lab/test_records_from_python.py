@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from pytest import approx, raises
-from tests.cli.conftest import Program, sonolube as sonolube
+from tests.cli.conftest import Program
 from tests.laboratory.catalogue.test_catalogue import run_of
 from tests.laboratory.records.recorded import begun, recorded
 from tests.laboratory.records.test_recovery import unfinished

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from pytest import MonkeyPatch, approx, raises
-from tests.cli.conftest import Program, sonolube as sonolube
+from tests.cli.conftest import Program
 from tests.laboratory import rig_stand_ins
 from tests.laboratory.rig_stand_ins import analogue_rig
 

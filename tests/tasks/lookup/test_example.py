@@ -11,10 +11,10 @@ from pytest import raises
 
 from sonolube.cli.commands import COMMANDS
 from sonolube.errors import UnknownName
+from sonolube.example_files import example_file, example_files
 from sonolube.facts.protocol import protocol_names, read_protocol
 from sonolube.rig import read_rig
 from sonolube.tasks.lookup.example import example
-from sonolube.tasks.lookup.example_files import example_file, example_files
 
 ROOT = Path(__file__).parents[3]
 Program = Callable[..., Any]

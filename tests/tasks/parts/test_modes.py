@@ -16,8 +16,9 @@ import sonolube as sl
 from sonolube.errors import InvalidInput, MissingPackage, SonolubeError, UnknownName
 from sonolube.figure import publication_style, render_figure
 from sonolube.models.fem import cylinder
+from sonolube.models.fem.part_modes import SupportedPart
 from sonolube.tasks.files import NamedBytes
-from sonolube.tasks.parts.part_modes import DEFAULT_MATERIAL, SupportedPart, supported_part
+from sonolube.tasks.parts.supported_part import DEFAULT_MATERIAL, supported_part
 
 Program = Callable[..., Any]
 

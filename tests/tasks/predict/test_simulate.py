@@ -10,8 +10,9 @@ import xarray as xr
 from pytest import approx
 
 import sonolube as sl
+from sonolube.charts import draw_chart
 from sonolube.figure import publication_style
-from sonolube.rig.figures import simulation_figure
+from sonolube.rig.figures import simulation_chart
 
 
 @pytest.mark.parametrize("name", ["tribometer", "power_map", "poisson_al_steel", "welder_round"])
@@ -38,7 +39,7 @@ def test_an_answer_and_its_file_draw_the_figure_of_the_command(tribometer: Path,
     with xr.open_dataset(found.to_netcdf(tmp_path / "kept.nc"), engine="h5netcdf") as kept:
         figures = [found.plot(), sl.plot(kept)]
     with publication_style():
-        figures.append(simulation_figure(found.dataset()))
+        figures.append(draw_chart(simulation_chart(found.dataset())))
     lines = [[line.get_xydata() for axes in figure.axes for line in axes.lines] for figure in figures]
     for own, other in zip(lines[0], lines[1], strict=True):
         assert np.asarray(own) == approx(np.asarray(other))

@@ -16,11 +16,10 @@ from sonolube.cli.console.options import Json
 from sonolube.interruption import asked_by_signal
 from sonolube.laboratory.records import Observation, RunObserver, run_to_watch
 from sonolube.printable_text import printable
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.report.results import observation as results
+from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.lab.run_answer import SIMULATED
-from sonolube.units import format_si
-from sonolube.vocabulary import unit_of
 
 LOOK_INTERVAL = 0.5
 """Between two looks at a run. [s]"""
@@ -29,8 +28,6 @@ LINE_INTERVAL = 5.0
 """Between two lines where standard output is no terminal, while the state stays. [s]"""
 
 _WIDTH: Final = 80  # of a terminal that does not tell its own
-_QUIET: Final = 5.0  # s without a block or event that are told
-_SHOWN: Final = ("friction_force", "normal_load", "temperature", "voltage_peak_to_peak")
 
 
 def watch(
@@ -80,7 +77,7 @@ class _Display:
         """Show a look at a run."""
         if self._is_quiet:
             return
-        line = printable(observation_line(seen))
+        line = printable(results.observation_line(seen))
         if self._is_terminal:
             width = (os.get_terminal_size(sys.stdout.fileno()).columns or _WIDTH) - 1
             sys.stdout.write(f"\r{line[:width]}\x1b[K")
@@ -99,21 +96,6 @@ class _Display:
             sys.stdout.flush()
 
 
-def observation_line(seen: Observation) -> str:
-    """Line of a look at a run: state, step, time, means of the last second, set points, and what is wrong.
-
-    Parameters
-    ----------
-    seen : Observation
-
-    Returns
-    -------
-    str
-    """
-    parts = [seen.state, _step(seen), _time(seen), _means(seen), _set_points(seen), *_warnings(seen)]
-    return "; ".join(filter(None, parts))
-
-
 @answer
 class WatchedRun(Answer):
     """A run at the last look."""
@@ -127,39 +109,22 @@ class WatchedRun(Answer):
         rows = [
             ("outcome", outcome),
             ("state", seen.state + (f": {seen.reason}" if seen.reason and seen.is_running else "")),
-            ("step", _step(seen).removeprefix("step ")),
-            ("time", _time(seen)),
-            ("last second", _means(seen)),
-            ("set", _set_points(seen).removeprefix("set ")),
+            ("step", results.step_text(seen).removeprefix("step ")),
+            ("time", results.time_text(seen)),
+            ("last second", results.means_text(seen)),
+            ("set", results.set_points_text(seen).removeprefix("set ")),
             *(("limit", trip) for trip in seen.trips),
         ]
         return [f"{seen.folder.name}: {seen.known.title}", Rows([row for row in rows if row[1]])]
 
     def object(self) -> dict[str, Any]:
         """Same in SI."""
-        seen = self.seen
-        times = {"protocol_time": seen.protocol_time, "duration": seen.duration, "time_left": seen.time_left}
-        return {
-            "folder": str(seen.folder),
-            "title": seen.known.title,
-            "simulated": bool(seen.known.facts.get("simulated", False)),
-            "outcome": seen.outcome,
-            "reason": seen.reason,
-            "state": seen.state,
-            "step": seen.step,
-            "step_kind": seen.step_kind,
-            **si(times, unit="s"),
-            "means": {name: {"value": value, "unit": unit} for name, (value, unit) in seen.means.items()},
-            "set_points": si(seen.set_points),
-            "trips": list(seen.trips),
-            "gaps": seen.gaps,
-            **si({"silence": seen.silence if seen.is_running else None}, unit="s"),
-        }
+        return results.observation_object(self.seen)
 
     def caveats(self) -> Sequence[str]:
         """A writer that has died, samples that are missing, and a run that writes nothing."""
         seen = self.seen
-        told = [line for line in _warnings(seen) if line not in seen.trips]
+        told = [line for line in results.warnings(seen) if line not in seen.trips]
         if seen.outcome == "unfinished":
             remedy = f"sonolube lab recover {quote(str(seen.folder))}"
             told.append(f"the program died during the run, and motor or drive may be on; {remedy} completes its record")
@@ -171,43 +136,3 @@ class WatchedRun(Answer):
     def is_failure(self) -> bool:
         """Whether the run has ended before its protocol."""
         return not (self.seen.is_running or self.seen.outcome == "completed")
-
-
-def _step(seen: Observation) -> str:
-    """Step with its kind."""
-    return f"step {seen.step} {seen.step_kind.replace('_', ' ')}".rstrip() if seen.step else ""
-
-
-def _time(seen: Observation) -> str:
-    """Time into the protocol and left."""
-    if seen.duration is None or seen.time_left is None:
-        return f"{seen.protocol_time:.1f} s"
-    return f"{seen.protocol_time:.1f} s of {seen.duration:.1f} s, {seen.time_left:.1f} s left"
-
-
-def _means(seen: Observation) -> str:
-    """Friction, load and temperature with units, and the voltage where it is not among the set points."""
-    shown = [name for name in _SHOWN if name in seen.means and name not in seen.set_points]
-    found = [(name, *seen.means[name]) for name in shown]
-    return ", ".join(
-        f"{name.replace('_', ' ')} {'no number' if value is None else format_si(value, unit)}"
-        for name, value, unit in found
-    )
-
-
-def _set_points(seen: Observation) -> str:
-    """Set points of motor and drive while they are on."""
-    known = seen.set_points
-    shown = [name for name in known if name != "rotation_speed" or "sliding_speed" not in known]
-    texts = [f"{name.replace('_', ' ')} {format_si(known[name], unit_of(name))}" for name in shown]
-    return f"set {', '.join(texts)}" if texts else ""
-
-
-def _warnings(seen: Observation) -> list[str]:
-    """Limits that were exceeded, gaps, and silence while the run should write."""
-    told = list(seen.trips)
-    if seen.gaps:
-        told.append(f"samples are missing in {seen.gaps} places")
-    if seen.is_running and seen.means and seen.silence > _QUIET:
-        told.append(f"nothing was written for {seen.silence:.0f} s")
-    return told

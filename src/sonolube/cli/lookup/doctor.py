@@ -2,10 +2,8 @@
 
 import os
 import platform
-import re
 import sys
 from collections.abc import Mapping, Sequence
-from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from shutil import which
 from typing import Any, ClassVar
@@ -16,10 +14,10 @@ import sonolube
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.progress import progress
-from sonolube.cli.lookup.self_checks import SELF_CHECKS
-from sonolube.extras import EXTRAS
+from sonolube.extras import EXTRAS, installed_version, required_packages
 from sonolube.models.dynamics.backend import device_name, gpu_obstacle
 from sonolube.models.dynamics.warm_up import compiled_code_folder, is_compiled
+from sonolube.reference_solutions.self_checks import SELF_CHECKS
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 
@@ -44,7 +42,7 @@ def doctor(json: Json = False) -> None:
             advance(check.title, done, len(SELF_CHECKS))
             outcomes.append(check.outcome())
     diagnosis = Diagnosis(
-        packages=_packages(),
+        packages=required_packages(),
         extras={name: extra.is_installed for name, extra in EXTRAS.items()},
         gpu=device_name("gpu"),
         gpu_obstacle=gpu_obstacle(),
@@ -135,7 +133,7 @@ class Diagnosis(Answer):
         """Package of an optional part with its version, or how to install it."""
         extra = EXTRAS[name]
         if self.extras[name]:
-            return f"{extra.package} {_version(extra.package)}".strip()
+            return f"{extra.package} {installed_version(extra.package)}".strip()
         return f"not installed: {extra.command}"
 
     def _cache(self) -> str:
@@ -162,21 +160,6 @@ def _verdict(check: Mapping[str, Any]) -> str:
     if check["passed"]:
         return f"passed, {check['computed']:.6g}"
     return f"FAILED: {check['computed']} instead of {check['expected']:.6g}, {check['reason']}"
-
-
-def _packages() -> dict[str, str]:
-    """Versions of the packages that are required, empty where one is missing."""
-    required = [each for each in requires("sonolube") or () if "extra ==" not in each]
-    names = sorted(re.split(r"[^\w.-]", each)[0] for each in required)
-    return {name: _version(name) for name in names}
-
-
-def _version(package: str) -> str:
-    """Version of a package, empty where it is missing."""
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return ""
 
 
 def _found(names: Sequence[str]) -> str:

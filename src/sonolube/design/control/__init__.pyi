@@ -16,7 +16,7 @@ from .controller import (
     ControllerState as ControllerState,
     FrictionController as FrictionController,
     initial_state as initial_state,
-    next_voltage as next_voltage,
+    next_level as next_level,
     tuned_controller as tuned_controller,
 )
 from .export import controller_source as controller_source, lookup_table as lookup_table
@@ -24,9 +24,9 @@ from .friction_characteristic import (
     FrictionCharacteristic as FrictionCharacteristic,
     computed_characteristic as computed_characteristic,
     efficiency_characteristic as efficiency_characteristic,
-    friction_at_voltage as friction_at_voltage,
+    friction_at_level as friction_at_level,
+    level_for_friction as level_for_friction,
     linear_characteristic as linear_characteristic,
-    voltage_for_friction as voltage_for_friction,
 )
 from .performance import (
     ControlEnergy as ControlEnergy,
@@ -57,6 +57,7 @@ from .stick_slip_oscillator import (
 )
 from .vibration_envelope import (
     VibrationMode as VibrationMode,
+    amplitude_mode as amplitude_mode,
     assumed_mode as assumed_mode,
     capture_limit as capture_limit,
     impedance_phase as impedance_phase,

@@ -7,14 +7,14 @@ from math import exp, pi
 import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_finite, require_non_negative, require_positive
-from sonolube.design.control.controller import FrictionController, initial_state, next_voltage
+from sonolube.design.control.controller import FrictionController, initial_state, next_level
 from sonolube.design.control.friction_characteristic import FrictionCharacteristic
 from sonolube.design.control.resonance_tracking import FrequencyTracker, next_frequency
 from sonolube.design.control.vibration_envelope import VibrationMode, measured_phase, next_envelope
 from sonolube.errors import InvalidInput
 
 _LARGEST_SHIFT = 0.1  # relative, up to which the resonance may be taken as linear in the temperature
-_LEAST_VOLTAGE = 0.02  # of the voltage limit, below which the phase of the current is not evaluated
+_LEAST_LEVEL = 0.02  # of the voltage limit, below which the phase of the current is not evaluated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -99,23 +99,23 @@ class FrictionLoop:
     Parameters
     ----------
     plant : FrictionCharacteristic
-        Friction over the steady voltage at the nominal drive frequency.
+        Friction over the steady voltage at the nominal drive frequency, or over the steady amplitude.
     mode : VibrationMode
     controller : FrictionController
     tracker : FrequencyTracker or None
         None for a fixed frequency.
-    voltage_maximum : float
-        Largest peak-to-peak voltage of the amplifier. [V]
+    level_maximum : float
+        Largest peak-to-peak voltage of the amplifier, or largest amplitude. [V or m]
     """
 
     plant: FrictionCharacteristic
     mode: VibrationMode
     controller: FrictionController
     tracker: FrequencyTracker | None
-    voltage_maximum: float
+    level_maximum: float
 
     def __post_init__(self) -> None:
-        require_positive(voltage_maximum=self.voltage_maximum)
+        require_positive(level_maximum=self.level_maximum)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -132,30 +132,31 @@ class ClosedLoopRun:
         Actual friction force. [N]
     measured_force : ndarray
         Friction force as measured, with dead time and noise, in N.
-    voltage_peak_to_peak : ndarray
-        Peak-to-peak drive voltage over the interval. [V]
+    level : ndarray
+        Peak-to-peak drive voltage, or commanded amplitude, over the interval. [V or m]
     frequency : ndarray
         Drive frequency over the interval. [Hz]
     resonance_frequency : ndarray
         Resonance frequency. [Hz]
-    phase : ndarray
-        Measured phase of the impedance, positive where the voltage leads the current. [rad]
     envelope : ndarray of complex
-        Vibration envelope, as the peak-to-peak voltage that maintains it at resonance, in V.
-    electrical_energy : ndarray
-        Energy supplied to the motional branch so far. [J]
+        Vibration envelope, as the level that maintains it at resonance, in V or m.
+    phase : ndarray or None
+        Measured phase of the impedance, positive where the voltage leads the current; None of a commanded amplitude.
+        [rad]
+    electrical_energy : ndarray or None
+        Energy supplied to the motional branch so far; None of a commanded amplitude. [J]
     """
 
     time: Floats
     setpoint: Floats
     friction_force: Floats
     measured_force: Floats
-    voltage_peak_to_peak: Floats
+    level: Floats
     frequency: Floats
     resonance_frequency: Floats
-    phase: Floats
     envelope: Complexes
-    electrical_energy: Floats
+    phase: Floats | None
+    electrical_energy: Floats | None
 
 
 @dataclass(slots=True)
@@ -183,19 +184,20 @@ class _PlantState:
     def friction(self, factor: float) -> float:
         """Friction force at the present envelope, in N."""
         plant, ratio = self.loop.plant, self.loop.mode.nominal_envelope_ratio
-        volts = abs(self.envelope) / ratio
-        return factor * float(np.interp(volts, plant.voltage_peak_to_peak, plant.friction_force))
+        return factor * float(np.interp(abs(self.envelope) / ratio, plant.level, plant.friction_force))
 
-    def advance(self, voltage: float, shift: float) -> None:
+    def advance(self, level: float, shift: float) -> None:
         """Advance envelope, energy, phase and tracked frequency by one interval."""
         mode, tracker = self.loop.mode, self.loop.tracker
         interval = self.loop.controller.process.sample_interval
         self.envelope, integral = next_envelope(
-            mode, self.envelope, voltage_peak_to_peak=voltage, rate=mode.rate(self.frequency, shift), duration=interval
+            mode, self.envelope, level=level, rate=mode.rate(self.frequency, shift), duration=interval
         )
-        self.energy += mode.motional_conductance * voltage * integral.real / 8
-        if voltage > _LEAST_VOLTAGE * self.loop.voltage_maximum:
-            self.phase = measured_phase(mode, self.envelope / voltage, frequency=self.frequency)
+        if mode.motional_conductance is None:
+            return
+        self.energy += mode.motional_conductance * level * integral.real / 8
+        if level > _LEAST_LEVEL * self.loop.level_maximum:
+            self.phase = measured_phase(mode, self.envelope / level, frequency=self.frequency)
             if tracker is not None:
                 self.frequency = next_frequency(tracker, frequency=self.frequency, phase=self.phase)
 
@@ -230,9 +232,10 @@ def simulate_closed_loop(
 
     Notes
     -----
-    The vibration envelope is the exact solution under voltage and frequency held over the interval; friction follows it
-    without delay, by the static characteristic. Changes of the envelope must be slow against the period of the
-    vibration, and the memory of friction, some micrometres of sliding, short against the interval.
+    The vibration envelope is the exact solution under voltage, or commanded amplitude, and frequency held over the
+    interval; friction follows it without delay, by the static characteristic. Changes of the envelope must be slow
+    against the period of the vibration, and the memory of friction, some micrometres of sliding, short against the
+    interval.
     """
     commanded = require_non_negative(friction_force=setpoint)
     if commanded.ndim != 1 or not commanded.size:
@@ -252,22 +255,23 @@ def simulate_closed_loop(
         friction = plant.friction(factor[n])
         plant.pending_forces.append(friction)
         measured = plant.pending_forces.popleft() + noise[n]
-        voltage = next_voltage(controller, state, float(commanded[n]), float(measured))
-        saturated = min(voltage, loop.voltage_maximum)
+        level = next_level(controller, state, float(commanded[n]), float(measured))
+        saturated = min(level, loop.level_maximum)
         resonance = mode.natural_frequency * (1 + shift)
         envelope[n] = plant.envelope
         histories[:, n] = friction, measured, saturated, plant.frequency, resonance, plant.phase, plant.energy
         plant.advance(saturated, shift)
-    friction_force, measured_force, volts, frequency, resonance_frequency, phase, energy = histories
+    friction_force, measured_force, levels, frequency, resonance_frequency, phase, energy = histories
+    is_electrical = mode.motional_conductance is not None
     return ClosedLoopRun(
         time=time,
         setpoint=commanded,
         friction_force=friction_force,
         measured_force=measured_force,
-        voltage_peak_to_peak=volts,
+        level=levels,
         frequency=frequency,
         resonance_frequency=resonance_frequency,
-        phase=phase,
         envelope=envelope,
-        electrical_energy=energy,
+        phase=phase if is_electrical else None,
+        electrical_energy=energy if is_electrical else None,
     )

@@ -18,8 +18,8 @@ from sonolube.design.control.friction_characteristic import (
     FrictionCharacteristic,
     computed_characteristic,
     efficiency_characteristic,
-    friction_at_voltage,
-    voltage_for_friction,
+    friction_at_level,
+    level_for_friction,
 )
 from sonolube.design.control.performance import (
     ControlEnergy,
@@ -32,12 +32,12 @@ from sonolube.design.control.resonance_tracking import FrequencyTracker, tuned_t
 from sonolube.design.control.vibration_envelope import VibrationMode, mode_admittance, mode_at_drive
 from sonolube.errors import InvalidInput, OutsideRange, UnknownName
 from sonolube.facts.metrics import EfficiencyLine
-from sonolube.rig import Rig
+from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
 
 FEED_FORWARD = ("model", "efficiency", "none")
 """Characteristic of the feed-forward: by the rig's model, by an efficiency line, or none but a straight line."""
 
-_SLOPE_STEP = 0.01  # of the highest voltage, of the finite difference of the static gain
+_SLOPE_STEP = 0.01  # of the highest level, of the finite difference of the static gain
 _FIRST_STEP, _SECOND_STEP = 0.1, 0.55  # of the duration, when the set-point steps
 _FEWEST_SAMPLES, _MOST_SAMPLES = 20, 500_000
 
@@ -48,7 +48,10 @@ class ControlSettings:
 
     Parameters
     ----------
-    amplifier : Amplifier
+    amplifier : Amplifier or None
+        Limits of the voltage; None for a rig whose amplitude is commanded.
+    amplitude_maximum : float or None
+        Largest amplitude of a rig without a voltage; its own where it is None. [m]
     friction_force : float or None
         Target friction force; half-way between the highest and the lowest where it is None. [N]
     dead_time : float
@@ -60,7 +63,7 @@ class ControlSettings:
     feed_forward : str
         One of `FEED_FORWARD`.
     tracking : bool
-        Whether the drive frequency tracks the resonance.
+        Whether the frequency of a voltage tracks the resonance; a commanded amplitude needs no tracking here.
     duration : float
         Simulated time. [s]
     disturbance : Disturbance
@@ -74,7 +77,8 @@ class ControlSettings:
         If the feed-forward is unknown.
     """
 
-    amplifier: Amplifier
+    amplifier: Amplifier | None = None
+    amplitude_maximum: float | None = None
     friction_force: float | None = None
     dead_time: float = 1e-3
     sample_interval: float = 2e-4
@@ -114,8 +118,8 @@ class ControlDesign:
         At that gain.
     friction_force : float
         Target friction force. [N]
-    voltage_maximum : float
-        Largest peak-to-peak voltage within the limits of the amplifier. [V]
+    level_maximum : float
+        Largest peak-to-peak voltage within the limits of the amplifier, or largest amplitude. [V or m]
     limit : str
         Name of the limit that determines it.
     run : ClosedLoopRun
@@ -134,7 +138,7 @@ class ControlDesign:
     plant_gain: float
     margins: StabilityMargins
     friction_force: float
-    voltage_maximum: float
+    level_maximum: float
     limit: str
     run: ClosedLoopRun
     fixed_frequency_run: ClosedLoopRun | None
@@ -150,10 +154,11 @@ def design_control(
     Parameters
     ----------
     rig : Rig
-        With a drive voltage.
+        With a drive voltage, or an amplitude that is commanded.
     settings : ControlSettings
     mode : VibrationMode, optional
-        Resonance that the drive excites; by default that of the rig's structure closest to the drive frequency.
+        Resonance that the drive excites; by default that of the rig's structure closest to the drive frequency. Of a
+        rig without a voltage `amplitude_mode`.
     line : EfficiencyLine, optional
         Efficiency line for the feed-forward "efficiency".
 
@@ -164,7 +169,8 @@ def design_control(
     Raises
     ------
     InvalidInput
-        If the rig lacks an entry that the model needs, the phase cannot be tracked, or the line is missing.
+        If the rig lacks an entry that the model needs, the phase cannot be tracked, the line or the amplifier is
+        missing, or a commanded amplitude is to be fed forward by efficiency or to drift.
     OutsideRange
         If the target friction force cannot be reached.
 
@@ -173,24 +179,27 @@ def design_control(
     tuned_controller, stability_margins, simulate_closed_loop
     """
     mode = mode_at_drive(rig) if mode is None else mode
-    admittance = mode_admittance(mode, frequency=mode.frequency)
-    swing = swing_limit(settings.amplifier, admittance=admittance, frequency=mode.frequency)
-    plant = computed_characteristic(rig, voltage_maximum=swing)
+    quantity = commanded_quantity(rig)
+    if quantity is AMPLITUDE:
+        _require_no_voltage(settings)
+    highest, limit = _highest_level(rig, settings, mode)
+    plant = computed_characteristic(rig, level_maximum=highest)
     target = settings.friction_force
     if target is None:
         target = 0.5 * (plant.highest_force + plant.lowest_force)
-    voltage_for_friction(plant, friction_force=target)  # refuses a target out of reach
+    level_for_friction(plant, friction_force=target)  # refuses a target out of reach
     controller = tuned_controller(
-        _feed_forward_characteristic(rig, plant, settings, line, swing),
+        _feed_forward_characteristic(rig, plant, settings, line, highest),
         Process(
             time_constant=mode.time_constant, dead_time=settings.dead_time, sample_interval=settings.sample_interval
         ),
-        voltage_maximum=swing,
+        level_maximum=highest,
         closed_loop_time=settings.closed_loop_time,
         feed_forward=settings.feed_forward != "none",
     )
-    tracker = tuned_tracker(mode, sample_interval=settings.sample_interval) if settings.tracking else None
-    loop = FrictionLoop(plant=plant, mode=mode, controller=controller, tracker=tracker, voltage_maximum=swing)
+    tracks = settings.tracking and quantity is VOLTAGE
+    tracker = tuned_tracker(mode, sample_interval=settings.sample_interval) if tracks else None
+    loop = FrictionLoop(plant=plant, mode=mode, controller=controller, tracker=tracker, level_maximum=highest)
     setpoint = _setpoint_history(settings, plant.highest_force, target)
     run = simulate_closed_loop(loop, setpoint=setpoint, drift=settings.drift, disturbance=settings.disturbance)
     fixed_frequency_run = None
@@ -209,13 +218,35 @@ def design_control(
         plant_gain=plant_gain,
         margins=stability_margins(controller.process, gains),
         friction_force=float(target),
-        voltage_maximum=swing,
-        limit=active_limit(settings.amplifier, admittance=admittance, frequency=mode.frequency),
+        level_maximum=highest,
+        limit=limit,
         run=run,
         fixed_frequency_run=fixed_frequency_run,
         response=step_response_metrics(run, start_time=first_step),
         energy=control_energy(rig, run),
     )
+
+
+def _require_no_voltage(settings: ControlSettings) -> None:
+    """Raise where a commanded amplitude is asked for what only a voltage has."""
+    if settings.feed_forward == "efficiency":
+        raise InvalidInput(
+            "feed-forward by efficiency is over power, which a commanded amplitude has none of; take model"
+        )
+    if settings.drift.final_temperature_rise:
+        raise InvalidInput("a commanded amplitude has no drift here: its generator holds the resonance")
+
+
+def _highest_level(rig: Rig, settings: ControlSettings, mode: VibrationMode) -> tuple[float, str]:
+    """Largest voltage or amplitude, and the name of the limit that determines it."""
+    if commanded_quantity(rig) is AMPLITUDE:
+        given = settings.amplitude_maximum
+        return own_level(rig) if given is None else float(require_positive(amplitude_maximum=given)), AMPLITUDE.word
+    if settings.amplifier is None:
+        raise InvalidInput(f"{rig.title}: a drive voltage needs the limits of its amplifier")
+    admittance = mode_admittance(mode, frequency=mode.frequency)
+    highest = swing_limit(settings.amplifier, admittance=admittance, frequency=mode.frequency)
+    return highest, active_limit(settings.amplifier, admittance=admittance, frequency=mode.frequency)
 
 
 def _feed_forward_characteristic(
@@ -232,20 +263,20 @@ def _feed_forward_characteristic(
 def _plant_gain(
     plant: FrictionCharacteristic, controller: FrictionController, target: float, friction_factor: float
 ) -> float:
-    """Slope of the actual friction over that of the controller's characteristic, at the voltage of the target."""
+    """Slope of the actual friction over that of the controller's characteristic, at the target."""
     reachable = min(max(target / friction_factor, plant.lowest_force), plant.highest_force)
-    volts = float(voltage_for_friction(plant, friction_force=reachable))
-    table = controller.voltage_peak_to_peak
-    if volts >= table[-1] and table[-1] < plant.voltage_peak_to_peak[-1]:
+    level = float(level_for_friction(plant, friction_force=reachable))
+    table = controller.level
+    if level >= table[-1] and table[-1] < plant.level[-1]:
         lowest = controller.intrinsic_friction_force - controller.force_reduction[-1]
         raise OutsideRange(
-            f"friction_force {target:.4g} N needs {volts:.4g} V by the rig's model, but the efficiency line predicts"
+            f"friction_force {target:.4g} N needs {level:.4g} V by the rig's model, but the efficiency line predicts"
             f" {lowest:.4g} N at {table[-1]:.4g} V, where the controller's characteristic ends: recalibrate the"
             " efficiency, or take feed-forward by the model"
         )
-    step = _SLOPE_STEP * plant.voltage_peak_to_peak[-1]
-    ends = np.clip([volts - step, volts + step], 0.0, min(plant.voltage_peak_to_peak[-1], table[-1]))
-    actual = friction_factor * np.diff(friction_at_voltage(plant, voltage_peak_to_peak=ends))
+    step = _SLOPE_STEP * plant.level[-1]
+    ends = np.clip([level - step, level + step], 0.0, min(plant.level[-1], table[-1]))
+    actual = friction_factor * np.diff(friction_at_level(plant, level=ends))
     expected = -np.diff(np.interp(ends, table, controller.force_reduction))
     return float(actual[0] / expected[0])
 

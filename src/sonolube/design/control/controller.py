@@ -1,6 +1,6 @@
 """Sampled friction controller: PI control with feed-forward, inverse static characteristic and anti-windup.
 
-The C source of `sonolube.design.control.export` repeats the function `next_voltage` line by line.
+The C source of `sonolube.design.control.export` repeats the function `next_level` line by line.
 """
 
 from bisect import bisect_right
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from sonolube.checks import require_positive
 from sonolube.design.control.friction_characteristic import FrictionCharacteristic, linear_characteristic
 from sonolube.design.control.process import PIGains, Process, simc_gains
+from sonolube.rig import VOLTAGE, CommandedQuantity
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -25,28 +26,32 @@ class FrictionController:
         Friction without vibration. [N]
     force_reduction : tuple of float
         Reduction of the friction force at the points of the characteristic, increasing from zero, in N.
-    voltage_peak_to_peak : tuple of float
-        Drive voltages at these points, increasing from zero. [V]
-    voltage_maximum : float
-        Largest commanded peak-to-peak voltage. [V]
+    level : tuple of float
+        Peak-to-peak drive voltages, or vibration amplitudes, at these points, increasing from zero. [V or m]
+    level_maximum : float
+        Largest of them that is commanded. [V or m]
+    quantity : CommandedQuantity
+        Voltage or amplitude.
     feed_forward : bool
         Whether the set-point is fed forward; otherwise the integral part alone brings the command to it.
 
     Notes
     -----
-    The command is a friction force, which the inverse characteristic converts to a voltage: a static nonlinearity is
-    cancelled by its inverse, so that the gain of the loop does not depend on the set-point. With feed-forward, the
-    feedback acts on the difference of the measurement from a reference model, the response of the process to the
-    set-point with its dead time (two-degree-of-freedom control). Unlike in a Smith predictor, the model receives the
-    set-point rather than the command, so that disturbances see the plain PI loop. See `next_voltage` for the equations.
+    The command is a friction force, which the inverse characteristic converts to a voltage or an amplitude: a static
+    nonlinearity is cancelled by its inverse, so that the gain of the loop does not depend on the set-point. With
+    feed-forward, the feedback acts on the difference of the measurement from a reference model, the response of the
+    process to the set-point with its dead time (two-degree-of-freedom control). Unlike in a Smith predictor, the model
+    receives the set-point rather than the command, so that disturbances see the plain PI loop. See `next_level` for the
+    equations.
     """
 
     process: Process
     gains: PIGains
     intrinsic_friction_force: float
     force_reduction: tuple[float, ...]
-    voltage_peak_to_peak: tuple[float, ...]
-    voltage_maximum: float
+    level: tuple[float, ...]
+    level_maximum: float
+    quantity: CommandedQuantity = VOLTAGE
     feed_forward: bool = True
 
     @property
@@ -85,7 +90,7 @@ def tuned_controller(
     characteristic: FrictionCharacteristic,
     process: Process,
     *,
-    voltage_maximum: float,
+    level_maximum: float,
     closed_loop_time: float | None = None,
     feed_forward: bool = True,
 ) -> FrictionController:
@@ -96,8 +101,8 @@ def tuned_controller(
     characteristic : FrictionCharacteristic
         Of the plant; without feed-forward only its two ends are used.
     process : Process
-    voltage_maximum : float
-        Largest commanded peak-to-peak voltage. [V]
+    level_maximum : float
+        Largest commanded peak-to-peak voltage or amplitude. [V or m]
     closed_loop_time : float, optional
         Desired closed-loop time constant; by default the effective dead time. [s]
     feed_forward : bool
@@ -109,7 +114,7 @@ def tuned_controller(
 
     See Also
     --------
-    simc_gains, next_voltage
+    simc_gains, next_level
     """
     table = characteristic if feed_forward else linear_characteristic(characteristic)
     return FrictionController(
@@ -117,8 +122,9 @@ def tuned_controller(
         gains=simc_gains(process, closed_loop_time=closed_loop_time),
         intrinsic_friction_force=table.highest_force,
         force_reduction=tuple((table.highest_force - table.friction_force).tolist()),
-        voltage_peak_to_peak=tuple(table.voltage_peak_to_peak.tolist()),
-        voltage_maximum=float(require_positive(voltage_maximum=voltage_maximum)),
+        level=tuple(table.level.tolist()),
+        level_maximum=float(require_positive(level_maximum=level_maximum)),
+        quantity=table.quantity,
         feed_forward=feed_forward,
     )
 
@@ -138,8 +144,8 @@ def initial_state(controller: FrictionController) -> ControllerState:
     return ControllerState(integral=0.0, model_output=model_output)
 
 
-def next_voltage(controller: FrictionController, state: ControllerState, setpoint: float, measured: float) -> float:
-    r"""Peak-to-peak drive voltage over the next interval, in V; updates the state.
+def next_level(controller: FrictionController, state: ControllerState, setpoint: float, measured: float) -> float:
+    r"""Peak-to-peak drive voltage or amplitude over the next interval, in V or m; updates the state.
 
     Parameters
     ----------
@@ -165,21 +171,21 @@ def next_voltage(controller: FrictionController, state: ControllerState, setpoin
 
         I &\leftarrow I + \frac{K_c T}{\tau_I} e + \frac{T}{\tau_I} (w_{sat} - w)
 
-    where :math:`w_{sat}` is the force at the saturated voltage (anti-windup by back-calculation). Without feed-forward
-    :math:`e = r - y`, and :math:`w` starts from the intrinsic friction force.
+    where :math:`w_{sat}` is the force at the saturated voltage or amplitude (anti-windup by back-calculation). Without
+    feed-forward :math:`e = r - y`, and :math:`w` starts from the intrinsic friction force.
     """
     intrinsic = controller.intrinsic_friction_force
     base = setpoint if controller.feed_forward else intrinsic
     error = (state.model_output[0] if controller.feed_forward else setpoint) - measured
     command = base + controller.gains.proportional_gain * error + state.integral
-    unsaturated = _interpolated(intrinsic - command, controller.force_reduction, controller.voltage_peak_to_peak)
-    voltage = min(unsaturated, controller.voltage_maximum)
-    saturated = intrinsic - _interpolated(voltage, controller.voltage_peak_to_peak, controller.force_reduction)
+    unsaturated = _interpolated(intrinsic - command, controller.force_reduction, controller.level)
+    level = min(unsaturated, controller.level_maximum)
+    saturated = intrinsic - _interpolated(level, controller.level, controller.force_reduction)
     state.integral += controller.integral_gain * error + controller.anti_windup_gain * (saturated - command)
     latest = state.model_output[-1]
     state.model_output.append(latest + controller.lag_coefficient * (setpoint - latest))
     del state.model_output[0]
-    return voltage
+    return level
 
 
 def _interpolated(x: float, abscissa: Sequence[float], ordinate: Sequence[float]) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from sonolube.design.control.controller import FrictionController
 from sonolube.design.control.resonance_tracking import FrequencyTracker
+from sonolube.rig import CommandedQuantity
 
 
 def controller_source(controller: FrictionController, tracker: FrequencyTracker | None, *, title: str) -> str:
@@ -25,8 +26,9 @@ def controller_source(controller: FrictionController, tracker: FrequencyTracker 
 
     See Also
     --------
-    lookup_table, next_voltage, next_frequency
+    lookup_table, next_level, next_frequency
     """
+    quantity = controller.quantity
     values = {
         "INTERVAL": (controller.process.sample_interval, "s"),
         "INTRINSIC_FRICTION": (controller.intrinsic_friction_force, "N"),
@@ -34,7 +36,7 @@ def controller_source(controller: FrictionController, tracker: FrequencyTracker 
         "INTEGRAL_GAIN": (controller.integral_gain, "N/N per interval"),
         "ANTI_WINDUP_GAIN": (controller.anti_windup_gain, "N/N per interval"),
         "LAG_COEFFICIENT": (controller.lag_coefficient, "per interval"),
-        "HIGHEST_VOLTAGE": (controller.voltage_maximum, "V peak to peak"),
+        f"HIGHEST_{quantity.word.upper()}": (controller.level_maximum, _unit(quantity)),
     }
     defines = [f"#define SONOLUBE_{name} ({_number(value)}) /* {unit} */" for name, (value, unit) in values.items()]
     counts = [
@@ -44,11 +46,11 @@ def controller_source(controller: FrictionController, tracker: FrequencyTracker 
     ]
     safe_title = " ".join(title.replace("*/", "* /").replace("/*", "/ *").split())
     parts = [
-        f"/* Friction controller: {safe_title}. SI units; voltages peak to peak. */",
+        f"/* Friction controller: {safe_title}. SI units; {quantity.word}s {quantity.qualifier}. */",
         "\n".join([*defines, *counts]),
         _array("force_reduction", controller.force_reduction),
-        _array("voltage", controller.voltage_peak_to_peak),
-        _STEP_SOURCE.strip(),
+        _array(quantity.word, controller.level),
+        _step_source(quantity),
     ]
     if tracker is not None:
         parts.append(_tracker_source(tracker))
@@ -56,7 +58,7 @@ def controller_source(controller: FrictionController, tracker: FrequencyTracker 
 
 
 def lookup_table(controller: FrictionController) -> str:
-    """Lookup table of a controller as CSV: friction force and peak-to-peak drive voltage.
+    """Lookup table of a controller as CSV: friction force, and peak-to-peak drive voltage or vibration amplitude.
 
     Parameters
     ----------
@@ -72,10 +74,22 @@ def lookup_table(controller: FrictionController) -> str:
     controller_source
     """
     rows = [
-        f"{controller.intrinsic_friction_force - reduction!r},{volts!r}"
-        for reduction, volts in zip(controller.force_reduction, controller.voltage_peak_to_peak, strict=True)
+        f"{controller.intrinsic_friction_force - reduction!r},{level!r}"
+        for reduction, level in zip(controller.force_reduction, controller.level, strict=True)
     ]
-    return "\n".join(["friction_force [N],voltage_peak_to_peak [V]", *rows]) + "\n"
+    quantity = controller.quantity
+    return "\n".join([f"friction_force [N],{quantity.name} [{quantity.unit}]", *rows]) + "\n"
+
+
+def _unit(quantity: CommandedQuantity) -> str:
+    """Unit of the commanded quantity in a comment, such as "V peak to peak"."""
+    return f"{quantity.unit} {quantity.qualifier}"
+
+
+def _step_source(quantity: CommandedQuantity) -> str:
+    """C source of the controller's step, which returns the commanded quantity."""
+    source = _STEP_SOURCE.strip().replace("LEVEL_MAXIMUM", f"SONOLUBE_HIGHEST_{quantity.word.upper()}")
+    return source.replace("LEVEL_IN_UNITS", f"{quantity.word} in {_unit(quantity)}").replace("LEVEL", quantity.word)
 
 
 def _number(value: float) -> str:
@@ -123,14 +137,14 @@ static double interpolated(double x, const double *abscissa, const double *ordin
         + (ordinate[high] - ordinate[low]) / (abscissa[high] - abscissa[low]) * (x - abscissa[low]);
 }
 
-/* Peak-to-peak voltage of the next interval, from the set-point and the measured friction force. */
+/* The LEVEL_IN_UNITS of the next interval, from the set-point and the measured friction force in N. */
 double sonolube_step(sonolube_state *state, double setpoint, double measured) {
     const double base = SONOLUBE_FEED_FORWARD ? setpoint : SONOLUBE_INTRINSIC_FRICTION;
     const double error = (SONOLUBE_FEED_FORWARD ? state->model_output[0] : setpoint) - measured;
     const double command = base + SONOLUBE_PROPORTIONAL_GAIN * error + state->integral;
-    const double unsaturated = interpolated(SONOLUBE_INTRINSIC_FRICTION - command, force_reduction, voltage);
-    const double allowed = unsaturated < SONOLUBE_HIGHEST_VOLTAGE ? unsaturated : SONOLUBE_HIGHEST_VOLTAGE;
-    const double saturated = SONOLUBE_INTRINSIC_FRICTION - interpolated(allowed, voltage, force_reduction);
+    const double unsaturated = interpolated(SONOLUBE_INTRINSIC_FRICTION - command, force_reduction, LEVEL);
+    const double allowed = unsaturated < LEVEL_MAXIMUM ? unsaturated : LEVEL_MAXIMUM;
+    const double saturated = SONOLUBE_INTRINSIC_FRICTION - interpolated(allowed, LEVEL, force_reduction);
     state->integral += SONOLUBE_INTEGRAL_GAIN * error + SONOLUBE_ANTI_WINDUP_GAIN * (saturated - command);
     const double latest = state->model_output[SONOLUBE_DEAD_TIME];
     for (int i = 0; i < SONOLUBE_DEAD_TIME; i++) state->model_output[i] = state->model_output[i + 1];

@@ -1,5 +1,7 @@
 """Figures of friction control: closed loop over time, feed-forward map with sensitivity, and stick-slip of a slider."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule
@@ -14,7 +16,7 @@ _LEAST_SPAN = 2e-3  # of an axis relative to its middle, below which rounding er
 
 
 def closed_loop_chart(study: ControlDesign) -> Chart:
-    """Friction force, drive voltage and frequency of the closed loop over time.
+    """Friction force and drive voltage with its frequency, or commanded amplitude, of the closed loop over time.
 
     Parameters
     ----------
@@ -25,40 +27,45 @@ def closed_loop_chart(study: ControlDesign) -> Chart:
     Chart
         With the run at a fixed frequency beside, where the study has one.
     """
-    run, fixed = study.run, study.fixed_frequency_run
-    ms = 1e3 * run.time
+    run, fixed, quantity = study.run, study.fixed_frequency_run, study.plant.quantity
+    ms, scale = 1e3 * run.time, quantity.axis_scale
+    highest = scale * study.level_maximum
     friction: list[Part] = []
-    voltage: list[Part] = []
+    drive: list[Part] = []
     if fixed is not None:
         friction.append(Line(x=ms, y=fixed.friction_force, label="frequency fixed", colour=1, dash=1))
-        voltage.append(Line(x=ms, y=fixed.voltage_peak_to_peak, colour=1, dash=1))
+        drive.append(Line(x=ms, y=scale * fixed.level, colour=1, dash=1))
     friction += [
         Line(x=ms, y=run.friction_force, label="friction" if fixed is None else "resonance tracked"),
         Line(x=ms, y=run.setpoint, label="target", colour=6, dash=3, is_stepped=True),
     ]
-    voltage += [
-        Line(x=ms, y=run.voltage_peak_to_peak),
-        Rule(value=study.voltage_maximum, along="y", label=f"{study.limit} limit", colour="0.5", dash=2),
+    drive += [
+        Line(x=ms, y=scale * run.level),
+        Rule(value=highest, along="y", label=f"{study.limit} limit", colour="0.5", dash=2),
     ]
-    drive, resonance = 1e-3 * run.frequency, 1e-3 * run.resonance_frequency
-    frequencies = (Line(x=ms, y=drive, label="drive"), Line(x=ms, y=resonance, label="resonance", colour=2, dash=1))
-    force = Axis(label="Friction force", unit="N", lowest=0.0)
-    volts = Axis(label="Drive, peak to peak", unit="V", lowest=0.0, highest=1.12 * study.voltage_maximum)
     time = Axis(label="Time", unit="ms", lowest=0.0, highest=float(ms[-1]))
-    return Chart(
-        panels=(
-            Panel(x=time, y=force, parts=tuple(friction)),
-            Panel(x=time, y=volts, parts=tuple(voltage)),
-            Panel(x=time, y=_frequency_axis(np.concatenate([drive, resonance])), parts=frequencies),
-        ),
-        size=(5.6, 5.6),
-        heights=(2, 1, 1),
-        shares_x=True,
-    )
+    panels = [
+        Panel(x=time, y=Axis(label="Friction force", unit="N", lowest=0.0), parts=tuple(friction)),
+        Panel(x=time, y=replace(quantity.axis, lowest=0.0, highest=1.12 * highest), parts=tuple(drive)),
+    ]
+    if run.phase is not None:
+        panels.append(_frequencies(time, ms, 1e-3 * run.frequency, 1e-3 * run.resonance_frequency))
+    heights = (2.0, 1.0, 1.0)[: len(panels)]
+    return Chart(panels=tuple(panels), size=(5.6, 2.0 + 1.2 * len(panels)), heights=heights, shares_x=True)
+
+
+def _frequencies(time: Axis, ms: Floats, drive: Floats, resonance: Floats) -> Panel:
+    """Frequency of drive and resonance in kHz over time, on an axis that makes no motion of rounding errors."""
+    low, high = float(min(drive.min(), resonance.min())), float(max(drive.max(), resonance.max()))
+    middle = (low + high) / 2
+    half = max(0.55 * (high - low), _LEAST_SPAN / 2 * middle)
+    lines = (Line(x=ms, y=drive, label="drive"), Line(x=ms, y=resonance, label="resonance", colour=2, dash=1))
+    y = Axis(label="Frequency", unit="kHz", lowest=middle - half, highest=middle + half)
+    return Panel(x=time, y=y, parts=lines)
 
 
 def control_design_chart(study: ControlDesign) -> Chart:
-    r"""Feed-forward map from voltage to friction, and magnitude of the sensitivity function over frequency.
+    r"""Feed-forward map from voltage or amplitude to friction, and magnitude of the sensitivity over frequency.
 
     Parameters
     ----------
@@ -76,11 +83,12 @@ def control_design_chart(study: ControlDesign) -> Chart:
     """
     plant, controller = study.plant, study.controller
     table = controller.intrinsic_friction_force - np.array(controller.force_reduction)
-    volts = np.interp(-study.friction_force, -plant.friction_force, plant.voltage_peak_to_peak)
+    scale = plant.quantity.axis_scale
+    level = np.interp(-study.friction_force, -plant.friction_force, plant.level)
     lookup = (
-        Line(x=plant.voltage_peak_to_peak, y=plant.friction_force, label="rig's model"),
-        Line(x=np.array(controller.voltage_peak_to_peak), y=table, label="controller's table", colour=1, dash=1),
-        Points(x=np.array([volts]), y=np.array([study.friction_force]), label="target", colour=6),
+        Line(x=scale * plant.level, y=plant.friction_force, label="rig's model"),
+        Line(x=scale * np.array(controller.level), y=table, label="controller's table", colour=1, dash=1),
+        Points(x=np.array([scale * level]), y=np.array([study.friction_force]), label="target", colour=6),
     )
     nyquist = 0.5 / controller.process.sample_interval
     f = np.geomspace(1e-3 * nyquist, nyquist, 600)
@@ -91,11 +99,14 @@ def control_design_chart(study: ControlDesign) -> Chart:
         Rule(value=peak, along="y", label=f"maximum, {peak:.2f}", colour="0.5", dash=2),
         Rule(value=1.0, along="y", colour="0.5", dash=0),
     )
-    voltage = Axis(label="Drive, peak to peak", unit="V", lowest=0.0)
     magnitude = Axis(label="Sensitivity, magnitude", lowest=0.0, highest=1.25 * max(peak, 1))
     return Chart(
         panels=(
-            Panel(x=voltage, y=Axis(label="Friction force", unit="N", lowest=0.0), parts=lookup),
+            Panel(
+                x=replace(plant.quantity.axis, lowest=0.0),
+                y=Axis(label="Friction force", unit="N", lowest=0.0),
+                parts=lookup,
+            ),
             Panel(x=Axis(label="Frequency", unit="Hz", logarithmic=True), y=magnitude, parts=loop),
         ),
         size=(6.4, 3.0),
@@ -114,7 +125,7 @@ def stick_slip_chart(suppression: StickSlipSuppression) -> Chart:
     -------
     Chart
     """
-    label = f"with {suppression.voltage_peak_to_peak:.3g} V peak to peak"
+    label = f"with {suppression.quantity.text(suppression.level)}"
     still, vibrating = suppression.still, suppression.vibrating
     count = max(2, int(_SHOWN * still.time.size))
     shown = slice(0, count, -(-count // _MOST_DRAWN))
@@ -129,11 +140,3 @@ def stick_slip_chart(suppression: StickSlipSuppression) -> Chart:
         parts=lines,
     )
     return Chart(panels=(panel,), size=(5.6, 2.8), legend="top")
-
-
-def _frequency_axis(kilohertz: Floats) -> Axis:
-    """Axis about the values, over a five-hundredth of their middle at least."""
-    low, high = float(kilohertz.min()), float(kilohertz.max())
-    middle = (low + high) / 2
-    half = max(0.55 * (high - low), _LEAST_SPAN / 2 * middle)
-    return Axis(label="Frequency", unit="kHz", lowest=middle - half, highest=middle + half)

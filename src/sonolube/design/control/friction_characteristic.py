@@ -1,6 +1,6 @@
-"""Static characteristic of the plant: steady friction force over drive voltage, and its inverse for feed-forward."""
+"""Static characteristic of the plant: steady friction force over the commanded quantity, and its inverse."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,47 +8,53 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.facts.metrics import EfficiencyLine, friction_at_power, power_for_friction
-from sonolube.rig import Rig, operating_points
+from sonolube.rig import VOLTAGE, CommandedQuantity, Rig, commanded_quantity, level_settings, operating_points
 from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.excitation import amplifier_power
+from sonolube.units import format_si
 
 _RESOLUTION = 1e-6  # of the intrinsic friction force, by which neighbouring points must differ
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrictionCharacteristic:
-    """Steady friction force over peak-to-peak drive voltage, falling and piecewise linear.
+    """Steady friction force over the commanded quantity, falling and piecewise linear.
 
     Parameters
     ----------
-    voltage_peak_to_peak : ndarray, shape (n,)
-        Drive voltages, increasing from zero. [V]
+    level : ndarray, shape (n,)
+        Peak-to-peak drive voltages, or vibration amplitudes, increasing from zero. [V or m]
     friction_force : ndarray, shape (n,)
         Mean friction force at each, decreasing. [N]
+    quantity : CommandedQuantity
+        Voltage or amplitude.
 
     Raises
     ------
     InvalidInput
-        If there are fewer than two points, voltages do not increase, or forces do not decrease.
+        If there are fewer than two points, levels do not increase, or forces do not decrease.
 
     See Also
     --------
     computed_characteristic, efficiency_characteristic, linear_characteristic
     """
 
-    voltage_peak_to_peak: Floats
+    level: Floats
     friction_force: Floats
+    quantity: CommandedQuantity = VOLTAGE
 
     def __post_init__(self) -> None:
-        volts = require_non_negative(voltage_peak_to_peak=self.voltage_peak_to_peak)
+        levels = require_non_negative(**{self.quantity.name: self.level})
         force = require_non_negative(friction_force=self.friction_force)
-        if volts.ndim != 1 or volts.shape != force.shape or volts.size < 2:
+        if levels.ndim != 1 or levels.shape != force.shape or levels.size < 2:
             raise InvalidInput(
-                "a friction characteristic needs two points or more, voltage and force of each, got shapes"
-                f" {volts.shape} and {force.shape}"
+                f"a friction characteristic needs two points or more, {self.quantity.word} and force of each, got"
+                f" shapes {levels.shape} and {force.shape}"
             )
-        if np.any(np.diff(volts) <= 0) or np.any(np.diff(force) >= 0):
-            raise InvalidInput("voltages must increase and forces decrease along a friction characteristic")
+        if np.any(np.diff(levels) <= 0) or np.any(np.diff(force) >= 0):
+            raise InvalidInput(
+                f"{self.quantity.word}s must increase and forces decrease along a friction characteristic"
+            )
 
     @property
     def highest_force(self) -> float:
@@ -61,29 +67,29 @@ class FrictionCharacteristic:
         return float(self.friction_force[-1])
 
 
-def friction_at_voltage(characteristic: FrictionCharacteristic, *, voltage_peak_to_peak: ArrayLike) -> Floats:
-    """Friction force at drive voltages by linear interpolation, constant beyond the last point. [N]
+def friction_at_level(characteristic: FrictionCharacteristic, *, level: ArrayLike) -> Floats:
+    """Friction force at values of the commanded quantity by linear interpolation, constant beyond the last point. [N]
 
     Parameters
     ----------
     characteristic : FrictionCharacteristic
-    voltage_peak_to_peak : array_like, any shape
-        Peak-to-peak drive voltage. [V]
+    level : array_like, any shape
+        Peak-to-peak drive voltage, or vibration amplitude. [V or m]
 
     Returns
     -------
-    ndarray, shape of `voltage_peak_to_peak`
+    ndarray, shape of `level`
 
     See Also
     --------
-    voltage_for_friction
+    level_for_friction
     """
-    volts = require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak)
-    return np.asarray(np.interp(volts, characteristic.voltage_peak_to_peak, characteristic.friction_force))
+    levels = require_non_negative(**{characteristic.quantity.name: level})
+    return np.asarray(np.interp(levels, characteristic.level, characteristic.friction_force))
 
 
-def voltage_for_friction(characteristic: FrictionCharacteristic, *, friction_force: ArrayLike) -> Floats:
-    """Peak-to-peak drive voltage for friction forces, by the inverse of the characteristic. [V]
+def level_for_friction(characteristic: FrictionCharacteristic, *, friction_force: ArrayLike) -> Floats:
+    """Peak-to-peak drive voltage or amplitude for friction forces, by the inverse of the characteristic. [V or m]
 
     Parameters
     ----------
@@ -102,48 +108,50 @@ def voltage_for_friction(characteristic: FrictionCharacteristic, *, friction_for
 
     See Also
     --------
-    friction_at_voltage
+    friction_at_level
     """
     force = require_non_negative(friction_force=friction_force)
     outside = (force > characteristic.highest_force) | (force < characteristic.lowest_force)
     if np.any(outside):
         raise OutsideRange(
             f"friction_force must lie between {characteristic.lowest_force:.4g} N, at"
-            f" {characteristic.voltage_peak_to_peak[-1]:.4g} V, and {characteristic.highest_force:.4g} N without"
-            f" vibration, got {force[outside].flat[0]:.4g} N"
+            f" {format_si(characteristic.level[-1], characteristic.quantity.unit, digits=4)}, and"
+            f" {characteristic.highest_force:.4g} N without vibration, got {force[outside].flat[0]:.4g} N"
         )
-    return np.asarray(np.interp(force, characteristic.friction_force[::-1], characteristic.voltage_peak_to_peak[::-1]))
+    return np.asarray(np.interp(force, characteristic.friction_force[::-1], characteristic.level[::-1]))
 
 
-def computed_characteristic(rig: Rig, *, voltage_maximum: float, points: int = 41) -> FrictionCharacteristic:
+def computed_characteristic(rig: Rig, *, level_maximum: float, points: int = 41) -> FrictionCharacteristic:
     """Characteristic by the rig's friction model, under its vibration by the source of its amplitude.
 
     Parameters
     ----------
     rig : Rig
-        With a drive voltage and an amplitude, measured, computed or per volt.
-    voltage_maximum : float
-        Highest peak-to-peak voltage; the offset is scaled in the rig's own ratio. [V]
+        With an amplitude; without a drive voltage that amplitude is the commanded quantity.
+    level_maximum : float
+        Highest peak-to-peak voltage, the offset scaled in the rig's own ratio, or highest amplitude. [V or m]
     points : int
-        Number of voltages to compute.
+        Number of voltages or amplitudes to compute.
 
     Returns
     -------
     FrictionCharacteristic
-        Up to the voltage at which a limit of stack, contact or friction model is reached, or the vibration drives the
-        sliding.
+        Up to the voltage or amplitude at which a limit of stack, contact or friction model is reached, or the vibration
+        drives the sliding.
 
     Raises
     ------
     InvalidInput
-        If the rig has no drive voltage, or no voltage reduces its friction.
+        If the rig has no amplitude, or none up to the highest reduces its friction.
 
     See Also
     --------
     efficiency_characteristic
     """
-    volts = _voltages(voltage_maximum, points)
-    return _decreasing_part(rig, volts, _ratios(rig, volts) * rig.friction_coefficient * rig.normal_load)
+    quantity = commanded_quantity(rig)
+    levels = _levels(quantity, level_maximum, points)
+    force = _ratios(rig, levels) * rig.friction_coefficient * rig.normal_load
+    return _decreasing_part(rig, quantity, levels, force)
 
 
 def efficiency_characteristic(
@@ -192,7 +200,7 @@ def efficiency_characteristic(
         "nominal_area": rig.contact.nominal_area,
         "normal_load": rig.normal_load,
     }
-    volts = _voltages(voltage_maximum, points)
+    volts = _levels(VOLTAGE, voltage_maximum, points)
     power = amplifier_power(
         drive, capacitance=rig.capacitance, voltage_peak_to_peak=volts, voltage_offset=drive.offset_ratio * volts
     )
@@ -200,7 +208,7 @@ def efficiency_characteristic(
     # the power is proportional to the square of the voltage
     volts = np.minimum(volts, volts[-1] * np.sqrt(zero_friction_power / power[-1]))
     power = np.minimum(power, zero_friction_power)
-    return _decreasing_part(rig, volts, friction_at_power(line, actuator_power=power, **conditions))
+    return _decreasing_part(rig, VOLTAGE, volts, friction_at_power(line, actuator_power=power, **conditions))
 
 
 def linear_characteristic(characteristic: FrictionCharacteristic) -> FrictionCharacteristic:
@@ -214,33 +222,33 @@ def linear_characteristic(characteristic: FrictionCharacteristic) -> FrictionCha
     -------
     FrictionCharacteristic
     """
-    volts, force = characteristic.voltage_peak_to_peak[[0, -1]], characteristic.friction_force[[0, -1]]
-    return FrictionCharacteristic(voltage_peak_to_peak=volts, friction_force=force)
+    ends = [0, -1]
+    return replace(characteristic, level=characteristic.level[ends], friction_force=characteristic.friction_force[ends])
 
 
-def _voltages(highest: float, points: int) -> Floats:
-    """Equally spaced voltages from zero."""
+def _levels(quantity: CommandedQuantity, highest: float, points: int) -> Floats:
+    """Equally spaced voltages or amplitudes from zero."""
     if points < 2:
         raise InvalidInput(f"points must be at least 2, got {points}")
-    return np.linspace(0, float(require_non_negative(voltage_maximum=highest)), points)
+    return np.linspace(0, float(require_non_negative(**{quantity.name: highest})), points)
 
 
-def _ratios(rig: Rig, volts: Floats) -> Floats:
-    """Friction ratios at each voltage, NaN where there is none; 1 without vibration."""
-    offset = require_drive(rig).offset_ratio * volts[1:]
-    vibrated = operating_points(rig, voltage_peak_to_peak=volts[1:], voltage_offset=offset)
+def _ratios(rig: Rig, levels: Floats) -> Floats:
+    """Friction ratios at each voltage or amplitude, NaN where there is none; 1 without vibration."""
+    vibrated = operating_points(rig, **level_settings(rig, levels[1:]))
     return np.concatenate([[1.0], vibrated.friction_ratio])
 
 
-def _decreasing_part(rig: Rig, volts: Floats, force: Floats) -> FrictionCharacteristic:
+def _decreasing_part(rig: Rig, quantity: CommandedQuantity, levels: Floats, force: Floats) -> FrictionCharacteristic:
     """Characteristic up to the first NaN or driving force, without the points at which friction does not decrease."""
     intrinsic = rig.friction_coefficient * rig.normal_load
     kept = [0]
-    for i in range(1, volts.size):
+    for i in range(1, levels.size):
         if not force[i] >= 0:
             break
         if force[i] < force[kept[-1]] - _RESOLUTION * intrinsic:
             kept.append(i)
     if len(kept) < 2:
-        raise InvalidInput(f"{rig.title}: no voltage up to {volts[-1]:g} V reduces friction; raise voltage_maximum")
-    return FrictionCharacteristic(voltage_peak_to_peak=volts[kept], friction_force=force[kept])
+        highest = format_si(float(levels[-1]), quantity.unit, digits=6)
+        raise InvalidInput(f"{rig.title}: no {quantity.word} up to {highest} reduces friction; raise its limit")
+    return FrictionCharacteristic(level=levels[kept], friction_force=force[kept], quantity=quantity)

@@ -7,7 +7,7 @@ import numpy as np
 from sonolube.checks import Floats, require_non_negative, require_within
 from sonolube.design.control.closed_loop_simulation import ClosedLoopRun
 from sonolube.errors import InvalidInput
-from sonolube.rig import Rig
+from sonolube.rig import Rig, level_settings
 from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.excitation import amplifier_power
 
@@ -43,15 +43,15 @@ class ControlEnergy:
     Parameters
     ----------
     amplifier_energy : float or None
-        Energy supplied by a linear amplifier (D 1.9); None without a capacitance. [J]
-    electrical_energy : float
-        Energy supplied to the motional branch. [J]
+        Energy supplied by a linear amplifier (D 1.9); None without a capacitance or a voltage. [J]
+    electrical_energy : float or None
+        Energy supplied to the motional branch; None of a commanded amplitude. [J]
     saved_work : float
         Reduction of the friction work at the rig's sliding speed, against friction without vibration. [J]
     """
 
     amplifier_energy: float | None
-    electrical_energy: float
+    electrical_energy: float | None
     saved_work: float
 
 
@@ -105,7 +105,7 @@ def control_energy(rig: Rig, run: ClosedLoopRun) -> ControlEnergy:
     Parameters
     ----------
     rig : Rig
-        With a drive voltage, whose offset is scaled in its own ratio.
+        The offset of its voltage, where it has one, is scaled in its own ratio.
     run : ClosedLoopRun
 
     Returns
@@ -116,22 +116,17 @@ def control_energy(rig: Rig, run: ClosedLoopRun) -> ControlEnergy:
     --------
     step_response_metrics
     """
-    drive = require_drive(rig)
     interval = float(run.time[1] - run.time[0]) if run.time.size > 1 else 0.0
     amplifier_energy = None
-    if rig.capacitance is not None:
+    if rig.capacitance is not None and run.electrical_energy is not None:
         power = amplifier_power(
-            drive,
-            capacitance=rig.capacitance,
-            voltage_peak_to_peak=run.voltage_peak_to_peak,
-            voltage_offset=drive.offset_ratio * run.voltage_peak_to_peak,
-            frequency=run.frequency,
+            require_drive(rig), capacitance=rig.capacitance, frequency=run.frequency, **level_settings(rig, run.level)
         )
         amplifier_energy = float(power.sum() * interval)
     reduction = rig.friction_coefficient * rig.normal_load - run.friction_force
     return ControlEnergy(
         amplifier_energy=amplifier_energy,
-        electrical_energy=float(run.electrical_energy[-1]),
+        electrical_energy=None if run.electrical_energy is None else float(run.electrical_energy[-1]),
         saved_work=float(reduction.sum() * interval * rig.sliding_speed),
     )
 

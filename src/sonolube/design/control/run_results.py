@@ -1,6 +1,6 @@
-"""Results of a closed-loop run: dataset over time, final voltage and error, and whether the resonance was lost."""
+"""Results of a closed-loop run: dataset over time, final level and error, and whether the resonance was lost."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,22 +17,22 @@ _FINAL_FRACTION = 5  # the last fifth of a run counts as its end
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FinalState:
-    """Voltage and tracking error over the last fifth of a closed-loop run.
+    """Drive and tracking error over the last fifth of a closed-loop run.
 
     Parameters
     ----------
-    voltage_peak_to_peak : float
-        Mean drive voltage. [V]
+    level : float
+        Mean drive voltage, or commanded amplitude. [V or m]
     tracking_error : float
         Root mean square of friction force less reference. [N]
     """
 
-    voltage_peak_to_peak: float
+    level: float
     tracking_error: float
 
 
 def final_state(run: ClosedLoopRun) -> FinalState:
-    """Mean voltage and root-mean-square tracking error over the last fifth of a run.
+    """Mean voltage or amplitude, and root-mean-square tracking error over the last fifth of a run.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def final_state(run: ClosedLoopRun) -> FinalState:
     """
     last = slice(-max(run.time.size // _FINAL_FRACTION, 1), None)
     return FinalState(
-        voltage_peak_to_peak=float(run.voltage_peak_to_peak[last].mean()),
+        level=float(run.level[last].mean()),
         tracking_error=float(np.sqrt(np.mean((run.friction_force[last] - run.setpoint[last]) ** 2))),
     )
 
@@ -76,8 +76,15 @@ def control_dataset(study: ControlDesign, *, title: str) -> "xr.Dataset":
     Returns
     -------
     xarray.Dataset
-        Over `time`.
+        Over `time`; of a commanded amplitude without the resonance and its electrical quantities.
     """
-    not_shown = ("setpoint", "measured_force", "envelope")
-    names = [field.name for field in fields(study.run) if field.name not in not_shown]
-    return dataset({name: getattr(study.run, name) for name in names}, along="time", title=title)
+    run, quantity = study.run, study.plant.quantity
+    values = {"time": run.time, "friction_force": run.friction_force, quantity.name: run.level}
+    if run.phase is not None and run.electrical_energy is not None:
+        values |= {
+            "frequency": run.frequency,
+            "resonance_frequency": run.resonance_frequency,
+            "phase": run.phase,
+            "electrical_energy": run.electrical_energy,
+        }
+    return dataset(values, along="time", title=title)

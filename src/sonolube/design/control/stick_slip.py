@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.design.control.control_design import ControlDesign
-from sonolube.design.control.friction_characteristic import voltage_for_friction
+from sonolube.design.control.friction_characteristic import level_for_friction
 from sonolube.design.control.stick_slip_oscillator import (
     StickSlipMotion,
     mass_on_belt,
     steady_sliding_damping,
     stick_slip_motion,
 )
-from sonolube.rig import Rig
+from sonolube.rig import CommandedQuantity, Rig
 
 HOLDER_MASS = 0.05
 """Assumed mass that moves with the slider. [kg]"""
@@ -37,27 +37,30 @@ class StickSlipSuppression:
     ----------
     still, vibrating : StickSlipMotion
         Without and with vibration.
-    voltage_peak_to_peak : float
-        Drive voltage of `vibrating`. [V]
+    level : float
+        Drive voltage or amplitude of `vibrating`. [V or m]
+    quantity : CommandedQuantity
+        Voltage or amplitude.
     damping : tuple of two float
         Damping of small motions about steady sliding, without and with vibration, in N s/m.
     """
 
     still: StickSlipMotion
     vibrating: StickSlipMotion
-    voltage_peak_to_peak: float
+    level: float
+    quantity: CommandedQuantity
     damping: tuple[float, float]
 
 
 def stick_slip_suppression(rig: Rig, study: ControlDesign) -> StickSlipSuppression:
-    r"""Stick-slip of a rig's slider without vibration and at the voltage of the commanded friction.
+    r"""Stick-slip of a rig's slider without vibration and at the voltage or amplitude of the commanded friction.
 
     Parameters
     ----------
     rig : Rig
-        With a stack and a structure.
+        With an amplitude.
     study : ControlDesign
-        Gives the commanded friction and the voltage for it.
+        Gives the commanded friction and the voltage or amplitude for it.
 
     Returns
     -------
@@ -75,7 +78,7 @@ def stick_slip_suppression(rig: Rig, study: ControlDesign) -> StickSlipSuppressi
     --------
     dragged_mass, dragged_motion, steady_sliding_damping
     """
-    volts = float(voltage_for_friction(study.plant, friction_force=study.friction_force))
+    level = float(level_for_friction(study.plant, friction_force=study.friction_force))
     without, within = (
         mass_on_belt(
             rig,
@@ -84,13 +87,14 @@ def stick_slip_suppression(rig: Rig, study: ControlDesign) -> StickSlipSuppressi
             holder_damping=2 * HOLDER_DAMPING_RATIO * float(np.sqrt(HOLDER_MASS * HOLDER_STIFFNESS)),
             static_friction_force=STATIC_FRICTION_FACTOR * study.plant.highest_force,
             stribeck_velocity=rig.sliding_speed,
-            voltage_peak_to_peak=swing,
+            level=each,
         )
-        for swing in (0.0, volts)
+        for each in (0.0, level)
     )
     return StickSlipSuppression(
         still=stick_slip_motion(without, duration=_PERIODS * without.period),
         vibrating=stick_slip_motion(within, duration=_PERIODS * within.period),
-        voltage_peak_to_peak=volts,
+        level=level,
+        quantity=study.plant.quantity,
         damping=(steady_sliding_damping(without), steady_sliding_damping(within)),
     )

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
 from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.rig import Rig, operating_points
-from sonolube.rig.driven_rig import require_drive
+from sonolube.rig import Rig, commanded_quantity, level_settings, operating_points
 
 _SPEEDS = 33  # at which the friction ratio is computed; it is interpolated between them
 _SLOWEST = 1e-3  # of the belt's speed, whose friction ratio is taken for that at rest
@@ -140,14 +139,14 @@ def mass_on_belt(
     holder_damping: float,
     static_friction_force: float,
     stribeck_velocity: float,
-    voltage_peak_to_peak: float,
+    level: float,
 ) -> MassOnBelt:
     """Slider of a rig on an elastic holder, with the rig's friction as that of sliding.
 
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        With an amplitude.
     holder_mass : float
         Mass that moves with the slider. [kg]
     holder_stiffness : float
@@ -158,8 +157,9 @@ def mass_on_belt(
         Friction at rest, without vibration. [N]
     stribeck_velocity : float
         Velocity of the transition from static friction to that of sliding. [m/s]
-    voltage_peak_to_peak : float
-        Drive voltage, zero for no vibration; the offset is scaled in the rig's own ratio. [V]
+    level : float
+        Drive voltage, its offset scaled in the rig's own ratio, or amplitude of a rig without one; zero for no
+        vibration. [V or m]
 
     Returns
     -------
@@ -168,7 +168,7 @@ def mass_on_belt(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or a value is outside its range.
+        If the rig has no amplitude, or a value is outside its range.
     OutsideRange
         If the friction model has no result at some speed.
 
@@ -182,19 +182,13 @@ def mass_on_belt(
     velocity; that at rest is taken from a thousandth of the belt's speed. The ratio is a mean over periods of the
     vibration, so that stick-slip must be slow against them.
     """
-    drive = require_drive(rig)
     fastest = 2 * rig.sliding_speed + static_friction_force / np.sqrt(holder_stiffness * holder_mass)
     speeds = np.geomspace(_SLOWEST * rig.sliding_speed, fastest, _SPEEDS)
     ratio = np.ones(_SPEEDS)
-    if voltage_peak_to_peak > 0:
-        points = operating_points(
-            rig,
-            voltage_peak_to_peak=voltage_peak_to_peak,
-            voltage_offset=drive.offset_ratio * voltage_peak_to_peak,
-            sliding_speed=speeds,
-        )
+    if level > 0:
+        points = operating_points(rig, **level_settings(rig, level), sliding_speed=speeds)
         if np.any(points.failed):
-            raise OutsideRange(f"at {voltage_peak_to_peak:g} V peak to peak: {points.reason[points.failed][0]}")
+            raise OutsideRange(f"at {commanded_quantity(rig).text(level)}: {points.reason[points.failed][0]}")
         ratio = points.friction_ratio
     return MassOnBelt(
         holder_mass=holder_mass,

@@ -17,7 +17,7 @@ _MOST_RESIDUAL = 0.2  # conductance of all other modes over that of the mode
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VibrationMode:
-    r"""One electromechanical resonance: a motional branch in parallel with a capacitance (Butterworth-Van Dyke).
+    r"""One resonance; of a stack, a motional branch in parallel with a capacitance (Butterworth-Van Dyke).
 
     Parameters
     ----------
@@ -25,37 +25,48 @@ class VibrationMode:
         Series resonance frequency, with the surfaces in contact. [Hz]
     damping_ratio : float
         Damping ratio of the mode. []
-    motional_conductance : float
-        Conductance of the motional branch at resonance. [S]
-    parallel_capacitance : float
-        Capacitance in parallel with the motional branch. [F]
     frequency : float
         Nominal drive frequency. [Hz]
+    motional_conductance : float or None
+        Conductance of the motional branch at resonance; None where an amplitude is commanded. [S]
+    parallel_capacitance : float or None
+        Capacitance in parallel with the motional branch; None where an amplitude is commanded. [F]
 
     Raises
     ------
     InvalidInput
-        If a frequency, conductance, capacitance or damping is not positive.
+        If a frequency, conductance, capacitance or damping is not positive, or one of conductance and capacitance is
+        missing.
 
     Notes
     -----
-    The complex envelope :math:`a` of the vibration is expressed in volts, as the peak-to-peak voltage that maintains it
-    at resonance. For light damping and changes that are slow against the period (averaging),
+    The complex envelope :math:`a` of the vibration is expressed as the peak-to-peak voltage that maintains it at
+    resonance, or as its amplitude where that is commanded. For light damping and changes that are slow against the
+    period (averaging),
 
     .. math:: \dot a = -\bigl(\sigma + i (\omega - \omega_r)\bigr) a + \sigma u, \qquad \sigma = \zeta \omega_r
 
-    The drive supplies the power :math:`g u \operatorname{Re}(a)/8` to the motional branch of the conductance :math:`g`,
+    A voltage supplies the power :math:`g u \operatorname{Re}(a)/8` to the motional branch of the conductance :math:`g`,
     of which :math:`g |a|^2/8` is dissipated; the stored energy is :math:`g |a|^2/(16 \sigma)`.
     """
 
     natural_frequency: float
     damping_ratio: float
-    motional_conductance: float
-    parallel_capacitance: float
     frequency: float
+    motional_conductance: float | None = None
+    parallel_capacitance: float | None = None
 
     def __post_init__(self) -> None:
-        require_positive(**asdict(self))
+        require_positive(**{name: value for name, value in asdict(self).items() if value is not None})
+        if (self.motional_conductance is None) != (self.parallel_capacitance is None):
+            raise InvalidInput("a mode needs both motional_conductance and parallel_capacitance, or neither")
+
+    @property
+    def branch(self) -> tuple[float, float]:
+        """Motional conductance and parallel capacitance, in S and F."""
+        if self.motional_conductance is None or self.parallel_capacitance is None:
+            raise InvalidInput("a mode whose amplitude is commanded has no electrical branch")
+        return self.motional_conductance, self.parallel_capacitance
 
     @property
     def decay_rate(self) -> float:
@@ -144,7 +155,7 @@ def assumed_mode(rig: Rig, *, quality_factor: float, coupling_factor: float) -> 
 
     See Also
     --------
-    mode_at_drive
+    mode_at_drive, amplitude_mode
 
     Notes
     -----
@@ -155,15 +166,47 @@ def assumed_mode(rig: Rig, *, quality_factor: float, coupling_factor: float) -> 
     drive = require_drive(rig)
     if rig.capacitance is None:
         raise InvalidInput(f"{rig.title}: actuator.capacitance is missing; give it, or the tables stack and structure")
-    if not 0.5 < quality_factor < inf:
-        raise InvalidInput(f"quality_factor must be above 0.5, got {quality_factor:g}")
+    damping_ratio = _damping_ratio(quality_factor)
     k = float(require_within(1e-6, 1 - 1e-6, coupling_factor=coupling_factor))
     return VibrationMode(
         natural_frequency=drive.frequency,
-        damping_ratio=0.5 / quality_factor,
+        damping_ratio=damping_ratio,
         motional_conductance=2 * pi * drive.frequency * rig.capacitance * k**2 * quality_factor,
         parallel_capacitance=rig.capacitance * (1 - k**2),
         frequency=drive.frequency,
+    )
+
+
+def amplitude_mode(rig: Rig, *, quality_factor: float) -> VibrationMode:
+    """Mode by which an amplitude follows its set point, from an assumed quality factor, for a rig without a voltage.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a drive frequency, at which the resonance is held.
+    quality_factor : float
+        Quality factor of the resonance. []
+
+    Returns
+    -------
+    VibrationMode
+        Without an electrical branch.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no drive frequency, or the quality factor does not exceed 0.5.
+
+    See Also
+    --------
+    assumed_mode
+    """
+    if rig.drive is None:
+        raise InvalidInput(f"{rig.title}: drive.frequency is missing; give the frequency of the vibration")
+    return VibrationMode(
+        natural_frequency=rig.drive.frequency,
+        damping_ratio=_damping_ratio(quality_factor),
+        frequency=rig.drive.frequency,
     )
 
 
@@ -239,17 +282,17 @@ def measured_phase(mode: VibrationMode, envelope_ratio: complex, *, frequency: f
 
 
 def next_envelope(
-    mode: VibrationMode, envelope: complex, *, voltage_peak_to_peak: float, rate: complex, duration: float
+    mode: VibrationMode, envelope: complex, *, level: float, rate: complex, duration: float
 ) -> tuple[complex, complex]:
-    r"""Envelope after a time under constant voltage and frequency, and its integral over that time.
+    r"""Envelope after a time under constant voltage or commanded amplitude, and its integral over that time.
 
     Parameters
     ----------
     mode : VibrationMode
     envelope : complex
-        Initial envelope, in V.
-    voltage_peak_to_peak : float
-        Peak-to-peak drive voltage. [V]
+        Initial envelope, in V or m.
+    level : float
+        Peak-to-peak drive voltage, or commanded amplitude. [V or m]
     rate : complex
         Complex rate of `VibrationMode.rate`, in 1/s.
     duration : float
@@ -258,7 +301,7 @@ def next_envelope(
     Returns
     -------
     pair of complex
-        In V and V s.
+        In V and V s, or m and m s.
 
     Notes
     -----
@@ -266,8 +309,7 @@ def next_envelope(
 
     .. math:: a(t) = a_\infty + (a_0 - a_\infty) e^{-\lambda t}, \qquad a_\infty = \frac{\sigma u}{\lambda}
     """
-    volts = float(require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak))
-    steady = mode.decay_rate * volts / rate
+    steady = mode.decay_rate * float(require_non_negative(level=level)) / rate
     decay = exp(-rate * float(require_non_negative(duration=duration)))
     deviation = envelope - steady
     return steady + deviation * decay, steady * duration + deviation * (1 - decay) / rate
@@ -304,7 +346,8 @@ def capture_limit(mode: VibrationMode) -> float:
 
     whose two roots add to :math:`g/b`.
     """
-    figure_of_merit = mode.motional_conductance / (2 * pi * mode.natural_frequency * mode.parallel_capacitance)
+    conductance, capacitance = mode.branch
+    figure_of_merit = conductance / (2 * pi * mode.natural_frequency * capacitance)
     half_bandwidth = mode.decay_rate / (2 * pi)
     nominal = (mode.frequency - mode.natural_frequency) / half_bandwidth
     if nominal >= figure_of_merit / 2:
@@ -318,4 +361,12 @@ def capture_limit(mode: VibrationMode) -> float:
 
 def _admittance(mode: VibrationMode, envelope_ratio: complex, frequency: float) -> complex:
     """Current over voltage at a ratio of envelope to voltage, in S."""
-    return 2j * pi * frequency * mode.parallel_capacitance + mode.motional_conductance * envelope_ratio
+    conductance, capacitance = mode.branch
+    return 2j * pi * frequency * capacitance + conductance * envelope_ratio
+
+
+def _damping_ratio(quality_factor: float) -> float:
+    """Damping ratio of a quality factor, which must exceed that of critical damping."""
+    if not 0.5 < quality_factor < inf:
+        raise InvalidInput(f"quality_factor must be above 0.5, got {quality_factor:g}")
+    return 0.5 / quality_factor

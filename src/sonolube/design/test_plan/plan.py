@@ -172,6 +172,13 @@ class TestPlan:
         return self.batch.points[run.point]
 
     @property
+    def entropy(self) -> float:
+        """Entropy of the weights of the closures, in bits: what there is to be learned."""
+        weights = np.array(list(self.weights.values()))
+        weights = weights[weights > 0]
+        return float(-np.sum(weights * np.log2(weights)))
+
+    @property
     def duration(self) -> float:
         """Time of all runs without mounting and cleaning. [s]"""
         return sum(state.duration for run in self.runs for part in run.parts for state in self.states(run, part))

@@ -23,7 +23,7 @@ def held_friction_chart(record: HeldFriction, *, simulated: bool) -> Chart:
         Friction as means over the intervals, with the deviation of the samples within each as a band.
     """
     time, force, band = record.time, record.friction_force, record.friction_force_deviation
-    intrinsic, highest = record.intrinsic_friction_force, record.hold.controller.voltage_maximum
+    intrinsic, highest = record.intrinsic_friction_force, record.hold.controller.level_maximum
     source = "simulated" if simulated else "measured"
     friction = (
         Band(x=time, low=force - band, high=force + band, label="±1 deviation of samples", colour=5, opacity=0.5),

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from sonolube.design.control import initial_state, next_voltage
+from sonolube.design.control import initial_state, next_level
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.laboratory.block import Block
@@ -63,7 +63,7 @@ def hold_friction(
 
     Notes
     -----
-    In interval n the voltage follows by `sonolube.design.control.next_voltage` from the friction of interval n - 1. The
+    In interval n the voltage follows by `sonolube.design.control.next_level` from the friction of interval n - 1. The
     loop is then that of `sonolube.design.control.stability_margins` where the friction at the end of an interval is
     that of its voltage; a mean over the whole interval delays the measurement by up to half of it.
     """
@@ -156,7 +156,7 @@ class _Loop:
             while coming and now >= coming[0].time - 1e-9:
                 speed = coming.pop(0).sliding_speed
                 self._turn(speed)
-            voltage = next_voltage(hold.controller, state, hold.friction_force, measured)
+            voltage = next_level(hold.controller, state, hold.friction_force, measured)
             self._drive(voltage)
             measured, deviation = self._measure()
             self._rows.append((measured, deviation, voltage, speed))

@@ -77,7 +77,7 @@ def _phase(record: HeldFriction, part: slice) -> HoldMetrics:
     time, error = record.time[part], force - record.setpoint[part]
     last = slice(-max(force.size // _FINAL_FRACTION, 1), None)
     scatter = float(np.std(force[last]))
-    saturated = (volts >= record.hold.controller.voltage_maximum * (1 - 1e-9)) | (volts <= 0)
+    saturated = (volts >= record.hold.controller.level_maximum * (1 - 1e-9)) | (volts <= 0)
     return HoldMetrics(
         start_time=float(time[0]),
         sliding_speed=float(record.sliding_speed[part][0]),

@@ -89,7 +89,7 @@ class FrictionHold:
     @property
     def voltage_maximum(self) -> float:
         """Greatest magnitude of the voltage that the controller may command, its offset included. [V]"""
-        return (abs(self.offset_ratio) + 0.5) * self.controller.voltage_maximum
+        return (abs(self.offset_ratio) + 0.5) * self.controller.level_maximum
 
     def samples_per_interval(self, sample_rate: float) -> int:
         """Number of samples in an interval of the controller.

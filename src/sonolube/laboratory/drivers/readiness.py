@@ -3,13 +3,15 @@
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from math import ceil
+from pathlib import Path
 
+from sonolube.errors import InvalidInput
 from sonolube.extras import EXTRAS
 from sonolube.facts.protocol import Protocol, SetPoint, flattened
 from sonolube.laboratory.block import Block
 from sonolube.laboratory.devices import DeviceError, Devices
 from sonolube.laboratory.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
-from sonolube.laboratory.drivers.device_map import DeviceMap
+from sonolube.laboratory.drivers.device_map import DeviceMap, read_device_map
 from sonolube.laboratory.set_points import impossibilities
 from sonolube.units import format_si
 
@@ -113,3 +115,26 @@ def _has_daqmx_driver() -> bool:
     except (DeviceError, ImportError):
         return False
     return True
+
+
+def ready_devices(device_map: Path) -> Devices:
+    """Devices of a map, whose packages and drivers are installed.
+
+    Parameters
+    ----------
+    device_map : Path
+
+    Returns
+    -------
+    Devices
+
+    Raises
+    ------
+    InvalidInput
+        Naming what is missing.
+    """
+    found = read_device_map(device_map)
+    missing = missing_parts(found)
+    if missing:
+        raise InvalidInput(f"{device_map}: {'; '.join(missing)}")
+    return found.devices()

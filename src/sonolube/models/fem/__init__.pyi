@@ -49,7 +49,13 @@ from .solver.convergence import (
 )
 from .solver.element_order import change_order as change_order, transfer_field as transfer_field
 from .solver.forced_vibration import forced_response as forced_response
-from .solver.geometry import Geometry as Geometry, bond as bond, read_step as read_step, translate as translate
+from .solver.geometry import (
+    Geometry as Geometry,
+    bond as bond,
+    read_step as read_step,
+    step_text as step_text,
+    translate as translate,
+)
 from .solver.grading import grade_reentrant_edges as grade_reentrant_edges
 from .solver.harmonic_analysis import (
     HarmonicResponse as HarmonicResponse,

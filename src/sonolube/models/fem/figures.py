@@ -15,16 +15,21 @@ from sonolube.models.fem.solver.element_order import change_order, transfer_fiel
 from sonolube.models.fem.solver.mesh import HIGHEST_ORDER, Mesh, face_triangulation
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from mpl_toolkits.mplot3d import Axes3D
 
 MODE_COLOURS = "viridis"
 """Colour map of the displacement in pictures of modes."""
 
 _EXAGGERATION = 0.08  # of the part's length, for the largest displacement drawn
-_TICK_DISTANCE, _LABEL_DISTANCE = 15.0, 36.0  # of their text from an axis, in points
-_FEW_TICKS, _ONE_TICK = 0.5, 0.3  # side over the longest, below which there is no room for more
-_OWN_DISTANCES = (8.0, 21.0)  # that matplotlib adds to the pads of ticks and labels
+_WIDTH, _HEIGHTS = 6.85, (2.6, 4.8)  # of a picture, in inches
+_BODY_WIDTH, _TITLE_HEIGHT = 5.8, 0.56  # of it, in inches
+_MARGIN = 0.01  # about the body, of its size
+_VIEW = (32.0, 24.0)  # degrees of turn about the upward axis and of tilt
+_SLENDER = 1.5  # upward over the other sides, above which a body is laid down
+_LIGHT = (-0.3, 0.5, 0.81)  # direction to the light: right, up and to the viewer
+_DARKEST = 0.8
+_DIRECTIONS_AT, _DIRECTION_LENGTH = (0.28, -0.6), 0.26  # inches from the lower left corner of the scale
 _MOST_TRIANGLES = 12_000  # in a picture
 
 
@@ -86,51 +91,96 @@ def mode_figure(surface: ShapedSurface, *, title: str, amplitude: float = 1.0) -
     Returns
     -------
     matplotlib.figure.Figure
+        Seen in parallel projection with the longest side of the body from left to right, which fills the width or the
+        height beside the scale of colours.
     """
     from matplotlib.cm import ScalarMappable
+    from matplotlib.collections import PolyCollection
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     points, patches, shape = surface.points, surface.triangles, surface.displacement
     size = np.linalg.norm(shape, axis=1)
     extent = np.ptp(points, axis=0)
-    millimetres = 1e3 * (points + amplitude * shape * _EXAGGERATION * extent.max() / size.max())
+    drawn = shape * _EXAGGERATION * extent.max() / size.max()
+    view = _view(extent)
+    seen = (points + amplitude * drawn) @ view.T
+    reach = np.concatenate([(points + end * drawn) @ view[:2].T for end in (-1.0, 0.0, 1.0)])
+    low, high = reach.min(axis=0), reach.max(axis=0)
+    sides = ((high - low) * (1 + 2 * _MARGIN)).tolist()
+    height = float(np.clip(_BODY_WIDTH * sides[1] / sides[0] + _TITLE_HEIGHT, *_HEIGHTS))
     colours = ScalarMappable(norm=Normalize(0, 1), cmap=MODE_COLOURS)
     with publication_style():
-        figure = Figure(figsize=(5.2, 4.0))
-        axes = figure.add_subplot(projection="3d", computed_zorder=False)
+        figure = Figure(figsize=(_WIDTH, height))
+        axes = figure.add_subplot()
+        corners = seen[patches]
+        order = np.argsort(corners[:, :, 2].mean(axis=1))
         filled = colours.to_rgba(abs(amplitude) * (size / size.max())[patches].mean(axis=1))
+        filled[:, :3] *= _brightness(corners)[:, np.newaxis]
         # Edges of the colour of their face hide the seams between neighbours.
-        body = Poly3DCollection(millimetres[patches], facecolors=filled, edgecolors=filled, linewidths=0.3)
+        body = PolyCollection(corners[order, :, :2], facecolors=filled[order], edgecolors=filled[order], linewidths=0.3)
         body.set_rasterized(True)
-        axes.add_collection3d(body)
-        middle = 1e3 * (points.max(axis=0) + points.min(axis=0)) / 2
-        half = 1e3 * extent * 0.5 + 90 * extent.max()
-        axes.set(**{f"{k}lim": (middle[i] - half[i], middle[i] + half[i]) for i, k in enumerate("xyz")})
-        axes.set_box_aspect(half, zoom=0.96 - 0.32 * half[2] / np.linalg.norm(half))  # tall ones need room for labels
-        figure.suptitle(f"{title}\nlargest displacement drawn as {_EXAGGERATION:.0%} of the part's length", fontsize=9)
-        _label_axes(axes, half)
-        figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.14, label="displacement over its largest")
+        axes.add_collection(body, autolim=False)
+        middle = (low + high) / 2
+        limits = [(middle[k] - sides[k] / 2, middle[k] + sides[k] / 2) for k in range(2)]
+        axes.set(xlim=limits[0], ylim=limits[1])
+        axes.set_aspect("equal")
+        axes.set_axis_off()
+        lengths = " × ".join(f"{1e3 * side:.3g}" for side in extent)
+        figure.suptitle(
+            f"{title}\n{lengths} mm; largest displacement drawn as {_EXAGGERATION:.0%} of the part's length", fontsize=9
+        )
+        scale = figure.colorbar(
+            colours, ax=axes, shrink=0.6, anchor=(0.0, 1.0), pad=0.01, aspect=14, ticks=(0.0, 0.5, 1.0)
+        )
+        scale.set_label("Displacement\nover its largest [1]", fontsize=8)
+        _draw_directions(scale.ax, view)
     return figure
 
 
-def _label_axes(axes: "Axes3D", half: Floats) -> None:
-    """Label the axes of a box of half sides in mm, text as far from slender boxes as from a cube.
+def _view(extent: Floats) -> Floats:
+    """Rows to the right, upwards and to the viewer, for sides of a body; slender bodies lie, others stand."""
+    order = [0, 1, 2]
+    if extent[2] > _SLENDER * extent[:2].max():
+        order = [2, 0, 1]
+    elif extent[1] > extent[0]:
+        order = [1, 0, 2]
+    turn, tilt = np.radians(_VIEW)
+    rows = np.array(
+        [
+            [np.cos(turn), np.sin(turn), 0.0],
+            [-np.sin(tilt) * np.sin(turn), np.sin(tilt) * np.cos(turn), np.cos(tilt)],
+            [np.cos(tilt) * np.sin(turn), -np.cos(tilt) * np.cos(turn), np.sin(tilt)],
+        ]
+    )
+    axes = np.eye(3)[order]
+    if np.linalg.det(axes) < 0:
+        axes[1] *= -1
+    return np.asarray(rows @ axes)
 
-    matplotlib moves text by a share of the box across the axis, which for the long axis of a slender box is next to
-    nothing.
-    """
-    for place, name in enumerate("xyz"):
-        across = np.delete(half, place)
-        share = np.hypot(*across) / half.max()
-        axis = getattr(axes, f"{name}axis")
-        axis.set_label_text(f"{name} [mm]")
-        axis.labelpad = _LABEL_DISTANCE / share - _OWN_DISTANCES[1]
-        axes.tick_params(axis=name, pad=_TICK_DISTANCE / share - _OWN_DISTANCES[0])
-        side = half[place] / half.max()
-        intervals = 4 if side > _FEW_TICKS else 2 if side > _ONE_TICK else 1
-        axes.locator_params(axis=name, nbins=intervals, min_n_ticks=min(intervals, 2))
+
+def _brightness(corners: Floats) -> Floats:
+    """Brightness of triangles by the angle between their normal and the direction to the viewer."""
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    facing = np.divide(np.abs(normal @ _LIGHT), length, out=np.ones_like(length), where=length > 0)
+    return np.asarray(_DARKEST + (1 - _DARKEST) * facing)
+
+
+def _draw_directions(axes: "Axes", view: Floats) -> None:
+    """Lines along x, y and z below the scale of colours."""
+    from matplotlib.transforms import ScaledTranslation
+
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    inches = figure.dpi_scale_trans + ScaledTranslation(0, 0, axes.transAxes)  # type: ignore[arg-type]
+    foot = np.array(_DIRECTIONS_AT)
+    for name, along in zip("xyz", _DIRECTION_LENGTH * view[:2].T, strict=True):
+        (line,) = axes.plot(*np.transpose([foot, foot + along]), color="black", lw=1, transform=inches, clip_on=False)
+        right, up = (foot + 1.5 * along).tolist()
+        letter = axes.text(right, up, name, transform=inches, fontsize=8, ha="center", va="center")
+        line.set_in_layout(False)
+        letter.set_in_layout(False)
 
 
 def impedance_chart(

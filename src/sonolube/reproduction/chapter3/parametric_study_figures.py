@@ -13,7 +13,7 @@ from sonolube.reproduction.chapter3 import tribometer_response
 from sonolube.reproduction.chapter3.cube_rows import LOST_CONTACT
 from sonolube.reproduction.plots import axes_row, line_style
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, tribometer_rig
-from sonolube.rig.study_figures import frequency_chart, power_chart, speed_chart, voltage_chart, waveform_chart
+from sonolube.rig.study_figures import command_chart, frequency_chart, power_chart, speed_chart, waveform_chart
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,7 +91,7 @@ def _voltage() -> "Figure":
     """Draw the response over voltage with the statements of D 3.3.5."""
     lost = float(decay_length(tribometer_rig().contact)) * np.log(1 / LOST_CONTACT)
     hopping = 1e6 * si_value("3.3.5-hopping-displacement")
-    chart = voltage_chart(tribometer_response.response_over_voltage())
+    chart = command_chart(tribometer_response.response_over_voltage())
     chart = chart.with_parts(
         0,
         Rule(along="y", value=hopping, label="hopping, D 3.3.5", dash=1),

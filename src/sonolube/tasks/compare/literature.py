@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Annotated, Any
 
-from sonolube.errors import InvalidInput
-from sonolube.facts.published import PreviousStudy, Statement, previous_studies
+from sonolube.facts.published import PreviousStudy, previous_studies
 from sonolube.report import Drawing
-from sonolube.rig import Rig, friction_point
+from sonolube.report.results import studies as results
+from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block
 from sonolube.tasks.files import NamedBytes
@@ -17,7 +17,6 @@ from sonolube.tasks.task import task
 from sonolube.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint, study_chart
 from sonolube.validation.study_table import studies_of_runs, study_table
-from sonolube.vocabulary import quantity, unit_of
 
 _TABLE = Parameter(
     help="Further studies to draw on the map, in the columns of studies.csv, which is written; each point with"
@@ -39,29 +38,13 @@ def literature(
     known = optional_rig(rig)
     point = outside = None
     if known is not None:
-        point, outside = _point(known)
+        point, outside = results.point_of_rig(known)
     runs = runs_of(table, mapping)
     title = table.name if isinstance(table, NamedBytes) else str(table)
     others, caveats = ((), ()) if runs is None else studies_of_runs(runs, title=title)
     return LiteratureAnswer(
         studies=previous_studies(), rig=known, point=point, outside=outside, others=others, skipped=caveats
     )
-
-
-def _point(rig: Rig) -> tuple[StudyPoint, str | None]:
-    """Rig as a point of the map, and why its reduction has no number."""
-    speed = rig.sliding_speed
-    if not speed > 0:
-        raise InvalidInput(f"{rig.file or rig.title}: the map needs a sliding.sliding_speed above 0")
-    friction = friction_point(rig)
-    point = StudyPoint(
-        label=rig.name,
-        direction="perpendicular",
-        friction_reduction=friction.friction_reduction,
-        sliding_speed=(speed, speed),
-        nominal_pressure=rig.normal_load / rig.contact.nominal_area,
-    )
-    return point, friction.reason
 
 
 @answer
@@ -77,8 +60,8 @@ class LiteratureAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Studies with their text and numbers, and the rig."""
-        lines: list[Block] = [line for study in self.studies for line in _study_lines(study)]
-        lines += [f"{point.label}, own table: {_other_text(point)}" for point in self.others]
+        lines: list[Block] = [line for study in self.studies for line in results.study_lines(study)]
+        lines += list(map(results.own_point_line, self.others))
         for point in [self.point] if self.point else []:
             place = f"{format_si(_speed(point), 'm/s')}, {format_si(point.nominal_pressure or 0.0, 'Pa')}"
             reduction = self.outside or f"computed friction reduction {100 * point.friction_reduction:.0f} %"
@@ -87,7 +70,7 @@ class LiteratureAnswer(Answer):
 
     def object(self) -> dict[str, Any]:
         """Studies, and speed, pressure and friction reduction of the rig."""
-        content: dict[str, Any] = {"studies": [_study_object(study) for study in self.studies]}
+        content: dict[str, Any] = {"studies": list(map(results.study_object, self.studies))}
         content["table"] = [asdict(point) for point in self.others]
         if self.point is not None:
             content["rig"] = si(
@@ -113,55 +96,7 @@ class LiteratureAnswer(Answer):
         return self.skipped
 
 
-def _other_text(point: StudyPoint) -> str:
-    """Friction reduction of a point of an own table, with direction, speed and pressure as far as known."""
-    parts = [f"friction reduction {100 * point.friction_reduction:.0f} %", point.direction or "direction not stated"]
-    if point.sliding_speed is not None:
-        parts.append(format_si(point.sliding_speed[1], "m/s"))
-    if point.nominal_pressure is not None:
-        parts.append(format_si(point.nominal_pressure, "Pa"))
-    return ", ".join(parts)
-
-
 def _speed(point: StudyPoint) -> float:
     """Sliding speed of a rig on the map."""
     assert point.sliding_speed is not None
     return point.sliding_speed[0]
-
-
-def _study_lines(study: PreviousStudy) -> list[str]:
-    """Author, direction, references, text and numbers of a study."""
-    lines = [
-        f"{study.study}, {study.direction or 'direction not stated'}, D {study.section} {list(study.references)}",
-        f"  {study.summary}",
-    ]
-    numbers = "; ".join(map(_number, study.numbers))
-    return [*lines, f"  {numbers}"] if numbers else lines
-
-
-def _number(entry: Statement) -> str:
-    """Number of a study with its meaning, relation and unit as printed."""
-    meaning = quantity(entry.quantity).meaning if entry.quantity else entry.meaning
-    relation = "" if entry.relation == "=" else f"{entry.relation} "
-    return f"{meaning} {relation}{entry.number.text} {entry.unit}".rstrip()
-
-
-def _study_object(study: PreviousStudy) -> dict[str, Any]:
-    """Study for JSON, its numbers by quantity."""
-    return {
-        "study": study.study,
-        "section": study.section,
-        "references": list(study.references),
-        "direction": study.direction,
-        "summary": study.summary,
-        **{
-            entry.quantity: {
-                "value": entry.number.value,
-                "relation": entry.relation,
-                "printed": f"{entry.number.text} {entry.unit}".strip(),
-                "unit": unit_of(entry.quantity),
-            }
-            for entry in study.numbers
-            if entry.quantity
-        },
-    }

@@ -1,9 +1,9 @@
 """Arguments of the task `optimise` as a design space, horn, bolt and target."""
 
-import re
 from collections.abc import Mapping, Sequence
 
 from sonolube.design.optimisation import OWN_ACTUATOR, DesignSpace, HalfWaveHorn
+from sonolube.design.optimisation.bolt_thread import preload_bolt
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.materials import material
 from sonolube.models.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
@@ -13,12 +13,10 @@ from sonolube.tasks.design.friction_target import friction_force
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.ranges import Values, ends_by_key, values_by_key
 from sonolube.tasks.task import shown
-from sonolube.units import format_si, to_si
+from sonolube.units import format_si
 
 _WAVEFORM = "drive.waveform"
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
-_THREAD = re.compile(r"M(\d+(?:\.\d+)?)x(.+)")
-_STEEL = 205e9  # Pa, Young's modulus of bolts
 
 
 def friction_ratio(rig: Rig, target: str | float) -> float:
@@ -82,16 +80,7 @@ def bolt(thread: str | None, tension: float | None, strength: float) -> PreloadB
             f"{shown('bolt')} and {shown('preload')} belong together, such as {shown('bolt')} M6x40mm"
             f" {shown('preload')} 1kN"
         )
-    found = _THREAD.fullmatch(thread.strip())
-    if not found:
-        raise InvalidInput(f"{shown('bolt')} {thread} must look like M6x40mm: thread and length that stretches")
-    return PreloadBolt(
-        thread_diameter=1e-3 * float(found[1]),
-        length=to_si(found[2], unit="m", name=shown("bolt")),
-        youngs_modulus=_STEEL,
-        yield_strength=strength,
-        preload=tension,
-    )
+    return preload_bolt(thread, preload=tension, yield_strength=strength, name=shown("bolt"))
 
 
 def design_space(

@@ -6,23 +6,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_chart
 from sonolube.report import Drawing, Page
+from sonolube.report.results import efficiency as results
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.design.friction_target import friction_force
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Number, OwnRuns, Parameter, RigParameter, RigSource, file_stem, rig_of
 from sonolube.tasks.results.rig_text import rig_settings
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-_PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
-_FITTED = ("slope_uncertainty", "intercept_uncertainty", "efficiency_deviation", "lowest_speed", "highest_speed")
-_POWERS = ("actuator_power", "lowest_power", "highest_power")
 _CAPTION = (
     "Efficiency coefficient (D 4.1) of {runs} runs over sliding speed, with the line of least squares, the band of the"
     " line and that of one more run."
@@ -72,22 +69,11 @@ class EfficiencyAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Line, scatter and range of the runs, and the power."""
-        return [f"{self.rig.title}, {self.calibration.fit.runs} runs", Rows(self._facts())]
+        return [f"{self.rig.title}, {self.calibration.fit.runs} runs", Rows(results.facts(self.calibration))]
 
     def object(self) -> dict[str, Any]:
         """Slope and intercept with their uncertainties, range of speeds, and the power with its interval."""
-        found = self.calibration
-        values = {
-            "slope": found.fit.line.slope,
-            "intercept": found.fit.line.intercept,
-            **{name: getattr(found.fit, name) for name in _FITTED},
-            "confidence_level": found.confidence_level,
-        }
-        if found.estimate is not None:
-            values |= {"friction_force": found.friction_force, "sliding_speed": found.target_speed}
-            powers = {name: getattr(found.estimate, name) for name in _POWERS}
-            values |= {name: value for name, value in powers.items() if value is not None}
-        return {"rig": self.rig.title, "runs": found.fit.runs, **si(values)}
+        return {"rig": self.rig.title, **results.efficiency_object(self.calibration)}
 
     def caveats(self) -> Sequence[str]:
         """Runs that were left out, and those whose power was more than the friction needed."""
@@ -114,25 +100,5 @@ class EfficiencyAnswer(Answer):
             name="efficiency",
             title=f"Efficiency line: {self.rig.title}",
             settings=rig_settings(self.rig),
-            facts=self._facts(),
+            facts=results.facts(self.calibration),
         )
-
-    def _facts(self) -> list[tuple[str, str]]:
-        """Line, scatter and range of the runs, and the power."""
-        found, fit = self.calibration, self.calibration.fit
-        slope, intercept = _PRINTED_UNIT * fit.line.slope, _PRINTED_UNIT * fit.line.intercept
-        facts = {
-            "line": f"({slope:.3g} +- {_PRINTED_UNIT * fit.slope_uncertainty:.2g}) v + ({intercept:.3g} +-"
-            f" {_PRINTED_UNIT * fit.intercept_uncertainty:.2g}), in mW mm2/(N W) with v in m/s",
-            "scatter of runs": f"{_PRINTED_UNIT * fit.efficiency_deviation:.2g} mW mm2/(N W)",
-            "speeds covered": f"{format_si(fit.lowest_speed, 'm/s')} to {format_si(fit.highest_speed, 'm/s')}",
-        }
-        if found.estimate is not None:
-            power, low, high = (
-                "no bound" if value is None else format_si(value, "W")
-                for value in (getattr(found.estimate, name) for name in _POWERS)
-            )
-            at = format_si(found.target_speed or 0.0, "m/s")
-            text = f"{power} for {format_si(found.friction_force or 0.0, 'N')} at {at}; {low} to {high} with"
-            facts["power"] = f"{text} {100 * found.confidence_level:g} %"
-        return list(facts.items())

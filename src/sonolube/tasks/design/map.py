@@ -7,16 +7,17 @@ import numpy as np
 
 from sonolube import design
 from sonolube.checks import Floats
-from sonolube.design import MAP_LAYOUTS, map_chart, map_page, measured_map_chart
+from sonolube.design import map_chart, map_kinds, map_layout, map_page, measured_map_chart
 from sonolube.design.gaussian_process import FEWEST_RUNS
-from sonolube.design.maps import default_axes, panels_text
+from sonolube.design.map_layouts import panels_text
+from sonolube.design.maps import default_axes
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
 from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.rig import Rig, operating_caveats
+from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.own_tables import MappedRuns, runs_of
@@ -33,14 +34,15 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-_AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", "drive.voltage_peak_to_peak", "drive.frequency")
+_AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
-_COLUMNS = ("friction_reduction", "sliding_speed", "actuator_power")
-_SHOWN = ("friction_reduction", "sliding_speed", "normal_load", "frequency", "voltage_peak_to_peak", "actuator_power")
+_DEFAULTS = {VOLTAGE: "velocity-power", AMPLITUDE: "velocity-amplitude"}  # kind of map by commanded quantity
+_SETTINGS = ("sliding_speed", "normal_load", "frequency", VOLTAGE.name, AMPLITUDE.name, "actuator_power")
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
 _OVER = Parameter(
     help="Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
-    " drive.voltage_peak_to_peak or drive.frequency. May come again.",
+    " drive.frequency, drive.voltage_peak_to_peak or, without a voltage, vibration.vibration_amplitude. May come"
+    " again.",
     kind="KEY=VALUES",
     is_mapping=True,
 )
@@ -60,9 +62,12 @@ def map(  # noqa: A001 - the command's name
     rig: RigFile,
     *,
     kind: Annotated[
-        Literal["velocity-stress", "velocity-power", "frequency-voltage"],
-        Parameter(help="Quantities that the map runs over."),
-    ] = "velocity-power",
+        Literal["velocity-stress", "velocity-power", "velocity-amplitude", "frequency-voltage", "frequency-amplitude"]
+        | None,
+        Parameter(
+            help="Quantities that the map runs over; velocity-power by default, velocity-amplitude without a voltage."
+        ),
+    ] = None,
     over: Annotated[Values | None, _OVER] = None,
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
@@ -74,18 +79,19 @@ def map(  # noqa: A001 - the command's name
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "MapAnswer":
-    """Map of friction reduction: over sliding speed and stress, speed and power, or drive frequency and voltage.
+    """Map of friction reduction: over sliding speed or frequency, and stress, power, voltage or vibration amplitude.
 
     Example: sonolube map examples/rigs/power_map.toml --kind velocity-power
     """
     known = rig_of(rig)
     refuse_replaced(known, over or {})
-    axes = _axes(known, kind, over or {})
+    chosen = _kind(known, kind)
+    axes = _axes(known, chosen, over or {})
     measured = runs_of(runs, mapping)
     if measured is not None:
-        require_mappable(measured, kind=kind)
+        require_mappable(measured, kind=chosen, commanded=commanded_quantity(known))
     with stage("mapping"):
-        mapped = design.MAPS[kind](known, **axes, backend=backend)
+        mapped = design.MAPS[chosen](known, **axes, backend=backend)
     left_out: tuple[str, ...] = ()
     if measured is not None:
         measured, left_out = runs_on_map(measured, known, mapped)
@@ -93,7 +99,7 @@ def map(  # noqa: A001 - the command's name
         rig=known,
         mapped=mapped,
         runs=measured,
-        interpolated=None if measured is None else runs_map(measured, kind=kind),
+        interpolated=None if measured is None else runs_map(measured, kind=chosen),
         forms=tuple(form) or _FORMS,
         left_out=left_out,
     )
@@ -163,7 +169,7 @@ class MapAnswer(Answer):
 
     def page(self) -> Page:
         """Page `map.html`."""
-        across, up, panel = MAP_LAYOUTS[self._kind]
+        across, up, panel = map_layout(self.mapped)
         return Page(
             name="map",
             title=f"Friction reduction over {_lower(across)} and {_lower(up)}: {self.rig.title}",
@@ -216,6 +222,28 @@ class MapAnswer(Answer):
         return caption if self.runs is None else f"{caption} Circles: measured runs, with their reductions in percent."
 
 
+def _kind(rig: Rig, kind: str | None) -> str:
+    """Kind of map that was chosen, which the rig must have, or its default one."""
+    quantity = commanded_quantity(rig)
+    known = map_kinds(quantity)
+    if kind is None or kind in known:
+        return kind or _DEFAULTS[quantity]
+    if quantity is AMPLITUDE:
+        raise InvalidInput(
+            f"{shown('kind')} {kind} needs a drive voltage, and {rig.title} has an amplitude alone: take"
+            f" {shown('kind')} {_listed(known)}, or give {VOLTAGE.key}"
+        )
+    raise InvalidInput(
+        f"{shown('kind')} {kind} is for a rig without a drive voltage, and that of {rig.title} sets its amplitude:"
+        f" take {shown('kind')} {_listed(known)}"
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names in a sentence, the last after "or"."""
+    return f"{', '.join(names[:-1])} or {names[-1]}"
+
+
 def _axes(rig: Rig, kind: str, over: Values) -> dict[str, Floats]:
     """Values of each axis of a kind of map: those given, and the default ones of the others."""
     axes = default_axes(rig, kind=kind)
@@ -236,7 +264,13 @@ def _greatest(mapped: "xr.Dataset") -> dict[str, float]:
     point = extreme_point(mapped, outcome="friction_reduction", highest=True)
     if point is None:
         return {}
-    return {name: float(point[name]) for name in _SHOWN if name in point and point[name].ndim == 0}
+    names = ("friction_reduction", *_settings(mapped))
+    return {name: float(point[name]) for name in names if point[name].ndim == 0}
+
+
+def _settings(mapped: "xr.Dataset") -> tuple[str, ...]:
+    """Quantities that a map runs over, and the power that goes with them."""
+    return tuple(name for name in _SETTINGS if name in mapped.coords)
 
 
 def _ridge(mapped: "xr.Dataset") -> str:
@@ -248,16 +282,18 @@ def _ridge(mapped: "xr.Dataset") -> str:
 
 
 def _panel_tables(mapped: "xr.Dataset", panel: str | None) -> list[PageTable]:
-    """Greatest reduction at each load or voltage, and the ridge where the map has one; none where all are the same."""
+    """Greatest reduction in each panel, and the ridge where the map has one; none where all panels are the same."""
     if panel is None or panels_text(mapped):
         return []
+    level = "actuator_power" if "actuator_power" in mapped.coords else AMPLITUDE.name
+    names = [name for name in ("friction_reduction", "sliding_speed", level) if name != panel]
     rows = []
     for index in range(mapped.sizes[panel]):
         part = mapped.isel({panel: index})
         texts = {name: format_si(value, quantity(name).unit) for name, value in _greatest(part).items()}
         value = format_si(float(part[panel]), quantity(panel).unit)
-        rows.append((value, *(texts.get(name, "") for name in _COLUMNS), _ridge(part)))
-    heads = (quantity(panel).meaning, *(quantity(name).meaning for name in _COLUMNS), "Ridge")
+        rows.append((value, *(texts.get(name, "") for name in names), _ridge(part)))
+    heads = (quantity(panel).meaning, *(quantity(name).meaning for name in names), "Ridge")
     columns = slice(None) if any(row[-1] for row in rows) else slice(-1)
     return [PageTable(title="Most reduction", heads=heads[columns], rows=tuple(row[columns] for row in rows))]
 

@@ -1,4 +1,4 @@
-"""Parametric study of `sweep --of`: friction over voltage, speed, frequency, waveform or load, or its power."""
+"""Parametric study of `sweep --of`: friction over voltage, amplitude, speed, frequency, waveform or load, and power."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,19 @@ from sonolube.design.point_statistics import extreme_place, extreme_point, failu
 from sonolube.errors import InvalidInput
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing
-from sonolube.rig import STUDY_CHARTS, Rig, energy_balance, frequency_grid, operating_caveats, operating_points
+from sonolube.rig import (
+    AMPLITUDE,
+    STUDY_CHARTS,
+    VOLTAGE,
+    Rig,
+    commanded_quantity,
+    energy_balance,
+    frequency_grid,
+    operating_caveats,
+    operating_points,
+    quantity_of_axis,
+    resolved_vibration,
+)
 from sonolube.rig.amplitude_source import moved_rig
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.tasks.answer import Answer, answer, si
@@ -36,6 +48,7 @@ OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipat
 
 _POINTS_AT_RESONANCE = 41  # frequencies about each resonance
 _MOST_POINTS = 10_000
+_OF_STRUCTURE = ("frequency", "power", "waveform")  # studies of a computed motion
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,6 +65,7 @@ class _Range:
 
 _RANGES = {
     "voltage": _Range(unit="V", lowest="0V", highest="200V", points=101, from_zero=True),
+    "amplitude": _Range(unit="m", lowest="0um", highest="10um", points=101, from_zero=True),
     "speed": _Range(unit="m/s", lowest="1mm/s", highest="1m/s", points=61, even_ratios=True),
     "frequency": _Range(unit="Hz", lowest="1kHz", highest="100kHz", points=120),
     "power": _Range(unit="Hz", lowest="1kHz", highest="100kHz", points=60),
@@ -60,7 +74,14 @@ _RANGES = {
 
 
 def parametric_study(
-    rig: Rig, *, of: str, lowest: str | None, highest: str | None, points: int | None, voltages: Sequence[str]
+    rig: Rig,
+    *,
+    of: str,
+    lowest: str | None,
+    highest: str | None,
+    points: int | None,
+    voltages: Sequence[str],
+    amplitudes: Sequence[str],
 ) -> "ParametricStudyAnswer":
     """Study of a rig over one quantity.
 
@@ -68,13 +89,15 @@ def parametric_study(
     ----------
     rig : Rig
     of : str
-        "voltage", "speed", "frequency", "power", "waveform" or "load".
+        "voltage", "amplitude", "speed", "frequency", "power", "waveform" or "load".
     lowest, highest : str or None
         Ends of the range with their units; the default ones where None.
     points : int or None
         Number of values.
     voltages : sequence of str
         Drive voltage of each curve over speed or frequency, with its unit.
+    amplitudes : sequence of str
+        Vibration amplitude of each curve over speed, with its unit, of a rig without a voltage.
 
     Returns
     -------
@@ -83,10 +106,10 @@ def parametric_study(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, the range is empty, an option has no meaning for the study, or no point has a
-        result.
+        If the rig lacks the structure or voltage of the study, the range is empty, an option has no meaning for the
+        study, or no point has a result.
     """
-    run = _study(rig, of, lowest, highest, points, voltages)
+    run = _study(rig, of, lowest, highest, points, voltages, amplitudes)
     with stage("sweeping") as advance:
         result = run(advance=lambda done, total: advance(of, done, total))
     answer = ParametricStudyAnswer(rig=rig, of=of, study=result)
@@ -150,13 +173,17 @@ class ParametricStudyAnswer(Answer):
 
 
 def _study(
-    rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None, voltages: Sequence[str]
+    rig: Rig,
+    of: str,
+    lowest: str | None,
+    highest: str | None,
+    points: int | None,
+    voltages: Sequence[str],
+    amplitudes: Sequence[str],
 ) -> "Callable[..., xr.Dataset]":
     """Function that runs the study, all options read and checked; it takes `advance`."""
-    if of not in ("speed",):
-        gap_law_of(moved_rig(rig))
-    if of not in ("speed", "frequency") and voltages:
-        raise InvalidInput(f"{shown('voltage')} has no meaning for {shown('of')} {of}; it is for speed and frequency")
+    _require_studied(rig, of)
+    curves = _curves(rig, of, voltages, amplitudes)
     if of == "waveform":
         if lowest or highest or points:
             raise InvalidInput(
@@ -165,20 +192,45 @@ def _study(
             )
         return partial(rigs.waveform_study, rig)
     values = _values(rig, of, lowest, highest, points)
-    curves = None
-    if voltages:
-        curves = require_positive(
-            voltage_peak_to_peak=[to_si(text, unit="V", name=shown("voltage")) for text in voltages]
-        )
     if of == "voltage":
         return partial(rigs.voltage_study, rig, voltage_peak_to_peak=values)
+    if of == "amplitude":
+        return partial(rigs.amplitude_study, rig, vibration_amplitude=values)
     if of == "speed":
-        return partial(rigs.speed_study, rig, sliding_speed=values, voltage_peak_to_peak=curves)
+        return partial(rigs.speed_study, rig, sliding_speed=values, **curves)
     if of == "frequency":
-        return partial(rigs.frequency_study, rig, frequency=values, voltage_peak_to_peak=curves)
+        return partial(rigs.frequency_study, rig, frequency=values, **curves)
     if of == "power":
         return partial(rigs.least_power_study, rig, frequency=values, friction_ratio=_present_ratio(rig))
     return partial(rigs.load_study, rig, normal_load=values)
+
+
+def _curves(rig: Rig, of: str, voltages: Sequence[str], amplitudes: Sequence[str]) -> dict[str, Floats]:
+    """Voltages or amplitudes of the curves of a study by name; empty where none are given."""
+    if voltages and of not in ("speed", "frequency"):
+        raise InvalidInput(f"{shown('voltage')} has no meaning for {shown('of')} {of}; it is for speed and frequency")
+    if amplitudes and of != "speed":
+        raise InvalidInput(f"{shown('vibration')} has no meaning for {shown('of')} {of}; it is for speed")
+    own = commanded_quantity(rig)
+    name, texts, others = ("voltage", voltages, amplitudes) if own is VOLTAGE else ("vibration", amplitudes, voltages)
+    if others:
+        raise InvalidInput(f"{rig.title}: its {own.word} sets its vibration; give {shown(name)} of each curve")
+    if not texts:
+        return {}
+    read = [to_si(text, unit=own.unit, name=shown(name)) for text in texts]
+    return {own.name: require_positive(**{own.name: read})}
+
+
+def _require_studied(rig: Rig, of: str) -> None:
+    """Raise if a rig lacks the structure that a study computes, or another quantity sets its vibration."""
+    own = commanded_quantity(rig)
+    if of in (VOLTAGE.word, AMPLITUDE.word) and of != own.word:
+        why = "has no drive voltage" if own is AMPLITUDE else "has a drive voltage, which sets its amplitude"
+        raise InvalidInput(f"{rig.title} {why}: take {shown('of')} {own.word}")
+    if of in _OF_STRUCTURE:
+        gap_law_of(moved_rig(rig))
+    elif of != "speed" and (driven := resolved_vibration(rig).driven) is not None:
+        gap_law_of(driven)
 
 
 def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None) -> Floats:
@@ -208,21 +260,24 @@ def _present_ratio(rig: Rig) -> float:
     return float(own.friction_ratio)
 
 
-def _voltage_rows(study: "xr.Dataset") -> Named:
-    """Least friction, voltage at which contact is lost, and power of the amplifier."""
+def _level_rows(study: "xr.Dataset") -> Named:
+    """Least friction, voltage or amplitude at which contact is lost, and power of the amplifier where it is known."""
+    quantity = quantity_of_axis(study.dims)
     for best in _best_points(study):
-        yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, 'voltage_peak_to_peak')}"
-    lost = study["voltage_peak_to_peak"].values[study["contact_loss_fraction"].values > 0]
-    yield "contact is lost", f"from {format_si(float(lost.min()), 'V')}" if lost.size else "nowhere"
-    yield "amplifier", f"up to {format_si(float(study['actuator_power'].max()), 'W')}, D 1.9"
+        yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, quantity.name)}"
+    lost = study[quantity.name].values[study["contact_loss_fraction"].values > 0]
+    yield "contact is lost", f"from {format_si(float(lost.min()), quantity.unit)}" if lost.size else "nowhere"
+    if "actuator_power" in study and not study["actuator_power"].isnull().all():
+        yield "amplifier", f"up to {format_si(float(study['actuator_power'].max()), 'W')}, D 1.9"
 
 
 def _speed_rows(study: "xr.Dataset") -> Named:
-    """Range of the friction ratio at each voltage."""
-    for index in range(study.sizes["voltage_peak_to_peak"]):
-        curve = study.isel(voltage_peak_to_peak=index)
+    """Range of the friction ratio at each voltage or amplitude."""
+    quantity = quantity_of_axis(study.dims)
+    for index in range(study.sizes[quantity.name]):
+        curve = study.isel({quantity.name: index})
         low, high = float(curve["friction_ratio"].min()), float(curve["friction_ratio"].max())
-        yield f"at {_text(curve, 'voltage_peak_to_peak')}", f"ratio {low:.3g} to {high:.3g}, slow to fast"
+        yield f"at {_text(curve, quantity.name)}", f"ratio {low:.3g} to {high:.3g}, slow to fast"
 
 
 def _frequency_rows(study: "xr.Dataset") -> Named:
@@ -251,10 +306,12 @@ def _waveform_rows(study: "xr.Dataset") -> Named:
 
 
 def _load_rows(study: "xr.Dataset") -> Named:
-    """Range of the friction ratio and of the natural frequency of the loading arm."""
-    ratios, arm = study["friction_ratio"], study["natural_frequency"]
+    """Range of the friction ratio and, of a structure, of the natural frequency of the loading arm."""
+    ratios = study["friction_ratio"]
     yield "friction ratio", f"{float(ratios.min()):.4g} to {float(ratios.max()):.4g}"
-    yield "arm's frequency", f"{format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
+    if "natural_frequency" in study:
+        arm = study["natural_frequency"]
+        yield "arm's frequency", f"{format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
 
 
 def _energy_rows(study: "xr.Dataset") -> Named:
@@ -266,14 +323,17 @@ def _energy_rows(study: "xr.Dataset") -> Named:
 
 
 def _balance(point: "xr.Dataset") -> str | None:
-    """How the power of the amplifier and the dissipated power of a point compare."""
+    """How the power of the amplifier and the dissipated power of a point compare; None where it has no power."""
+    if "actuator_power" not in point:
+        return None
     return energy_balance(
         actuator_power=float(point["actuator_power"]), dissipated_power=float(point["dissipated_power"])
     )
 
 
 _ROWS: "dict[str, Callable[[xr.Dataset], Named]]" = {
-    "voltage": _voltage_rows,
+    "voltage": _level_rows,
+    "amplitude": _level_rows,
     "speed": _speed_rows,
     "frequency": _frequency_rows,
     "power": _power_rows,
@@ -294,7 +354,8 @@ def _best_points(study: "xr.Dataset") -> "Iterator[xr.Dataset]":
 
 def _point_object(point: "xr.Dataset") -> dict[str, Any]:
     """Coordinates and outcomes of a point, for JSON."""
-    names = [str(name) for name in (*point.coords, *OUTCOMES) if point[name].ndim == 0 and not _missing(point, name)]
+    known = dict.fromkeys([*point.coords, *(name for name in OUTCOMES if name in point)])
+    names = [str(name) for name in known if point[name].ndim == 0 and not _missing(point, name)]
     waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
     balance = _balance(point)
     return (

@@ -7,12 +7,12 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.design.test_plan.candidates import Factors, RigLimits
 from sonolube.design.test_plan.comparison import COMPARISONS
+from sonolube.design.test_plan.factor_values import factor_values
 from sonolube.design.test_plan.plan import Procedure, Question, plan_tests, published_distances
 from sonolube.design.test_plan.run_order import BLOCKINGS
 from sonolube.errors import InvalidInput
 from sonolube.prediction.inputs import RigInputs, rig_inputs
 from sonolube.rig import Rig
-from sonolube.tasks.design.factor_values import factor_values
 from sonolube.tasks.design.plan_answer import PlanAnswer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, Number, Parameter, Pin, RigFile, RunsSource, rig_of

@@ -46,7 +46,7 @@ _LABELS = {"energy_balance": "energy"}
 # arguments without meaning for one quantity
 _OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk", "backend")
 _FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg", "sweep.pdf")
-_OF_ONLY = ("lowest", "highest", "voltage")  # arguments without meaning for keys
+_OF_ONLY = ("lowest", "highest", "voltage", "vibration")  # arguments without meaning for keys
 
 
 @task
@@ -55,7 +55,7 @@ def sweep(
     *,
     over: Annotated[Values | None, _OVER] = None,
     of: Annotated[
-        Literal["voltage", "speed", "frequency", "power", "waveform", "load"] | None,
+        Literal["voltage", "amplitude", "speed", "frequency", "power", "waveform", "load"] | None,
         Parameter(help="One quantity over its usual range, with a figure of its own."),
     ] = None,
     lowest: Annotated[str | None, Parameter(help="With of: lowest value.", kind="QUANTITY", option="--from")] = None,
@@ -66,6 +66,12 @@ def sweep(
     ] = None,
     voltage: Annotated[
         Sequence[str], Parameter(help="With of speed or frequency: drive, peak to peak, of a curve. May come again.")
+    ] = (),
+    vibration: Annotated[
+        Sequence[str],
+        Parameter(
+            help="With of speed: amplitude of a curve, of a rig without a voltage. May come again.", kind="LENGTH"
+        ),
     ] = (),
     sample: Annotated[
         Literal["grid", "lhs", "list"],
@@ -95,7 +101,9 @@ def sweep(
         refuse_unused(*_OVER_ONLY, because=f"for {shown('of')}")
         if (place := kept(keep, "")) is not None:
             expect_files(place, (f"{escape(known.name)}-{of}.*",))
-        return parametric_study(known, of=of, lowest=lowest, highest=highest, points=points, voltages=voltage)
+        return parametric_study(
+            known, of=of, lowest=lowest, highest=highest, points=points, voltages=voltage, amplitudes=vibration
+        )
     refuse_unused(*_OF_ONLY, because=f"for {shown('over')}")
     refuse_replaced(known, over or {})
     if sample != "lhs":

@@ -8,20 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design import (
-    IntervalEstimate,
-    SampleStatistics,
-    band_chart,
-    histogram_chart,
-    outcome_statistics,
-    propagate,
-    sobol_chart,
-)
+from sonolube.design import SampleStatistics, band_chart, histogram_chart, outcome_statistics, propagate, sobol_chart
 from sonolube.design.identified_structure import IdentifiedStructure, identified_structure
 from sonolube.design.point_statistics import failure_counts, status_counts
 from sonolube.design.uncertainty_summary import (
     Band,
-    BandPlace,
     RankedEntry,
     contact_loss_probability,
     outcome_band,
@@ -32,18 +23,18 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report import Drawing, Page, PageTable
+from sonolube.report.results import uncertainty as results
+from sonolube.report.results.beyond_the_model import BeyondTheModel, beyond_the_model
+from sonolube.report.results.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
 from sonolube.rig import Rig, operating_caveats, steady_vibration
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows, Table
-from sonolube.tasks.design.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
-from sonolube.tasks.parameters import DoorParameter, Kept, Parameter, RigFile, Stop, Watch, kept, rig_of
+from sonolube.tasks.parameters import DoorParameter, Interval, Kept, Parameter, RigFile, Stop, Watch, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
-from sonolube.tasks.results.beyond_the_model import BeyondTheModel, Interval, beyond_the_model
 from sonolube.tasks.results.rig_text import amplitude_object, amplitude_rows, rig_settings
 from sonolube.tasks.results.status_tables import status_tables
 from sonolube.tasks.task import shown, task
-from sonolube.units import format_quantity
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -136,12 +127,12 @@ class UncertaintyAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
-        rows, idle = self._ranking_rows(), self._without_effect()
+        rows, idle = results.ranking_rows(self._ranking, self._of), self._without_effect()
         return [
-            f"{self.rig.title}, {self.result[self._of].size} points: {_lower(self._of)}",
-            Rows([*amplitude_rows(self.rig), *self._statistics_rows(), *self._error_rows()]),
+            f"{self.rig.title}, {self.result[self._of].size} points: {results.in_sentence(self._of)}",
+            Rows([*amplitude_rows(self.rig), *self._outcome_rows(), *self._error_rows()]),
             *(f"  without result: {count}: {reason}" for reason, count in self.failures().items()),
-            *self._status_lines(),
+            *results.status_lines(self.result, self._of),
             "uncertain entries",
             Rows(entry_rows(self.rig, self.result, self.structure)),
             *free_lines(self.structure),
@@ -168,19 +159,9 @@ class UncertaintyAnswer(Answer):
         if self.structure is not None:
             content["identified"] = posterior_object(self.structure)
         if self._swept:
-            band = self._band
-            content["band"] = {"mean_width": band.mean_width} | {
-                name: asdict(place) for name, place in _places(band).items()
-            }
+            content["band"] = results.band_object(self._band)
         else:
-            found = self._statistics
-            content |= {
-                "mean": asdict(found.mean),
-                "standard_deviation": asdict(found.standard_deviation),
-                "quantiles": {str(share): asdict(each) for share, each in found.quantiles.items()},
-                "relative_error": found.relative_error,
-                "converged": found.has_converged,
-            }
+            content |= results.statistics_object(self._statistics)
         if self._of in _OF_THE_MODEL:
             content |= self._beyond.object()
         if self._ranked:
@@ -191,7 +172,7 @@ class UncertaintyAnswer(Answer):
         """Too few samples, draws that have not converged, and those of the rig at its own operating point."""
         caveats: list[str] = []
         if not self._swept and not self._statistics.has_converged:
-            caveats.append(self._convergence())
+            caveats.append(results.convergence(self._statistics))
         if self.structure is not None and not self.structure.posterior.has_converged:
             caveats.append(agreement(self.structure))
         meaning = ratio_caveats(friction_ratio=self.result[self._of].values) if self._of == "friction_ratio" else ()
@@ -231,11 +212,11 @@ class UncertaintyAnswer(Answer):
         )
         return Page(
             name="uncertainty",
-            title=f"Uncertainty of the {_lower(self._of)}: {self.rig.title}",
+            title=f"Uncertainty of the {results.in_sentence(self._of)}: {self.rig.title}",
             settings=rig_settings(self.rig),
             facts=[
                 ("points", f"{self.result[self._of].size}"),
-                *self._statistics_rows(),
+                *self._outcome_rows(),
                 *self._error_rows(),
                 *([("contact lost", f"for part of the time in {lost:.1%} of the points")] if lost else []),
                 *([("without effect", ", ".join(idle))] if (idle := self._without_effect()) else []),
@@ -271,6 +252,12 @@ class UncertaintyAnswer(Answer):
         """Name of the files, without ending."""
         return f"{self.rig.name}-uncertainty-{self._of}"
 
+    def _outcome_rows(self) -> list[tuple[str, str]]:
+        """Statistics of the outcome, or its band."""
+        if self._swept:
+            return results.band_rows(self._band, self._of)
+        return results.statistics_rows(self._statistics, self._of)
+
     @cached_property
     def _statistics(self) -> SampleStatistics:
         """Mean, deviation and quantiles of the outcome."""
@@ -281,17 +268,6 @@ class UncertaintyAnswer(Answer):
         """Interval of the outcome over the swept keys."""
         return outcome_band(self.result)
 
-    def _statistics_rows(self) -> list[tuple[str, str]]:
-        """Statistics with their intervals, or the band where it is narrowest and widest."""
-        if self._swept:
-            return [(name, _place_text(place, self._of)) for name, place in _places(self._band).items()]
-        found = self._statistics
-        rows = {"mean": found.mean, "standard deviation": found.standard_deviation}
-        for share, each in found.quantiles.items():
-            rows["median" if share == 0.5 else f"{100 * share:.0f} % lie below"] = each
-        texts = [(name, _with_interval(each, self._of)) for name, each in rows.items()]
-        return [*texts, ("convergence", self._convergence())] if found.has_converged else texts
-
     @cached_property
     def _beyond(self) -> BeyondTheModel:
         """What the samples leave out of the friction ratio."""
@@ -301,32 +277,10 @@ class UncertaintyAnswer(Answer):
         """The same as names and texts."""
         return self._beyond.rows() if self._of in _OF_THE_MODEL else []
 
-    def _convergence(self) -> str:
-        """Width of the intervals of the statistics over the deviation of the samples."""
-        found = self._statistics
-        if found.has_converged:
-            return f"intervals of 95 % within {found.relative_error:.1%} of the spread"
-        return f"not converged: an interval takes {found.relative_error:.1%} of the spread; take more samples"
-
-    def _status_lines(self) -> list[str]:
-        """Fractions of the points by status, and of those that lose contact."""
-        points, lost = self.result[self._of].size, contact_loss_probability(self.result)
-        shares = ", ".join(f"{name} {count / points:.1%}" for name, count in status_counts(self.result).items())
-        more = [f"  contact lost for part of the time in {lost:.1%} of them"] if lost else []
-        return [f"  {shares} of the points", *more]
-
     @cached_property
     def _ranking(self) -> list[RankedEntry]:
         """Entries by their contribution to the variance; empty without Sobol indices."""
         return ranked_entries(self.result) if self._ranked else []
-
-    def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
-        """Entries that matter with their contributions, alone and with others, and the deviation that would remain."""
-        return [
-            (row.key, _percent(row.first), _percent(row.total), format_quantity(row.deviation_if_known, self._of))
-            for row in self._ranking
-            if row.matters
-        ]
 
     def _without_effect(self) -> list[str]:
         """Entries that the outcome was not seen to depend on: to know them better changes nothing."""
@@ -334,7 +288,10 @@ class UncertaintyAnswer(Answer):
 
     def _ranking_tables(self) -> list[PageTable]:
         """Ranking as a table of the page."""
-        rows, title = tuple(self._ranking_rows()), "Which to measure better, by shares of the variance"
+        rows, title = (
+            tuple(results.ranking_rows(self._ranking, self._of)),
+            "Which to measure better, by shares of the variance",
+        )
         return [PageTable(title=title, heads=_RANKING_HEADS, rows=rows)] if rows else []
 
 
@@ -351,38 +308,3 @@ def _axes(over: Values) -> dict[str, Floats]:
         if values.size < 2 or np.any(np.diff(axes[key]) <= 0):
             raise InvalidInput(f"{shown('over')} {key}: a band needs at least 2 values that rise")
     return axes
-
-
-def _places(band: Band) -> dict[str, BandPlace]:
-    """Where a band is narrowest and widest."""
-    return {
-        name: place for name, place in (("narrowest", band.narrowest), ("widest", band.widest)) if place is not None
-    }
-
-
-def _place_text(place: BandPlace, name: str) -> str:
-    """Median and interval of a band at a place, with the swept values there."""
-    low, median, high = (format_quantity(value, name) for value in (place.lower, place.median, place.upper))
-    at = [
-        value if isinstance(value, str) else format_quantity(value, key.rpartition(".")[2])
-        for key, value in place.at.items()
-    ]
-    return f"{median}, 90 % within {low} to {high}, at {', '.join(at)}"
-
-
-def _with_interval(each: IntervalEstimate, name: str) -> str:
-    """Estimate with its 95 % interval."""
-    value, low, high = (format_quantity(end, name) for end in (each.value, each.lower, each.upper))
-    return f"{value} ({low} to {high})"
-
-
-def _percent(share: IntervalEstimate) -> str:
-    """Fraction in percent with its interval."""
-    value, low, high = (100 * end for end in (share.value, share.lower, share.upper))
-    return f"{value:.1f} % ({low:.0f} to {high:.0f})"
-
-
-def _lower(name: str) -> str:
-    """Meaning of a quantity within a sentence."""
-    meaning = quantity(name).meaning
-    return meaning[:1].lower() + meaning[1:]

@@ -7,18 +7,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from sonolube.design.horn import HornDesign, amplitude_limits, face_motion, loaded_frequency, section_motion, tuned_horn
+from sonolube.design.horn_drawing import horn_drawing, horn_notes
 from sonolube.design.horn_figures import horn_axis_figure
+from sonolube.design.horn_profile import HornProfile, horn_profile, profile_dxf
 from sonolube.design.horn_shapes import TunableBody, body_from_geometry, horn_body
 from sonolube.facts import materials
 from sonolube.facts.materials import Material
-from sonolube.models.fem import generate_mesh, medium_from_material
+from sonolube.models.fem import generate_mesh, medium_from_material, step_text
 from sonolube.models.fem.figures import mode_figure, shaped_surface
+from sonolube.models.fem.part_modes import longest_axis
 from sonolube.report import Drawing
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
-from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, longest_axis, part_name, step_part
+from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.units import format_si, to_si
@@ -151,6 +154,7 @@ class HornAnswer(Answer):
         error = mode.frequency * mode.frequency_error
         rows = [
             (design.body.tuned_size, length),
+            ("total length", f"{1e3 * design.total_length:.2f} mm"),
             ("frequency", f"{mode.frequency:.0f} Hz +-{error:.0f}  {mode.names[mode.row]}"),
             ("trim", f"{1e-3 * design.tuned.frequency_per_length:+.1f} Hz/mm"),
             ("neighbours", ", ".join(near) or "none below"),
@@ -176,6 +180,7 @@ class HornAnswer(Answer):
             "thin_bar_length": None if thin is None else {"value": thin.length, "unit": "m"},
             "sizes": si(design.body.sizes, unit="m"),
             **si({name: getattr(tuned, name) for name in ("length", "frequency_per_length")}),
+            **si({"total_length": design.total_length}, unit="m"),
             **si({name: getattr(tuned.mode, name) for name in ("frequency", "frequency_error")}),
             **si({name: getattr(design, name) for name in _QUANTITIES}),
             **si({"tool_mass": self.tool_mass, "loaded_frequency": self._loaded()}),
@@ -203,17 +208,30 @@ class HornAnswer(Answer):
         )
 
     def figures(self) -> Mapping[str, Drawing]:
-        """Profile, motion and stress along the axis, and a picture of the mode."""
-        mode = self.design.tuned.mode
+        """Profile, motion and stress along the axis, a picture of the mode, and a drawing of a named shape."""
+        mode, profile = self.design.tuned.mode, self._profile()
         title = f"{mode.names[mode.row]}, {mode.frequency:.0f} Hz"
 
         def picture() -> "Figure":
             return mode_figure(shaped_surface(mode.model.mesh, mode.displacement), title=title)
 
+        def drawing() -> "Figure":
+            assert profile is not None
+            return horn_drawing(profile, notes=horn_notes(self.design, self.material, profile))
+
         return {
             f"{self.name}-axis": Drawing(draw=lambda: horn_axis_figure(self.design)),
             f"{self.name}-mode": Drawing(draw=picture, forms=("png",)),
+            **({} if profile is None else {f"{self.name}-drawing": Drawing(draw=drawing)}),
         }
+
+    def files(self) -> Mapping[str, str]:
+        """Tuned solid as STEP, and the half profile of a named shape as DXF."""
+        profile = self._profile()
+        files = {f"{self.name}-tuned.step": step_text(self.design.geometry)}
+        if profile is not None:
+            files[f"{self.name}-drawing.dxf"] = profile_dxf(profile, horn_notes(self.design, self.material, profile))
+        return files
 
     def dataset(self) -> "xr.Dataset":
         """Return the quantities of the mode, and its axial displacement over the distance from the driven face."""
@@ -229,6 +247,10 @@ class HornAnswer(Answer):
             .assign(displacement_ratio=("position", displacement / tip, about))
             .assign_coords(position=("position", place - start, along))
         )
+
+    def _profile(self) -> HornProfile | None:
+        """Half profile of a named shape."""
+        return horn_profile(self.design.body, length=self.design.tuned.length)
 
     def _stress_rows(self) -> list[tuple[str, str]]:
         """Peak stress at the amplitude that was asked for, beside each strength."""

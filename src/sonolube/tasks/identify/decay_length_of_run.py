@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.errors import InvalidInput
 from sonolube.identification import (
     DecayLengthDecision,
-    Interval,
     SwitchConditions,
     SwitchTable,
     decide_decay_length,
@@ -16,13 +15,13 @@ from sonolube.identification import (
     recorded_switches,
     switch_table,
 )
-from sonolube.identification.decay_length.verdict import HYPOTHESES
 from sonolube.input_files import open_input
 from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
+from sonolube.report.results import decay_length as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, file_path
@@ -30,7 +29,6 @@ from sonolube.tasks.own_tables import Mapped, mapping_of
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch, file_stem
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,7 +37,6 @@ _HEAD = 4096  # bytes of a file in which a table names its columns
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _DISTANCES = ("sliding_distance", "sliding distance", "gleitweg")
 _TIMES = ("time", "zeit")
-_FEW_DRAWS = 30.0  # effective, below which probabilities are coarse
 _CAPTION = (
     "Readings at the switches of the vibration over the sliding distance, with the most probable course of each"
     " hypothesis; the zero with its smoothed course."
@@ -125,72 +122,20 @@ class DecayLengthAnswer(Answer):
     def blocks(self) -> Sequence[Block]:
         """Verdict, advice, probabilities and changes."""
         found = self.decision
-        known = self.conditions
-        settings = ", ".join(
-            format_si(value, unit)
-            for value, unit in (
-                (known.normal_load, "N"),
-                (known.vibration_amplitude, "m"),
-                (known.frequency, "Hz"),
-                (known.sliding_speed, "m/s"),
-            )
-        )
-        switches = self.table.sliding_distance.size
-        distance = format_si(float(self.table.sliding_distance[-1]), "m")
-        probabilities = [
-            (HYPOTHESES[name].partition(":")[0], f"{100 * value:.1f} %")
-            for name, value in sorted(found.probabilities.items(), key=lambda item: -item[1])
-        ]
-        changes = [
-            ("decay length grows", f"by a factor of {_factor(found.growth)}"),
-            ("amplitude falls", f"by a factor of {_factor(found.fall)}"),
-            ("zero, if not subtracted", f"makes the decay length wrong by a factor of {_factor(found.zero_factor)}"),
-            ("decay length", f"{_length(found.length_at_start)} at first, {_length(found.length_at_end)} at last"),
-        ]
         return [
             found.verdict,
             *([f"repeat: {found.advice}"] if found.advice else []),
-            f"{self.table.title}: {switches} switches over {distance}; {settings}",
-            Rows([*probabilities, *changes]),
+            results.run_line(self.table, self.conditions),
+            Rows(results.rows(found)),
         ]
 
     def object(self) -> dict[str, Any]:
         """Verdict, advice, probabilities, changes with their 80 % intervals, and misfits."""
-        found = self.decision
-        return {
-            "verdict": found.verdict,
-            "decided": found.decided,
-            "leading": found.leading,
-            "advice": found.advice,
-            "probabilities": dict(found.probabilities),
-            "growth": _interval(found.growth, ""),
-            "fall": _interval(found.fall, ""),
-            "zero_factor": _interval(found.zero_factor, ""),
-            "decay_length_at_start": _interval(found.length_at_start, "m"),
-            "decay_length_at_end": _interval(found.length_at_end, "m"),
-            "misfits": dict(found.misfits),
-            "effective_draws": found.effective_draws,
-            "switches": int(self.table.sliding_distance.size),
-        }
+        return results.decision_object(self.decision, self.table)
 
     def caveats(self) -> Sequence[str]:
         """What the run lacks, and what the analysis takes for granted."""
-        lacking = [f"{name} is read at fewer than eight switches and does not enter" for name in self.table.missing]
-        shifts = {"small_drive_shift", "large_drive_shift"} - set(self.table.missing)
-        small = (
-            ["the free frequency is not stated: shifts count as small against the frequency of the mode"]
-            if shifts and self.conditions.natural_frequency is None
-            else []
-        )
-        coarse = self.decision.effective_draws < _FEW_DRAWS
-        return (
-            *self.table.caveats,
-            *lacking,
-            *small,
-            *(["few effective draws: probabilities are coarse; try another seed"] if coarse else []),
-            "a zero that is off only under load is not seen with the pin lifted",
-            "decay lengths rest on asperity stick-slip",
-        )
+        return results.decision_caveats(self.table, self.conditions, self.decision)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Readings over the distance with the courses of the hypotheses."""
@@ -210,18 +155,3 @@ def _is_table(file: Path, mapping: RecordingMapping | None) -> bool:
     lines = head.decode("utf-16" if head[:2] in _UTF_16 else "latin-1", errors="ignore").splitlines()
     labels = next((line.lower() for line in lines if line.strip() and not line.startswith("#")), "")
     return any(name in labels for name in _DISTANCES) and not any(name in labels for name in _TIMES)
-
-
-def _interval(found: Interval, unit: str) -> dict[str, Any]:
-    """Interval for JSON."""
-    return {"value": found.median, "lower": found.lower, "upper": found.upper, "unit": unit}
-
-
-def _factor(found: Interval) -> str:
-    """Factor with its 80 % interval."""
-    return f"{found.median:.2f} (80 %: {found.lower:.2f} to {found.upper:.2f})"
-
-
-def _length(found: Interval) -> str:
-    """Length with its 80 % interval."""
-    return f"{1e6 * found.median:.2f} um (80 %: {1e6 * found.lower:.2f} to {1e6 * found.upper:.2f})"

@@ -1,7 +1,7 @@
 """Task `identify rig`: entries of a rig's stack and structure from ranked facts, as tables of a rig file."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,17 +9,16 @@ from sonolube.errors import InvalidInput
 from sonolube.identification import Identification, rig_tables
 from sonolube.input_files import input_text
 from sonolube.models.actuator import PiezoStack
+from sonolube.report.results import identification as results
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identify_from_facts
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Table, text_lines
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Parameter, Stop, Watch
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown, task
-from sonolube.units import format_si
 from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
-from sonolube.vocabulary import quantities
 
 _FACTS = Parameter(
     help="Facts about the rig; those of the dissertation's tribometer by default.", kind="FACTS.toml", is_file=True
@@ -70,28 +69,9 @@ class IdentificationAnswer(Answer):
     def blocks(self) -> Sequence[Block]:
         """Parameters with their ranges, facts that hold and that do not, conflicts and what the facts leave open."""
         found = self.identification
-        known = quantities()
-        parameters = [
-            [
-                name,
-                *(
-                    format_si(value, known[name].unit if name in known else "")
-                    for value in (estimate.value, estimate.lower, estimate.upper)
-                ),
-            ]
-            for name, estimate in found.estimates.items()
-        ]
-        satisfied = [fact.name for fact in found.facts if fact.name in found.satisfied]
-        missed = [fact.name for fact in found.facts if fact.name not in found.satisfied]
         return [
-            Table(("parameter", "estimate", "lowest", "highest"), parameters),
-            f"  facts that hold: {', '.join(satisfied) or 'none'}",
-            *([f"  facts that do not hold: {', '.join(missed)}"] if missed else []),
-            *(f"  contradict each other: {', '.join(sorted(conflict))}" for conflict in found.conflicts),
-            *(
-                "  not determined: " + " ".join(f"{name}^{power:.2g}" for name, power in direction.exponents.items())
-                for direction in found.unidentifiable_directions
-            ),
+            Table(("parameter", "estimate", "lowest", "highest"), results.parameter_rows(found)),
+            *results.fact_lines(found),
         ]
 
     def file_text(self) -> str:
@@ -105,19 +85,7 @@ class IdentificationAnswer(Answer):
 
     def object(self) -> dict[str, Any]:
         """Stack, parameters with their ranges, facts with their misses, conflicts and free directions."""
-        found = self.identification
-        return {
-            "stack": si({name: value for name, value in asdict(self.stack).items() if value and name in quantities()}),
-            "parameters": {
-                name: si({name: known.value})[name] | asdict(known) for name, known in found.estimates.items()
-            },
-            "facts": [
-                asdict(fact) | {"observed": found.observed[fact.name], "satisfied": fact.name in found.satisfied}
-                for fact in found.facts
-            ],
-            "conflicts": [sorted(conflict) for conflict in found.conflicts],
-            "unidentifiable_directions": [dict(direction.exponents) for direction in found.unidentifiable_directions],
-        }
+        return results.identification_object(self.identification, self.stack)
 
     def files(self) -> Mapping[str, str]:
         """Rig file with the identified tables."""

@@ -19,22 +19,16 @@ from sonolube.models.fem.impedance_spectra import (
     spectrum_table,
     supported_spectra,
 )
+from sonolube.models.fem.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
+from sonolube.report.results import impedance_spectra as results
 from sonolube.rig.datasets import labelled
 from sonolube.rig.labelled_arrays import LabelledArrays
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
-from sonolube.tasks.parts.named_parts import (
-    ALL_TRANSDUCERS,
-    PART_WIRING,
-    Axis,
-    longest_axis,
-    named_transducer,
-    part_name,
-    starting_size,
-)
+from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
 from sonolube.units import format_si
@@ -133,7 +127,7 @@ class ImpedanceAnswer(Answer):
                 f"  {name}: {format_si(spectrum.low_frequency_capacitance, 'F')} at {format_si(lowest, 'Hz')}, "
                 f"{port.model.mesh.node_count} nodes, resonances +-{port.frequency_error:.1g}"
             )
-            blocks.append(Table(_HEADS, _mode_rows(spectrum)))
+            blocks.append(Table(_HEADS, results.mode_rows(spectrum)))
         if self.measured is not None:
             row = int(abs(self.measured.impedance).argmin())
             least, at = float(abs(self.measured.impedance[row])), float(self.measured.frequency[row])
@@ -150,7 +144,7 @@ class ImpedanceAnswer(Answer):
             "part": self.part,
             "ceramic": self.ceramic,
             "electrodes": {"driven": list(electrodes.driven), "grounded": list(electrodes.grounded)},
-            "spectra": {name: _spectrum_object(spectrum) for name, spectrum in self.spectra.items()},
+            "spectra": {name: results.spectrum_object(spectrum) for name, spectrum in self.spectra.items()},
             "dimensions": [
                 {
                     "name": size.name,
@@ -208,39 +202,3 @@ class ImpedanceAnswer(Answer):
     def _stem(self) -> str:
         """Name of the part without folder and ending."""
         return Path(self.part).stem
-
-
-def _mode_rows(spectrum: SupportedSpectrum) -> list[tuple[str, ...]]:
-    """Resonances, coupling and motion of the coupled modes of a spectrum."""
-    return [
-        (
-            mode.name,
-            f"{mode.series_frequency:.0f} Hz",
-            f"{mode.parallel_frequency:.0f} Hz",
-            f"{mode.coupling_factor:.3f}",
-            format_si(spectrum.tip_displacement_at(mode.series_frequency), "m"),
-        )
-        for mode in spectrum.coupled_modes
-    ]
-
-
-def _spectrum_object(spectrum: SupportedSpectrum) -> dict[str, Any]:
-    """Nodes, error, capacitance and coupled modes of a spectrum, for JSON."""
-    names = ("series_frequency", "parallel_frequency", "coupling_factor")
-    return {
-        "nodes": spectrum.port.model.mesh.node_count,
-        **si(
-            {
-                "frequency_error": spectrum.port.frequency_error,
-                "clamped_capacitance": spectrum.port.reduction.clamped_capacitance.real,
-            }
-        ),
-        "modes": [
-            {
-                "name": mode.name,
-                **si({name: getattr(mode, name) for name in names}),
-                **si({"displacement_per_volt": spectrum.tip_displacement_at(mode.series_frequency)}),
-            }
-            for mode in spectrum.coupled_modes
-        ],
-    }

@@ -1,30 +1,27 @@
 """Task `lab hold`: friction held at a reference on devices or a virtual tribometer, the speed changing meanwhile."""
 
 from collections.abc import Mapping
-from math import ceil
 from pathlib import Path
 from typing import Annotated
 
 from sonolube.design.control import Amplifier, ControlDesign, ControlSettings, assumed_mode, design_control
 from sonolube.errors import InvalidInput
-from sonolube.facts.protocol import Limits, exact_text
 from sonolube.laboratory import RunControl
-from sonolube.laboratory.closed_loop import FrictionHold, SpeedStep, hold_friction, hold_protocol, require_holdable
+from sonolube.laboratory.closed_loop import SpeedStep, hold_friction, hold_protocol, planned_hold, require_holdable
+from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import read_run
+from sonolube.laboratory.run_plan import RunPlan, begin_record
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.models.actuator.drive import Drive
 from sonolube.rig import Rig
 from sonolube.tasks.design.friction_target import friction_force
 from sonolube.tasks.lab.hold_answer import HoldAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
-from sonolube.tasks.lab.run_record import ControlDoor, RunPlan, begin_record, device_file, instruments, run_stage
+from sonolube.tasks.lab.run_record import ControlDoor, device_file, run_stage
 from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.units import to_si
-
-_SAMPLE_RATE = 2000.0  # Hz, at least
-_HEADROOM = 1.1  # of the limit of the measured voltage, for noise, over the voltage that may be commanded
 
 
 @task
@@ -97,17 +94,17 @@ def hold(
         duration=run_time,
     )
     design = _designed(known, settings, quality=quality, coupling=coupling)
-    wanted = _wanted(
+    wanted = planned_hold(
         drive,
         design,
         speeds=_speeds(known, step_to=in_si("step_to", step_to), step_at=step_at, run_time=run_time),
         settings=settings,
         run_in=in_si("run_in", run_in),
-        temperature=temperature_limit,
+        temperature=None if temperature_limit is None else _temperature(temperature_limit),
         force=in_si("friction_limit", friction_limit),
     )
     virtual = virtual_tribometer(known, seed=seed, real_time=real_time) if file is None else None
-    devices = instruments(device_map) if virtual is None else virtual.devices
+    devices = ready_devices(Path(device_map)) if virtual is None else virtual.devices
     require_holdable(wanted, devices)
     plan = RunPlan(
         protocol=hold_protocol(wanted, devices.acquisition.channels),
@@ -149,34 +146,6 @@ def _designed(rig: Rig, settings: ControlSettings, *, quality: float, coupling: 
         return design_control(rig, settings, mode=mode)
 
 
-def _wanted(
-    drive: Drive,
-    design: ControlDesign,
-    *,
-    speeds: tuple[SpeedStep, ...],
-    settings: ControlSettings,
-    run_in: float,
-    temperature: str | None,
-    force: float | None,
-) -> FrictionHold:
-    """Friction to be held, with the limits that end the test."""
-    swing = drive.voltage_peak_to_peak or 0.0
-    ratio = drive.voltage_offset / swing if swing else 0.0
-    highest = _HEADROOM * (abs(ratio) + 0.5) * design.controller.voltage_maximum
-    rate = 1 / settings.sample_interval
-    return FrictionHold(
-        controller=design.controller,
-        friction_force=design.friction_force,
-        frequency=drive.frequency,
-        speeds=speeds,
-        duration=settings.duration,
-        limits=_limits(highest, lasts=run_in + settings.duration, temperature=temperature, force=force),
-        run_in=run_in,
-        offset_ratio=ratio,
-        sample_rate=rate * ceil(_SAMPLE_RATE / rate),
-    )
-
-
 def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time: float) -> tuple[SpeedStep, ...]:
     """Sliding speed of the rig, then that after the step."""
     after = 2 * rig.sliding_speed if step_to is None else step_to
@@ -186,15 +155,9 @@ def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time
     return SpeedStep(time=0.0, sliding_speed=rig.sliding_speed), SpeedStep(time=time, sliding_speed=after)
 
 
-def _limits(voltage: float, *, lasts: float, temperature: str | None, force: float | None) -> Limits:
-    """Limits that end the test."""
-    content = {"voltage_maximum": exact_text(voltage, unit="V"), "duration_maximum": exact_text(lasts, unit="s")}
-    if temperature is not None:
-        limit = to_si(temperature, unit="K", name=shown("temperature_limit"))
-        content["temperature_maximum"] = exact_text(limit, unit="K")
-    if force is not None:
-        content["friction_force_maximum"] = exact_text(force, unit="N")
-    return Limits.model_validate(content)
+def _temperature(text: str) -> float:
+    """Temperature of a limit. [K]"""
+    return to_si(text, unit="K", name=shown("temperature_limit"))
 
 
 def _assumed(quality: float, coupling: float) -> Mapping[str, str]:

@@ -6,12 +6,14 @@ from typing import Annotated, Literal
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.protocol import protocol_by_name_or_file
+from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import EXPORT_FORMATS, export_run
+from sonolube.laboratory.run_plan import RunPlan
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.lab.run_answer import DryRunAnswer, RunAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
-from sonolube.tasks.lab.run_record import ControlDoor, OperatorDoor, RunPlan, device_file, instruments, run_and_record
+from sonolube.tasks.lab.run_record import ControlDoor, OperatorDoor, device_file, run_and_record
 from sonolube.tasks.parameters import OptionalRigSource, Parameter, RigFile, Stop, Watch, optional_rig, rig_of
 from sonolube.tasks.task import refuse_unused, shown, task
 
@@ -51,7 +53,7 @@ def run(
     simulated = _virtual_rig(plan, real_time=real_time) if file is None else None
     return run_and_record(
         plan,
-        instruments(device_map) if simulated is None else simulated.devices,
+        ready_devices(Path(device_map)) if simulated is None else simulated.devices,
         out=Path(out),
         virtual=simulated,
         operator=(lambda prompt: True) if yes else operator,

@@ -1,23 +1,20 @@
 """Task `lab runs`: recorded runs by material, load, speed, date, tag and text."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.errors import InvalidInput
-from sonolube.laboratory.catalogue import CatalogueEntry, FoundRuns, query_from, query_runs, take_in
+from sonolube.laboratory.catalogue import FoundRuns, query_from, query_runs, take_in
+from sonolube.report.results import recorded_runs as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.lab.run_folders import RUNS
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import refuse_unused, shown, task
-from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_HEADS = ("run", "outcome", "recorded", "pin", "disc", "load", "speed", "tags")
 
 
 @answer
@@ -38,11 +35,11 @@ class FoundRunsAnswer(Answer):
         """Table of the runs."""
         entries = self.found.entries
         head = f"{len(entries)} of {self.found.of} runs in {self.place}"
-        return [head, Table(_HEADS, list(map(_row, entries)))] if entries else [head]
+        return [head, Table(results.FOUND_HEADS, list(map(results.found_row, entries)))] if entries else [head]
 
     def object(self) -> dict[str, Any]:
         """Runs with all that is known of them, in SI."""
-        return {"runs": [_object(entry) for entry in self.found.entries], "of": self.found.of}
+        return {"runs": list(map(results.found_object, self.found.entries)), "of": self.found.of}
 
     def caveats(self) -> Sequence[str]:
         """Runs that cannot be read, and what was done to the index."""
@@ -50,29 +47,7 @@ class FoundRunsAnswer(Answer):
 
     def dataset(self) -> "xr.Dataset":
         """Return the runs, over `run` by the names of their folders."""
-        import numpy as np
-        import xarray as xr
-
-        entries = self.found.entries
-        numbers = {
-            "duration": ("s", [entry.summary.duration for entry in entries]),
-            "normal_load": ("N", [entry.normal_load for entry in entries]),
-            "sliding_speed": ("m/s", [entry.sliding_speed for entry in entries]),
-        }
-        texts = {
-            "folder": [str(entry.summary.folder) for entry in entries],
-            "outcome": [entry.summary.outcome for entry in entries],
-            "pin_material": [entry.pin_material for entry in entries],
-            "disc_material": [entry.disc_material for entry in entries],
-            "tags": [", ".join(entry.tags) for entry in entries],
-        }
-        variables: dict[str, Any] = {
-            name: ("run", np.array(values, float), {"units": unit, "long_name": name.replace("_", " ")})
-            for name, (unit, values) in numbers.items()
-        }
-        variables |= {name: ("run", np.array(values, str)) for name, values in texts.items()}
-        names = np.array([entry.summary.folder.name for entry in entries], str)
-        return xr.Dataset(variables, coords={"run": names}, attrs=self.notes())
+        return results.found_runs_dataset(self.found.entries).assign_attrs(self.notes())
 
 
 @task
@@ -112,30 +87,6 @@ def runs(
     given: dict[str, Sequence[str]] = {key: [value] for key, value in one.items() if value is not None}
     given |= {key: list(values) for key, values in several.items() if values}
     return FoundRunsAnswer(place=place, found=query_runs(place, query_from(given)))
-
-
-def _row(entry: CatalogueEntry) -> list[str]:
-    """Row of a run."""
-    summary = entry.summary
-    load, speed = entry.normal_load, entry.sliding_speed
-    return [
-        summary.folder.name,
-        summary.outcome,
-        format_si(summary.duration, "s") if summary.samples else "-",
-        entry.pin_material or "-",
-        entry.disc_material or "-",
-        "-" if load is None else format_si(load, "N"),
-        "-" if speed is None else format_si(speed, "m/s"),
-        ", ".join(entry.tags) or "-",
-    ]
-
-
-def _object(entry: CatalogueEntry) -> dict[str, Any]:
-    """Run for JSON."""
-    content = asdict(entry)
-    summary: dict[str, Any] = content.pop("summary")
-    content.pop("text")
-    return summary | {"folder": str(entry.summary.folder), "begun": entry.summary.begun_text} | content
 
 
 def _facts(given: Mapping[str, str | float]) -> dict[str, str | float]:

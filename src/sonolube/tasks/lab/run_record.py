@@ -1,21 +1,18 @@
 """Runs on the devices of a rig or a virtual one: the devices, who answers the prompts, and the record."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 from sonolube.errors import InvalidInput
-from sonolube.facts.protocol import Protocol, flattened, protocol_text
-from sonolube.input_files import input_text
+from sonolube.facts.protocol import Protocol, flattened
 from sonolube.laboratory import RunControl, require_possible, run_protocol
 from sonolube.laboratory.devices import Devices
-from sonolube.laboratory.drivers import missing_parts, read_device_map
-from sonolube.laboratory.records import RunRecorder, new_run, read_run
+from sonolube.laboratory.records import read_run
+from sonolube.laboratory.run_plan import RunPlan, begin_record
 from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.virtual_tribometer import VirtualTribometer
-from sonolube.rig import Rig
 from sonolube.tasks.lab.run_answer import RunAnswer
 from sonolube.tasks.parameters import DoorParameter
 from sonolube.tasks.progress import Advance, TaskCancelled, stage
@@ -25,30 +22,6 @@ OperatorDoor = Annotated[Operator | None, DoorParameter()]
 ControlDoor = Annotated[RunControl | None, DoorParameter()]
 
 _VIRTUAL = "virtual"
-
-
-@dataclass(frozen=True, kw_only=True)
-class RunPlan:
-    """A run to be made, and what its record says of it.
-
-    Parameters
-    ----------
-    protocol : Protocol
-    name : str
-        Of the protocol.
-    rig : Rig or None
-    device_file : Path or None
-        None for the virtual tribometer.
-    seed : int
-    tags : sequence of str
-    """
-
-    protocol: Protocol
-    name: str
-    rig: Rig | None
-    device_file: Path | None = None
-    seed: int = 0
-    tags: Sequence[str] = ()
 
 
 def device_file(device_map: str | Path) -> Path | None:
@@ -64,21 +37,6 @@ def device_file(device_map: str | Path) -> Path | None:
     because = f"with {shown('device_map')} MAP.toml, whose tests take their time"
     refuse_unused("seed", "real_time", because=because)
     return Path(device_map)
-
-
-def instruments(device_map: str | Path) -> Devices:
-    """Devices of a map, whose packages and drivers are installed.
-
-    Raises
-    ------
-    InvalidInput
-        Naming what is missing.
-    """
-    found = read_device_map(Path(device_map))
-    missing = missing_parts(found)
-    if missing:
-        raise InvalidInput(f"{device_map}: {'; '.join(missing)}")
-    return found.devices()
 
 
 def run_and_record(
@@ -139,38 +97,6 @@ def run_stage(title: str, control: RunControl) -> Iterator[Advance]:
         yield report
 
 
-def begin_record(
-    plan: RunPlan, devices: Devices, *, out: Path, facts: Mapping[str, str | float] | None = None
-) -> RunRecorder:
-    """Begin the record of a plan below a folder, with its files and what is known of it.
-
-    Parameters
-    ----------
-    plan : RunPlan
-    devices : Devices
-    out : Path
-        Folder of all runs.
-    facts : mapping of str to str or float, optional
-        What is known besides.
-
-    Returns
-    -------
-    RunRecorder
-
-    Raises
-    ------
-    InvalidInput
-        If another run is at work at the rig.
-    """
-    return new_run(
-        out,
-        title=plan.protocol.title,
-        protocol=protocol_text(plan.protocol),
-        files=_files(plan),
-        facts=_facts(plan, devices) | dict(facts or {}),
-    )
-
-
 def _answering(protocol: Protocol, devices: Devices, operator: Operator | None) -> Operator:
     """Operator of a run, who is not needed where nothing is asked or nothing is real."""
     if devices.simulated:
@@ -183,31 +109,3 @@ def _answering(protocol: Protocol, devices: Devices, operator: Operator | None) 
             f" prompts as done by {shown('yes')}"
         )
     return lambda prompt: False
-
-
-def _files(plan: RunPlan) -> dict[str, str]:
-    """Texts of the files that the run was given, by the name under which they are kept."""
-    given = {"rig.toml": None if plan.rig is None else plan.rig.file, "devices.toml": plan.device_file}
-    return {name: input_text(path) for name, path in given.items() if path is not None}
-
-
-def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | bool]:
-    """What is known of the run, for its record and the catalogue."""
-    rig = plan.rig
-    facts: dict[str, str | float | int | bool] = {
-        "protocol": plan.name,
-        "simulated": devices.simulated,
-        **{f"device_{name.replace(' ', '_')}": text for name, text in devices.description.items()},
-    }
-    if plan.tags:
-        facts["tags"] = ", ".join(plan.tags)
-    if devices.simulated:
-        facts["seed"] = plan.seed
-    if rig is not None:
-        facts |= {"normal_load": rig.normal_load, "rig_title": rig.title, "nominal_area": rig.contact.nominal_area}
-        facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
-        if rig.changes:
-            facts["changed_entries"] = "; ".join(rig.changes)
-    if plan.device_file is not None:
-        facts["rig"] = plan.device_file.stem  # one run at a time on the devices of a map, whatever rig file is given
-    return facts

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
+from sonolube.example_files import ExampleFile, example_file, example_files
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows, Verbatim
-from sonolube.tasks.lookup.example_files import ExampleFile, example_file, example_files
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.table import TASKS
 from sonolube.tasks.task import task

@@ -4,7 +4,7 @@ from functools import partial
 from typing import Annotated
 
 from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
-from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, conditions, each_file
+from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, measured
 from sonolube.tasks.own_tables import Mapped
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.task import in_si, task
@@ -36,5 +36,4 @@ def rotation(
         prominence=prominence,
         mapping=column_mapping(mapping),
     )
-    sheets, refused = each_file(files, partial(rotation_sheet, settings=settings), title="measuring")
-    return MeasuredFiles(title="rotation", sheets=sheets, refused=refused, test=conditions(test_sheet))
+    return measured("rotation", files, partial(rotation_sheet, settings=settings), test_sheet)

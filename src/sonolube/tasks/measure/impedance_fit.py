@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from sonolube.report.measured.impedance import ImpedanceSettings, StackInStructure, impedance_sheet
 from sonolube.rig import structure_by_stack
-from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, conditions, each_file
+from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, measured
 from sonolube.tasks.parameters import Number, OptionalRigSource, Parameter, Stop, Watch, rig_of
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
@@ -46,5 +46,4 @@ def impedance(
         sweep=sweep,
         stack=None if stack_of is None else StackInStructure(*structure_by_stack(rig_of(stack_of))),
     )
-    sheets, refused = each_file(files, partial(impedance_sheet, settings=settings), title="fitting")
-    return MeasuredFiles(title="impedance", sheets=sheets, refused=refused, test=conditions(test_sheet))
+    return measured("impedance", files, partial(impedance_sheet, settings=settings), test_sheet, doing="fitting")

@@ -1,13 +1,12 @@
 """Measurement of many files by one function, arguments that its tasks share, and their answer."""
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from fnmatch import fnmatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.errors import SonolubeError
+from sonolube.measurement.file_selection import selected_files
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.report import (
     Drawing,
@@ -20,11 +19,12 @@ from sonolube.report import (
     read_pin_on_disc_sheet,
 )
 from sonolube.report.measured.sheet import Sheet
+from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
-from sonolube.tasks.measure.sheets import sheet_blocks, sheets_dataset
+from sonolube.tasks.measure.sheets import sheet_blocks
 from sonolube.tasks.own_tables import mapping_of
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.progress import stage
@@ -47,7 +47,6 @@ TestSheet = Annotated[
 ]
 Measure = Callable[[Path], Sheet]
 
-_PATTERN = re.compile(r"[*?[]")  # of a shell, where it did not replace the pattern itself
 _UNLISTED = ("files", "test_sheet", "progress", "cancelled")  # listed otherwise, or changing no number
 _SETTINGS = {"apply": "applied to"}  # names of settings that are not those of their arguments
 
@@ -92,6 +91,19 @@ def each_file(
                     raise
                 refused[with_names_only(str(path))] = reason_of(failure)
     return sheets, refused
+
+
+def measured(
+    title: str,
+    files: Sequence[InputFile] | InputFile,
+    measure: Measure,
+    test_sheet: InputFile | None,
+    *,
+    doing: str = "measuring",
+) -> "MeasuredFiles":
+    """Answer on files that are measured one by one."""
+    sheets, refused = each_file(files, measure, title=doing)
+    return MeasuredFiles(title=title, sheets=sheets, refused=refused, test=conditions(test_sheet))
 
 
 def reason_of(failure: SonolubeError) -> str:
@@ -208,33 +220,5 @@ def _setting(value: object, mark: "Mark") -> str:
 
 
 def files_of(given: Sequence[InputFile] | InputFile) -> list[Path]:
-    """Files, folders and patterns replaced by their files in the order of their names, numbers by their size.
-
-    Raises
-    ------
-    InvalidInput
-        If a folder is empty.
-    """
-    files: list[Path] = []
-    for path in map(file_path, [given] if isinstance(given, InputFile) else given):
-        is_pattern = _PATTERN.search(path.name) and path.parent.is_dir() and not path.exists()
-        matches = [each for each in path.parent.iterdir() if fnmatch(each.name, path.name)] if is_pattern else []
-        if matches:
-            files += sorted(matches, key=_by_numbers)
-            continue
-        if not path.is_dir():
-            files.append(path)
-            continue
-        inside = [each for each in path.iterdir() if each.is_file() and not each.name.startswith(".")]
-        if path / "documents.jsonl" in inside:  # the folder of a run of the laboratory
-            inside = [each for each in inside if each.suffix == ".nc"]
-        inside.sort(key=_by_numbers)
-        if not inside:
-            raise InvalidInput(f"{path}: holds no file")
-        files += inside
-    return files
-
-
-def _by_numbers(path: Path) -> list[tuple[int, str]]:
-    """Sort key of a name by which part-2 comes before part-10."""
-    return [(int(piece), "") if piece.isdecimal() else (-1, piece) for piece in re.split(r"(\d{1,18})", path.name)]
+    """Files, folders and patterns replaced by their files."""
+    return selected_files(map(file_path, [given] if isinstance(given, InputFile) else given))

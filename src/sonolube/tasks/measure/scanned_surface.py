@@ -4,7 +4,7 @@ from functools import partial
 from typing import Annotated
 
 from sonolube.report.measured.surface import SurfaceSettings, spacings, surface_sheet
-from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, conditions, each_file
+from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, measured
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.task import in_si, shown, task
 
@@ -48,5 +48,4 @@ def surface(
         short_cutoff_length=in_si("short_cutoff", short_cutoff),
         long_cutoff_length=in_si("long_cutoff", long_cutoff),
     )
-    sheets, refused = each_file(files, partial(surface_sheet, settings=settings), title="measuring")
-    return MeasuredFiles(title="surfaces", sheets=sheets, refused=refused, test=conditions(test_sheet))
+    return measured("surfaces", files, partial(surface_sheet, settings=settings), test_sheet)

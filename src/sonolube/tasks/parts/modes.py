@@ -23,6 +23,7 @@ from sonolube.models.fem.mode_files import (
     shapes_table,
     structure_modes,
 )
+from sonolube.models.fem.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
 from sonolube.report import Drawing
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows
@@ -30,14 +31,7 @@ from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.number_table import number_table
 from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
 from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, Axis, Part, PartSizes, named_transducer, part_name
-from sonolube.tasks.parts.part_modes import (
-    DEFAULT_MATERIAL,
-    PartModes,
-    SupportedPart,
-    modes_dataset,
-    part_modes,
-    supported_part,
-)
+from sonolube.tasks.parts.supported_part import DEFAULT_MATERIAL, supported_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, is_given, refuse_unused, shown, task
 from sonolube.vocabulary import quantity

@@ -6,8 +6,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
-import numpy as np
-
 from sonolube.dong2015.transducers import DONG_2015_TRANSDUCERS
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.materials import material, piezo_ceramic_names
@@ -16,7 +14,6 @@ from sonolube.models.fem import (
     TRANSDUCERS,
     Geometry,
     Medium,
-    Mesh,
     Transducer,
     isotropic_medium,
     medium_from_material,
@@ -44,7 +41,6 @@ PART_WIRING: Mapping[str, str] = MappingProxyType({"ceramic": "pic255", "poled":
 """Ceramic, poling and electrodes of a part that is no transducer, where the options are absent."""
 
 _LARGEST = 1e6  # m; the CAD kernel fails on larger parts with messages of its own
-_ELEMENTS_ACROSS = 1.6  # of a part as thick as a cube of its volume would be
 
 
 def named_part(part: InputFile, sizes: PartSizes) -> Geometry:
@@ -198,16 +194,6 @@ def sizes_in_si(part: str, function: Callable[..., Any], sizes: PartSizes) -> di
             f"a {part} needs {', '.join(missing)}; give each by {shown('sizes')}, such as {missing[0]}=20mm"
         )
     return values
-
-
-def starting_size(geometry: Geometry) -> float:
-    """Largest edge in m of an element in the first mesh of a part."""
-    return float(geometry.volume ** (1 / 3) / _ELEMENTS_ACROSS)
-
-
-def longest_axis(mesh: Mesh) -> str:
-    """Axis along which a mesh is longest: "x", "y" or "z"."""
-    return "xyz"[int(np.argmax(np.ptp(mesh.nodes, axis=0)))]
 
 
 def part_name(part: InputFile) -> str:

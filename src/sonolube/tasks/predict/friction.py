@@ -4,11 +4,11 @@ from typing import Annotated
 
 from sonolube.models.friction import FRICTION_MODELS, FrictionModel
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
+from sonolube.report.results.beyond_the_model import beyond_the_model
+from sonolube.report.results.measured_on_rig import measured_on
 from sonolube.rig import friction_point
 from sonolube.rig.simulation import friction_model_named
-from sonolube.tasks.parameters import Parameter, RigFile, rig_of
-from sonolube.tasks.results.beyond_the_model import Interval, beyond_the_model
-from sonolube.tasks.results.measured import measured_on
+from sonolube.tasks.parameters import Interval, Parameter, RigFile, rig_of
 from sonolube.tasks.results.rig_record import RigRecord
 from sonolube.tasks.task import task
 

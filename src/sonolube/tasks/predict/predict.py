@@ -3,24 +3,20 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
-import numpy as np
-
 from sonolube.measurement.run_columns import runs_help
 from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
-from sonolube.prediction.rig_statement import interval
-from sonolube.prediction.scores import PROBABILITIES
 from sonolube.report import Drawing
+from sonolube.report.results import prediction as results
+from sonolube.report.results.measured_on_rig import Measurement, measured_on
 from sonolube.rig import Rig
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
-from sonolube.tasks.results.measured import Measurement, measured_on
 from sonolube.tasks.task import task
 from sonolube.units import format_si
-from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,13 +28,7 @@ _LABORATORY = Parameter(
     kind="RIG.toml=RUNS.csv",
     is_mapping=True,
 )
-_INPUT_HEADS = ["least known inputs", "value", "known well, it leaves of ratio and force", "known from"]
 _MEASURE_HEADS = ["what would narrow it", "leaves of the interval"]
-_INPUT_COLUMNS = (
-    *("input", "input_label", "input_value", "input_spread", "reason"),
-    *("interval_share_left", "force_interval_share_left"),
-)
-_PERCENT = ("friction_reduction", "wear_reduction")
 
 
 @task
@@ -87,37 +77,36 @@ class PredictionAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Statement in words, a table of quantities with their intervals, and the inputs."""
-        heads = ["", "median", *(f"{100 * probability:.0f} %" for probability in PROBABILITIES)]
         attributes = self.prediction.attrs
-        about = []
+        about, measured = [], results.measurement_shares(self.prediction)
         if "friction_ratio_by_the_rigs_model" in attributes:
             ratio = attributes["friction_ratio_by_the_rigs_model"]
             about.append(f"  friction ratio by {attributes['friction_model']} alone: {ratio:.3g}")
         return [
             f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}",
             *attributes["statement"].split("\n"),
-            Table(heads, [self._row(name) for name in self._names()]),
-            Table(_MEASURE_HEADS, self._measure_rows()),
+            Table(results.HEADS, results.quantity_rows(self.prediction)),
+            Table(_MEASURE_HEADS, [(label, f"{100 * share:.0f} %") for label, share in measured.items()]),
             *(f"  {line}" for line in self._probes()),
-            Table(_INPUT_HEADS, [self._input_row(place) for place in range(self.prediction.sizes["input"])]),
+            Table(results.INPUT_HEADS, results.input_rows(self.prediction)),
             *about,
             *(f"  measured {one.label}: {one.text}" for one in self.measured),
         ]
 
     def object(self) -> dict[str, Any]:
         """Statement, quantities with median and intervals, inputs and weights of the closures."""
+        found = self.prediction
+        shares = results.column(found, "interval_share_left")
         return {
             "rig": self.rig.title,
-            "statement": self.prediction.attrs["statement"].split("\n"),
-            **{name: self._object(name) for name in self._names()},
-            "inputs": self.prediction["input_text"].to_numpy().tolist(),
-            "share_left_by_measurement": dict(
-                zip(self._column("measure_label"), self._column("measure_share_left"), strict=True)
-            ),
+            "statement": found.attrs["statement"].split("\n"),
+            **{name: results.predicted_object(found, name) for name in results.predicted_names(found)},
+            "inputs": results.column(found, "input_text"),
+            "share_left_by_measurement": results.measurement_shares(found),
             "stiffness_probes": self._probes(),
             "measured": [one.object() for one in self.measured],
-            "interval_share_left": dict(zip(self._column("input"), self._column("interval_share_left"), strict=True)),
-            **{name: self.prediction.attrs.get(name) for name in ("runs", "actuator_power")},
+            "interval_share_left": dict(zip(results.column(found, "input"), shares, strict=True)),
+            **{name: found.attrs.get(name) for name in ("runs", "actuator_power")},
         }
 
     def caveats(self) -> Sequence[str]:
@@ -135,48 +124,3 @@ class PredictionAnswer(Answer):
     def _probes(self) -> list[str]:
         """Which resonances of the rig tell the contact stiffness, a sentence each."""
         return [line for line in self.prediction.attrs["stiffness_probes"].split("\n") if line]
-
-    def _column(self, name: str) -> list[Any]:
-        """Values of a variable over the uncertain inputs."""
-        values: list[Any] = self.prediction[name].to_numpy().tolist()
-        return values
-
-    def _input_row(self, place: int) -> list[str]:
-        """Uncertain input with its spread, what of the intervals is left if it is known well, and its origin."""
-        one = {name: self._column(name)[place] for name in _INPUT_COLUMNS}
-        left = [f"{100 * one[name]:.0f} %" for name in ("interval_share_left", "force_interval_share_left")]
-        value = format_si(one["input_value"], quantity(one["input"]).unit)
-        known = f"{value} within {100 * one['input_spread']:.0f} %"
-        return [one["input_label"], known, " and ".join(left), one["reason"]]
-
-    def _measure_rows(self) -> list[list[str]]:
-        """Measurements that would narrow the interval, and what each leaves of it."""
-        pairs = zip(self._column("measure_label"), self._column("measure_share_left"), strict=True)
-        return [[label, f"{100 * share:.0f} %"] for label, share in pairs]
-
-    def _names(self) -> list[str]:
-        """Predicted quantities in their order."""
-        return [name for name, values in self.prediction.variables.items() if values.dims == ("draw",)]
-
-    def _row(self, name: str) -> list[str]:
-        """Median and intervals of a quantity as text."""
-        median = float(np.median(self.prediction[name].to_numpy()))
-        ends = [interval(self.prediction, name, probability) for probability in PROBABILITIES]
-        text = [f"{_text(name, low)} to {_text(name, high)}" for low, high in ends]
-        return [quantity(name).meaning, _text(name, median), *text]
-
-    def _object(self, name: str) -> dict[str, Any]:
-        """Median and intervals of a quantity in SI."""
-        return {
-            "median": float(np.median(self.prediction[name].to_numpy())),
-            **{
-                f"interval_{100 * probability:.0f}": list(interval(self.prediction, name, probability))
-                for probability in PROBABILITIES
-            },
-            "unit": quantity(name).unit,
-        }
-
-
-def _text(name: str, value: float) -> str:
-    """Value with two or three digits, reductions in percent."""
-    return f"{100 * value:.0f} %" if name in _PERCENT else format_si(value, quantity(name).unit, digits=2)

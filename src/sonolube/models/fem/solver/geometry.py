@@ -4,9 +4,11 @@ The CAD kernel works in mm, for which its tolerances are set; everything else is
 along an axis are named "-x", "+x", "-y", "+y", "-z" and "+z", all others "side".
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,8 @@ from sonolube.models.fem.solver.step_trial import try_step_file
 
 _AXES = "xyz"
 _LEAST_VOLUME = 1e-9  # of the bounding box, below which a body counts as having no thickness
+_TIME_OF_WRITING = re.compile(r"(?<=')\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?=')")
+_NUMBER_OF_WRITING = re.compile(r"(?<= STEP translator )([\d.]+) \d+(?=')")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -85,6 +89,24 @@ def unguarded_step_geometry(path: Path) -> Geometry:
         solid.name or f"body{k}": single_body(solid, solid.name or f"body{k}") for k, solid in enumerate(solids, 1)
     }
     return bond(parts) if len(parts) > 1 else next(iter(parts.values()))
+
+
+def step_text(geometry: Geometry) -> str:
+    """Content of a STEP file of a geometry, in mm, without time and number of writing.
+
+    Parameters
+    ----------
+    geometry : Geometry
+
+    Returns
+    -------
+    str
+    """
+    with TemporaryDirectory() as folder, captured_output():
+        path = Path(folder) / "solid.step"
+        geometry.shape.WriteStep(str(path))
+        text = path.read_text(encoding="utf-8")
+    return _NUMBER_OF_WRITING.sub(r"\1", _TIME_OF_WRITING.sub("1970-01-01T00:00:00", text, count=1))
 
 
 def translate(geometry: Geometry, *, by: tuple[float, float, float]) -> Geometry:

@@ -12,7 +12,7 @@ from typing import Final
 from sonolube.errors import UnknownName
 from sonolube.facts.protocol import protocol_names, protocol_path
 
-_ROOM: Final = Path(__file__).parents[2]
+_ROOM: Final = Path(__file__).parent
 _ENDINGS: Final = (".toml", ".csv")
 _RIGS: Final = "examples/rigs/"
 _LEFT_OUT: Final = ("notebooks",)  # settings of a linter

@@ -1,18 +1,13 @@
 """Error of the friction model and predictive interval beside a computed friction ratio, as text and for JSON."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
-
-from sonolube.tasks.parameters import Parameter
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sonolube.models.friction import FrictionModel
     from sonolube.prediction.friction_interval import FrictionInterval
     from sonolube.rig import Rig
     from sonolube.validation.assessment import ErrorStatistics
-
-Interval = Annotated[bool, Parameter(help="State the error of the friction model, and the interval with it.")]
-"""Option for the predictive interval."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,8 +1,7 @@
-"""Natural modes of a part by finite elements, and their dataset."""
+"""Natural modes of a part to a tolerance, and their dataset."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +12,7 @@ from sonolube.models.fem import (
     FixedSupport,
     Geometry,
     Medium,
+    Mesh,
     Model,
     Transducer,
     converged_modes,
@@ -21,26 +21,13 @@ from sonolube.models.fem import (
 )
 from sonolube.models.fem.figures import shaped_surface
 from sonolube.models.fem.mode_files import elastic_rows
-from sonolube.tasks.files import InputFile
-from sonolube.tasks.parts.named_parts import (
-    ALL_TRANSDUCERS,
-    PartSizes,
-    longest_axis,
-    named_part,
-    named_transducer,
-    part_name,
-    solid_medium,
-    starting_size,
-)
-from sonolube.tasks.progress import Advance
-from sonolube.units import format_si
+from sonolube.models.fem.tuning import Advance
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
-DEFAULT_MATERIAL = "stainless_steel_304"
-"""Material of a part that has none of its own."""
+_ELEMENTS_ACROSS = 1.6  # of a part as thick as a cube of its volume would be
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -99,54 +86,6 @@ class PartModes:
     found: ConvergedModes
     names: tuple[str, ...]
     axis: str
-
-
-def supported_part(
-    part: InputFile,
-    sizes: PartSizes,
-    *,
-    material: str,
-    properties: Mapping[str, float] = MappingProxyType({}),
-    clamp: Sequence[str] = (),
-) -> SupportedPart:
-    """Part by its name and sizes, with its materials and supports.
-
-    Parameters
-    ----------
-    part : str, Path or NamedBytes
-        A part such as "block", a transducer such as "stack", or a STEP file.
-    sizes : mapping of str to str or float
-    material : str
-        Of a part that is no transducer; those of a transducer are its own.
-    properties : mapping of str to float
-        Of youngs_modulus, poisson_ratio and density those that replace the material's, in SI.
-    clamp : sequence of str
-        Faces that are held still.
-
-    Returns
-    -------
-    SupportedPart
-
-    Raises
-    ------
-    UnknownName
-        If the part, a size of it or the material is unknown.
-    InvalidInput
-        If a size is missing or the material is one without modes of its own.
-    """
-    name = part_name(part)
-    transducer = named_transducer(part, sizes) if name in ALL_TRANSDUCERS else None
-    geometry = named_part(part, sizes) if transducer is None else transducer.geometry
-    own = None if transducer is None else transducer.media
-    planes = () if transducer is None else transducer.fixed
-    return SupportedPart(
-        name=name,
-        material="its own materials" if transducer is not None else _described(material, properties),
-        geometry=geometry,
-        media=own or dict.fromkeys(geometry.regions, solid_medium(name, material, properties)),
-        fixed=(*planes, *(FixedSupport(face=face) for face in clamp)),
-        transducer=transducer,
-    )
 
 
 def part_modes(part: SupportedPart, *, count: int, axis: str | None, tolerance: float, advance: Advance) -> PartModes:
@@ -234,10 +173,11 @@ def _attributes(name: str) -> dict[str, str]:
     return {"units": entry.unit or "1", "long_name": entry.meaning}
 
 
-def _described(material: str, properties: Mapping[str, float]) -> str:
-    """Material and what replaces its properties, such as "brass with density 8.4e+03 kg/m3"."""
-    replaced = [
-        f"{name.replace('_', ' ')} {format_si(value, quantity(name).unit, digits=4)}"
-        for name, value in properties.items()
-    ]
-    return material if not replaced else f"{material} with {', '.join(replaced)}"
+def starting_size(geometry: Geometry) -> float:
+    """Largest edge in m of an element in the first mesh of a part."""
+    return float(geometry.volume ** (1 / 3) / _ELEMENTS_ACROSS)
+
+
+def longest_axis(mesh: Mesh) -> str:
+    """Axis along which a mesh is longest: "x", "y" or "z"."""
+    return "xyz"[int(np.argmax(np.ptp(mesh.nodes, axis=0)))]

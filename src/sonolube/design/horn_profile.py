@@ -1,0 +1,227 @@
+"""Profiles of tuned horns with their dimensions, and as a DXF file of AutoCAD R12 in mm."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from math import pi, tan
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.design.horn_shapes import TunableBody
+
+_STATIONS = 5  # of an exponential horn at which its diameter is stated
+_CURVE_POINTS = 201
+_QUARTER_ARC = tan(pi / 8)  # bulge of a vertex of a DXF polyline from which a quarter of a circle starts
+_TEXT_HEIGHT = 3.0  # mm
+
+Vertex = tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HornProfile:
+    """Closed half profile of a horn between its axis and its surface, with the dimensions that make it.
+
+    Parameters
+    ----------
+    vertices : tuple of (float, float, float)
+        Distance from the driven face, distance from the axis, both in m, and the bulge of the edge to the next vertex:
+        zero for a straight line, the tangent of a quarter of its angle for an arc.
+    stations : tuple of float
+        Distances from the driven face at which sections begin and end. [m]
+    widths : tuple of (float, float)
+        Distance from the driven face, and the diameter, or width of a block, there. [m]
+    fillets : tuple of (float, float, float)
+        Distance from the driven face, distance from the axis, and radius of each fillet. [m]
+    thickness : float or None
+        Of a block; None for a body of revolution. [m]
+    notes : tuple of str
+        What no dimension states.
+    """
+
+    vertices: tuple[Vertex, ...]
+    stations: tuple[float, ...]
+    widths: tuple[tuple[float, float], ...]
+    fillets: tuple[tuple[float, float, float], ...] = ()
+    thickness: float | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def outline(self) -> Floats:
+        """Half profile with arcs as polygons, shape (n, 2): distances from the driven face and from the axis. [m]"""
+        points: list[Floats] = []
+        for start, end in pairwise((*self.vertices, self.vertices[0])):
+            one, other, bulge = np.array(start[:2]), np.array(end[:2]), start[2]
+            along = np.linspace(0.0, 1.0, 33 if bulge else 2)[:-1, np.newaxis]
+            if not bulge:
+                points.append(one + along * (other - one))
+                continue
+            middle, half = (one + other) / 2, (other - one) / 2
+            centre = middle + (1 / bulge - bulge) / 2 * np.array([-half[1], half[0]])
+            angle = 4 * np.arctan(bulge) * along
+            spoke = one - centre
+            across = np.array([-spoke[1], spoke[0]])
+            points.append(centre + np.cos(angle) * spoke + np.sin(angle) * across)
+        return np.concatenate(points)
+
+
+def horn_profile(body: TunableBody, *, length: float) -> HornProfile | None:
+    """Half profile of a horn of a named shape.
+
+    Parameters
+    ----------
+    body : TunableBody
+    length : float
+        Of its tuned size. [m]
+
+    Returns
+    -------
+    HornProfile or None
+        None for a body from a file.
+    """
+    if not body.sizes:
+        return None
+    return _PROFILES[body.name]({**body.sizes, body.tuned_size: length})
+
+
+def profile_dxf(profile: HornProfile, lines: Iterable[str]) -> str:
+    """Half profile and centre line as a DXF file of AutoCAD R12, in mm.
+
+    Parameters
+    ----------
+    profile : HornProfile
+        Its polyline is closed along the axis, with arcs as arcs.
+    lines : iterable of str
+        Text below the profile.
+
+    Returns
+    -------
+    str
+        ASCII, on the layers PROFILE, CENTRE and TEXT.
+
+    References
+    ----------
+    .. [1] Autodesk, AutoCAD Release 12 Customization Manual, Appendix: Drawing Interchange Format.
+    """
+    end = max(place for place, _, _ in profile.vertices)
+    overhang = 0.05 * end
+    tags: list[tuple[int, object]] = [(999, "lengths in mm"), (0, "SECTION"), (2, "HEADER"), (9, "$ACADVER")]
+    tags += [(1, "AC1009"), (0, "ENDSEC"), (0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LTYPE"), (70, 2)]
+    tags += [(0, "LTYPE"), (2, "CONTINUOUS"), (70, 0), (3, "Solid line"), (72, 65), (73, 0), (40, 0.0)]
+    tags += [(0, "LTYPE"), (2, "CENTER"), (70, 0), (3, "Long and short dashes"), (72, 65), (73, 4), (40, 50.8)]
+    tags += [(49, dash) for dash in (31.75, -6.35, 6.35, -6.35)]
+    tags += [(0, "ENDTAB"), (0, "TABLE"), (2, "LAYER"), (70, 3)]
+    for name, line, colour in (("PROFILE", "CONTINUOUS", 7), ("CENTRE", "CENTER", 1), ("TEXT", "CONTINUOUS", 3)):
+        tags += [(0, "LAYER"), (2, name), (70, 0), (62, colour), (6, line)]
+    tags += [(0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES")]
+    tags += [(0, "POLYLINE"), (8, "PROFILE"), (66, 1), *_point(0.0, 0.0), (70, 1)]
+    for place, distance, bulge in profile.vertices:
+        tags += [(0, "VERTEX"), (8, "PROFILE"), *_point(place, distance), *([(42, bulge)] if bulge else [])]
+    tags += [(0, "SEQEND"), (8, "PROFILE"), (0, "LINE"), (8, "CENTRE"), *_point(-overhang, 0.0)]
+    tags += _point(end + overhang, 0.0, first=11)
+    for row, line in enumerate(lines, 2):
+        tags += [(0, "TEXT"), (8, "TEXT"), *_point(0.0, -2e-3 * _TEXT_HEIGHT * row), (40, _TEXT_HEIGHT)]
+        tags.append((1, line.replace("⌀", "%%c").encode("ascii", "replace").decode()))
+    tags += [(0, "ENDSEC"), (0, "EOF")]
+    return "".join(f"{code:3d}\n{_value(value)}\n" for code, value in tags)
+
+
+def _value(value: object) -> str:
+    """Value of a tag; lengths to a tenth of a nanometre."""
+    return f"{round(value, 10):.10g}" if isinstance(value, float) else str(value)
+
+
+def _point(place: float, distance: float, *, first: int = 10) -> list[tuple[int, object]]:
+    """Tags of a point given in m, in mm."""
+    return [(first, 1e3 * place), (first + 10, 1e3 * distance), (first + 20, 0.0)]
+
+
+def _closed(outline: Iterable[tuple[float, float]], bulges: Mapping[int, float] | None = None) -> tuple[Vertex, ...]:
+    """Vertices from the axis along an outline and back, with the bulges of edges by the number of their first point."""
+    points = list(outline)
+    curved = bulges or {}
+    surface = [(place, distance, curved.get(k, 0.0)) for k, (place, distance) in enumerate(points)]
+    return ((points[0][0], 0.0, 0.0), *surface, (points[-1][0], 0.0, 0.0))
+
+
+def _cylinder(sizes: Mapping[str, float]) -> HornProfile:
+    """Profile of a cylinder."""
+    length, radius = sizes["length"], sizes["radius"]
+    return HornProfile(
+        vertices=_closed([(0.0, radius), (length, radius)]), stations=(0.0, length), widths=((length / 2, 2 * radius),)
+    )
+
+
+def _conical(sizes: Mapping[str, float]) -> HornProfile:
+    """Profile of a cone."""
+    length, radius, end = sizes["length"], sizes["radius"], sizes["end_radius"]
+    return HornProfile(
+        vertices=_closed([(0.0, radius), (length, end)]),
+        stations=(0.0, length),
+        widths=((0.0, 2 * radius), (length, 2 * end)),
+    )
+
+
+def _exponential(sizes: Mapping[str, float]) -> HornProfile:
+    """Profile of an exponential horn, with its diameter at quarters of its length."""
+    length, radius, ratio = sizes["length"], sizes["radius"], sizes["end_radius"] / sizes["radius"]
+    z, stations = (np.linspace(0.0, length, count) for count in (_CURVE_POINTS, _STATIONS))
+    ends = [f"{2e3 * each:.2f}" for each in (radius, ratio * radius)]
+    return HornProfile(
+        vertices=_closed(zip(z.tolist(), (radius * ratio ** (z / length)).tolist(), strict=True)),
+        stations=tuple(stations.tolist()),
+        widths=tuple((float(place), float(2 * radius * ratio ** (place / length))) for place in stations),
+        notes=(f"diameter at z from the driven face: {ends[0]} ({ends[1]}/{ends[0]})^(z/{1e3 * length:.2f})",),
+    )
+
+
+def _stepped(sizes: Mapping[str, float]) -> HornProfile:
+    """Profile of a stepped horn with the fillet of its step."""
+    length, radius, end, fillet = (sizes[name] for name in ("length", "radius", "end_radius", "edge_radius"))
+    total = length + sizes["end_length"]
+    foot = [(length, end + fillet), (length + fillet, end)] if fillet else [(length, end)]
+    along = 1 - 0.5**0.5  # of the radius, at which its dimension meets the middle of the arc
+    return HornProfile(
+        vertices=_closed([(0.0, radius), (length, radius), *foot, (total, end)], {2: _QUARTER_ARC} if fillet else None),
+        stations=(0.0, length, total),
+        widths=((length / 2, 2 * radius), ((length + fillet + total) / 2, 2 * end)),
+        fillets=((length + along * fillet, end + along * fillet, fillet),) if fillet else (),
+    )
+
+
+def _booster(sizes: Mapping[str, float]) -> HornProfile:
+    """Profile of a booster with its flange."""
+    names = ("length", "radius", "end_length", "end_radius", "flange_thickness", "flange_radius")
+    length, radius, end_length, end, thickness, flange = (sizes[name] for name in names)
+    top = length + thickness
+    total = top + end_length
+    outline = [(0.0, radius), (length, radius), (length, flange), (top, flange), (top, end), (total, end)]
+    return HornProfile(
+        vertices=_closed(outline),
+        stations=(0.0, length, top, total),
+        widths=((length / 2, 2 * radius), (length + thickness / 2, 2 * flange), ((top + total) / 2, 2 * end)),
+    )
+
+
+def _block(sizes: Mapping[str, float]) -> HornProfile:
+    """Half profile of a block in the plane of its length and width."""
+    length, width, edge = sizes["length"], sizes["width"], sizes.get("edge_radius", 0.0)
+    end = sizes.get("end_width", width)
+    return HornProfile(
+        vertices=_closed([(0.0, width / 2), (length, end / 2)]),
+        stations=(0.0, length),
+        widths=((length / 2, width),) if end == width else ((0.0, width), (length, end)),
+        thickness=sizes["thickness"],
+        notes=(f"all edges rounded, R{1e3 * edge:.2f}",) if edge else (),
+    )
+
+
+_PROFILES: Mapping[str, Callable[[Mapping[str, float]], HornProfile]] = {
+    "block": _block,
+    "booster": _booster,
+    "conical_horn": _conical,
+    "cylinder": _cylinder,
+    "exponential_horn": _exponential,
+    "stepped_horn": _stepped,
+}
+"""Profiles by the name of the shape, from all its sizes in m."""

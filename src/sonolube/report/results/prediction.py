@@ -1,0 +1,79 @@
+"""Prediction of a rig: rows of its tables, and objects for JSON."""
+
+from typing import Any, Final
+
+import numpy as np
+
+from sonolube.prediction.rig_statement import interval
+from sonolube.prediction.scores import PROBABILITIES
+from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity
+
+HEADS: Final = ["", "median", *(f"{100 * probability:.0f} %" for probability in PROBABILITIES)]
+"""Heads of the table of predicted quantities."""
+
+INPUT_HEADS: Final = ["least known inputs", "value", "known well, it leaves of ratio and force", "known from"]
+"""Heads of the table of uncertain inputs."""
+
+_INPUT_COLUMNS: Final = (
+    *("input", "input_label", "input_value", "input_spread", "reason"),
+    *("interval_share_left", "force_interval_share_left"),
+)
+_PERCENT: Final = ("friction_reduction", "wear_reduction")
+
+
+def quantity_rows(prediction: LabelledArrays) -> list[list[str]]:
+    """Median and intervals of each predicted quantity."""
+    rows = []
+    for name in predicted_names(prediction):
+        ends = [interval(prediction, name, probability) for probability in PROBABILITIES]
+        text = [f"{_text(name, low)} to {_text(name, high)}" for low, high in ends]
+        rows.append([quantity(name).meaning, _text(name, _median(prediction, name)), *text])
+    return rows
+
+
+def input_rows(prediction: LabelledArrays) -> list[list[str]]:
+    """Uncertain inputs with their spread, what of the intervals is left if each is known well, and its origin."""
+    rows = []
+    for name, label, value, spread, reason, *shares in zip(
+        *(column(prediction, n) for n in _INPUT_COLUMNS), strict=True
+    ):
+        known = f"{format_si(value, quantity(name).unit)} within {100 * spread:.0f} %"
+        rows.append([label, known, " and ".join(f"{100 * share:.0f} %" for share in shares), reason])
+    return rows
+
+
+def measurement_shares(prediction: LabelledArrays) -> dict[str, float]:
+    """What each further measurement would leave of the interval."""
+    return dict(zip(column(prediction, "measure_label"), column(prediction, "measure_share_left"), strict=True))
+
+
+def predicted_object(prediction: LabelledArrays, name: str) -> dict[str, Any]:
+    """Median and intervals of a predicted quantity in SI."""
+    intervals = {
+        f"interval_{100 * probability:.0f}": list(interval(prediction, name, probability))
+        for probability in PROBABILITIES
+    }
+    return {"median": _median(prediction, name), **intervals, "unit": quantity(name).unit}
+
+
+def predicted_names(prediction: LabelledArrays) -> list[str]:
+    """Predicted quantities in their order."""
+    return [name for name, values in prediction.variables.items() if values.dims == ("draw",)]
+
+
+def column(prediction: LabelledArrays, name: str) -> list[Any]:
+    """Values of a variable over the uncertain inputs or measurements."""
+    values: list[Any] = prediction[name].to_numpy().tolist()
+    return values
+
+
+def _median(prediction: LabelledArrays, name: str) -> float:
+    """Median of the draws of a quantity."""
+    return float(np.median(prediction[name].to_numpy()))
+
+
+def _text(name: str, value: float) -> str:
+    """Value with two or three digits, reductions in percent."""
+    return f"{100 * value:.0f} %" if name in _PERCENT else format_si(value, quantity(name).unit, digits=2)
