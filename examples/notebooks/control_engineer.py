@@ -11,6 +11,7 @@
 import numpy as np
 
 import sonolube as sl
+from sonolube.charts import draw_chart
 from sonolube.design.control import (
     Amplifier,
     ControlSettings,
@@ -19,7 +20,7 @@ from sonolube.design.control import (
     design_control,
     stability_margins,
 )
-from sonolube.design.control.figures import closed_loop_figure
+from sonolube.design.control.figures import closed_loop_chart
 from sonolube.figure import publication_style, shown_in_notebooks
 
 rig = sl.read_rig("../rigs/tribometer.toml")
@@ -60,7 +61,7 @@ print(f"delay margin    {1e3 * margins.delay_margin:.1f} ms beyond the 2 ms")
 
 # %%
 with publication_style():
-    figure = closed_loop_figure(study)
+    figure = draw_chart(closed_loop_chart(study))
 shown_in_notebooks(figure)
 
 # %%

@@ -8,14 +8,15 @@ import pytest
 from pytest import approx, raises
 from scipy import stats
 
+from sonolube.charts import Band, Bars, Field, Line, Rule, chart_tables, draw_chart
 from sonolube.design import (
     available_outcomes,
-    band_figure,
-    histogram_figure,
+    band_chart,
+    histogram_chart,
     outcome_statistics,
     propagate,
     sample_statistics,
-    sobol_figure,
+    sobol_chart,
     sobol_indices,
 )
 from sonolube.errors import InvalidInput, UnknownName
@@ -132,16 +133,44 @@ def test_a_second_run_resumes_from_the_same_folder(tmp_path: Path) -> None:
     assert len(list(tmp_path.glob("chunk-*.npz"))) == 1
 
 
-def test_figures_carry_units_and_uncertain_keys(tmp_path: Path) -> None:
-    plain = histogram_figure(propagate(UNCERTAIN, samples=32, outcome="vibration_amplitude"))
-    assert plain.axes[0].get_xlabel() == "Vibration amplitude, zero to peak [µm]"
-    band = band_figure(propagate(UNCERTAIN, samples=32, over={SPEED: np.geomspace(0.01, 0.2, 5)}))
-    assert band.axes[0].get_xlabel() == "Sliding speed [mm/s]"
-    assert band.axes[0].get_xscale() == "log"
+def test_the_histogram_has_all_samples_and_each_quantile_with_its_interval() -> None:
+    found = propagate(UNCERTAIN, samples=32, outcome="vibration_amplitude")
+    (panel,) = histogram_chart(found).panels
+    assert panel.x.text == "Vibration amplitude, zero to peak [µm]"
+    (bars,) = (part for part in panel.parts if isinstance(part, Bars))
+    micrometres = 1e6 * found["vibration_amplitude"].values
+    assert bars.lengths.sum() == approx(100)
+    assert bars.places[0] - bars.breadth / 2 == approx(micrometres.min())
+    assert bars.places[-1] + bars.breadth / 2 == approx(micrometres.max())
+    rules = [part.value for part in panel.parts if isinstance(part, Rule)]
+    intervals = [part.x for part in panel.parts if isinstance(part, Band)]
+    assert rules == sorted(rules)
+    assert all(low <= value <= high for value, (low, high) in zip(rules, intervals, strict=True))
+
+
+def test_the_band_over_a_key_has_its_quantiles_and_two_keys_have_maps() -> None:
+    found = propagate(UNCERTAIN, samples=32, over={SPEED: np.geomspace(0.01, 0.2, 5)})
+    (panel,) = band_chart(found).panels
+    assert panel.x.text == "Sliding speed [mm/s]"
+    assert panel.x.logarithmic
+    (median,) = (part for part in panel.parts if isinstance(part, Line))
+    assert median.y == approx(np.median(found["friction_ratio"].values, axis=0))
+    over = {SPEED: [0.01, 0.05], "drive.voltage_peak_to_peak": [10.0, 20.0, 28.0]}
+    found = propagate(UNCERTAIN, samples=32, over=over)
+    maps = [part for panel in band_chart(found).panels for part in panel.parts if isinstance(part, Field)]
+    samples = found["friction_ratio"].transpose("sample", "voltage_peak_to_peak", "sliding_speed").values
+    assert maps[0].values == approx(np.median(samples, axis=0))
+    assert maps[1].values.shape == (3, 2)
+
+
+def test_the_bars_of_sobol_indices_name_their_entries(tmp_path: Path) -> None:
     path = rig_with(tmp_path, '"friction.friction_coefficient" = "normal 5 %"', "cutter_head")
     result = propagate(path, samples=32, outcome="friction_force", indices=True)
-    bars = sobol_figure(result, sobol_indices(result["friction_force"].values))
-    assert [label.get_text() for label in bars.axes[0].get_yticklabels()] == ["friction.friction_coefficient"]
+    chart = sobol_chart(result, sobol_indices(result["friction_force"].values))
+    assert chart.panels[0].y.words == ("friction.friction_coefficient",)
+    heads = [next(iter(row)) for table in chart_tables(chart) for row in table["rows"]]
+    assert heads == ["friction.friction_coefficient"] * 2
+    draw_chart(chart)
 
 
 def test_unusable_requests_are_refused_with_the_reason() -> None:
@@ -160,4 +189,4 @@ def test_an_uncertainty_band_needs_one_or_two_swept_keys(keys: int) -> None:
     over = {SPEED: [0.02], "drive.frequency": [22e3], "drive.voltage_peak_to_peak": [20.0]}
     found = propagate(UNCERTAIN, samples=32, over=dict(list(over.items())[:keys]))
     with raises(InvalidInput, match=rf"one or two swept keys, got {keys}"):
-        band_figure(found)
+        band_chart(found)

@@ -7,8 +7,9 @@ and the force follows although the real friction is 15 % above the model's.
 from pathlib import Path
 
 import sonolube as sl
+from sonolube.charts import draw_chart
 from sonolube.design.control import Amplifier, ControlSettings, Disturbance, design_control
-from sonolube.design.control.figures import closed_loop_figure
+from sonolube.design.control.figures import closed_loop_chart
 from sonolube.figure import publication_style
 
 rig = sl.read_rig(Path(__file__).parents[2] / "rigs" / "tribometer.toml")
@@ -16,7 +17,7 @@ settings = ControlSettings(
     friction_force=0.5, amplifier=Amplifier(voltage_maximum=28.0), disturbance=Disturbance(friction_factor=1.15)
 )
 with publication_style():
-    figure = closed_loop_figure(design_control(rig, settings))
+    figure = draw_chart(closed_loop_chart(design_control(rig, settings)))
 
 if __name__ == "__main__":
     figure.savefig("commanded-friction.png", dpi=150)

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 import sonolube as sl
+from sonolube.charts import draw_chart
 from sonolube.design.test_plan.candidates import Factors
-from sonolube.design.test_plan.figure import plan_figure
+from sonolube.design.test_plan.figure import plan_chart
 from sonolube.design.test_plan.plan import Procedure, Question, plan_tests, published_distances
 from sonolube.figure import publication_style
 
@@ -24,7 +25,7 @@ without, vibrated = published_distances()
 procedure = Procedure(intrinsic_distance=without, vibrated_distance=vibrated)
 plan = plan_tests(rig, factors, question=Question(), procedure=procedure, points=3)
 with publication_style():
-    figure = plan_figure(plan)
+    figure = draw_chart(plan_chart(plan))
 
 if __name__ == "__main__":
     figure.savefig("next-tests.png", dpi=150)

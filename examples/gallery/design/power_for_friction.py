@@ -7,8 +7,9 @@ the next run is expected.
 from pathlib import Path
 
 import sonolube as sl
+from sonolube.charts import draw_chart
 from sonolube.design.efficiency import calibrate_efficiency
-from sonolube.design.efficiency_figures import efficiency_figure
+from sonolube.design.efficiency_figures import efficiency_chart
 from sonolube.figure import publication_style
 
 examples = Path(__file__).parents[2]
@@ -16,7 +17,7 @@ rig = sl.read_rig(examples / "rigs" / "power_map.toml")
 runs = sl.read_runs(examples / "efficiency-runs.csv")
 found = calibrate_efficiency(rig, runs, friction_force=0.5, sliding_speed=0.1, confidence_level=0.95)
 with publication_style():
-    figure = efficiency_figure(found)
+    figure = draw_chart(efficiency_chart(found))
 
 if __name__ == "__main__":
     figure.savefig("power-for-friction.png", dpi=150)

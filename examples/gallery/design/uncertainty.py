@@ -6,14 +6,15 @@ causes alone, and with others. Measure first what stands on top.
 
 from pathlib import Path
 
-from sonolube.design import propagate, sobol_figure
+from sonolube.charts import draw_chart
+from sonolube.design import propagate, sobol_chart
 from sonolube.design.uncertainty_summary import outcome_indices
 from sonolube.figure import publication_style
 
 rig = Path(__file__).parents[2] / "rigs" / "tribometer_uncertain.toml"
 found = propagate(rig, samples=128, indices=True)
 with publication_style():
-    figure = sobol_figure(found, outcome_indices(found))
+    figure = draw_chart(sobol_chart(found, outcome_indices(found)))
 
 if __name__ == "__main__":
     figure.savefig("uncertainty.png", dpi=150)

@@ -114,7 +114,8 @@ def _columns(panel: Panel, part: Part) -> dict[str, list[str]]:
         return columns
     if isinstance(part, Bars):
         across, along = (y, x) if part.along == "x" else (x, y)
-        return {across.text: _texts(part.places, across), along.text: _texts(part.lengths)}
+        places = np.round(part.places) if across.words and not across.ticks else part.places  # beside their word
+        return {across.text: _texts(places, across), along.text: _texts(part.lengths)}
     return {}
 
 

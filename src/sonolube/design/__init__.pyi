@@ -24,7 +24,7 @@ from .statistics import (
     SampleStatistics as SampleStatistics,
     sample_statistics as sample_statistics,
 )
-from .sweep_figures import sweep_figure as sweep_figure, swept_variables as swept_variables
+from .sweep_figures import sweep_chart as sweep_chart, swept_variables as swept_variables
 from .sweep_plan import (
     OPERATING_CONDITIONS as OPERATING_CONDITIONS,
     SweepPlan as SweepPlan,
@@ -34,8 +34,8 @@ from .sweep_plan import (
 )
 from .uncertainty import available_outcomes as available_outcomes, propagate as propagate
 from .uncertainty_figures import (
-    band_figure as band_figure,
-    histogram_figure as histogram_figure,
+    band_chart as band_chart,
+    histogram_chart as histogram_chart,
     outcome_statistics as outcome_statistics,
-    sobol_figure as sobol_figure,
+    sobol_chart as sobol_chart,
 )

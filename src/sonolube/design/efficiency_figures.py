@@ -1,17 +1,12 @@
 """Figure of an efficiency calibration: measured coefficients over sliding speed, line and bands."""
 
-from typing import TYPE_CHECKING
-
+from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule
 from sonolube.design.efficiency import EfficiencyCalibration, efficiency_dataset
-from sonolube.figure import COLOURS
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
 
 
-def efficiency_figure(calibration: EfficiencyCalibration) -> "Figure":
+def efficiency_chart(calibration: EfficiencyCalibration) -> Chart:
     """Efficiency coefficients of runs over sliding speed, with the line, its band and the prediction band.
 
     Parameters
@@ -20,29 +15,25 @@ def efficiency_figure(calibration: EfficiencyCalibration) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5.4, 3.5))
-    axes = figure.subplots()
     line = efficiency_dataset(calibration)
     v = 1e3 * line["sliding_speed"].values
     level = f"{100 * calibration.confidence_level:g} %"
-    for name, shade, label in (("run", 0.12, f"one more run, {level}"), ("line", 0.3, f"line, {level}")):
+    bands: list[Part] = []
+    for name, opacity, label in (("run", 0.12, f"one more run, {level}"), ("line", 0.3, f"line, {level}")):
         low, high = (_PRINTED_UNIT * line[f"{end}_{name}"].values for end in ("lowest", "highest"))
-        axes.fill_between(v, low, high, color=COLOURS[0], alpha=shade, linewidth=0, label=label)
-    coefficient = _PRINTED_UNIT * line["efficiency_coefficient"].values
-    axes.plot(v, coefficient, color=COLOURS[0], label="least squares")
-    axes.plot(
-        1e3 * calibration.sliding_speed,
-        _PRINTED_UNIT * calibration.efficiency_coefficient,
-        "o",
-        color=COLOURS[1],
-        markeredgecolor="white",
-        label="runs",
+        bands.append(Band(x=v, low=low, high=high, label=label, opacity=opacity))
+    speeds, coefficients = calibration.sliding_speed, calibration.efficiency_coefficient
+    parts = (
+        *bands,
+        Line(x=v, y=_PRINTED_UNIT * line["efficiency_coefficient"].values, label="least squares"),
+        Points(x=1e3 * speeds, y=_PRINTED_UNIT * coefficients, label="runs", colour=1),
+        Rule(value=0.0, along="y", dash=0),
     )
-    axes.axhline(0, color="0.4", linewidth=0.8)
-    axes.set(xlabel="Sliding speed [mm/s]", ylabel="Efficiency coefficient\n[mW mm²/(N W)]")
-    axes.legend()
-    return figure
+    panel = Panel(
+        x=Axis(label="Sliding speed", unit="mm/s"),
+        y=Axis(label="Efficiency coefficient", unit="mW mm²/(N W)"),
+        parts=parts,
+    )
+    return Chart(panels=(panel,), size=(5.4, 3.5))

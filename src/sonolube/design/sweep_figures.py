@@ -1,22 +1,22 @@
 """Figures of parameter sweeps: curves, families, contour maps or scatter of friction over the swept keys."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sonolube.charts import Axis, Band, Chart, Field, Line, Panel, Part, Points
 from sonolube.checks import Floats
-from sonolube.design.figure_axes import scaled_label, set_log_scale_if_geometric
-from sonolube.figure import COLOURS, LINES, MARKERS
+from sonolube.design.figure_axes import contour_levels, scaled_axis
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _OUTCOME = "friction_ratio"
 _OUTCOME_LABEL = "Friction ratio, with over without vibration"
-_FURTHER_OUTCOMES = {
+_LABELS = {
+    _OUTCOME: "Friction ratio",
     "vibration_amplitude": "Amplitude",
     "actuator_power": "Power of the amplifier",
     "dissipated_power": "Power dissipated",
@@ -25,10 +25,11 @@ _MOST_SAMPLED = 50_000  # points from which quantiles are computed
 _MOST_DRAWN = 3_000  # of these, drawn in a panel
 _FAMILY_SIZE = 7  # values up to which each is drawn as a curve of its own
 _BINS = 20
+_MARGIN = 0.05  # of the friction ratio, beyond its ends
 _MOST_MARKED = 60  # points of a curve up to which each has a marker
 
 
-def sweep_figure(swept: "xr.Dataset") -> "Figure":
+def sweep_chart(swept: "xr.Dataset") -> Chart:
     """Friction ratio over the swept keys.
 
     Parameters
@@ -38,7 +39,7 @@ def sweep_figure(swept: "xr.Dataset") -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
         For one key curves of friction ratio, amplitude and powers; for a grid of two keys a family of curves or a
         contour map; for more keys, and for points of a list or a Latin hypercube, the scatter of the friction ratio
         over each key, with its median and 90 % range.
@@ -70,95 +71,87 @@ def swept_variables(swept: "xr.Dataset") -> list[str]:
     return [str(name) for name, array in swept.variables.items() if "key" in array.attrs]
 
 
-def _curves(swept: "xr.Dataset", name: str) -> "Figure":
+def _curves(swept: "xr.Dataset", name: str) -> Chart:
     """Curves of friction ratio, amplitude and powers over one key, a panel for each that is known."""
-    from matplotlib.figure import Figure
-
-    every = {_OUTCOME: "Friction ratio", **_FURTHER_OUTCOMES}
-    swept_quantity = str(swept[name].attrs["key"]).rpartition(".")[2]
-    known = [
-        outcome
-        for outcome in every
-        if outcome == _OUTCOME or (outcome != swept_quantity and np.isfinite(swept[outcome].values).any())
-    ]
-    columns = min(len(known), 2)
-    rows = -(-len(known) // columns)
-    figure = Figure(figsize=(7.2 if columns > 1 else 5.2, 2.3 * rows if columns > 1 else 3.4))
-    grid = figure.subplots(rows, columns, squeeze=False)
-    for axes, outcome in zip(grid.flat, known, strict=False):
+    own = _quantity_name(swept, name)
+    others = [outcome for outcome in _LABELS if outcome != own]
+    known = [each for each in others if each == _OUTCOME or np.isfinite(swept[each].values).any()]
+    x, x_axis = _axis(swept, name)
+    panels = []
+    for outcome in known:
         values = swept[outcome].values
-        scale, label = scaled_label(outcome, values)
-        x = _set_x_axis(axes, swept, name)
-        line = "none" if _is_text(swept, name) else "-"
-        marker = "o" if x.size <= _MOST_MARKED else ""
-        axes.plot(x, scale * values, marker=marker, markersize=3, linestyle=line)
-        axes.set_ylabel(every[outcome] + label[label.find(" [") :] if " [" in label else every[outcome])
-    for axes in list(grid.flat)[len(known) :]:
-        axes.set_axis_off()
-    unknown = [title.lower() for outcome, title in every.items() if outcome not in (*known, swept_quantity)]
-    if unknown:
-        figure.supxlabel(f"not known here: {', '.join(unknown)}", fontsize=8, color="0.4")
-    return figure
+        scale, axis = scaled_axis(outcome, values)
+        part: Part = Line(x=x, y=scale * values, marker=_marker(x, 0))
+        if _is_text(swept, name):
+            part = Points(x=x, y=scale * values)
+        y_axis = Axis(label=_LABELS[outcome], unit=axis.unit)
+        panels.append(Panel(x=x_axis, y=y_axis, parts=(part,)))
+    columns = min(len(known), 2)
+    unknown = ", ".join(_LABELS[each].lower() for each in others if each not in known)
+    return Chart(
+        panels=tuple(panels),
+        size=(7.2, 2.3 * -(-len(known) // 2)) if columns > 1 else (5.2, 3.4),
+        columns=columns,
+        title=f"Not known here: {unknown}" if unknown else "",
+    )
 
 
-def _family_of_curves(swept: "xr.Dataset", *, x_name: str, family: str) -> "Figure":
+def _family_of_curves(swept: "xr.Dataset", *, x_name: str, family: str) -> Chart:
     """Curves of the friction ratio over one key, one for each value of the other."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5.6, 3.6))
-    axes = figure.subplots()
-    x = _set_x_axis(axes, swept, x_name)
+    x, axis = _axis(swept, x_name)
     ratio = swept[_OUTCOME].transpose(family, x_name).values
-    for index, (row, label) in enumerate(zip(ratio, _value_labels(swept, family), strict=True)):
-        line, marker = LINES[index % len(LINES)], MARKERS[index % len(MARKERS)] if x.size <= _MOST_MARKED else ""
-        axes.plot(x, row, color=COLOURS[index % len(COLOURS)], linestyle=line, marker=marker, ms=3, label=label)
-    axes.set_ylabel(_OUTCOME_LABEL)
-    figure.legend(loc="outside right upper", title=_title(swept, family))
-    return figure
+    lines = tuple(
+        Line(x=x, y=row, label=label, colour=place, dash=place, marker=_marker(x, place))
+        for place, (row, label) in enumerate(zip(ratio, _value_labels(swept, family), strict=True))
+    )
+    panel = Panel(x=axis, y=Axis(label=_OUTCOME_LABEL), parts=lines)
+    return Chart(panels=(panel,), size=(5.6, 3.6), legend="right", legend_title=_axis(swept, family)[1].label)
 
 
-def _contour_map(swept: "xr.Dataset", x_name: str, y_name: str) -> "Figure":
+def _contour_map(swept: "xr.Dataset", x_name: str, y_name: str) -> Chart:
     """Filled contours of the friction ratio over two keys."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5.2, 3.8))
-    axes = figure.subplots()
-    (x, x_label), (y, y_label) = (_axis_values(swept, name) for name in (x_name, y_name))
+    (x, x_axis), (y, y_axis) = _axis(swept, x_name), _axis(swept, y_name)
     ratio = swept[_OUTCOME].transpose(y_name, x_name).values
-    filled = axes.contourf(x, y, ratio, levels=12, cmap="cividis")
-    axes.set(xlabel=x_label, ylabel=y_label, xlim=(x.min(), x.max()), ylim=(y.min(), y.max()))
-    axes.grid(visible=False)
-    set_log_scale_if_geometric(axes, x)
-    figure.colorbar(filled, ax=axes, label=_OUTCOME_LABEL)
-    return figure
+    field = Field(x=x, y=y, values=ratio, label=_OUTCOME_LABEL, levels=contour_levels(ratio))
+    return Chart(panels=(Panel(x=x_axis, y=y_axis, parts=(field,)),), size=(5.2, 3.8))
 
 
-def _scatter(swept: "xr.Dataset", names: list[str]) -> "Figure":
+def _scatter(swept: "xr.Dataset", names: list[str]) -> Chart:
     """Scatter of the friction ratio over each key, with median and 90 % range, a panel each."""
-    from matplotlib.figure import Figure
-
     columns = min(len(names), 3)
     rows = -(-len(names) // columns)
-    figure = Figure(figsize=(2.5 * columns + 0.7, 2.5 * rows + 0.4))
-    grid = figure.subplots(rows, columns, squeeze=False, sharey=True)
     ratio = swept[_OUTCOME]
     sampled = _sampled_points(ratio.size)
     indices = dict(zip(ratio.dims, np.unravel_index(sampled, ratio.shape), strict=True))
     y = ratio.values.ravel()[sampled]
     drawn = np.random.default_rng(0).permutation(sampled.size)[:_MOST_DRAWN]
-    for axes, name in zip(grid.flat, names, strict=False):
-        x = _set_x_axis(axes, swept, name)[indices[swept[name].dims[0]]]
-        axes.plot(x[drawn], y[drawn], ".", color="0.7", markersize=2, alpha=0.6, rasterized=True, label="points")
+    panels = []
+    for name in names:
+        values, axis = _axis(swept, name)
+        x = values[indices[swept[name].dims[0]]]
         centre, low, median, high = _binned_quantiles(x, y)
-        axes.fill_between(centre, low, high, color=COLOURS[0], alpha=0.2, linewidth=0, label="90 % of them")
-        axes.plot(centre, median, color=COLOURS[0], label="median")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("Friction ratio")
-    for axes in list(grid.flat)[len(names) :]:
-        axes.set_axis_off()
-    handles, labels = grid[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3)
-    return figure
+        parts = (
+            Points(x=x[drawn], y=y[drawn], colour="0.7", label="points", is_faint=True),
+            Band(x=centre, low=low, high=high, label="90 % of them", opacity=0.2),
+            Line(x=centre, y=median, label="median"),
+        )
+        panels.append(Panel(x=axis, y=_height(y), parts=parts))
+    size = (2.5 * columns + 0.7, 2.5 * rows + 0.4)
+    return Chart(panels=tuple(panels), size=size, columns=columns, legend="top", shares_y=True)
+
+
+def _height(ratio: Floats) -> Axis:
+    """Axis of the friction ratio with the same ends in all rows."""
+    known = ratio[np.isfinite(ratio)]
+    if not known.size:
+        return Axis(label="Friction ratio")
+    margin = max(_MARGIN * float(np.ptp(known)), 1e-3)
+    return Axis(label="Friction ratio", lowest=float(known.min()) - margin, highest=float(known.max()) + margin)
+
+
+def _marker(x: Floats, number: int) -> int | None:
+    """Number of the marker of a curve; none where it has many points."""
+    return number if x.size <= _MOST_MARKED else None
 
 
 def _binned_quantiles(x: Floats, y: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -184,41 +177,22 @@ def _sampled_points(points: int) -> NDArray[np.intp]:
     return np.unique(np.random.default_rng(0).integers(0, points, _MOST_SAMPLED))
 
 
-def _set_x_axis(axes: "Axes", swept: "xr.Dataset", name: str) -> Floats:
-    """Set label, ticks and scale of the x axis for a swept key; return its values in the unit of that label."""
-    x, label = _axis_values(swept, name)
-    if _is_text(swept, name):
-        words = list(dict.fromkeys(_value_labels(swept, name)))
-        axes.set_xticks(range(len(words)), words)
-        axes.set_xlim(-0.5, len(words) - 0.5)
-    else:
-        set_log_scale_if_geometric(axes, x)
-    axes.set_xlabel(label)
-    return x
-
-
-def _axis_values(swept: "xr.Dataset", name: str) -> tuple[Floats, str]:
-    """Values of a swept key in the unit of its axis label, and that label; text values are numbered."""
-    values = swept[name].values
+def _axis(swept: "xr.Dataset", name: str) -> tuple[Floats, Axis]:
+    """Values of a swept key in the unit of its axis, and that axis between its ends; text values are numbered."""
+    values, quantity = swept[name].values, _quantity_name(swept, name)
     if _is_text(swept, name):
         words = list(dict.fromkeys(map(str, values)))
-        return np.array([words.index(str(value)) for value in values], dtype=np.float64), _title(swept, name)
-    scale, label = scaled_label(_quantity_name(swept, name), values)
-    return scale * values, label
+        numbers = np.array([words.index(str(value)) for value in values], dtype=np.float64)
+        texts = tuple(word.replace("_", " ") for word in words)
+        return numbers, replace(scaled_axis(quantity, 1.0)[1], words=texts, lowest=-0.5, highest=len(words) - 0.5)
+    scale, axis = scaled_axis(quantity, values)
+    return scale * values, axis
 
 
 def _value_labels(swept: "xr.Dataset", name: str) -> list[str]:
     """Values of a swept key as text with their unit."""
-    if _is_text(swept, name):
-        return [str(value).replace("_", " ") for value in swept[name].values]
-    scale, label = scaled_label(_quantity_name(swept, name), swept[name].values)
-    unit = label.partition("[")[2].rstrip("]")
-    return [f"{scale * value:.4g} {unit}".strip() for value in swept[name].values]
-
-
-def _title(swept: "xr.Dataset", name: str) -> str:
-    """Meaning of a swept key without its unit."""
-    return scaled_label(_quantity_name(swept, name), np.ones(1))[1].partition(" [")[0].capitalize()
+    values, axis = _axis(swept, name)
+    return [axis.words[int(each)] if axis.words else f"{each:.4g} {axis.unit}".strip() for each in values]
 
 
 def _quantity_name(swept: "xr.Dataset", name: str) -> str:

@@ -1,27 +1,28 @@
 """Figures of uncertainty: histogram of an outcome, its Sobol indices, and uncertainty bands over swept keys."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sonolube.charts import Axis, Band, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule
 from sonolube.checks import Floats
-from sonolube.design.figure_axes import scaled_label, set_log_scale_if_geometric
+from sonolube.design.figure_axes import contour_levels, scaled_axis
 from sonolube.design.sobol import SobolIndices
 from sonolube.design.statistics import QUANTILES, SampleStatistics, sample_statistics
 from sonolube.design.uncertainty_summary import outcome_quantiles
 from sonolube.errors import InvalidInput
-from sonolube.figure import COLOURS
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
 _BINS = (10, 60)
-_QUANTILE_LINES = {0.05: ":", 0.25: "--", 0.5: "-", 0.75: "--", 0.95: ":"}
+_DASHES = {0.05: 3, 0.25: 1, 0.5: 0, 0.75: 1, 0.95: 3}  # of quantiles
+_HEADROOM = 1.05  # height of the histogram over its highest bar
 
 
-def histogram_figure(propagated: "xr.Dataset") -> "Figure":
+def histogram_chart(propagated: "xr.Dataset") -> Chart:
     """Histogram of an outcome with its quantiles, their confidence intervals, and its mean.
 
     Parameters
@@ -31,47 +32,50 @@ def histogram_figure(propagated: "xr.Dataset") -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
 
     See Also
     --------
-    band_figure, sobol_figure
+    band_chart, sobol_chart
     """
-    from matplotlib.figure import Figure
+    outcome, statistics = propagated.attrs["outcome"], outcome_statistics(propagated)
+    values = propagated[outcome]
+    values = (values.isel(block=[0, 1]) if "block" in propagated.dims else values).values
+    valid = values[np.isfinite(values)]
+    scale, axis = scaled_axis(outcome, valid)
+    counts, edges = np.histogram(scale * valid, bins=int(np.clip(np.sqrt(valid.size) / 1.5, *_BINS)))
+    percent = 100 * counts / valid.size
+    top = _HEADROOM * float(percent.max())
+    bars = Bars(
+        places=(edges[1:] + edges[:-1]) / 2, lengths=percent, breadth=float(edges[1] - edges[0]), along="y", colour=5
+    )
+    mean = Points(
+        x=np.array([scale * statistics.mean.value]), y=np.zeros(1), label="mean", colour=1, marker=2, size=1.6
+    )
+    panel = Panel(
+        x=axis,
+        y=Axis(label="Fraction of the samples", unit="%", lowest=0.0, highest=top),
+        parts=(bars, *_quantiles(statistics, scale, top), mean),
+    )
+    return Chart(panels=(panel,), size=(4.8, 3.4), title=propagated.attrs["rig"], legend="bottom")
 
-    statistics = outcome_statistics(propagated)
-    values = propagated[propagated.attrs["outcome"]]
-    values = values.isel(block=[0, 1]) if "block" in propagated.dims else values
-    valid = values.values[np.isfinite(values.values)]
-    scale, label = scaled_label(propagated.attrs["outcome"], valid)
-    figure = Figure(figsize=(4.8, 3.4))
-    axes = figure.subplots()
-    bins = int(np.clip(np.sqrt(valid.size) / 1.5, *_BINS))
-    weights = np.full(valid.size, 100 / valid.size)
-    axes.hist(scale * valid, bins=bins, weights=weights, color=COLOURS[5], alpha=0.7)
+
+def _quantiles(statistics: SampleStatistics, scale: float, top: float) -> list[Part]:
+    """Each quantile as a line up to a height, with its interval and its probability."""
+    parts: list[Part] = []
     for probability, estimate in statistics.quantiles.items():
         value, lower, upper = (scale * end for end in (estimate.value, estimate.lower, estimate.upper))
-        axes.axvspan(lower, upper, color=COLOURS[0], alpha=0.18, linewidth=0)
-        axes.axvline(value, color=COLOURS[0], linestyle=_QUANTILE_LINES[probability])
-        axes.annotate(
-            f"{100 * probability:.0f} %",
-            (value, 1),
-            xycoords=("data", "axes fraction"),
-            xytext=(0, 2),
-            textcoords="offset points",
-            ha="center",
-            fontsize=7,
-        )
-    axes.plot([scale * statistics.mean.value], [0], "^", color=COLOURS[1], clip_on=False, zorder=5, label="mean")
-    axes.plot([], [], color=COLOURS[0], label="quantile with 95 % interval")
-    axes.set_xlabel(label)
-    axes.set_ylabel("Fraction of the samples [%]")
-    figure.legend(loc="outside lower center", ncols=2)
-    figure.suptitle(propagated.attrs["rig"], fontsize=9)
-    return figure
+        label = "quantile with 95 % interval" if probability == QUANTILES[len(QUANTILES) // 2] else ""
+        ends = np.array([lower, upper])
+        parts += [
+            Band(x=ends, low=np.zeros(2), high=np.full(2, top), opacity=0.18),
+            Rule(value=value, label=label, colour=0, dash=_DASHES[probability]),
+            Note(x=value, y=top, text=f"{100 * probability:.0f} %", side="above"),
+        ]
+    return parts
 
 
-def sobol_figure(propagated: "xr.Dataset", indices: SobolIndices) -> "Figure":
+def sobol_chart(propagated: "xr.Dataset", indices: SobolIndices) -> Chart:
     """Bar chart of first-order and total-order Sobol indices by entry, the largest total-order index on top.
 
     Parameters
@@ -83,45 +87,38 @@ def sobol_figure(propagated: "xr.Dataset", indices: SobolIndices) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
 
     See Also
     --------
-    histogram_figure
+    histogram_chart
     """
-    from matplotlib.figure import Figure
-
     keys, order = [str(key) for key in propagated["block"].values[2:]], np.argsort(indices.total_order)
-    figure = Figure(figsize=(5.6, 0.9 + 0.42 * len(keys)))
-    axes = figure.subplots()
-    rows = np.arange(len(keys))
+    bars = []
     for fractions, interval, shift, colour, hatch, label in (
-        (indices.first_order, indices.first_order_interval, 0.2, COLOURS[0], None, "first order"),
-        (indices.total_order, indices.total_order_interval, -0.2, COLOURS[4], "///", "total order"),
+        (indices.first_order, indices.first_order_interval, 0.2, 0, "", "first order"),
+        (indices.total_order, indices.total_order_interval, -0.2, 4, "///", "total order"),
     ):
         low, high = interval[order].T
         error = np.maximum([fractions[order] - low, high - fractions[order]], 0)
-        axes.barh(
-            rows + shift,
-            100 * fractions[order],
-            0.38,
-            xerr=100 * error,
-            color=colour,
-            hatch=hatch,
-            edgecolor="white",
-            error_kw={"elinewidth": 1, "capsize": 2},
-            label=label,
+        bars.append(
+            Bars(
+                places=np.arange(len(keys), dtype=np.float64) + shift,
+                lengths=100 * fractions[order],
+                breadth=0.38,
+                error=100 * error,
+                colour=colour,
+                hatch=hatch,
+                label=label,
+            )
         )
-    axes.set_yticks(rows, [keys[i] for i in order])
-    axes.set_xlabel("Sobol index, fraction of the variance, with 95 % interval [%]")
-    axes.set_xlim(left=0)
-    figure.suptitle(f"{propagated.attrs['rig']}\n{quantity(propagated.attrs['outcome']).meaning}", fontsize=9)
-    axes.grid(visible=False, axis="y")
-    axes.legend(loc="lower right")
-    return figure
+    x = Axis(label="Sobol index, fraction of the variance, with 95 % interval", unit="%", lowest=0.0)
+    panel = Panel(x=x, y=Axis(words=tuple(keys[place] for place in order)), parts=tuple(bars))
+    title = f"{propagated.attrs['rig']}\n{quantity(propagated.attrs['outcome']).meaning}"
+    return Chart(panels=(panel,), size=(5.6, 0.9 + 0.42 * len(keys)), title=title)
 
 
-def band_figure(propagated: "xr.Dataset") -> "Figure":
+def band_chart(propagated: "xr.Dataset") -> Chart:
     """Median, 50 % and 90 % range of an outcome over one swept key, or maps of median and 90 % range over two.
 
     Parameters
@@ -131,7 +128,7 @@ def band_figure(propagated: "xr.Dataset") -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
 
     Raises
     ------
@@ -140,7 +137,7 @@ def band_figure(propagated: "xr.Dataset") -> "Figure":
 
     See Also
     --------
-    histogram_figure
+    histogram_chart
     """
     names = [str(name) for name in propagated[propagated.attrs["outcome"]].dims[1:]]
     if not 1 <= len(names) <= 2:
@@ -166,57 +163,38 @@ def outcome_statistics(propagated: "xr.Dataset") -> SampleStatistics:
     return sample_statistics(values, subsequence=subsequence)
 
 
-def _band_curves(propagated: "xr.Dataset", name: str) -> "Figure":
+def _band_curves(propagated: "xr.Dataset", name: str) -> Chart:
     """Curves of the quantiles over one swept key."""
-    from matplotlib.figure import Figure
-
-    quantiles, (x_label, x) = outcome_quantiles(propagated, QUANTILES), _scaled_axis(propagated, name)
-    scale, label = scaled_label(propagated.attrs["outcome"], quantiles)
+    quantiles, (x, x_axis) = outcome_quantiles(propagated, QUANTILES), _swept_axis(propagated, name)
+    scale, y_axis = scaled_axis(propagated.attrs["outcome"], quantiles)
     low, lower, median, upper, high = scale * quantiles
-    figure = Figure(figsize=(4.8, 3.4))
-    axes = figure.subplots()
-    axes.fill_between(x, low, high, color=COLOURS[0], alpha=0.18, linewidth=0, label="90 % of the samples")
-    axes.fill_between(x, lower, upper, color=COLOURS[0], alpha=0.32, linewidth=0, label="50 %")
-    axes.plot(x, median, color=COLOURS[0], label="median")
-    set_log_scale_if_geometric(axes, x)
-    axes.set_xlabel(x_label)
-    axes.set_ylabel(label)
-    axes.set_xlim(x.min(), x.max())
-    axes.legend()
-    figure.suptitle(propagated.attrs["rig"], fontsize=9)
-    return figure
+    parts = (
+        Band(x=x, low=low, high=high, label="90 % of the samples", opacity=0.18),
+        Band(x=x, low=lower, high=upper, label="50 %", opacity=0.32),
+        Line(x=x, y=median, label="median"),
+    )
+    x_axis = replace(x_axis, lowest=float(x.min()), highest=float(x.max()))
+    return Chart(panels=(Panel(x=x_axis, y=y_axis, parts=parts),), size=(4.8, 3.4), title=propagated.attrs["rig"])
 
 
-def _band_maps(propagated: "xr.Dataset", first: str, second: str) -> "Figure":
+def _band_maps(propagated: "xr.Dataset", first: str, second: str) -> Chart:
     """Contour maps of the median and of the width of the 90 % range over two swept keys."""
-    from matplotlib.figure import Figure
-    from matplotlib.patheffects import Normal, Stroke
-
     quantiles = outcome_quantiles(propagated, QUANTILES)
-    (x_label, x), (y_label, y) = _scaled_axis(propagated, first), _scaled_axis(propagated, second)
-    scale, label = scaled_label(propagated.attrs["outcome"], quantiles)
+    (x, x_axis), (y, y_axis) = _swept_axis(propagated, first), _swept_axis(propagated, second)
+    scale, axis = scaled_axis(propagated.attrs["outcome"], quantiles)
     low, _, median, _, high = scale * quantiles
-    figure = Figure(figsize=(7.2, 3.5))
-    panels = figure.subplots(1, 2, sharey=True)
-    for axes, surface, title in ((panels[0], median, "Median"), (panels[1], high - low, "Width of the 90 % range")):
-        filled = axes.contourf(x, y, surface.T, levels=12, cmap="cividis")
-        lines = axes.contour(filled, levels=filled.levels[1:-1:2], colors="white", linewidths=0.6)
-        for text in axes.clabel(lines, fontsize=7, fmt="%.3g"):
-            text.set_path_effects([Stroke(linewidth=1.5, foreground="black"), Normal()])
-        axes.set_title(title, fontsize=9)
-        axes.set_xlabel(x_label)
-        axes.grid(visible=False)
-        set_log_scale_if_geometric(axes, x)
-        figure.colorbar(filled, ax=axes, format="%.3g")
-    panels[0].set_ylabel(y_label)
-    figure.suptitle(f"{propagated.attrs['rig']}\n{label}", fontsize=9)
-    return figure
+    panels = []
+    for values, title in ((median.T, "Median"), ((high - low).T, "Width of the 90 % range")):
+        levels = contour_levels(values)
+        field = Field(x=x, y=y, values=values, label=axis.label, unit=axis.unit, levels=levels, lines=levels[2:-1:3])
+        panels.append(Panel(x=x_axis, y=y_axis, parts=(field,), title=title))
+    return Chart(panels=tuple(panels), size=(7.2, 3.5), columns=2, title=propagated.attrs["rig"], shares_y=True)
 
 
-def _scaled_axis(propagated: "xr.Dataset", name: str) -> tuple[str, Floats]:
-    """Axis label of a swept key, and its values in the unit of that label."""
+def _swept_axis(propagated: "xr.Dataset", name: str) -> tuple[Floats, Axis]:
+    """Values of a swept key in the unit of its axis, and that axis."""
     key, values = propagated[name].attrs["key"], propagated[name].values
     if values.dtype.kind == "U":
         raise InvalidInput(f"{key}: an uncertainty band needs numbers to sweep over, not text")
-    scale, label = scaled_label(key.rpartition(".")[2], values)
-    return label, scale * values
+    scale, axis = scaled_axis(key.rpartition(".")[2], values)
+    return scale * values, axis

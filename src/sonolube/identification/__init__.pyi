@@ -5,7 +5,7 @@ from .decay_length.decision import (
     Interval as Interval,
     decide_decay_length as decide_decay_length,
 )
-from .decay_length.figure import decision_dataset as decision_dataset, decision_figure as decision_figure
+from .decay_length.figure import decision_chart as decision_chart, decision_dataset as decision_dataset
 from .decay_length.recorded_switches import recorded_switches as recorded_switches
 from .decay_length.switch_table import SwitchTable as SwitchTable, switch_table as switch_table
 from .fact import (

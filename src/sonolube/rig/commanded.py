@@ -45,11 +45,6 @@ class CommandedQuantity:
     axis: Axis
     axis_scale: float
 
-    @property
-    def axis_label(self) -> str:
-        """Label of an axis of a figure, with its unit."""
-        return self.axis.text
-
     def text(self, value: float, *, digits: int = 3) -> str:
         """Value with its unit, such as "28 V peak to peak"."""
         return f"{format_si(value, self.unit, digits=digits)} {self.qualifier}"

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
+from sonolube.charts import Note, Points
 from sonolube.design.optimisation import (
     DEFAULT_MAXIMUM_SWING,
     Candidate,
@@ -28,6 +29,7 @@ from sonolube.design.optimisation import (
     required_electronics,
     swing_sensitivities,
 )
+from sonolube.design.optimisation.figures import front_chart
 from sonolube.errors import InvalidInput, OutsideRange, UnknownName
 from sonolube.models.actuator import PreloadBolt, catalogue_actuator, catalogue_names
 from sonolube.rig import Rig, least_power_study, point_batch, read_rig, rig_content, structure_entries
@@ -172,6 +174,12 @@ def test_a_pareto_front_trades_one_objective_for_the_other_between_their_optima(
     assert np.all(np.diff(values[:, 1]) < 0)
     assert values[0, 0] == approx(found.best.objective("power"), rel=1e-3)
     assert values[-1, 1] <= found.screening.objectives["heat"][found.screening.feasible].min() * 1.01
+    (panel,) = front_chart(found).panels
+    families = [part for part in panel.parts if isinstance(part, Points) and not part.is_faint]
+    assert sorted(np.concatenate([family.x for family in families])) == approx(values[:, 0])
+    assert {family.label for family in families} <= {"own, sine", "nac2023, sine"}
+    ends = [(part.x, part.y) for part in panel.parts if isinstance(part, Note)]
+    assert ends == [tuple(values[0]), tuple(values[-1])]
 
 
 def test_a_voltage_limit_below_the_optimum_becomes_active_or_infeasible() -> None:

@@ -5,14 +5,15 @@ import pytest
 from pytest import raises
 from reliability import decay_length_recordings as made
 
+from sonolube.charts import Points, draw_chart
 from sonolube.errors import InvalidInput
 from sonolube.identification import (
     DecayLengthDecision,
     SwitchConditions,
     SwitchTable,
     decide_decay_length,
+    decision_chart,
     decision_dataset,
-    decision_figure,
 )
 
 CONDITIONS = SwitchConditions(natural_frequency=made.FREE_FREQUENCY)
@@ -57,10 +58,15 @@ def test_the_figure_has_a_panel_for_each_reading_and_the_dataset_its_courses(
     sliding: tuple[made.Truth, SwitchTable, DecayLengthDecision],
 ) -> None:
     truth, table, found = sliding
-    figure = decision_figure(table, found)
-    labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels[0] == "Friction ratio"
-    assert len(labels) == 5
+    chart = decision_chart(table, found)
+    assert [panel.y.unit for panel in chart.panels] == ["", "N", "A", "Hz", "Hz"]
+    raw, read, *courses = chart.panels[0].parts
+    assert isinstance(raw, Points)
+    assert raw.y == pytest.approx(table.friction_force / table.intrinsic_friction_force)
+    assert isinstance(read, Points)
+    assert read.sources[0] == "generated, switch 1"
+    assert len(courses) == len(found.courses)
+    draw_chart(chart)
     data = decision_dataset(table, found)
     fitted = data["friction_ratio_by_long_sliding"].to_numpy()
     assert np.sqrt(np.mean((fitted - truth.ratio) ** 2)) < 0.03

@@ -4,8 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from pytest import raises
+import numpy as np
+from pytest import approx, raises
 
+from sonolube.charts import Line, Points, draw_chart
 from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.tasks.design.control import control
@@ -23,6 +25,24 @@ def test_quantities_as_text_and_in_si_give_the_answer_of_the_command(
     with few_points():
         in_si = control(path, friction=coefficient, duration=0.04, warming=20.0, noise=0.005)
     assert in_si.object() == by_text.object()
+
+
+def test_the_figures_have_the_target_the_limit_and_the_motion_of_the_slider(rigs: Path) -> None:
+    found = control(rigs / "collar.toml", friction="1.5N", duration="40ms", warming="20K", stick_slip=True)
+    loop, design, motion = (drawing.chart() for drawing in found.figures().values())  # type: ignore[misc]
+    histories = [part for part in loop.panels[0].parts if isinstance(part, Line)]
+    assert [line.label for line in histories] == ["frequency fixed", "resonance tracked", "target"]
+    assert [panel.y.unit for panel in loop.panels] == ["N", "V", "kHz"]
+    (target,) = (part for part in design.panels[0].parts if isinstance(part, Points))
+    assert target.y == approx([1.5])
+    model, table, *_ = (part for part in design.panels[0].parts if isinstance(part, Line))
+    assert np.interp(target.x, model.x, model.y) == approx(target.y, rel=1e-6)
+    assert table.y == approx(np.interp(table.x, model.x, model.y), rel=0.01)
+    still, vibrating = (part for part in motion.panels[0].parts if isinstance(part, Line))
+    assert np.ptp(still.y) > np.ptp(vibrating.y)
+    assert still.x.size <= 3000
+    for chart in (loop, design, motion):
+        draw_chart(chart)
 
 
 def test_arguments_are_refused_by_their_names(rigs: Path) -> None:

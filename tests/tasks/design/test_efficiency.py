@@ -4,9 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pytest import approx, raises
 
 import sonolube as sl
+from sonolube.charts import Line, Points
+from sonolube.design.efficiency_figures import efficiency_chart
 from sonolube.errors import InvalidInput
 from sonolube.tasks.design.efficiency import efficiency
 from sonolube.tasks.files import NamedBytes
@@ -25,6 +28,17 @@ def test_runs_as_path_bytes_and_dataset_give_the_answer_of_the_command(
         found = efficiency(given, rig=sl.read_rig(rig), target_friction=0.08, speed=0.0655)
         assert found.object()["actuator_power"]["value"] == approx(expected["actuator_power"]["value"])
         assert found.object()["slope"] == expected["slope"]
+
+
+def test_the_figure_has_every_run_and_the_line_of_the_answer(examples: Path, rigs: Path) -> None:
+    found = efficiency(examples / "efficiency-runs.csv", rig=rigs / "power_map.toml")
+    (panel,) = efficiency_chart(found.calibration).panels
+    (runs,) = (part for part in panel.parts if isinstance(part, Points))
+    (line,) = (part for part in panel.parts if isinstance(part, Line))
+    fitted = np.polynomial.Polynomial.fit(runs.x, runs.y, 1)
+    assert panel.y.text == "Efficiency coefficient [mW mm²/(N W)]"
+    assert runs.x.size == found.calibration.fit.runs
+    assert line.y == approx(fitted(line.x))
 
 
 def test_arguments_are_refused_by_their_names(examples: Path, rigs: Path) -> None:

@@ -4,9 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from pytest import raises
+import numpy as np
+from pytest import approx, raises
 
 import sonolube as sl
+from sonolube.charts import Points, chart_object, draw_chart
+from sonolube.design.test_plan.figure import plan_chart
 from sonolube.errors import InvalidInput
 from sonolube.tasks.design.plan import plan
 from sonolube.tasks.files import NamedBytes
@@ -26,6 +29,23 @@ def test_quantities_as_text_and_in_si_give_the_answer_of_the_command(
     assert by_text.json_object() == expected
     in_si = plan(sl.read_rig(path), **FEW, measuring_time=10.0, difference=0.1, runs=NamedBytes("runs.csv", RUNS))
     assert in_si.json_object() == expected
+
+
+def test_the_figure_has_every_candidate_and_numbers_the_points(rigs: Path) -> None:
+    found = plan(rigs / "power_map.toml", **FEW, runs=NamedBytes("runs.csv", RUNS))
+    chart = plan_chart(found.plan)
+    places, ratios = chart.panels
+    candidates, *_, chosen = (part for part in places.parts if isinstance(part, Points))
+    assert candidates.x.size == 4 * 2 + 1  # four speeds, two amplitudes, and the rig's own point
+    assert candidates.shades is not None
+    assert candidates.shades.max() == approx(candidates.scale_ends[1])  # type: ignore[index]
+    assert sorted(", ".join(chosen.texts).split(", ")) == ["1", "2"]
+    prediction = ratios.parts[0]
+    assert isinstance(prediction, Points)
+    assert np.all(prediction.y_error >= 0)  # type: ignore[operator]
+    assert [word.partition("\n")[0] for word in ratios.x.words] == ["1", "2"]
+    assert chart_object(chart)["panels"]
+    draw_chart(chart)
 
 
 def test_arguments_are_refused_by_their_names(rigs: Path) -> None:

@@ -1,21 +1,21 @@
 """Figures of friction control: closed loop over time, feed-forward map with sensitivity, and stick-slip of a slider."""
 
-from textwrap import fill
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule
+from sonolube.checks import Floats
 from sonolube.design.control.control_design import ControlDesign
 from sonolube.design.control.process import open_loop_response
 from sonolube.design.control.stick_slip import StickSlipSuppression
-from sonolube.figure import COLOURS
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+_SHOWN = 0.3  # of the motion of a slider
+_MOST_DRAWN = 3000  # points of it
+_LEAST_SPAN = 2e-3  # of an axis relative to its middle, below which rounding errors would look like motion
 
 
-def closed_loop_figure(study: ControlDesign) -> "Figure":
+def closed_loop_chart(study: ControlDesign) -> Chart:
     """Friction force and drive voltage with its frequency, or commanded amplitude, of the closed loop over time.
 
     Parameters
@@ -24,49 +24,47 @@ def closed_loop_figure(study: ControlDesign) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
         With the run at a fixed frequency beside, where the study has one.
     """
-    from matplotlib.figure import Figure
-
     run, fixed, quantity = study.run, study.fixed_frequency_run, study.plant.quantity
-    is_electrical = run.phase is not None
-    figure = Figure(figsize=(5.6, 5.6 if is_electrical else 4.4))
-    friction, drive, *lower = figure.subplots(
-        3 if is_electrical else 2, 1, sharex=True, height_ratios=(2, 1, 1)[: 3 if is_electrical else 2]
-    )
-    ms = 1e3 * run.time
+    ms, scale = 1e3 * run.time, quantity.axis_scale
+    highest = scale * study.level_maximum
+    friction: list[Part] = []
+    drive: list[Part] = []
     if fixed is not None:
-        friction.plot(ms, fixed.friction_force, color=COLOURS[1], linestyle="--", label="frequency fixed")
-        drive.plot(ms, quantity.axis_scale * fixed.level, color=COLOURS[1], linestyle="--")
-    friction.plot(ms, run.friction_force, color=COLOURS[0], label="friction" if fixed is None else "resonance tracked")
-    friction.plot(ms, run.setpoint, color=COLOURS[6], linestyle=":", drawstyle="steps-post", label="target")
-    friction.set(ylabel="Friction force [N]", ylim=(0, None))
-    friction.legend(loc="best")
-    drive.plot(ms, quantity.axis_scale * run.level, color=COLOURS[0])
-    highest = quantity.axis_scale * study.level_maximum
-    drive.axhline(highest, color="0.5", linestyle="-.", linewidth=1, label=f"{study.limit} limit")
-    drive.set(ylabel=fill(quantity.axis_label, 14), ylim=(0, 1.12 * highest))
-    drive.legend(loc="best")
-    for frequency in lower:
-        _draw_frequency(frequency, study)
-    (lower or [drive])[-1].set(xlabel="Time [ms]", xlim=(0, float(ms[-1])))
-    return figure
+        friction.append(Line(x=ms, y=fixed.friction_force, label="frequency fixed", colour=1, dash=1))
+        drive.append(Line(x=ms, y=scale * fixed.level, colour=1, dash=1))
+    friction += [
+        Line(x=ms, y=run.friction_force, label="friction" if fixed is None else "resonance tracked"),
+        Line(x=ms, y=run.setpoint, label="target", colour=6, dash=3, is_stepped=True),
+    ]
+    drive += [
+        Line(x=ms, y=scale * run.level),
+        Rule(value=highest, along="y", label=f"{study.limit} limit", colour="0.5", dash=2),
+    ]
+    time = Axis(label="Time", unit="ms", lowest=0.0, highest=float(ms[-1]))
+    panels = [
+        Panel(x=time, y=Axis(label="Friction force", unit="N", lowest=0.0), parts=tuple(friction)),
+        Panel(x=time, y=replace(quantity.axis, lowest=0.0, highest=1.12 * highest), parts=tuple(drive)),
+    ]
+    if run.phase is not None:
+        panels.append(_frequencies(time, ms, 1e-3 * run.frequency, 1e-3 * run.resonance_frequency))
+    heights = (2.0, 1.0, 1.0)[: len(panels)]
+    return Chart(panels=tuple(panels), size=(5.6, 2.0 + 1.2 * len(panels)), heights=heights, shares_x=True)
 
 
-def _draw_frequency(frequency: "Axes", study: ControlDesign) -> None:
-    """Draw drive and resonance frequency over time."""
-    run = study.run
-    ms = 1e3 * run.time
-    frequency.plot(ms, 1e-3 * run.frequency, color=COLOURS[0], label="drive")
-    frequency.plot(ms, 1e-3 * run.resonance_frequency, color=COLOURS[2], linestyle="--", label="resonance")
-    frequency.set(ylabel="Frequency\n[kHz]")
-    frequency.ticklabel_format(axis="y", useOffset=False)
-    _require_span(frequency)
-    frequency.legend(loc="best")
+def _frequencies(time: Axis, ms: Floats, drive: Floats, resonance: Floats) -> Panel:
+    """Frequency of drive and resonance in kHz over time, on an axis that makes no motion of rounding errors."""
+    low, high = float(min(drive.min(), resonance.min())), float(max(drive.max(), resonance.max()))
+    middle = (low + high) / 2
+    half = max(0.55 * (high - low), _LEAST_SPAN / 2 * middle)
+    lines = (Line(x=ms, y=drive, label="drive"), Line(x=ms, y=resonance, label="resonance", colour=2, dash=1))
+    y = Axis(label="Frequency", unit="kHz", lowest=middle - half, highest=middle + half)
+    return Panel(x=time, y=y, parts=lines)
 
 
-def control_design_figure(study: ControlDesign) -> "Figure":
+def control_design_chart(study: ControlDesign) -> Chart:
     r"""Feed-forward map from voltage or amplitude to friction, and magnitude of the sensitivity over frequency.
 
     Parameters
@@ -75,7 +73,7 @@ def control_design_figure(study: ControlDesign) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
 
     Notes
     -----
@@ -83,32 +81,40 @@ def control_design_figure(study: ControlDesign) -> "Figure":
 
     .. math:: |S(f)| = \frac{1}{|1 + g\,P(f)\,C(f)|}
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 3.0))
-    lookup, loop = figure.subplots(1, 2)
     plant, controller = study.plant, study.controller
-    scale = plant.quantity.axis_scale
-    lookup.plot(scale * plant.level, plant.friction_force, color=COLOURS[0], label="rig's model")
     table = controller.intrinsic_friction_force - np.array(controller.force_reduction)
-    lookup.plot(scale * np.array(controller.level), table, color=COLOURS[1], linestyle="--", label="controller's table")
+    scale = plant.quantity.axis_scale
     level = np.interp(-study.friction_force, -plant.friction_force, plant.level)
-    lookup.plot(scale * level, study.friction_force, "o", color=COLOURS[6], label="target")
-    lookup.set(xlabel=plant.quantity.axis_label, ylabel="Friction force [N]", ylim=(0, None), xlim=(0, None))
-    lookup.legend()
+    lookup = (
+        Line(x=scale * plant.level, y=plant.friction_force, label="rig's model"),
+        Line(x=scale * np.array(controller.level), y=table, label="controller's table", colour=1, dash=1),
+        Points(x=np.array([scale * level]), y=np.array([study.friction_force]), label="target", colour=6),
+    )
     nyquist = 0.5 / controller.process.sample_interval
     f = np.geomspace(1e-3 * nyquist, nyquist, 600)
     open_loop = study.plant_gain * open_loop_response(controller.process, controller.gains, frequency=f)
-    loop.semilogx(f, 1 / np.abs(1 + open_loop))
     peak = study.margins.sensitivity_peak
-    loop.axhline(peak, color="0.5", linestyle="-.", linewidth=1, label=f"maximum, {peak:.2f}")
-    loop.axhline(1, color="0.5", linewidth=0.6)
-    loop.set(xlabel="Frequency [Hz]", ylabel="Sensitivity, magnitude [–]", ylim=(0, 1.25 * max(peak, 1)))
-    loop.legend(loc="lower right")
-    return figure
+    loop = (
+        Line(x=f, y=1 / np.abs(1 + open_loop)),
+        Rule(value=peak, along="y", label=f"maximum, {peak:.2f}", colour="0.5", dash=2),
+        Rule(value=1.0, along="y", colour="0.5", dash=0),
+    )
+    magnitude = Axis(label="Sensitivity, magnitude", lowest=0.0, highest=1.25 * max(peak, 1))
+    return Chart(
+        panels=(
+            Panel(
+                x=replace(plant.quantity.axis, lowest=0.0),
+                y=Axis(label="Friction force", unit="N", lowest=0.0),
+                parts=lookup,
+            ),
+            Panel(x=Axis(label="Frequency", unit="Hz", logarithmic=True), y=magnitude, parts=loop),
+        ),
+        size=(6.4, 3.0),
+        columns=2,
+    )
 
 
-def stick_slip_figure(suppression: StickSlipSuppression) -> "Figure":
+def stick_slip_chart(suppression: StickSlipSuppression) -> Chart:
     """Force in the holder of a dragged slider over time, without and with vibration.
 
     Parameters
@@ -117,26 +123,20 @@ def stick_slip_figure(suppression: StickSlipSuppression) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
     """
-    from matplotlib.figure import Figure
-
-    still, vibrating = suppression.still, suppression.vibrating
-    figure = Figure(figsize=(5.6, 2.8))
-    axes = figure.subplots()
-    axes.plot(1e3 * still.time, still.friction_force, color=COLOURS[1], linewidth=0.9, label="without vibration")
     label = f"with {suppression.quantity.text(suppression.level)}"
-    axes.plot(1e3 * vibrating.time, vibrating.friction_force, color=COLOURS[0], linestyle="--", label=label)
-    axes.set(xlabel="Time [ms]", ylabel="Force in the holder [N]", xlim=(0, 0.3e3 * float(still.time[-1])))
-    top = float(still.friction_force.max())
-    axes.set_ylim(top=1.35 * top)
-    axes.legend(loc="upper center", ncols=2)
-    return figure
-
-
-def _require_span(axes: "Axes") -> None:
-    """Widen the y axis to at least a thousandth of its values, so that rounding errors do not look like motion."""
-    low, high = axes.get_ylim()
-    middle, half = (low + high) / 2, (high - low) / 2
-    half = max(half, 1e-3 * middle)
-    axes.set_ylim(middle - half, middle + half)
+    still, vibrating = suppression.still, suppression.vibrating
+    count = max(2, int(_SHOWN * still.time.size))
+    shown = slice(0, count, -(-count // _MOST_DRAWN))
+    ms = 1e3 * still.time[shown]
+    lines = (
+        Line(x=ms, y=still.friction_force[shown], label="without vibration", colour=1, weight=0.7),
+        Line(x=ms, y=vibrating.friction_force[shown], label=label, dash=1),
+    )
+    panel = Panel(
+        x=Axis(label="Time", unit="ms", lowest=0.0, highest=float(ms[-1])),
+        y=Axis(label="Force in the holder", unit="N"),
+        parts=lines,
+    )
+    return Chart(panels=(panel,), size=(5.6, 2.8), legend="top")

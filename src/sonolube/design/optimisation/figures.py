@@ -1,9 +1,10 @@
 """Figures of an optimisation: Pareto front, objective over frequency, limits used, and power factor."""
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
+from sonolube.charts import Axis, Band, Bars, Chart, Line, Note, Panel, Part, Points, Rule
 from sonolube.checks import Floats
 from sonolube.design.optimisation.drive_electronics import (
     CAPACITANCE_TOLERANCE,
@@ -15,26 +16,19 @@ from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.design.optimisation.gradient_search import DesignPoint
 from sonolube.design.optimisation.optimum import Optimum
 from sonolube.design.optimisation.space import OWN_ACTUATOR, Candidate
-from sonolube.figure import COLOURS
 from sonolube.models.actuator import matched_power_factor
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-    from matplotlib.figure import Figure
-
-_OBJECTIVE_LABELS = {
-    "power": "Power of the amplifier [W]",
-    "heat": "Heat in the actuator [W]",
-    "voltage": "Voltage, peak to peak [V]",
+_AXES = {
+    "power": Axis(label="Power of the amplifier", unit="W"),
+    "heat": Axis(label="Heat in the actuator", unit="W"),
+    "voltage": Axis(label="Voltage, peak to peak", unit="V"),
 }
-_MARKERS = "osD^vPX*<>"
-_STYLES = ("-", "--", "-.", ":")
 _MOST_CURVES = 6  # actuators drawn over frequency
 _BANDS = 60  # of frequency, in each of which the least objective is drawn
+_SPAN = 5.0  # ratio of its ends beyond which an axis of the front is logarithmic
 
 
-def front_figure(optimum: Optimum) -> "Figure":
+def front_chart(optimum: Optimum) -> Chart:
     """Pareto front of two objectives among all feasible designs of the screening.
 
     Parameters
@@ -44,41 +38,31 @@ def front_figure(optimum: Optimum) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
     """
-    from matplotlib.figure import Figure
-
     assert optimum.second_objective is not None
-    figure = Figure(figsize=(5.8, 3.8))
-    axes = figure.subplots()
     screened = optimum.screening
     names = (optimum.minimise, optimum.second_objective)
     first, second = (screened.objectives[name][screened.feasible] for name in names)
-    axes.plot(first, second, ".", color="0.75", markersize=3, label="designs looked at", rasterized=True, zorder=1)
     points = np.array([[point.objective(name) for name in names] for point in optimum.front])
-    axes.plot(*points.T, color="0.2", linewidth=1.2, drawstyle="steps-post", zorder=2)
-    for index, name in enumerate(dict.fromkeys(_family(point.candidate) for point in optimum.front)):
-        own = points[[_family(point.candidate) == name for point in optimum.front]]
-        axes.plot(
-            *own.T,
-            _MARKERS[index % len(_MARKERS)],
-            color=COLOURS[index % len(COLOURS)],
-            markeredgecolor="white",
-            markersize=7,
-            label=name,
-            zorder=3,
-        )
-    _frame_front(axes, points)
-    ends = [optimum.front[0], optimum.front[-1]] if len(optimum.front) > 1 else [optimum.front[0]]
-    for point, at, (across, align) in zip(ends, (points[0], points[-1]), ((8, "left"), (-8, "right")), strict=False):
-        text = f"{1e-3 * point.frequency:.2f} kHz\n{point.voltage_peak_to_peak:.3g} V"
-        axes.annotate(text, at, xytext=(across, 14), textcoords="offset points", fontsize=7, ha=align)
-    axes.set(xlabel=_OBJECTIVE_LABELS[optimum.minimise], ylabel=_OBJECTIVE_LABELS[optimum.second_objective])
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=3)
-    return figure
+    parts: list[Part] = [
+        Points(x=first, y=second, label="designs looked at", colour="0.75", is_faint=True),
+        Line(x=points[:, 0], y=points[:, 1], colour="0.2", weight=0.85, is_stepped=True),
+    ]
+    families = [_family(point.candidate) for point in optimum.front]
+    for place, name in enumerate(dict.fromkeys(families)):
+        own = [number for number, each in enumerate(families) if each == name]
+        x, y = points[own].T
+        sources = tuple(_drive(optimum.front[number]) for number in own)
+        parts.append(Points(x=x, y=y, label=name, colour=place, marker=place, size=1.5, sources=sources))
+    parts.append(Note(x=points[0, 0], y=points[0, 1], text=_drive(optimum.front[0]), side="above"))
+    if len(points) > 1:
+        parts.append(Note(x=points[-1, 0], y=points[-1, 1], text=_drive(optimum.front[-1]), side="left"))
+    across, up = (_front_axis(name, values) for name, values in zip(names, points.T, strict=True))
+    return Chart(panels=(Panel(x=across, y=up, parts=tuple(parts)),), size=(5.8, 3.8), legend="top")
 
 
-def frequency_figure(optimum: Optimum) -> "Figure":
+def frequency_chart(optimum: Optimum) -> Chart:
     """Least objective over drive frequency, one curve for each actuator and waveform.
 
     Parameters
@@ -87,41 +71,30 @@ def frequency_figure(optimum: Optimum) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
         With the refined designs as markers.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5.8, 3.6))
-    axes = figure.subplots()
     screened = optimum.screening
     families = np.array([_family(candidate) for candidate in screened.candidates])[screened.candidate_index]
-    for index, point in enumerate(optimum.designs[:_MOST_CURVES]):
+    curves: list[Part] = []
+    markers: list[Part] = []
+    best = "best of each" if len(optimum.designs) > 1 else "best"
+    for place, point in enumerate(optimum.designs[:_MOST_CURVES]):
         own = screened.feasible & (families == _family(point.candidate))
         f, least = _envelope(screened.frequency[own], screened.objectives[optimum.minimise][own])
-        colour = COLOURS[index % len(COLOURS)]
         label = _family(point.candidate).replace(f"{OWN_ACTUATOR},", "the rig's actuator,", 1)
-        axes.semilogy(1e-3 * f, least, _STYLES[index % 4], color=colour, label=label)
-        axes.plot(
-            1e-3 * point.frequency,
-            point.objective(optimum.minimise),
-            _MARKERS[index],
-            color=colour,
-            markeredgecolor="black",
-            markersize=7,
-            zorder=3,
-            clip_on=False,
-            label=(None if index else "best of each" if len(optimum.designs) > 1 else "best"),
-        )
-    _plain_numbers(axes.yaxis)
+        curves.append(Line(x=1e-3 * f, y=least, label=label, colour=place, dash=place % 4))
+        at, objective = np.array([1e-3 * point.frequency]), np.array([point.objective(optimum.minimise)])
+        text = "" if place else best
+        markers.append(Points(x=at, y=objective, label=text, colour=place, marker=place, size=1.5))
     low, high = optimum.problem.space.frequencies
-    ylabel = _OBJECTIVE_LABELS[optimum.minimise]
-    axes.set(xlabel="Drive frequency [kHz]", ylabel=ylabel, xlim=(1e-3 * low, 1e-3 * high))
-    axes.legend(ncols=2 if len(optimum.designs) > 3 else 1)
-    return figure
+    x = Axis(label="Drive frequency", unit="kHz", lowest=1e-3 * low, highest=1e-3 * high)
+    y = replace(_AXES[optimum.minimise], logarithmic=True)
+    panel = Panel(x=x, y=y, parts=(*curves, *markers))
+    return Chart(panels=(panel,), size=(5.8, 3.6), legend="top", legend_columns=2)
 
 
-def limits_figure(point: DesignPoint) -> "Figure":
+def limits_chart(point: DesignPoint) -> Chart:
     """Fraction of each limit that a design uses, as bars.
 
     Parameters
@@ -130,24 +103,25 @@ def limits_figure(point: DesignPoint) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
     """
-    from matplotlib.figure import Figure
+    used = {name: 100 * float(values[0]) for name, values in point.evaluation.utilisation.items() if name in LIMITS}
+    used = {name: percent for name, percent in sorted(used.items(), key=lambda item: item[1]) if percent > 0}
+    percents = np.array(list(used.values()))
+    bars = Bars(
+        places=np.arange(len(used), dtype=np.float64),
+        lengths=percents,
+        texts=tuple(f"{each:.3g} %" for each in percents),
+    )
+    panel = Panel(
+        x=Axis(label="Share of the limit used", unit="%", lowest=0.0, highest=118.0),
+        y=Axis(words=tuple(LIMITS[name] for name in used)),
+        parts=(bars, Rule(value=100.0, colour="0", dash=1)),
+    )
+    return Chart(panels=(panel,), size=(5.8, 0.9 + 0.3 * max(len(used), 1)))
 
-    used = {name: float(values[0]) for name, values in point.evaluation.utilisation.items() if name in LIMITS}
-    used = {name: share for name, share in sorted(used.items(), key=lambda item: item[1]) if share > 0}
-    figure = Figure(figsize=(5.8, 0.9 + 0.3 * max(len(used), 1)))
-    axes = figure.subplots()
-    percent = [100 * share for share in used.values()]
-    bars = axes.barh([LIMITS[name] for name in used], percent, color=COLOURS[0], height=0.6)
-    axes.bar_label(bars, fmt="{:.3g} %", padding=4, fontsize=8)
-    axes.axvline(100, color="black", linestyle="--", linewidth=1)
-    axes.set(xlabel="Share of the limit used [%]", xlim=(0, 118))
-    axes.grid(visible=False, axis="y")
-    return figure
 
-
-def power_factor_figure(optimum: Optimum, electric: DriveElectronics) -> "Figure":
+def power_factor_chart(optimum: Optimum, electric: DriveElectronics) -> Chart:
     """Power factor at the amplifier over frequency about the drive's, without and with matching networks.
 
     Parameters
@@ -158,34 +132,30 @@ def power_factor_figure(optimum: Optimum, electric: DriveElectronics) -> "Figure
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
         Bands are the range over the tolerance of the capacitance.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5.8, 3.4))
-    axes = figure.subplots()
     rig = design_rig(optimum.problem, optimum.best)
     f = optimum.best.frequency * np.linspace(0.85, 1.15, 401)
     bare = stack_admittance(rig, frequency=f)
-    axes.plot(1e-3 * f, bare.real / np.abs(bare), color="0.4", linestyle=":", label="without a network")
-    for index, matched in enumerate(electric.networks):
-        colour = COLOURS[index]
+    parts: list[Part] = [Line(x=1e-3 * f, y=bare.real / np.abs(bare), label="without a network", colour="0.4", dash=3)]
+    for place, matched in enumerate(electric.networks):
         changed = [
             matched_power_factor(
                 matched.network, admittance=stack_admittance(rig, frequency=f, capacitance_change=change), frequency=f
             )
             for change in np.linspace(-CAPACITANCE_TOLERANCE, CAPACITANCE_TOLERANCE, 9)
         ]
-        axes.plot(1e-3 * f, changed[4], _STYLES[index], color=colour, label=matched.name)
-        edges = [np.min(changed, axis=0), np.max(changed, axis=0)]
-        label = f"capacitance off by up to {100 * CAPACITANCE_TOLERANCE:.0f} %" if index == 0 else None
-        axes.fill_between(1e-3 * f, *edges, color=colour, alpha=0.13, linewidth=0, label=label)
-    axes.axvline(1e-3 * optimum.best.frequency, ymax=1 / 1.32, color="0.5", linewidth=0.8, label="the drive")
-    axes.set(xlabel="Frequency [kHz]", ylabel="Power factor [–]", ylim=(0, 1.32), xlim=(1e-3 * f[0], 1e-3 * f[-1]))
-    axes.set_yticks(np.linspace(0, 1, 6))
-    axes.legend(ncols=2, loc="upper center")
-    return figure
+        low, high = np.min(changed, axis=0), np.max(changed, axis=0)
+        label = "" if place else f"capacitance off by up to {100 * CAPACITANCE_TOLERANCE:.0f} %"
+        parts += [
+            Line(x=1e-3 * f, y=changed[4], label=matched.name, colour=place, dash=place),
+            Band(x=1e-3 * f, low=low, high=high, label=label, colour=place, opacity=0.13),
+        ]
+    parts.append(Rule(value=1e-3 * optimum.best.frequency, label="the drive", dash=0))
+    x = Axis(label="Frequency", unit="kHz", lowest=1e-3 * float(f[0]), highest=1e-3 * float(f[-1]))
+    panel = Panel(x=x, y=Axis(label="Power factor", lowest=0.0, highest=1.02), parts=tuple(parts))
+    return Chart(panels=(panel,), size=(5.8, 3.4), legend="top", legend_columns=2)
 
 
 def _family(candidate: Candidate) -> str:
@@ -193,13 +163,9 @@ def _family(candidate: Candidate) -> str:
     return f"{candidate.actuator}, {candidate.waveform}"
 
 
-def _plain_numbers(axis: "Axis") -> None:
-    """Write the numbers of a logarithmic axis in full, also between the powers of ten."""
-    from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
-
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(np.inf, np.inf)))
-    axis.set_minor_formatter(NullFormatter())
+def _drive(point: DesignPoint) -> str:
+    """Frequency and voltage of a design."""
+    return f"{1e-3 * point.frequency:.2f} kHz, {point.voltage_peak_to_peak:.3g} V"
 
 
 def _envelope(f: Floats, values: Floats) -> tuple[Floats, Floats]:
@@ -211,11 +177,9 @@ def _envelope(f: Floats, values: Floats) -> tuple[Floats, Floats]:
     return f[best], values[best]
 
 
-def _frame_front(axes: "Axes", points: Floats) -> None:
-    """Set the limits of both axes to the front with a margin, logarithmic where it spans a factor of five."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    reach = np.maximum((high / low) ** 0.5, 1.15)
-    ends = low / reach**0.5, high * reach
-    for axis, (first, last) in zip("xy", np.transpose(ends), strict=True):
-        getattr(axes, f"set_{axis}scale")("log" if last > 5 * first else "linear")
-        getattr(axes, f"set_{axis}lim")(first, last)
+def _front_axis(objective: str, values: Floats) -> Axis:
+    """Axis of an objective about the front with a margin, logarithmic where it spans a factor of five."""
+    low, high = float(values.min()), float(values.max())
+    reach = max((high / low) ** 0.5, 1.15)
+    first, last = low / reach**0.5, high * reach
+    return replace(_AXES[objective], lowest=first, highest=last, logarithmic=last > _SPAN * first)

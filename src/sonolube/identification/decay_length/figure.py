@@ -1,11 +1,12 @@
 """Figure and dataset of a decision about the decay length: readings over the distance with the fitted courses."""
 
-from typing import TYPE_CHECKING, Final
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from sonolube.charts import Axis, Chart, Line, Panel, Points
 from sonolube.checks import Floats
-from sonolube.figure import COLOURS, LINES, MARKERS
 from sonolube.identification.decay_length.decision import DecayLengthDecision
 from sonolube.identification.decay_length.run_model import zero_free_ratio
 from sonolube.identification.decay_length.switch_table import SwitchTable
@@ -14,17 +15,15 @@ from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-_LABELS: Final = {
-    "friction_ratio": "Friction ratio",
-    "force_zero": "Zero of the force [N]",
-    "stack_current": "Stack current [A]",
-    "small_drive_shift": "Shift at\nsmall drive [Hz]",
-    "large_drive_shift": "Shift at\nlarge drive [Hz]",
+_AXES: Final = {
+    "friction_ratio": Axis(label="Friction ratio"),
+    "force_zero": Axis(label="Zero of the force", unit="N"),
+    "stack_current": Axis(label="Stack current", unit="A"),
+    "small_drive_shift": Axis(label="Shift at small drive", unit="Hz"),
+    "large_drive_shift": Axis(label="Shift at large drive", unit="Hz"),
 }
-_READINGS: Final = tuple(_LABELS)
+_READINGS: Final = tuple(_AXES)
 
 
 def decision_dataset(table: SwitchTable, decision: DecayLengthDecision) -> "xr.Dataset":
@@ -60,7 +59,7 @@ def decision_dataset(table: SwitchTable, decision: DecayLengthDecision) -> "xr.D
     )
 
 
-def decision_figure(table: SwitchTable, decision: DecayLengthDecision) -> "Figure":
+def decision_chart(table: SwitchTable, decision: DecayLengthDecision) -> Chart:
     """Friction ratio, zero, current and shifts over the sliding distance, each with the courses of the hypotheses.
 
     Parameters
@@ -70,34 +69,16 @@ def decision_figure(table: SwitchTable, decision: DecayLengthDecision) -> "Figur
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
     """
-    from matplotlib.figure import Figure
-
     measured = {name: values for name, values in _measured(table).items() if np.isfinite(values).any()}
-    figure = Figure(figsize=(5.4, 1.25 * len(measured) + 1.0))
-    panels = figure.subplots(len(measured), 1, sharex=True, squeeze=False)[:, 0]
-    s = table.sliding_distance
-    for axes, (name, values) in zip(panels, measured.items(), strict=True):
-        axes.plot(
-            s,
-            values,
-            MARKERS[0],
-            color="0.35",
-            markersize=3,
-            label="read, zero subtracted" if axes is panels[0] else None,
-        )
-        if name == "friction_ratio":
-            raw = table.friction_force / table.intrinsic_friction_force
-            axes.plot(s, raw, "x", color="0.6", markersize=3, label="zero not subtracted")
-        _draw_courses(axes, s, name, decision)
-        axes.set_ylabel(_LABELS[name])
-        if name != "friction_ratio":
-            _limits_with_zero(axes, name)
-    panels[-1].set_xlabel("Sliding distance [m]")
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2)
-    return figure
+    x = Axis(label="Sliding distance", unit="m")
+    panels = tuple(
+        Panel(x=x, y=_axis(name, values), parts=(*_readings(table, name, values), *_courses(table, name, decision)))
+        for name, values in measured.items()
+    )
+    size = (5.4, 1.25 * len(measured) + 1.0)
+    return Chart(panels=panels, size=size, legend="bottom", legend_columns=2, shares_x=True)
 
 
 def _measured(table: SwitchTable) -> dict[str, Floats]:
@@ -116,22 +97,34 @@ def _attributes(name: str) -> dict[str, str]:
     return {"units": known.unit or "1", "long_name": known.meaning}
 
 
-def _draw_courses(axes: "Axes", s: Floats, name: str, decision: DecayLengthDecision) -> None:
-    """Draw the fitted course of each hypothesis, or the smoothed zero."""
-    if name == "force_zero":
-        axes.plot(s[decision.zero.rows], decision.zero.force_zero, color=COLOURS[3])
-        return
-    for index, (hypothesis, courses) in enumerate(decision.courses.items()):
-        if name in courses:
-            label = HYPOTHESES[hypothesis].partition(":")[0]
-            axes.plot(s, courses[name], linestyle=LINES[index], color=COLOURS[index], label=label)
+def _readings(table: SwitchTable, name: str, values: Floats) -> tuple[Points, ...]:
+    """Readings at the switches; of the friction ratio also as read."""
+    s = table.sliding_distance
+    switches = tuple(f"{table.title}, switch {number}" for number in range(1, s.size + 1))
+    read = Points(x=s, y=values, label="read, zero subtracted", colour="0.35", size=0.9, sources=switches)
+    if name != "friction_ratio":
+        return (read,)
+    raw = table.friction_force / table.intrinsic_friction_force
+    style: dict[str, Any] = {"colour": "0.6", "size": 0.9, "is_hollow": True}
+    return Points(x=s, y=raw, label="zero not subtracted", sources=switches, **style), read
 
 
-def _limits_with_zero(axes: "Axes", name: str) -> None:
-    """Have an axis begin at nothing, or about it for the zero, lest noise look like a course."""
-    low, high = axes.get_ylim()
+def _courses(table: SwitchTable, name: str, decision: DecayLengthDecision) -> list[Line]:
+    """Fitted course of each hypothesis, or the smoothed zero."""
+    s = table.sliding_distance
     if name == "force_zero":
-        reach = 1.1 * max(abs(low), abs(high))
-        axes.set_ylim(-reach, reach)
-    elif low > 0:
-        axes.set_ylim(0, 1.05 * high)
+        return [Line(x=s[decision.zero.rows], y=decision.zero.force_zero, colour=3)]
+    return [
+        Line(x=s, y=courses[name], label=HYPOTHESES[hypothesis].partition(":")[0], colour=place, dash=place)
+        for place, (hypothesis, courses) in enumerate(decision.courses.items())
+        if name in courses
+    ]
+
+
+def _axis(name: str, values: Floats) -> Axis:
+    """Axis that begins at nothing, or is about it for the zero, lest noise look like a course."""
+    if name == "force_zero":
+        reach = 1.2 * float(np.nanmax(np.abs(values)))
+        return replace(_AXES[name], lowest=-reach, highest=reach)
+    begins = name != "friction_ratio" and float(np.nanmin(values)) > 0
+    return replace(_AXES[name], lowest=0.0) if begins else _AXES[name]

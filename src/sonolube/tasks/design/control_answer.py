@@ -125,18 +125,18 @@ class ControlAnswer(Answer):
         study, suppression = self.study, self.suppression
         drawings = {
             self._name: Drawing(
-                draw=lambda: figures.closed_loop_figure(study),
+                chart=lambda: figures.closed_loop_chart(study),
                 caption=f"Friction of {self.rig.title} in closed loop; every point computed.",
             ),
             f"{self._name}-design": Drawing(
-                draw=lambda: figures.control_design_figure(study),
+                chart=lambda: figures.control_design_chart(study),
                 caption=f"Map from {study.plant.quantity.word} to friction of the controller, and magnitude of the"
                 " sensitivity function.",
             ),
         }
         if suppression is not None:
             drawings[f"{self._name}-stick-slip"] = Drawing(
-                draw=lambda: figures.stick_slip_figure(suppression),
+                chart=lambda: figures.stick_slip_chart(suppression),
                 caption="Force in the holder of the slider as the counterface drags it along.",
             )
         return drawings

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
-from sonolube.design.efficiency_figures import efficiency_figure
+from sonolube.design.efficiency_figures import efficiency_chart
 from sonolube.report import Drawing, Page
 from sonolube.report.results import efficiency as results
 from sonolube.rig import Rig
@@ -88,7 +88,7 @@ class EfficiencyAnswer(Answer):
     def figures(self) -> Mapping[str, Drawing]:
         """Coefficients of the runs over speed, the line and its bands."""
         caption = _CAPTION.format(runs=self.calibration.fit.runs)
-        return {self.name: Drawing(draw=lambda: efficiency_figure(self.calibration), caption=caption)}
+        return {self.name: Drawing(chart=lambda: efficiency_chart(self.calibration), caption=caption)}
 
     def files(self) -> "Mapping[str, xr.Dataset]":
         """Line and bands as netCDF."""

@@ -59,23 +59,23 @@ class OptimisationAnswer(Answer):
         optimum, name = self.optimum, self._name
         drawings = {
             f"{name}-frequency": Drawing(
-                draw=lambda: figures.frequency_figure(optimum),
+                chart=lambda: figures.frequency_chart(optimum),
                 caption=f"Least {optimum.minimise} for the target at each frequency, over all structures of the"
                 " screening; markers are the refined designs.",
             )
         }
         if optimum.front:
             drawings[f"{name}-front"] = Drawing(
-                draw=lambda: figures.front_figure(optimum),
+                chart=lambda: figures.front_chart(optimum),
                 caption=f"Pareto front of {optimum.minimise} and {optimum.second_objective} within the limits.",
             )
         if results.tightest_limit(optimum.best) != results.NO_LIMIT:
             drawings[f"{name}-limits"] = Drawing(
-                draw=lambda: figures.limits_figure(optimum.best),
+                chart=lambda: figures.limits_chart(optimum.best),
                 caption="Fraction of each limit, set or of the actuator, that the best design uses.",
             )
         drawings[f"{name}-power-factor"] = Drawing(
-            draw=lambda: figures.power_factor_figure(optimum, self.electric),
+            chart=lambda: figures.power_factor_chart(optimum, self.electric),
             caption="Power factor at the amplifier about the drive's frequency (vertical line).",
         )
         return drawings

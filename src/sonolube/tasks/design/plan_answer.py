@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sonolube.design.test_plan.figure import plan_figure
+from sonolube.design.test_plan.figure import plan_chart
 from sonolube.design.test_plan.plan import TestPlan
 from sonolube.design.test_plan.run_protocols import run_protocols
 from sonolube.design.test_plan.run_table import has_results, run_table
@@ -48,7 +48,7 @@ class PlanAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Candidates with their information, and the prediction at the points."""
-        return {self._name: Drawing(draw=lambda: plan_figure(self.plan), caption=_CAPTION)}
+        return {self._name: Drawing(chart=lambda: plan_chart(self.plan), caption=_CAPTION)}
 
     def files(self) -> Mapping[str, str]:
         """Table of the runs to be filled, and the protocol of each."""

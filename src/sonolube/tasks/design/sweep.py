@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 
 from sonolube import design
-from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_figure, swept_variables
+from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
 from sonolube.errors import InvalidInput
 from sonolube.files import expect_files
@@ -170,7 +170,7 @@ class SweepAnswer(Answer):
         """Friction over the keys that were swept."""
         listed = self.result["friction_ratio"].dims == ("point",)
         caption = _CLOUD_CAPTION if listed else _CAPTIONS.get(len(swept_variables(self.result)), _CLOUD_CAPTION)
-        return {"sweep": Drawing(draw=lambda: sweep_figure(self.result), caption=caption)}
+        return {"sweep": Drawing(chart=lambda: sweep_chart(self.result), caption=caption)}
 
     def files(self) -> "Mapping[str, Path | xr.Dataset]":
         """Dataset, which the sweep itself has written where there is a folder."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design import SampleStatistics, band_figure, histogram_figure, outcome_statistics, propagate, sobol_figure
+from sonolube.design import SampleStatistics, band_chart, histogram_chart, outcome_statistics, propagate, sobol_chart
 from sonolube.design.identified_structure import IdentifiedStructure, identified_structure
 from sonolube.design.point_statistics import failure_counts, status_counts
 from sonolube.design.uncertainty_summary import (
@@ -191,11 +191,11 @@ class UncertaintyAnswer(Answer):
     def figures(self) -> Mapping[str, Drawing]:
         """Histogram or band of the outcome, and the ranking of the entries."""
         result = self.result
-        draw, caption = (band_figure, _BAND_CAPTION) if self._swept else (histogram_figure, _SAMPLES_CAPTION)
-        outcome = Drawing(draw=lambda: draw(result), caption=caption)
+        chart, caption = (band_chart, _BAND_CAPTION) if self._swept else (histogram_chart, _SAMPLES_CAPTION)
+        outcome = Drawing(chart=lambda: chart(result), caption=caption)
         if not self._ranked:
             return {self._name: outcome}
-        ranking = Drawing(draw=lambda: sobol_figure(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
+        ranking = Drawing(chart=lambda: sobol_chart(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
         return {self._name: outcome, f"{self._name}-sobol": ranking}
 
     def files(self) -> "Mapping[str, xr.Dataset]":

@@ -10,8 +10,8 @@ from sonolube.identification import (
     SwitchConditions,
     SwitchTable,
     decide_decay_length,
+    decision_chart,
     decision_dataset,
-    decision_figure,
     recorded_switches,
     switch_table,
 )
@@ -139,7 +139,7 @@ class DecayLengthAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Readings over the distance with the courses of the hypotheses."""
-        return {self.name: Drawing(draw=lambda: decision_figure(self.table, self.decision), caption=_CAPTION)}
+        return {self.name: Drawing(chart=lambda: decision_chart(self.table, self.decision), caption=_CAPTION)}
 
     def files(self) -> "Mapping[str, xr.Dataset]":
         """Readings and courses as netCDF."""
