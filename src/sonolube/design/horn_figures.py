@@ -1,18 +1,13 @@
 """Figure of a tuned horn along its axis: profile, axial displacement and peak stress."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from sonolube.charts import Axis, Band, Chart, Line, Panel, Rule
 from sonolube.checks import Floats
 from sonolube.design.horn import HornDesign, face_motion, nodal_stress, section_motion
-from sonolube.figure import COLOURS
 from sonolube.models.fem import face_triangulation
 from sonolube.models.fem.solver.model import DIRECTIONS
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _SLICES = 40  # across the axis, in each of which the highest stress is taken
 _POINTS = 801  # of each curve
@@ -20,7 +15,7 @@ _PLANES = 601  # in which the profile is drawn
 _INSIDE = 1e-6  # of half the length, by which the first and last plane lie inside
 
 
-def horn_axis_figure(design: HornDesign) -> "Figure":
+def horn_axis_chart(design: HornDesign) -> Chart:
     """Profile, axial displacement over that of the tip, and highest equivalent stress along the axis of a horn.
 
     Parameters
@@ -29,34 +24,34 @@ def horn_axis_figure(design: HornDesign) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
         Three panels over the distance from the driven face, with the displacement node marked.
     """
-    from matplotlib.figure import Figure
-
     mode, axis = design.tuned.mode, design.body.axis
     tip = float(face_motion(mode.model, mode.displacement, design.working_face, axis).mean())
     along = mode.model.mesh.nodes[:, DIRECTIONS.index(axis)]
     start = along.min()
     place, displacement = _curve(*_motion(design))
-    figure = Figure(figsize=(5.6, 5.4))
-    profile, motion, stress = figure.subplots(3, 1, sharex=True, height_ratios=(1, 1.3, 1.3))
-    middle, half = _profile(design)
-    profile.fill_between(1e3 * (middle - start), 1e3 * half, -1e3 * half, color="0.8", edgecolor="0.3", lw=0.8)
-    profile.set(ylabel="Half width\n[mm]")
-    motion.plot(1e3 * (place - start), displacement / tip, color=COLOURS[0])
-    motion.axhline(0, color="0.4", linewidth=0.8)
-    motion.set(ylabel="Axial displacement\nover the tip's [1]")
+    middle, half = (1e3 * each for each in _profile(design))
     where, highest = _curve(*_highest(along, nodal_stress(mode.model, mode.displacement) / abs(tip)))
-    stress.plot(1e3 * (where - start), 1e-12 * highest, color=COLOURS[1])
-    stress.set(xlabel="Distance from the driven face [mm]", ylabel="Peak stress\n[MPa per µm]", ylim=(0, None))
-    for axes in (motion, stress, profile):
-        axes.axvline(1e3 * design.node_position, color="0.4", linestyle=":")
-    foot = (1e3 * design.node_position, float((displacement / tip).min()))
-    motion.annotate("node", foot, xytext=(4, 2), textcoords="offset points")
-    title = f"{design.body.name.replace('_', ' ')}, {mode.names[mode.row]}, {mode.frequency:.0f} Hz"
-    profile.set_title(title, fontsize=9)
-    return figure
+    node = Rule(value=1e3 * design.node_position, label="node")
+    profile = Band(x=middle - 1e3 * start, low=-half, high=half, colour="0.6", opacity=0.6)
+    motion = Line(x=1e3 * (place - start), y=displacement / tip)
+    stress = Line(x=1e3 * (where - start), y=1e-12 * highest, colour=1)
+    rows = (
+        (Axis(label="Half width", unit="mm"), (profile, node)),
+        (Axis(label="Axial displacement over the tip's"), (motion, Rule(along="y", value=0.0, dash=0), node)),
+        (Axis(label="Peak stress", unit="MPa per µm", lowest=0.0), (stress, node)),
+    )
+    x = Axis(label="Distance from the driven face", unit="mm")
+    return Chart(
+        panels=tuple(Panel(x=x, y=y, parts=parts) for y, parts in rows),
+        size=(5.6, 5.6),
+        heights=(1, 1.3, 1.3),
+        title=f"{design.body.name.replace('_', ' ')}, {mode.names[mode.row]}, {mode.frequency:.0f} Hz",
+        legend="top",
+        shares_x=True,
+    )
 
 
 def _curve(place: Floats, values: Floats) -> tuple[Floats, Floats]:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from sonolube.charts import Axis, Chart, Line, Panel, Rule, Zone
 from sonolube.facts.published import published_number, si_value
 from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
 from sonolube.models.fem import trajectory_ellipse
@@ -139,8 +140,8 @@ def _friction() -> "Figure":
     return figure
 
 
-def face_friction_figure(horn: Horn, friction: FaceFriction) -> "Figure":
-    """Figure of the friction along the face of a horn, with the transition region of Table 2.1.
+def face_friction_chart(horn: Horn, friction: FaceFriction) -> Chart:
+    """Friction along the face of a horn, with the transition region of Table 2.1.
 
     Parameters
     ----------
@@ -150,17 +151,20 @@ def face_friction_figure(horn: Horn, friction: FaceFriction) -> "Figure":
 
     Returns
     -------
-    matplotlib.figure.Figure
+    Chart
     """
-    figure, axes = single_axes((5.0, 3.2))
-    _draw_transition_region(axes, horn, color="0.8", unit=1e-3)
-    axes.plot(1e3 * friction.position, 100 * friction.ratio, color=COLOURS[0], label="computed")
-    axes.axhline(0, color="black", lw=0.8)
-    axes.axvline(1e3 * friction.node, color="black", lw=0.8, ls=":", label="node of the axial motion")
-    axes.set(xlabel="Position along the face, from its centre [mm]", ylabel="Friction over that at rest [%]")
-    axes.set(xlim=(-1e3 * FACE_END, 1e3 * FACE_END), title=f"{horn} horn; below zero the face drives the block")
-    figure.legend(loc="outside lower center", ncols=3)
-    return figure
+    first, last = (np.array([1e3 * end]) for end in _transition_region(horn))
+    parts = (
+        Zone(first=first, last=last, label="transition region, Table 2.1", colour="0.8"),
+        Line(x=1e3 * friction.position, y=100 * friction.ratio, label="computed"),
+        Rule(along="y", value=0.0, colour="0", dash=0),
+        Rule(value=1e3 * friction.node, label="node of the axial motion", colour="0"),
+    )
+    end = 1e3 * FACE_END
+    x = Axis(label="Position along the face, from its centre", unit="mm", lowest=-end, highest=end)
+    panel = Panel(x=x, y=Axis(label="Friction over that at rest", unit="%"), parts=parts)
+    title = f"{horn} horn; below zero the face drives the block"
+    return Chart(panels=(panel,), size=(5.0, 3.2), title=title, legend="bottom")
 
 
 def _nodes() -> "Figure":
@@ -178,8 +182,14 @@ def _nodes() -> "Figure":
 
 def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: float = 1.0, unit: float = _INCH) -> None:
     """Draw the transition region of a horn in Table 2.1 as a band, over positions in a unit of that many metres."""
-    start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") / unit for side in ("start", "end"))
+    start, end = (place / unit for place in _transition_region(horn))
     axes.axvspan(start, end, color=color, alpha=alpha, lw=0, label="transition region, Table 2.1")
+
+
+def _transition_region(horn: Horn) -> tuple[float, float]:
+    """Return the ends of the transition region of a horn in Table 2.1, in m."""
+    start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") for side in ("start", "end"))
+    return start, end
 
 
 def _motion(horn: Horn) -> FaceMotion:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import si_value
 from sonolube.report import Drawing
-from sonolube.reproduction.chapter2.horn_figures import face_friction_figure
+from sonolube.reproduction.chapter2.horn_figures import face_friction_chart
 from sonolube.reproduction.chapter2.horn_friction import FACE_END, FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS
 from sonolube.reproduction.cube import Horn
@@ -112,7 +112,7 @@ class FaceAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction over the position on the face."""
-        return {f"horn-{self.horn}-face": Drawing(draw=lambda: face_friction_figure(self.horn, self.friction))}
+        return {f"horn-{self.horn}-face": Drawing(chart=lambda: face_friction_chart(self.horn, self.friction))}
 
     def files(self) -> "Mapping[str, xr.Dataset]":
         """Friction ratio over the position as netCDF."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.design.horn import HornDesign, amplitude_limits, face_motion, loaded_frequency, section_motion, tuned_horn
 from sonolube.design.horn_drawing import horn_drawing, horn_notes
-from sonolube.design.horn_figures import horn_axis_figure
+from sonolube.design.horn_figures import horn_axis_chart
 from sonolube.design.horn_profile import HornProfile, horn_profile, profile_dxf
 from sonolube.design.horn_shapes import TunableBody, body_from_geometry, horn_body
 from sonolube.facts import materials
@@ -220,7 +220,7 @@ class HornAnswer(Answer):
             return horn_drawing(profile, notes=horn_notes(self.design, self.material, profile))
 
         return {
-            f"{self.name}-axis": Drawing(draw=lambda: horn_axis_figure(self.design)),
+            f"{self.name}-axis": Drawing(chart=lambda: horn_axis_chart(self.design)),
             f"{self.name}-mode": Drawing(draw=picture, forms=("png",)),
             **({} if profile is None else {f"{self.name}-drawing": Drawing(draw=drawing)}),
         }
