@@ -8,6 +8,7 @@ import numpy as np
 from sonolube.measurement.measured_runs import runs_help
 from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
+from sonolube.prediction.predictive import DRAWS
 from sonolube.prediction.rig_statement import interval
 from sonolube.prediction.scores import PROBABILITIES
 from sonolube.report import Drawing
@@ -49,6 +50,10 @@ def predict(
     pin: Pin = None,
     disc: Disc = None,
     lubricant: Annotated[bool, Parameter(help="The contact is lubricated: a dry prediction does not hold.")] = False,
+    draws: Annotated[
+        int,
+        Parameter(help="Equally probable outcomes, 4000 for two digits of the intervals.", lowest=100, highest=200_000),
+    ] = DRAWS,
     seed: Annotated[int, Parameter(help="Of the draws.", lowest=0)] = 0,
 ) -> "PredictionAnswer":
     """Friction and wear under vibration with 50, 80 and 95 % intervals, and what to measure next.
@@ -63,6 +68,7 @@ def predict(
         pin=pin,
         disc=disc,
         lubricant=lubricant,
+        draws=draws,
         seed=seed,
     ).first
     measured = measured_on(known, vibration_amplitude=result.attrs["vibration_amplitude"])
