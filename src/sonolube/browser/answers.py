@@ -42,7 +42,7 @@ def answered(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[s
     task : Task
     arguments : mapping
         By the names that the arguments have in Python. A rig is an object with the `name` of an example or its `text`,
-        and `changes` by dotted key; a file is an object with the `name` of an upload, or a name and its base64 `content`.
+        and `changes` by dotted key; a file has a `name`, and the name of its `upload` or its base64 `content`.
     places : Places
 
     Returns
@@ -62,7 +62,7 @@ def answered(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[s
 def called(task: Task, given: Mapping[str, Any]) -> Answer:
     """Answer of a task; refusals of rigs from texts have no folder."""
     try:
-        positional = [name for name in _positional(task) if name in given]
+        positional = [name for name in positional(task) if name in given]
         named = {name: value for name, value in given.items() if name not in positional}
         return task.function(*(given[name] for name in positional), **named)
     except SonolubeError as failure:
@@ -205,8 +205,8 @@ def _texts(value: Any) -> "Iterator[str]":
             yield from _texts(each)
 
 
-def _positional(task: Task) -> list[str]:
-    """Names of the arguments that are given by place."""
+def positional(task: Task) -> list[str]:
+    """Return the names of the arguments that are given by place."""
     from inspect import Parameter as Argument, signature
 
     arguments = signature(task.function).parameters.values()

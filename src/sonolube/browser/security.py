@@ -68,7 +68,7 @@ class Access:
 
 
 class Guard:
-    """Application behind its checks: every request is refused in one line, or passed on, and its answer gets the headers.
+    """Application behind its checks: a request is refused in one line or passed on, and every answer gets the headers.
 
     Parameters
     ----------
@@ -120,7 +120,8 @@ def _token_of(scope: Scope) -> str:
     """Token in the query of the first page; empty where there is none."""
     if scope["path"] != "/" or scope["method"] != "GET":
         return ""
-    return parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
+    query: str = scope["query_string"].decode("latin-1")
+    return parse_qs(query).get("token", [""])[0]
 
 
 def _is_own_page(headers: Mapping[str, str]) -> bool:

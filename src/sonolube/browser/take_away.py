@@ -1,4 +1,4 @@
-"""What a page gives to take away: command line, Python, rig file, notebook, table, figure and report, of one call of a task."""
+"""What a page gives to take away of a call: command line, Python, rig file, notebook, table, figure and report."""
 
 import csv
 import io
@@ -6,15 +6,18 @@ import json
 import shlex
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final
 
 from sonolube import __version__
-from sonolube.browser.answers import called, given_arguments, offered_tasks, rig_path
+from sonolube.browser.answers import called, given_arguments, offered_tasks, positional, rig_path
 from sonolube.browser.places import Places
 from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.report.page import Page, PageTable, rendered_files
 from sonolube.tasks.answer import Answer
+from sonolube.tasks.blocks import Rows, Table, Verbatim
 from sonolube.tasks.parameters import RigParameter
 from sonolube.tasks.table import Task
 from sonolube.tasks.task import marks_of
@@ -59,7 +62,7 @@ def command_line(task: Task, arguments: Mapping[str, Any], places: Places) -> di
     """Command of a terminal that gives the same numbers."""
     del places
     words = ["sonolube", *task.name.split()]
-    marks = marks_of(task.function)
+    marks, by_place = marks_of(task.function), positional(task)
     for name, value in arguments.items():
         if isinstance(marks[name], RigParameter):
             words.append(_rig_file(value))
@@ -71,8 +74,10 @@ def command_line(task: Task, arguments: Mapping[str, Any], places: Places) -> di
         elif isinstance(value, Mapping) and not _is_file(value):
             words += [word for key, each in value.items() for word in (option, f"{key}={each}")]
         elif value is not None and value is not False:
-            several = value if isinstance(value, list) else [value]
-            words += [word for each in several for word in (option, each["name"] if _is_file(each) else str(each))]
+            named = _named(value)
+            several = named if isinstance(named, list) else [named]
+            flag = [] if name in by_place else [option]
+            words += [word for each in several for word in (*flag, str(each))]
     return _file("command.txt", "text/plain", shlex.join(words))
 
 
@@ -84,17 +89,15 @@ def python(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str
 
 def _python_text(task: Task, arguments: Mapping[str, Any]) -> str:
     """Lines of the program."""
-    marks, lines, given = marks_of(task.function), ["import sonolube as sl", ""], []
+    marks, lines = marks_of(task.function), ["import sonolube as sl", ""]
+    given: list[str] = []
     for name, value in arguments.items():
         if isinstance(marks[name], RigParameter):
             changes = [f"{key}={text}" for key, text in (value.get("changes") or {}).items()]
             lines.append(f"rig = sl.read_rig({_rig_file(value)!r}, changes={changes!r})")
             given.insert(0, "rig" if name == "rig" else f"{name}=rig")
         elif value is not None:
-            several = [
-                each["name"] if _is_file(each) else each for each in (value if isinstance(value, list) else [value])
-            ]
-            given.append(f"{name}={several if isinstance(value, list) else several[0]!r}")
+            given.append(f"{name}={_named(value)!r}")
     function = f"sl.{task.name.replace(' ', '.').replace('-', '_')}"
     return "\n".join([*lines, f"answer = {function}({', '.join(given)})", "print(answer)", ""])
 
@@ -148,7 +151,7 @@ def notebook(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[s
 
 def _cell(kind: str, source: str, *, number: int) -> dict[str, Any]:
     """Cell of a notebook."""
-    more = {"execution_count": None, "outputs": []} if kind == "code" else {}
+    more: dict[str, Any] = {"execution_count": None, "outputs": []} if kind == "code" else {}
     return {"cell_type": kind, "id": f"cell-{number}", "metadata": {}, "source": source} | more
 
 
@@ -178,24 +181,29 @@ def figure(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str
 
 def report(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Self-contained page with the answer's figures, numbers, caveats and assumptions."""
-    from sonolube.report.page import Page, rendered_files
-
     answer = _answer(task, arguments, places)
     settings = [] if answer.call is None else answer.call.settings()
     rig = [] if answer.rig is None else [("rig", answer.rig.title), *(("changed", each) for each in answer.rig.changes)]
-    first, *lines = answer.text(line_length=None).splitlines()
-    facts = [("", line.strip()) for line in lines if line.strip() and "caveat: " not in line and "assumed " not in line]
-    page = answer.page() or Page(name="answer", title=first, settings=[], facts=facts)
-    page = Page(
-        name="answer",
-        title=page.title,
-        settings=[*page.settings, *rig, *settings],
-        facts=page.facts,
-        tables=page.tables,
-    )
+    page = answer.page() or _page_of_blocks(answer)
+    page = replace(page, name="answer", settings=[*page.settings, *rig, *settings])
     notes = [*answer.every_caveat(), *(f"assumed {key}: {reason}" for key, reason in answer.assumptions().items())]
     text = rendered_files(answer.figures(), page=page, notes=notes)["answer.html"]
     return _file("answer.html", "text/html", str(text))
+
+
+def _page_of_blocks(answer: Answer) -> Page:
+    """Page with the text and tables of an answer that has none of its own."""
+    first, *blocks = answer.blocks()
+    facts: list[tuple[str, str]] = []
+    tables = []
+    for block in blocks:
+        if isinstance(block, Rows):
+            facts += [(name, value) for name, value in block.rows]
+        elif isinstance(block, Table):
+            tables.append(PageTable(title="", heads=tuple(block.heads), rows=tuple(map(tuple, block.rows))))
+        else:
+            facts.append(("", (block.text if isinstance(block, Verbatim) else block).strip()))
+    return Page(name="answer", title=str(first), settings=[], facts=facts, tables=tables)
 
 
 def _answer(task: Task, arguments: Mapping[str, Any], places: Places) -> Answer:
@@ -221,6 +229,13 @@ def _rig_file(source: Mapping[str, Any]) -> str:
 def _is_file(value: Any) -> bool:
     """Whether a value of a request is a file."""
     return isinstance(value, Mapping) and "name" in value and ("upload" in value or "content" in value)
+
+
+def _named(value: Any) -> Any:
+    """Value of an argument with the names of files in place of their content."""
+    if isinstance(value, list):
+        return [_named(each) for each in value]
+    return value["name"] if _is_file(value) else value
 
 
 def _scalars(content: Mapping[str, Any]) -> list[list[Any]]:

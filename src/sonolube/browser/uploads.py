@@ -1,4 +1,4 @@
-"""Files that pages upload: kept in a private folder under names of ours, within a limit of size, as long as the server runs."""
+"""Files that pages upload: in a private folder under names of ours, within limits, as long as the server runs."""
 
 import secrets
 import shutil

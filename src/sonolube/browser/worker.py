@@ -1,4 +1,4 @@
-"""A worker process: imports sonolube once, then answers requests one after the other, within limits of memory and files."""
+"""A worker process: imports sonolube once, then answers requests one after the other, within limits."""
 
 import contextlib
 import json

@@ -64,7 +64,7 @@ class Task:
 
 
 def docstring(package: str, where: str) -> str:
-    """Docstring of a function in a module below a package, such as "predict.friction:friction", which is not imported."""
+    """Docstring of a function below a package, such as "predict.friction:friction", whose module is not imported."""
     module, _, name = f"{package}.{where}".strip(".").partition(":")
     root, _, inner = module.partition(".")
     source = files(root).joinpath(f"{inner.replace('.', '/')}.py").read_text(encoding="utf-8")
