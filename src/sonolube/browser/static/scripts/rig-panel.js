@@ -1,0 +1,139 @@
+/** Left column: which rig, its drawing, and its entries as fields; and the frame of a page that has it beside its answer. */
+import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {useReply} from './api.js';
+import {Field, spreadKey} from './fields.js';
+import {Schematic} from './schematic.js';
+import {addressOf, change, pack, useApp} from './state.js';
+
+/** Last view that was read, so that a page that opens shows it at once. */
+let lastView = null;
+
+/**
+ * The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs.
+ * @returns {{view: any, failure: Object|null, refused: Object[], isWaiting: boolean}}
+ */
+export function useRig() {
+  const {state, isMoving} = useApp();
+  const asked = useRef(state.rig);
+  if (!isMoving || state.rig.name !== asked.current.name) asked.current = state.rig; // values that move are not asked about
+  const found = useReply('rig', asked.current.name ? 'api/rig' : null, {rig: asked.current});
+  if (found.content) lastView = found.content;
+  return {view: found.content ?? lastView, failure: found.failure, refused: found.refused, isWaiting: found.isWaiting};
+}
+
+/** Text of an entry: as it was typed, else as the file has it. */
+export const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
+
+const GROUPS = (fields) => {
+  const groups = new Map();
+  for (const field of fields) {
+    const table = field.key.slice(0, field.key.lastIndexOf('.'));
+    groups.set(table, [...(groups.get(table) ?? []), field]);
+  }
+  return [...groups];
+};
+
+/** Chooser of a rig: the examples, the one that was opened, an own file. */
+function RigChoice({view}) {
+  const {state} = useApp();
+  const [note, setNote] = useState('');
+  const chooser = useRef(null);
+  const names = [...new Set([...(view?.rigs ?? []), state.rig.name])].filter(Boolean);
+  const own = state.rig.text !== undefined;
+  const choose = (event) => {
+    setNote('');
+    change({rig: {name: event.target.value, changes: {}}});
+  };
+  const open = async (file) => setNote(await openRigFile(file));
+  return html`<div class="rig-choice">
+    <label for="rig-name">Rig</label>
+    <div class="row">
+      <select id="rig-name" value=${own ? '' : state.rig.name} onChange=${choose} data-test="rig" class="grow">
+        ${own && html`<option value="" selected>${state.rig.name} (own file)</option>`}
+        ${names.filter((name) => !own || name !== state.rig.name).map((name) => html`<option key=${name} value=${name}
+          selected=${!own && name === state.rig.name}>${name}</option>`)}
+      </select>
+      <button type="button" class="button" onClick=${() => chooser.current.click()} data-test="open-rig">Open…</button>
+      <a class="button" href=${addressOf('new')}>New…</a>
+      <input type="file" accept=".toml" class="hidden" tabindex="-1" aria-label="Rig file" ref=${chooser}
+        onChange=${(event) => open(event.target.files[0])} data-test="rig-file" />
+    </div>
+    ${view && html`<p class="hint" data-test="rig-title">${view.title}</p>`}
+    ${note && html`<p class="hint" role="status">${note}</p>`}
+  </div>`;
+}
+
+/**
+ * Make a rig file the rig of the state.
+ * @param {File} file
+ * @returns {Promise<string>} a note where a link cannot hold it
+ */
+export async function openRigFile(file) {
+  if (!file) return '';
+  return openRigText(file.name.replace(/\.toml$/i, ''), await file.text());
+}
+
+/** As `openRigFile`, from a text; with a page to go to. */
+export async function openRigText(name, text, page = undefined) {
+  const {fits} = await pack(text);
+  change({...(page && {page}), rig: {name, text, changes: {}}});
+  return fits ? '' : 'This file is too long for a link: it stays in this tab only. Take it away as TOML to keep it.';
+}
+
+/**
+ * @param {{extra?: any}} props `extra` stands below the fields of the operating point
+ */
+export function RigPanel({extra}) {
+  const {state, setEntry, settle} = useApp();
+  const {view, failure, refused} = useRig();
+  const {rig} = state;
+  const faults = new Map([...(failure?.faults ?? []), ...refused].map((fault) => [fault.key, fault.text]));
+  const onText = (key, text, isMoving) => setEntry(key, text, {replace: isMoving});
+  const fields = view?.fields ?? [];
+  const first = fields.filter((field) => field.is_first);
+  const others = fields.filter((field) => !field.is_first);
+  const placed = new Set(fields.flatMap((field) => [field.key, spreadKey(field.key)]));
+  const homeless = [...faults].filter(([key]) => !placed.has(key));
+  const isAll = others.some((field) => faults.has(field.key));
+  const list = (some) => some.map((field) => html`<${Field} key=${`${rig.name} ${field.key}`} field=${field}
+    text=${textOf(rig, field)} spread=${rig.changes[spreadKey(field.key)]} isChanged=${field.key in rig.changes}
+    refusal=${faults.get(field.key)} spreadRefusal=${faults.get(spreadKey(field.key))} onText=${onText}
+    onSettle=${settle} />`);
+  const count = Object.keys(rig.changes).length;
+  return html`<aside class="rig" aria-label="Rig" data-test="rig-panel">
+    <${RigChoice} view=${view} />
+    ${!view && !failure && html`<p class="loading" role="status">Reading the rig…</p>`}
+    ${view && html`<${Schematic} drawing=${view.drawing} fields=${fields} textOf=${(field) => textOf(rig, field)} />`}
+    ${homeless.map(([key, text]) => html`<p key=${key} class="refusal" role="alert" data-test="rig-refusal">${text}</p>`)}
+    <div class="fields">${list(first)}</div>
+    ${count > 0 && html`<button type="button" class="button is-quiet" data-test="reset-all"
+      onClick=${() => change({rig: {...rig, changes: {}}})}>Take back ${count === 1 ? 'the change' : `all ${count} changes`}</button>`}
+    ${extra}
+    ${others.length > 0 && html`<${AllEntries} isOpen=${isAll}>
+      ${GROUPS(others).map(([table, some]) => html`<fieldset key=${table} class="fields"><legend>${table}</legend>
+        ${list(some)}</fieldset>`)}<//>`}
+    ${view?.source && html`<p class="hint source">Source: ${view.source}</p>`}
+  </aside>`;
+}
+
+/** Entries beyond the operating point; opened where one of them is refused. */
+function AllEntries({isOpen, children}) {
+  const details = useRef(null);
+  useEffect(() => {
+    if (isOpen) details.current.open = true;
+  }, [isOpen]);
+  return html`<details ref=${details} class="all-entries" data-test="all-entries"><summary>All entries</summary>
+    ${children}</details>`;
+}
+
+/**
+ * Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer.
+ * @param {{lead?: any, extra?: any, children?: any}} props
+ */
+export function Workspace({lead, extra, children}) {
+  return html`<div class="workspace">
+    <div class="lead" id="answer" tabindex="-1">${lead}</div>
+    <${RigPanel} extra=${extra} />
+    <div class="body">${children}</div>
+  </div>`;
+}
