@@ -62,9 +62,9 @@ def answered(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[s
 def called(task: Task, given: Mapping[str, Any]) -> Answer:
     """Answer of a task; refusals of rigs from texts have no folder."""
     try:
-        positional = [name for name in positional(task) if name in given]
-        named = {name: value for name, value in given.items() if name not in positional}
-        return task.function(*(given[name] for name in positional), **named)
+        by_place = [name for name in positional(task) if name in given]
+        named = {name: value for name, value in given.items() if name not in by_place}
+        return task.function(*(given[name] for name in by_place), **named)
     except SonolubeError as failure:
         failure.args = tuple(with_names_only(each) if isinstance(each, str) else each for each in failure.args)
         raise
