@@ -127,6 +127,7 @@ class PredictionAnswer(Answer):
             "measured": [one.object() for one in self.measured],
             "interval_share_left": dict(zip(self._column("input"), self._column("interval_share_left"), strict=True)),
             **{name: self.prediction.attrs.get(name) for name in ("runs", "actuator_power")},
+            "operating_point": self._operating_point(),
         }
 
     def caveats(self) -> Sequence[str]:
@@ -140,6 +141,18 @@ class PredictionAnswer(Answer):
     def files(self) -> Mapping[str, LabelledArrays]:
         """Draws and curves."""
         return {f"{self.rig.name}-prediction.nc": self.prediction}
+
+    def _operating_point(self) -> list[dict[str, str]]:
+        """Amplitude with its spread and power of the amplifier, as labels and texts."""
+        spread = dict(zip(self._column("input"), self._column("input_spread"), strict=True))
+        found = []
+        for name in ("vibration_amplitude", "actuator_power"):
+            value = self.prediction.attrs.get(name)
+            if value is not None:
+                within = f" within {100 * spread[name]:.0f} %" if name in spread else ""
+                label = quantity(name).meaning
+                found.append({"name": name, "label": label, "text": f"{format_si(value, quantity(name).unit)}{within}"})
+        return found
 
     def _probes(self) -> list[str]:
         """Which resonances of the rig tell the contact stiffness, a sentence each."""
