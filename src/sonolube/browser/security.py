@@ -31,6 +31,9 @@ _REFUSED: Final[Mapping[int, str]] = {
     421: "This name is not one of this workbench; open it by the link that it printed.",
 }
 _SAFE: Final = ("GET", "HEAD")
+_OPEN: Final = frozenset(
+    {"/static/link.css", "/static/link.js", "/static/icon.svg"}
+)  # of the page that asks for the link
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -92,7 +95,7 @@ class Guard:
             await _refuse(guarded, 421)
         elif token := _token_of(scope):
             await self._admit(guarded, token)
-        elif not self._has_cookie(headers.get("cookie", "")):
+        elif not self._has_cookie(headers.get("cookie", "")) and not _is_open(scope):
             await _refuse(guarded, 401, is_page=scope["path"] == "/")
         elif scope["method"] not in _SAFE and not _is_own_page(headers):
             await _refuse(guarded, 403)
@@ -114,6 +117,11 @@ class Guard:
         pairs = (pair.strip().partition("=") for pair in header.split(";"))
         values = [value for name, _, value in pairs if name == self._access.cookie]
         return any(hmac.compare_digest(value.encode(), self._access.secret.encode()) for value in values)
+
+
+def _is_open(scope: Scope) -> bool:
+    """Whether a request is for a file of the page that asks for the link."""
+    return scope["method"] in _SAFE and scope["path"] in _OPEN
 
 
 def _token_of(scope: Scope) -> str:

@@ -132,6 +132,12 @@ export function inTurn(slot, work) {
 const accepted = new Map();
 const place = (rig, key) => `${rig.text ?? rig.name} ${key}`;
 
+/** Longest of some keys that a sentence names; empty where it names none. */
+function named(text, keys) {
+  const found = keys.filter((key) => text.includes(`${key}:`));
+  return found.sort((one, other) => other.length - one.length)[0] ?? '';
+}
+
 /**
  * Ask about a rig; refused entries are replaced by what was accepted last, so that the other fields stay live.
  * @param {string} path
@@ -140,12 +146,13 @@ const place = (rig, key) => `${rig.text ?? rig.name} ${key}`;
  */
 export async function askWithRig(path, body) {
   const first = await ask(path, {body});
-  const {rig} = body;
+  const rig = body?.rig;
   if (!rig) return first;
   if (first.content) {
     for (const [key, text] of Object.entries(rig.changes)) accepted.set(place(rig, key), text);
     return first;
   }
+  for (const fault of first.failure.faults) fault.key ||= named(fault.text, Object.keys(rig.changes));
   const refused = first.failure.faults.filter((fault) => fault.key in rig.changes);
   if (first.failure.kind !== 'refused' || !refused.length || refused.length < first.failure.faults.length) return first;
   const changes = {...rig.changes};
@@ -162,7 +169,7 @@ export async function askWithRig(path, body) {
  * Answer to the latest request, while an older answer stays.
  * @param {string} slot distinct among the requests of a page
  * @param {string|null} path null asks nothing
- * @param {Object} body
+ * @param {Object} [body] without one it is a GET
  * @returns {{content: any, failure: Failure|null, refused: Fault[], isWaiting: boolean, of: Object|null}}
  *   `of` is the body that `content` answers.
  */

@@ -7,7 +7,7 @@ const REST = 500; // ms after the last arrow key until the step is entered into 
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
 export const fieldId = (key) => `field-${key.replaceAll(/[^\w]/g, '-')}`;
-export const spreadKey = (key) => `uncertainty."${key}"`;
+export const spreadKey = (key) => `uncertainty.${key}`;
 
 /** Show the field of an entry, open what it lies in, and put the cursor into it; false where there is none. */
 export function focusField(key) {

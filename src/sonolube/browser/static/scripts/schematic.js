@@ -7,8 +7,8 @@ const PLACES = {
   'drive.frequency': {x: 8, y: 40, anchor: 'start'},
   'contact.normal_load': {x: 262, y: 22, anchor: 'end'},
   'vibration.vibration_amplitude': {x: 262, y: 84, anchor: 'end'},
-  'friction.friction_coefficient': {x: 8, y: 122, anchor: 'start'},
-  'sliding.sliding_speed': {x: 262, y: 156, anchor: 'end'},
+  'friction.friction_coefficient': {x: 8, y: 104, anchor: 'start', sign: 'µ '},
+  'sliding.sliding_speed': {x: 262, y: 155, anchor: 'end'},
 };
 
 const focus = (key) => (event) => {
@@ -19,8 +19,8 @@ const focus = (key) => (event) => {
 
 /** Value of an entry beside its part. */
 function Value({field, text}) {
-  const {x, y, anchor} = PLACES[field.key];
-  const shown = text.length > 13 ? `${text.slice(0, 12)}…` : text;
+  const {x, y, anchor, sign = ''} = PLACES[field.key];
+  const shown = sign + (text.length > 13 ? `${text.slice(0, 12)}…` : text);
   const width = 7 * shown.length + 10;
   return html`<g role="button" tabindex="0" class="schematic-value" aria-label=${`${field.label}: ${text}. Edit`}
     onClick=${focus(field.key)} onKeyDown=${focus(field.key)} data-test=${`drawn:${field.key}`}>
@@ -45,9 +45,9 @@ export function Schematic({drawing, fields, textOf}) {
       <path d="M118 84 H152 V100 L144 112 H126 L118 100 Z" class="part is-pin" />
       <path d="M168 90 v22 m-3 -17 3 -5 3 5 m-6 12 3 5 3 -5" class="force" />
       <path d="M126 112 H144" class="contact" />
+      <path d="M58 100 L122 111" class="thin" />
       <rect x="40" y="113" width="190" height="20" rx="3" class="part is-disc" />
-      <path d="M60 113 v20 M90 113 v20 M180 113 v20 M210 113 v20" class="thin" />
-      <path d="M100 148 H170 m-6 -4 6 4 -6 4" class="force" />
+      <path d="M96 150 H166 m-6 -4 6 4 -6 4" class="force" />
     </g>
     ${shown.map((field) => html`<${Value} key=${field.key} field=${field} text=${textOf(field)} />`)}
   </svg>`;
