@@ -31,9 +31,8 @@ _REFUSED: Final[Mapping[int, str]] = {
     421: "This name is not one of this workbench; open it by the link that it printed.",
 }
 _SAFE: Final = ("GET", "HEAD")
-_OPEN: Final = frozenset(
-    {"/static/link.css", "/static/link.js", "/static/icon.svg"}
-)  # of the page that asks for the link
+_OPEN: Final = frozenset({"/static/link.css", "/static/link.js", "/static/icon.svg"})
+"""Files of the page that asks for the link."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -22,7 +22,7 @@ function Value({field, text}) {
   const {x, y, anchor, sign = ''} = PLACES[field.key];
   const shown = sign + (text.length > 13 ? `${text.slice(0, 12)}…` : text);
   const width = 7 * shown.length + 10;
-  return html`<g role="button" tabindex="0" class="schematic-value" aria-label=${`${field.label}: ${text}. Edit`}
+  return html`<g role="button" tabindex="0" class="schematic-value" aria-label=${`${shown}, ${field.label}. Edit`}
     onClick=${focus(field.key)} onKeyDown=${focus(field.key)} data-test=${`drawn:${field.key}`}>
     <rect x=${anchor === 'end' ? x - width + 5 : x - 5} y=${y - 13} width=${width} height="18" rx="4" />
     <text x=${x} y=${y} text-anchor=${anchor}>${shown}</text></g>`;

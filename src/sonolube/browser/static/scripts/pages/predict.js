@@ -221,8 +221,8 @@ export default function Predict() {
   const extra = html`<${Materials} view=${state.view} fault=${materialsFault} />`;
   const isDim = isWaiting || Boolean(failure);
   if (!content) {
-    return html`<${Workspace} extra=${extra} lead=${html`<p class="overline">Predict</p><h1 class="statement is-pending"
-      role="status">${failure ? 'No answer yet' : 'Computing the first answer…'}</h1>
+    return html`<${Workspace} extra=${extra} lead=${html`<p class="overline">Predict</p><h1 class="statement is-pending">
+      ${failure ? 'No answer yet' : 'Computing the first answer…'}</h1>
       <${Failure} failure=${failure} shown=${shown} />`}>${!failure && html`<div class="skeleton" aria-hidden="true"></div>`}<//>`;
   }
   const [outcome, ...others] = content.answer.statement;
