@@ -2,7 +2,7 @@
 
 const MARGIN = 0.05; // of the range of the data, at both ends
 const LOG_RATIO = 3; // of the ends of a logarithmic axis, below which its ticks are those of a linear one
-const LEAST_CONTRAST = 3; // of a curve against what it is drawn on
+const LEAST_CONTRAST = {light: 3, dark: 4.5}; // of a curve against what it is drawn on
 const DASHES = [[], [7, 4], [8, 3, 2, 3], [2, 3], [9, 2], [5, 2, 2, 2, 2, 2], [1.5, 1.5]];
 
 export const dash = (number) => DASHES[(number ?? 0) % DASHES.length];
@@ -77,10 +77,14 @@ function ends(panels, name) {
   if (low > high) [low, high] = logarithmic ? [1, 10] : [0, 1];
   const [to, from] = logarithmic ? [Math.log10, (value) => 10 ** value] : [(value) => value, (value) => value];
   let [first, last] = [to(low), to(high)];
-  if (first === last) [first, last] = first === 0 || logarithmic ? [first - 0.5, last + 0.5] : [first - Math.abs(first) * 0.05, last + Math.abs(last) * 0.05];
+  if (first === last) {
+    const half = first === 0 || logarithmic ? 0.5 : Math.abs(first) * MARGIN;
+    [first, last] = [first - half, last + half];
+  }
   const margin = isEdge ? 0 : MARGIN * (last - first);
   const isZero = (end) => isFromZero && end === 0;
   const found = [axis.lowest ?? from(isZero(first) ? 0 : first - margin), axis.highest ?? from(isZero(last) ? 0 : last + margin)];
+  if (axis.ticks) found.splice(0, 2, Math.min(found[0], ...axis.ticks), Math.max(found[1], ...axis.ticks));
   if (!(found[1] > found[0])) found[1] = found[0] + (Math.abs(found[0]) || 1);
   return found;
 }
@@ -168,6 +172,7 @@ function contrast(one, other) {
 export function themeOf(element) {
   const style = getComputedStyle(element);
   const [ink, surface] = [rgb(style.color), rgb(style.backgroundColor)];
+  const least = luminance(surface) < 0.2 ? LEAST_CONTRAST.dark : LEAST_CONTRAST.light;
   const known = new Map();
   const shown = (colour, isStroke) => {
     const key = `${colour} ${isStroke}`;
@@ -175,7 +180,7 @@ export function themeOf(element) {
       let found = rgb(colour ?? '#000000');
       const isGrey = found[0] === found[1] && found[1] === found[2];
       if (isGrey) found = mix(surface, ink, 1 - found[0] / 255);
-      for (let step = 0; isStroke && !isGrey && step < 12 && contrast(found, surface) < LEAST_CONTRAST; step += 1) {
+      for (let step = 0; isStroke && !isGrey && step < 12 && contrast(found, surface) < least; step += 1) {
         found = mix(found, ink, 0.1);
       }
       known.set(key, css(found));

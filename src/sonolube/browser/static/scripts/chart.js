@@ -12,6 +12,7 @@ const LEAST_WIDTH = 250; // px of a panel
 const [LOWEST, HIGHEST, WIDEST] = [180, 400, 760]; // px
 const GAP = 16;
 const COLOURS_WIDTH = 72;
+const TEXT_HEIGHT = 18; // of the label of an axis
 const NO_KEPT = [];
 
 /** Width of an element and colours of its theme, followed while it is shown. */
@@ -21,7 +22,8 @@ function useRoom() {
   useLayoutEffect(() => {
     const element = figure.current;
     const measure = () => setRoom((old) => {
-      const width = Math.floor(element.clientWidth);
+      const {paddingLeft, paddingRight} = getComputedStyle(element);
+      const width = Math.floor(element.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight));
       return old.theme && old.width === width ? old : {theme: old.theme ?? themeOf(element), width};
     });
     const paint = () => setRoom((old) => ({...old, theme: themeOf(element)}));
@@ -144,7 +146,7 @@ export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onP
   const label = caption || chart.title?.replaceAll('\n', ', ') || panelName(chart.panels[0]);
   const hasXText = (place) => !chart.shares_x || !layout.isWhole || !chart.panels[place + layout.columns]?.parts.length;
 
-  return html`<figure ref=${figure} class=${`chart${dimmed ? ' is-dimmed' : ''}`} role="group" aria-label=${label}
+  return html`<figure ref=${figure} class=${`chart${dimmed ? ' is-dimmed' : ''}`} aria-label=${label}
     aria-busy=${dimmed ? 'true' : undefined} data-test=${`chart:${name}`}>
     ${chart.title && html`<p class="chart-title">${chart.title.split('\n').map((row, place) => html`<span key=${place}>${row}</span>`)}</p>`}
     ${layout && legend !== 'panels' && html`<${Legend} theme=${theme} title=${chart.legend_title}
@@ -161,9 +163,9 @@ export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onP
             <p class="chart-y" aria-hidden="true">${panel.y.text.replaceAll('\n', ' ')}</p>
             ${legend === 'panels' && html`<${Legend} theme=${theme} entries=${entriesOf([panel])} />`}
             <div class="chart-row">
-              <${ChartPanel} panel=${panel} place=${place} ranges=${ranges[place]} behind=${behind[place]} ...${size}
-                hasXText=${hasXText(place)} theme=${theme} drag=${draggable.find((each) => each.panel === place)} onPick=${onPick} say=${say} />
-              ${field && html`<${ColourScale} field=${field} height=${size.height - 40} />`}
+              <${ChartPanel} panel=${panel} place=${place} ranges=${ranges[place]} behind=${behind[place]} width=${size.width}
+                height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)} hasXText=${hasXText(place)} theme=${theme} drag=${draggable.find((each) => each.panel === place)} onPick=${onPick} say=${say} />
+              ${field && html`<${ColourScale} field=${field} height=${size.height - 20} />`}
             </div></div>`;
         })}
       </div>

@@ -2,8 +2,8 @@
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 
 const SLIDER_STEPS = 400;
-const PAUSE = 350; // ms after the last key until a text is read
-const REST = 500; // ms after the last arrow key until the step is entered into the history
+const PAUSE = 300; // ms after the last key until a text is read
+const REST = 500; // ms without a key until a value is entered into the history
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
 export const fieldId = (key) => `field-${key.replaceAll(/[^\w]/g, '-')}`;
@@ -76,6 +76,7 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
       const isBare = unit && split(latest.current ?? '')?.rest.trim() === '';
       if (isBare) onText(`${latest.current.trim()} ${unit}`, true);
       else give(false);
+      timer.current = setTimeout(onSettle, REST);
     }, PAUSE);
   };
   const press = (event) => {

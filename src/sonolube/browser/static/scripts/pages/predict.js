@@ -230,7 +230,6 @@ export default function Predict() {
   const chart = content.charts[0];
   const lead = html`<p class="overline">${content.answer.rig}</p>
     <h1 class=${`statement${isDim ? ' is-dim' : ''}`} data-test="statement">${first}</h1>
-    ${rest && html`<p class="statement-rest">${rest}</p>`}
     <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isDim} data-test="keep">
       Keep this</button><span class="status" role="status" data-test="status">${isWaiting ? 'Computing…' : ''}</span></div>
     <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
@@ -248,7 +247,7 @@ export default function Predict() {
         <div class="stack"><${Sharpen} answer=${content} /><${OwnRuns} runs=${runs} onFile=${onFile} note=${note} /></div>
         <div class="stack">
           <section class="card" aria-labelledby="more-title"><h2 id="more-title">In words</h2>
-            ${others.map((line) => html`<p key=${line}>${line}</p>`)}
+            ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
             ${content.blocks.slice(-2).filter((block) => block.kind === 'text').map((block) => html`<p class="hint"
               key=${block.text}>${block.text}</p>`)}</section>
           <section class="card" aria-label="Caveats and assumptions"><${Caveats} answer=${content}
