@@ -174,7 +174,7 @@ class Workbench:
 
 
 class _StatusInHeader:
-    """Answers refusals with 200 and `x-status` to requests with `x-status: in-header`: a page's refusals are no errors."""
+    """States the status of refusals in a header where a page asks for it, so that none is an error of its console."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app

@@ -87,7 +87,7 @@ export function Failure({failure, shown = []}) {
  */
 export function RefusedNote({refused}) {
   if (!refused.length) return null;
-  return html`<p class="notice is-warning" role="status" data-test="left-out">The numbers leave out what is refused:
+  return html`<p class="notice is-warning" role="status" data-test="left-out">The numbers leave out what is refused:${' '}
     ${refused.map((fault, place) => html`${place > 0 && ', '}<button type="button" class="link" key=${fault.key}
     onClick=${() => focusField(fault.key)}>${fault.key}</button>`)}. They are of the value that was accepted last.</p>`;
 }

@@ -129,6 +129,19 @@ export function inTurn(slot, work) {
   });
 }
 
+/** @type {Map<string, {text: string, reply: Promise<Reply|null>}>} Latest request of each slot, whose reply hooks share. */
+const latestOf = new Map();
+
+function shared(slot, text, work) {
+  if (latestOf.get(slot)?.text === text) return latestOf.get(slot).reply;
+  const reply = inTurn(slot, work);
+  latestOf.set(slot, {text, reply});
+  reply.then((found) => {
+    if (!found?.content && latestOf.get(slot)?.text === text) latestOf.delete(slot);
+  });
+  return reply;
+}
+
 /** @type {Map<string, string>} Last accepted text of each changed entry, by rig and key. */
 const accepted = new Map();
 const place = (rig, key) => `${rig.text ?? rig.name} ${key}`;
@@ -184,7 +197,7 @@ export function useReply(slot, path, body) {
     latest.current = text;
     if (path === null) return;
     setWaiting(true);
-    inTurn(slot, () => askWithRig(path, body)).then((reply) => {
+    shared(slot, text, () => askWithRig(path, body)).then((reply) => {
       if (reply === null) return;
       if (latest.current === text) setWaiting(false);
       setFound((old) => (reply.content

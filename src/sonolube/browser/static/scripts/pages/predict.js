@@ -230,7 +230,7 @@ export default function Predict() {
   const chart = content.charts[0];
   const lead = html`<p class="overline">${content.answer.rig}</p>
     <h1 class=${`statement${isDim ? ' is-dim' : ''}`} data-test="statement">${first}</h1>
-    <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isDim} data-test="keep">
+    <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isDim || refused.length > 0} data-test="keep">
       Keep this</button><span class="status" role="status" data-test="status">${isWaiting ? 'Computing…' : ''}</span></div>
     <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
   const drags = chart ? dragOf(view, state.rig, chart.chart) : [];
