@@ -125,8 +125,9 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
     else inside(() => draw[part.kind](part));
   };
   early.forEach(each);
-  behind.forEach((part, at) => inside(() => line({...part, label: '', dash: at, weight: 0.9}, theme.kept)));
-  late.forEach(each);
+  late.filter((part) => part.kind === 'band').forEach(each);
+  behind.forEach((part, at) => inside(() => line({...part, dash: at, weight: 0.9}, theme.kept)));
+  late.filter((part) => part.kind !== 'band').forEach(each);
 
   function line(part, colour = theme.stroke(part.colour)) {
     const places = pixels(part, map);

@@ -5,7 +5,7 @@ import {drawParts, mapping, pointsOf, pointText, readAt, valuesAt} from './chart
 import {tickTexts, ticksOf, withUnit} from './chart-scale.js';
 
 const FONT = '11.5px system-ui, sans-serif';
-const [NUMBER_HEIGHT, NUMBER_WIDTH] = [34, 62]; // px that a number takes along an axis
+const [NUMBER_HEIGHT, NUMBER_WIDTH] = [34, 50]; // px that a number takes along an axis
 const STEPS = 50; // of the arrow keys over an axis
 const RULE_STEPS = 100;
 const REST = 400; // ms after the last key until a dragged rule counts as released
