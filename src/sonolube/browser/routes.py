@@ -13,7 +13,6 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sonolube.browser.jobs import KEPT_DAYS, Jobs
 from sonolube.browser.places import Places
@@ -63,9 +62,7 @@ class Workbench:
             Route("/api/jobs/{id}/files/{name:path}", self._job_file, methods=["GET"]),
             Mount("/static", StaticFiles(directory=static)),
         ]
-        return Starlette(
-            routes=routes, middleware=[Middleware(_StatusInHeader), Middleware(GZipMiddleware, minimum_size=500)]
-        )
+        return Starlette(routes=routes, middleware=[Middleware(GZipMiddleware, minimum_size=500)])
 
     async def _page(self, request: Request) -> Response:
         """The one page; everything else is in its scripts."""
@@ -171,25 +168,6 @@ class Workbench:
             return FileResponse(path, headers={"content-disposition": f'attachment; filename="{path.name}"'})
 
         return await _refusing(endpoint)(request)
-
-
-class _StatusInHeader:
-    """States the status of refusals in a header where a page asks for it, so that none is an error of its console."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer one request."""
-        asked = dict(scope.get("headers", ())).get(b"x-status") == b"in-header"
-
-        async def changed(message: Message) -> None:
-            if message["type"] == "http.response.start" and message["status"] >= 400:
-                status = str(message["status"]).encode()
-                message |= {"status": 200, "headers": [*message["headers"], (b"x-status", status)]}
-            await send(message)
-
-        await self._app(scope, receive, changed if asked else send)
 
 
 def _require_task(name: str) -> None:

@@ -89,7 +89,7 @@ class Guard:
                 await self._application(scope, receive, send)
             return
         headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
-        guarded = _with_headers(send)
+        guarded = _with_headers(send, is_stated=headers.get("x-status") == "in-header")
         if not self._access.knows_host(headers.get("host", "")):
             await _refuse(guarded, 421)
         elif token := _token_of(scope):
@@ -139,12 +139,18 @@ def _is_own_page(headers: Mapping[str, str]) -> bool:
     return origin is None or urlsplit(origin).netloc == headers.get("host")
 
 
-def _with_headers(send: Send) -> Send:
-    """Send that adds the headers of every answer."""
+def _with_headers(send: Send, *, is_stated: bool) -> Send:
+    """Send that adds the headers of every answer, and states there the status of a refusal where a page asks for it.
+
+    A browser reports any other status than 200 as an error of the page.
+    """
 
     async def guarded(message: MutableMapping[str, Any]) -> None:
         if message["type"] == "http.response.start":
+            status = message["status"]
             message["headers"] = [*message.get("headers", ()), *_HEADERS]
+            if is_stated and status >= 400:
+                message |= {"status": 200, "headers": [*message["headers"], (b"x-status", str(status).encode())]}
         await send(message)
 
     return guarded

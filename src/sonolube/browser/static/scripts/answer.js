@@ -41,15 +41,16 @@ function useChanged(lines, isMoving, of) {
 
 /**
  * Caveats and assumptions of an answer; what changed since the last rest is marked.
- * @param {{answer: Object, isMoving: boolean, of: string}} props `of` names the request that was answered
+ * @param {{answer: Object, isMoving: boolean, of: string, hasFields?: boolean}} props `of` names the request that was
+ *   answered; with fields on the page, what is assumed leads to them
  */
-export function Caveats({answer, isMoving, of}) {
+export function Caveats({answer, isMoving, of, hasFields = true}) {
   const caveats = [...(answer.leading_caveats ?? []), ...(answer.caveats ?? [])];
   const assumed = Object.entries(answer.assumptions ?? {});
   const refused = Object.entries(answer.refusals ?? {});
   const changed = useChanged([...caveats, ...assumed.map(([key, reason]) => `${key}: ${reason}`)], isMoving, of);
   const mark = (line) => (changed.has(line) ? 'is-new' : '');
-  const flag = (line) => changed.has(line) && html`<span class="tag is-new">new</span> `;
+  const flag = (line) => changed.has(line) && html`<span class="tag is-new">changed</span> `;
   if (!caveats.length && !assumed.length && !refused.length) {
     return html`<p class="hint">No caveats, and nothing assumed.</p>`;
   }
@@ -59,8 +60,9 @@ export function Caveats({answer, isMoving, of}) {
     ${refused.length > 0 && html`<h3>Refused inputs</h3><ul class="caveat-list">${refused.map(([name, reason]) => html`
       <li key=${name}>${name}: ${reason}</li>`)}</ul>`}
     ${assumed.length > 0 && html`<h3>Assumed</h3><ul class="caveat-list is-assumed">${assumed.map(([key, reason]) => html`
-      <li key=${key} class=${mark(`${key}: ${reason}`)}>${flag(`${key}: ${reason}`)}<button type="button" class="link"
-      onClick=${() => focusField(key)}>${key}</button> ${reason}</li>`)}</ul>`}
+      <li key=${key} class=${mark(`${key}: ${reason}`)}>${flag(`${key}: ${reason}`)}${hasFields
+    ? html`<button type="button" class="link" onClick=${() => focusField(key)}>${key}</button>` : html`<code>${key}</code>`}
+      ${' '}${reason}</li>`)}</ul>`}
   </div>`;
 }
 
@@ -74,7 +76,7 @@ export function Failure({failure, shown = []}) {
   const texts = [...new Set(faults.map((fault) => fault.text || failure.text))];
   if (!texts.length) {
     return html`<div class="notice is-warning" role="alert" data-test="refused">
-      <strong>Not computed:</strong> an entry of the rig is refused; the reason stands under its field.</div>`;
+      <strong>Not computed:</strong> an entry is refused; the reason stands under its field.</div>`;
   }
   return html`<div class="notice is-warning" role="alert" data-test="refused">
     <strong>${failure.kind === 'refused' ? 'Refused.' : 'Not computed.'}</strong>

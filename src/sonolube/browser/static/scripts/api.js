@@ -7,6 +7,7 @@
  */
 import {useEffect, useLayoutEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 
+const STATED = {'x-status': 'in-header'}; // a refusal is then no error of the browser's console
 const RETRY = 2000; // ms between questions whether the workbench is back
 
 /** @type {'ok'|'offline'|'link'} */
@@ -43,18 +44,19 @@ async function send(path, {method = 'GET', body, raw, signal} = {}) {
   try {
     response = await fetch(path, {
       method, signal, body: raw ?? (body === undefined ? undefined : JSON.stringify(body)),
-      headers: {'x-status': 'in-header', ...(body === undefined ? {} : {'content-type': 'application/json'})},
+      headers: {...STATED, ...(body === undefined ? {} : {'content-type': 'application/json'})},
     });
   } catch (reason) {
     if (signal?.aborted) return failed('refused', 'stopped');
     setConnection('offline');
     return failed('offline', SENTENCES.offline);
   }
-  if (response.status === 401) {
+  const status = Number(response.headers.get('x-status') ?? response.status);
+  if (status === 401) {
     setConnection('link');
     return failed('link', SENTENCES.link);
   }
-  if (response.status === 502 || response.status === 504) {
+  if (status === 502 || status === 504) {
     setConnection('offline');
     return failed('offline', SENTENCES.offline);
   }
@@ -64,9 +66,8 @@ async function send(path, {method = 'GET', body, raw, signal} = {}) {
   try {
     content = JSON.parse(text);
   } catch {
-    return failed('busy', text.slice(0, 300) || `the workbench answered ${response.status}`);
+    return failed('busy', text.slice(0, 300) || `the workbench answered ${status}`);
   }
-  const status = Number(response.headers.get('x-status') ?? response.status); // so that no refusal is an error of the console
   if (status < 300) return {content};
   const kind = status === 422 ? 'refused' : 'busy';
   return {failure: {kind, text: content.text ?? '', faults: content.faults ?? []}};
@@ -232,7 +233,25 @@ export function useConnection() {
  */
 export async function enter(link) {
   const token = /[?&]token=([\w-]+)/.exec(link)?.[1] ?? link.trim();
-  await fetch(`./?token=${encodeURIComponent(token)}`).catch(() => null);
+  await fetch(`./?token=${encodeURIComponent(token)}`, {headers: STATED}).catch(() => null);
   await send('api/start');
   return connection === 'ok';
+}
+
+/**
+ * Whether something has been so for a while, such as waiting for an answer, so that what is short does not flicker.
+ * @param {boolean} isSo
+ * @param {number} [delay] ms
+ */
+export function useLate(isSo, delay = 250) {
+  const [isLate, setLate] = useState(false);
+  useEffect(() => {
+    if (!isSo) {
+      setLate(false);
+      return undefined;
+    }
+    const waiting = setTimeout(() => setLate(true), delay);
+    return () => clearTimeout(waiting);
+  }, [isSo]);
+  return isSo && isLate;
 }

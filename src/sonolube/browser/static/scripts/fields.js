@@ -9,9 +9,9 @@ const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 export const fieldId = (key) => `field-${key.replaceAll(/[^\w]/g, '-')}`;
 export const spreadKey = (key) => `uncertainty.${key}`;
 
-/** Show the field of an entry, open what it lies in, and put the cursor into it; false where there is none. */
+/** Show the field of an entry, or the first of a table, open what it lies in, and put the cursor into it; false where there is none. */
 export function focusField(key) {
-  const field = document.getElementById(fieldId(key));
+  const field = document.getElementById(fieldId(key)) ?? document.querySelector(`input[id^="${fieldId(key)}-"]`);
   if (!field) return false;
   for (let around = field.closest('details'); around; around = around.parentElement.closest('details')) around.open = true;
   field.scrollIntoView({block: 'center', behavior: matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth'});

@@ -84,15 +84,15 @@ function Connection() {
   const [isWrong, setWrong] = useState(false);
   if (connection === 'ok') return null;
   if (connection === 'offline') {
-    return html`<div class="notice is-warning connection" role="alert" data-test="offline">
+    return html`<section class="notice is-warning connection" aria-label="Connection" data-test="offline"><p role="alert">
       <strong>No connection.</strong> The workbench does not answer; this page asks again every two seconds. Where it was
-      stopped, start it by <code>sonolube app</code>. What you typed and the last answer stay.</div>`;
+      stopped, start it by <code>sonolube app</code>. What you typed and the last answer stay.</p></section>`;
   }
   const submit = async (event) => {
     event.preventDefault();
     setWrong(!(await enter(link)));
   };
-  return html`<form class="notice is-warning connection" onSubmit=${submit} data-test="new-link">
+  return html`<form class="notice is-warning connection" onSubmit=${submit} aria-label="New link" data-test="new-link">
     <p role="alert"><strong>The workbench was started again.</strong> Paste the link that it printed; this page then goes
       on where it was.</p>
     <div class="row"><label class="grow"><span class="hidden">New link</span>

@@ -63,7 +63,7 @@ function Made({answer, name, isDim}) {
       <span class="hint">Every entry can be changed there, and the file taken away.</span></p>
     <${Blocks} blocks=${answer.blocks.filter((block) => block.kind !== 'verbatim' && block.text !== rig)} />
     <details><summary>Rig file</summary><pre class="verbatim" tabindex="0" aria-label="Rig file">${text}</pre></details>
-    <${Caveats} answer=${answer} isMoving=${false} of="" />
+    <${Caveats} answer=${answer} isMoving=${false} of="" hasFields=${false} />
   </section>`;
 }
 
@@ -83,7 +83,9 @@ export default function NewRig() {
     return html`<div class="page"><h1>New rig</h1><${Failure} failure=${description.failure} />
       ${!description.failure && html`<p class="loading" role="status">Reading the questions…</p>`}</div>`;
   }
-  const faults = new Map((isReady ? failure?.faults ?? [] : []).map((fault) => [fieldOf(fault, names), fault.text]));
+  const refused = isReady && failure
+    ? {...failure, faults: failure.faults.map((fault) => ({...fault, key: fieldOf(fault, names)}))} : null;
+  const faults = new Map(refused?.faults.map((fault) => [fault.key, fault.text]));
   const first = [...schema.required, ...FIRST];
   const others = names.filter((name) => !first.includes(name));
   const rigName = (view[NAME] ?? '').trim() || 'my-rig';
@@ -109,7 +111,7 @@ export default function NewRig() {
       <div class="stack">
         ${missing.length > 0 && html`<p class="notice" role="status" data-test="missing">Still needed: ${missing.map((name) => name
     .replaceAll('_', ' ')).join(', ')}.</p>`}
-        <${Failure} failure=${isReady ? failure : null} shown=${names} />
+        <${Failure} failure=${refused} shown=${names} />
         ${isWaiting && !content && html`<p class="loading" role="status">Making the rig…</p>`}
         ${content && html`<${Made} answer=${content} name=${rigName} isDim=${isWaiting || !isReady || Boolean(failure)} />`}
       </div>

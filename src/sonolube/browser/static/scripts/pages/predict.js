@@ -1,7 +1,7 @@
 /** Page Predict: how much friction and wear fall on the rig, how sure that is, and what would sharpen it. */
 import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
-import {callTask, inTurn, upload, useReply} from '../api.js';
+import {callTask, inTurn, upload, useLate, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {focusField, short, split} from '../fields.js';
 import {textOf, useRig, Workspace} from '../rig-panel.js';
@@ -219,7 +219,7 @@ export default function Predict() {
   const materialsFault = failure?.faults.find((fault) => ['pin', 'disc', 'lubricant'].includes(fault.key))?.text;
   const shown = [...changed, 'pin', 'disc', 'lubricant'];
   const extra = html`<${Materials} view=${state.view} fault=${materialsFault} />`;
-  const isDim = isWaiting || Boolean(failure);
+  const isDim = useLate(isWaiting || Boolean(failure));
   if (!content) {
     return html`<${Workspace} extra=${extra} lead=${html`<p class="overline">Predict</p><h1 class="statement is-pending">
       ${failure ? 'No answer yet' : 'Computing the first answer…'}</h1>
@@ -230,8 +230,8 @@ export default function Predict() {
   const chart = content.charts[0];
   const lead = html`<p class="overline">${content.answer.rig}</p>
     <h1 class=${`statement${isDim ? ' is-dim' : ''}`} data-test="statement">${first}</h1>
-    <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isDim || refused.length > 0} data-test="keep">
-      Keep this</button><span class="status" role="status" data-test="status">${isWaiting ? 'Computing…' : ''}</span></div>
+    <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">
+      Keep this</button><span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
     <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
   const drags = chart ? dragOf(view, state.rig, chart.chart) : [];
   return html`<${Workspace} lead=${lead} extra=${extra}>
@@ -239,7 +239,7 @@ export default function Predict() {
       <${Numbers} answer=${content} />
       <section class="card" aria-label="Friction over amplitude and over speed">
         ${chart && html`<${Chart} name=${chart.name} caption=${chart.caption} chart=${chart.chart} tables=${chart.tables}
-          dimmed=${false} kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))}
+          dimmed=${isDim} kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))}
           drag=${drags.length > 1 ? drags : drags[0]} />`}
       </section>
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
