@@ -42,7 +42,7 @@ function RigChoice({view}) {
   const own = state.rig.text !== undefined;
   const choose = (event) => {
     setNote('');
-    change({rig: {name: event.target.value, changes: {}}});
+    change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null}});
   };
   const open = async (file) => setNote(await openRigFile(file));
   return html`<div class="rig-choice">
@@ -87,7 +87,8 @@ export function RigPanel({extra}) {
   const {state, setEntry, settle} = useApp();
   const {view, failure, refused} = useRig();
   const {rig} = state;
-  const faults = new Map([...(failure?.faults ?? []), ...refused].map((fault) => [fault.key, fault.text]));
+  const isAnswered = failure && ['refused', 'busy'].includes(failure.kind); // else the head says it
+  const faults = new Map([...(isAnswered ? failure.faults : []), ...refused].map((fault) => [fault.key, fault.text]));
   const onText = (key, text, isMoving) => setEntry(key, text, {replace: isMoving});
   const fields = view?.fields ?? [];
   const first = fields.filter((field) => field.is_first);
