@@ -37,8 +37,10 @@ export function errors(error, place) {
 /** Values of a part along an axis; `isEdge` where no margin is wanted beyond them. */
 function valuesOf(part, name) {
   const {kind} = part;
-  if (kind === 'line' || kind === 'field') return {values: part[name], isEdge: kind === 'field'};
-  if (kind === 'band') return {values: name === 'x' ? part.x : [...part.low, ...part.high]};
+  const other = name === 'x' ? part.y : part.x;
+  if (kind === 'field') return {values: part[name], isEdge: true};
+  if (kind === 'line') return {values: part[name].filter((_, place) => other[place] !== null)};
+  if (kind === 'band') return {values: name === 'x' ? part.x.filter((_, place) => part.low[place] !== null) : [...part.low, ...part.high]};
   if (kind === 'points') {
     const error = part[`${name}_error`];
     const ends = error ? part[name].flatMap((value, place) => {

@@ -7,6 +7,9 @@ const MOST_COMPARED = 12; // latest jobs of a task whose arguments are compared
 
 export const isActive = (job) => job?.state === 'waiting' || job?.state === 'running';
 
+/** Seconds that a job has taken. */
+export const secondsOf = (job) => (isActive(job) ? Math.max(0, Date.now() / 1000 - job.created) : job.seconds);
+
 /** Seconds as text. */
 export function duration(seconds) {
   if (seconds < 60) return `${seconds < 9.95 ? seconds.toFixed(1) : Math.round(seconds)} s`;
@@ -69,7 +72,8 @@ export function progressText(job) {
   if (job.state === 'waiting') return 'Waits until a running job has ended';
   if (job.state !== 'running') return job.state[0].toUpperCase() + job.state.slice(1);
   const parts = job.total ? `, ${job.done} of ${job.total}` : '';
-  return `${job.stage ? job.stage[0].toUpperCase() + job.stage.slice(1) : 'Running'}${parts}`;
+  const stage = job.total && job.stage ? job.stage : 'running';
+  return `${stage[0].toUpperCase()}${stage.slice(1)}${parts}`;
 }
 
 /** Progress of a job with what stops it; the reason where it failed. */
@@ -79,7 +83,7 @@ export function JobState({job, cancel}) {
       <p>${job.reason}</p></div>` : null;
   }
   return html`<div class="job-state" data-test="job-state"><${JobProgress} job=${job} />
-    <span role="status">${progressText(job)}</span>${job.seconds > 0 && html`<span class="hint">${duration(job.seconds)}</span>`}
+    <span role="status">${progressText(job)}</span><span class="hint">${duration(secondsOf(job))}</span>
     <button type="button" class="button" onClick=${cancel} data-test="cancel-job">Cancel</button></div>`;
 }
 

@@ -71,7 +71,7 @@ function withPoint(chart, fields, rig) {
     const known = panel.parts.find((part) => part.kind === 'field' || part.kind === 'line')?.x.filter((value) => value !== null) ?? [];
     const isThere = x !== undefined && x >= Math.min(...known) && x <= Math.max(...known);
     if (!isThere || panel.parts.some((part) => part.kind === 'rule' && part.along === 'x')) return panel;
-    const point = y === undefined ? {kind: 'rule', along: 'x', value: x, label: 'operating point', colour: isMap ? '#ffffff' : '#666666', dash: 3, is_white: isMap}
+    const point = y === undefined ? {kind: 'rule', along: 'x', value: x, label: 'operating point', colour: isMap ? '#d55e00' : '#666666', dash: 3}
       : {kind: 'points', x: [x], y: [y], label: 'operating point', colour: '#d55e00', marker: 3, size: 1.6};
     return {...panel, parts: [...panel.parts, point]};
   });
@@ -106,8 +106,9 @@ function StudyTexts({study, view, faults}) {
       ${faultOf(argument) && html`<p class="refusal" id=${`study-${entry}-refusal`}>${faultOf(argument)}</p>`}</div>`)}
     ${(study.bodies ?? []).map(([entry, argument, label]) => html`<div key=${entry} class="field"><label for=${`study-${entry}`}>${label}</label>
       <select id=${`study-${entry}`} value=${view[entry] ?? ''} onChange=${(event) => change({view: {[entry]: event.target.value || null}})}
-        data-test=${`study-text:${entry}`}><option value="" selected=${!view[entry]}>as in the rig</option>
-        ${names.map(([each, {title}]) => html`<option key=${each} value=${each} selected=${each === view[entry]}>${title}</option>`)}</select></div>`)}
+        aria-describedby=${faultOf(argument) ? `study-${entry}-refusal` : undefined} data-test=${`study-text:${entry}`}><option value="" selected=${!view[entry]}>as in the rig</option>
+        ${names.map(([each, {title}]) => html`<option key=${each} value=${each} selected=${each === view[entry]}>${title}</option>`)}</select>
+      ${faultOf(argument) && html`<p class="refusal" id=${`study-${entry}-refusal`}>${faultOf(argument)}</p>`}</div>`)}
   </div>`;
 }
 
@@ -169,14 +170,14 @@ export default function Explore() {
   const isOfStudy = content && (study.isLong || sameStudy(of, args));
   const charts = useMemo(() => (isOfStudy ? content.charts.filter((one) => one.chart).map((one) => ({...one, chart: withPoint(one.chart, fields, state.rig)})) : []),
     [content, isOfStudy, rigView, JSON.stringify(state.rig)]);
-  const known = (content?.charts ?? []).map((one) => one.name);
-  const shown = [...Object.keys(state.rig.changes), ...ENDS.map(([, argument]) => argument), 'duration'];
+  const own = [...(study.texts ?? []), ...(study.bodies ?? [])].map(([, argument]) => argument);
+  const faults = (failure?.faults ?? []).map((fault) => ({...fault, key: fault.key || (own.find((argument) => fault.text.startsWith(argument)) ?? '')}));
   const start = () => job.start(`${study.title}: ${rigView?.title ?? state.rig.name}`);
   const lead = html`<p class="overline">Explore</p>
     <h1 class="statement">Choose an operating point</h1>
     <${Studies} name=${name} view=${state.view} />`;
   return html`<${Workspace} lead=${lead}>
-    <${StudyTexts} study=${study} view=${state.view} faults=${failure?.faults ?? []} />
+    <${StudyTexts} study=${study} view=${state.view} faults=${faults} />
     ${study.runs && html`<${OwnRuns} view=${state.view} />`}
     ${study.isLong && html`<div class="row">${job.isOld && !isActive(job.job) && !job.isSought && html`<button type="button" class="button is-main" onClick=${start}
       data-test="start-job">${content ? 'Compute again' : 'Compute'}</button>
@@ -184,10 +185,10 @@ export default function Explore() {
       ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}</div>`}
     <div class="row study-status">${!study.isLong && html`<${Waiting} isWaiting=${isWaiting} />`}
       ${note && html`<span role="status" class="status" data-test="picked">${note}</span>`}</div>
-    <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />
+    <${Failure} failure=${failure && {...failure, faults}} shown=${Object.keys(state.rig.changes)} /><${RefusedNote} refused=${refused} />
     ${!isOfStudy && !failure && !study.isLong && html`<div class="skeleton" aria-hidden="true"></div>`}
     ${isOfStudy && html`<div aria-busy=${isWaiting} data-test="study">
-      ${charts.map((one, place) => html`<${Chart} key=${known[place]} name=${one.name} caption=${one.caption} chart=${one.chart} tables=${one.tables}
+      ${charts.map((one) => html`<${Chart} key=${one.name} name=${one.name} caption=${one.caption} chart=${one.chart} tables=${one.tables}
         dimmed=${isOld} onPick=${(at) => setNote(pick(at, one.chart, fields, state.rig))} canPick=${(panel) => Boolean(pickedOf(one.chart.panels[panel], fields).length)} />`)}
       <div class="columns"><div class="stack"><section class=${`card${isOld ? ' is-dim' : ''}`} aria-labelledby="study-numbers">
         <h2 id="study-numbers">Result</h2><${Blocks} blocks=${content.blocks} /></section></div>

@@ -3,7 +3,7 @@ import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats} from '../answer.js';
 import {ask, useConnection} from '../api.js';
 import {Chart} from '../chart.js';
-import {duration, isActive, JobProgress, progressText} from '../job.js';
+import {duration, isActive, JobProgress, progressText, secondsOf} from '../job.js';
 import {change, useApp} from '../state.js';
 
 const [QUICK, SLOW] = [700, 5000]; // ms between looks while a job is active, and otherwise
@@ -62,10 +62,10 @@ function Job({job, isOpen, look}) {
   };
   return html`<li class=${`card job${isOpen ? ' is-open' : ''}`} data-test=${`job:${job.id}`}>
     <div><h2>${name}</h2>
-      <p class="hint">${job.task}, ${new Date(job.created * 1000).toLocaleString()}</p>
+      <p class="hint">${job.task}, ${new Date(job.created * 1000).toLocaleString(undefined, {dateStyle: 'medium', timeStyle: 'short'})}</p>
       <p class="row"><span class=${`tag${job.state === 'done' ? ' is-new' : ''}`} data-test="job-state">${job.state}</span>
         ${isActive(job) && html`<${JobProgress} job=${job} /><span>${progressText(job)}</span>`}
-        ${job.seconds > 0 && html`<span class="hint">${duration(job.seconds)}</span>`}</p>
+        ${secondsOf(job) > 0 && html`<span class="hint">${duration(secondsOf(job))}</span>`}</p>
       ${job.reason && html`<p class="refusal">${job.reason}</p>`}</div>
     <div class="row">
       ${job.state === 'done' && html`<button type="button" class="button" aria-expanded=${isOpen} aria-label=${`${isOpen ? 'Close' : 'Open'} ${name}`}
