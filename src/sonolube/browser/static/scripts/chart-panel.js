@@ -67,17 +67,18 @@ const middle = (axis, ends) => stepped(axis, ends, ends[0], 0.5);
  *   hasXText: boolean, theme: Object, drag?: Object, onPick?: Function, say: (text: string) => void}} props
  */
 export function ChartPanel(props) {
-  const {panel, place, ranges, behind, width, height, hasXText, theme, drag, onPick, say} = props;
+  const {panel, place, behind, width, height, hasXText, theme, drag, onPick, say} = props;
   const [host, handle, plot] = [useRef(null), useRef(null), useRef(null)];
   const latest = useRef(null);
   const [tip, setTip] = useState(null);
   const [held, setHeld] = useState(null);
-  const [isDragged, timer, at] = [useRef(false), useRef(0), useRef(null)];
+  const [isDragged, timer, at, grabbed] = [useRef(false), useRef(0), useRef(null), useRef(null)];
+  const ranges = grabbed.current ?? props.ranges; // an axis that follows the rule stands still under the pointer
   const rule = drag ? panel.parts.find((part) => part.kind === 'rule' && (part.along ?? 'x') === 'x') : null;
 
   const mapOf = (u) => mapping(panel, ranges, u.bbox);
   latest.current = {
-    ...props, draw: (u) => {
+    ...props, ranges, draw: (u) => {
       const map = mapOf(u);
       drawParts(u.ctx, panel, {map, theme, scale: devicePixelRatio, behind, rule, held});
       if (!handle.current || !rule) return;
@@ -176,6 +177,7 @@ export function ChartPanel(props) {
     const [low, high] = ranges.x;
     const value = Math.min(Math.max(x, low), high);
     isDragged.current = true;
+    grabbed.current ??= props.ranges;
     setHeld(value);
     drag.onMove?.(value);
     return value;
@@ -184,6 +186,7 @@ export function ChartPanel(props) {
     clearTimeout(timer.current);
     if (!isDragged.current) return;
     isDragged.current = false;
+    grabbed.current = null;
     drag.onRelease?.(value);
   };
   const slide = (event) => {
@@ -209,6 +212,10 @@ export function ChartPanel(props) {
   const letGo = (event) => {
     if (!isDragged.current) return;
     event.currentTarget.releasePointerCapture?.(event.pointerId);
+    if (held === null) {
+      isDragged.current = false; // pressed, not moved
+      return;
+    }
     release(held ?? rule.value);
   };
 

@@ -28,9 +28,30 @@ const STUDIES = {
 };
 const KINDS = {'velocity-power': 'speed and power', 'velocity-stress': 'speed and stress', 'frequency-voltage': 'frequency and voltage'};
 
+/** Entries set by a click in a map, each as it was set and as the map was drawn with, so that the map stays as it is. */
+function fixedOf({view, rig}) {
+  try {
+    const found = view.study === 'map' ? Object.entries(JSON.parse(view.fixed ?? '{}')) : [];
+    return Object.fromEntries(found.filter(([key, [set]]) => rig.changes[key] === set));
+  } catch {
+    return {}; // a link that was cut off
+  }
+}
+
+/** Rig that a study is of: that of the state, or the one before the clicks in its map. */
+function rigOf(state) {
+  const changes = {...state.rig.changes};
+  for (const [key, [, before]] of Object.entries(fixedOf(state))) {
+    if (before === null) delete changes[key];
+    else changes[key] = before;
+  }
+  return {...state.rig, changes};
+}
+
 /** Study that the view names, and its arguments. */
 function studyOf(state) {
-  const {view, rig} = state;
+  const {view} = state;
+  const rig = rigOf(state);
   const name = view.study in STUDIES ? view.study : 'voltage';
   const study = STUDIES[name];
   const texts = [...(study.texts ?? []), ...(study.bodies ?? [])].filter(([entry]) => view[entry]);
@@ -80,7 +101,7 @@ function withPoint(chart, fields, rig) {
 
 /** Links to the studies and kinds of maps. */
 function Studies({name, view}) {
-  const choose = (partial) => change({view: {from: null, to: null, duration: null, ...partial}});
+  const choose = (partial) => change({view: {from: null, to: null, duration: null, fixed: null, ...partial}});
   return html`<fieldset class="choices"><legend>Study</legend>
     ${Object.entries(STUDIES).map(([each, {title}]) => html`<label key=${each} class="choice"><input type="radio" name="study"
       checked=${each === name} onChange=${() => choose({study: each})} data-test=${`study:${each}`} /><span>${title}</span></label>`)}
@@ -184,12 +205,14 @@ export default function Explore() {
       <span class="hint">${content ? 'The figure is of the rig before.' : 'Takes some seconds.'}</span>`}
       ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}</div>`}
     <div class="row study-status">${!study.isLong && html`<${Waiting} isWaiting=${isWaiting} />`}
-      ${note && html`<span role="status" class="status" data-test="picked">${note}</span>`}</div>
+      ${note && html`<span role="status" class="status" data-test="picked">${note}</span>`}
+      ${Object.keys(fixedOf(state)).length > 0 && html`<span class="hint">Map and caveats are of the rig before the click.</span>
+        <button type="button" class="small" onClick=${() => change({view: {fixed: null}})} data-test="draw-anew">Draw anew</button>`}</div>
     <${Failure} failure=${failure && {...failure, faults}} shown=${Object.keys(state.rig.changes)} /><${RefusedNote} refused=${refused} />
     ${!isOfStudy && !failure && !study.isLong && html`<div class="skeleton" aria-hidden="true"></div>`}
     ${isOfStudy && html`<div aria-busy=${isWaiting} data-test="study">
       ${charts.map((one) => html`<${Chart} key=${one.name} name=${one.name} caption=${one.caption} chart=${one.chart} tables=${one.tables}
-        dimmed=${isOld} onPick=${(at) => setNote(pick(at, one.chart, fields, state.rig))} canPick=${(panel) => Boolean(pickedOf(one.chart.panels[panel], fields).length)} />`)}
+        dimmed=${isOld} onPick=${(at) => setNote(pick(at, one.chart, fields, state))} canPick=${(panel) => Boolean(pickedOf(one.chart.panels[panel], fields).length)} />`)}
       <div class="columns"><div class="stack"><section class=${`card${isOld ? ' is-dim' : ''}`} aria-labelledby="study-numbers">
         <h2 id="study-numbers">Result</h2><${Blocks} blocks=${content.blocks} /></section></div>
         <div class="stack"><section class="card" aria-label="Caveats and assumptions"><h2 class="hidden">Caveats and assumptions</h2><${Caveats} answer=${content} isMoving=${isMoving || isWaiting} of=${JSON.stringify(of)} /></section></div></div>
@@ -207,10 +230,15 @@ function pickedOf(panel, fields) {
 }
 
 /** Set the rig to a place of a panel; returns what is said of it. */
-function pick(at, chart, fields, rig) {
+function pick(at, chart, fields, state) {
   const panel = chart.panels[at.panel];
   const found = pickedOf(panel, fields).map(([name, field]) => [field, textAt(at[name], panel[name])]);
   if (!found.length) return '';
-  change({rig: {...rig, changes: {...rig.changes, ...Object.fromEntries(found.map(([field, text]) => [field.key, text]))}}});
+  const {rig} = state;
+  const drawn = rigOf(state).changes;
+  const isMap = panel.parts.some((part) => part.kind === 'field');
+  const fixed = {...fixedOf(state), ...Object.fromEntries(found.map(([field, text]) => [field.key, [text, drawn[field.key] ?? null]]))};
+  const changes = {...rig.changes, ...Object.fromEntries(found.map(([field, text]) => [field.key, text]))};
+  change({rig: {...rig, changes}, ...(isMap && {view: {fixed: JSON.stringify(fixed)}})});
   return `Set ${found.map(([field, text]) => `${field.label} to ${text}`).join(' and ')}.`;
 }

@@ -65,7 +65,7 @@ function Job({job, isOpen, look}) {
       <p class="hint">${job.task}, ${new Date(job.created * 1000).toLocaleString(undefined, {dateStyle: 'medium', timeStyle: 'short'})}</p>
       <p class="row"><span class=${`tag${job.state === 'done' ? ' is-new' : ''}`} data-test="job-state">${job.state}</span>
         ${isActive(job) && html`<${JobProgress} job=${job} /><span>${progressText(job)}</span>`}
-        ${secondsOf(job) > 0 && html`<span class="hint">${duration(secondsOf(job))}</span>`}</p>
+        ${secondsOf(job) >= 0.05 && html`<span class="hint">${duration(secondsOf(job))}</span>`}</p>
       ${job.reason && html`<p class="refusal">${job.reason}</p>`}</div>
     <div class="row">
       ${job.state === 'done' && html`<button type="button" class="button" aria-expanded=${isOpen} aria-label=${`${isOpen ? 'Close' : 'Open'} ${name}`}
