@@ -126,13 +126,18 @@ def given_rig(source: Any, places: Places, stack: ExitStack) -> "Rig":
 
 @contextmanager
 def names_only(path: Path) -> "Iterator[None]":
-    """Say the name of a file in place of its path in refusals within."""
+    """Say the name of a file in place of its path in refusals within, and no folder beside it."""
+
+    def named(text: str) -> str:
+        return text.replace(f"{path.parent}{os.sep}", "")
+
     try:
         yield
     except SeveralFaults as failure:
-        raise SeveralFaults(failure.faults, rest=failure.rest, where=path.name, keys=failure.keys) from None
+        faults = [named(each) for each in failure.faults]
+        raise SeveralFaults(faults, rest=failure.rest, where=path.name, keys=failure.keys) from None
     except InvalidInput as failure:
-        raise InvalidInput(str(failure).replace(str(path), path.name), key=failure.key) from None
+        raise InvalidInput(named(str(failure)), key=failure.key) from None
 
 
 def rig_path(source: Mapping[str, Any], places: Places, stack: ExitStack) -> Path:

@@ -151,6 +151,7 @@ function onKey(event) {
 
 async function start() {
   setTheme(storedTheme());
+  MODULES[/^#\/(\w+)/.exec(location.hash)?.[1] ?? PAGES[0]]?.().catch(() => null); // read while the start is asked for
   let reply = await ask('api/start');
   const root = document.getElementById('app');
   if (!reply.content) {

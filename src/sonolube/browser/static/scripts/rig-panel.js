@@ -5,20 +5,21 @@ import {Field, spreadKey} from './fields.js';
 import {Schematic} from './schematic.js';
 import {addressOf, change, pack, useApp} from './state.js';
 
-/** Last view that was read, so that a page that opens shows it at once. */
-let lastView = null;
+/** Last view that was read and its rig, so that a page that opens shows it at once. */
+let last = {view: null, rig: {}};
 
 /**
- * The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs.
+ * The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs; null where refused.
  * @returns {{view: any, failure: Object|null, refused: Object[], isWaiting: boolean}}
  */
 export function useRig() {
-  const {state, isMoving} = useApp();
-  const asked = useRef(state.rig);
-  if (!isMoving || state.rig.name !== asked.current.name) asked.current = state.rig; // values that move are not asked about
-  const found = useReply('rig', asked.current.name ? 'api/rig' : null, {rig: asked.current});
-  if (found.content) lastView = found.content;
-  return {view: found.content ?? lastView, failure: found.failure, refused: found.refused, isWaiting: found.isWaiting};
+  const {state: {rig}, isMoving} = useApp();
+  const asked = useRef(rig);
+  if (!isMoving || rig.name !== asked.current.name) asked.current = rig; // values that move are not asked about
+  const {content, failure, refused, isWaiting, of} = useReply('rig', rig.name ? 'api/rig' : null, {rig: asked.current});
+  if (content) last = {view: content, rig: of.rig};
+  const isOther = last.rig.name !== rig.name || last.rig.text !== rig.text;
+  return {view: failure && isOther ? null : last.view, failure, refused, isWaiting};
 }
 
 /** Text of an entry: as it was typed, else as the file has it. */
@@ -38,11 +39,11 @@ function RigChoice({view}) {
   const {state} = useApp();
   const [note, setNote] = useState('');
   const chooser = useRef(null);
-  const names = [...new Set([...(view?.rigs ?? []), state.rig.name])].filter(Boolean);
+  const names = [...new Set([...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);
   const own = state.rig.text !== undefined;
   const choose = (event) => {
     setNote('');
-    change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null}});
+    change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
   };
   const open = async (file) => setNote(await openRigFile(file));
   return html`<div class="rig-choice">
@@ -60,6 +61,8 @@ function RigChoice({view}) {
     </div>
     ${view && html`<p class="hint" data-test="rig-title">${view.title}</p>`}
     ${note && html`<p class="hint" role="status">${note}</p>`}
+    ${state.view.lost && html`<p class="refusal" role="alert" data-test="lost">The file of ${state.view.lost} is not in this
+      link and no longer in this browser: open it again.</p>`}
   </div>`;
 }
 
@@ -76,7 +79,7 @@ export async function openRigFile(file) {
 /** As `openRigFile`, from a text; with a page to go to. */
 export async function openRigText(name, text, page = undefined) {
   const {fits} = await pack(text);
-  change({...(page && {page}), rig: {name, text, changes: {}}});
+  change({...(page && {page}), rig: {name, text, changes: {}}, view: {lost: null}});
   return fits ? '' : 'This file is too long for a link: it stays in this tab only. Take it away as TOML to keep it.';
 }
 

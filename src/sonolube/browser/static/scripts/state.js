@@ -199,6 +199,10 @@ export const current = () => state;
 export async function followAddress(opened) {
   const read = async () => {
     const found = await decode(location.hash);
+    if (/[?&]text=/.test(location.hash) && found.rig.text === undefined) {
+      found.view = {lost: found.rig.name};
+      found.rig = {name: '', changes: {}};
+    }
     if (!found.rig.name) found.rig.name = opened;
     return found;
   };

@@ -86,7 +86,7 @@ function Sharpen({answer}) {
 }
 
 /** Files of own runs: dropped anywhere on the page, or chosen. */
-function OwnRuns({runs, onFile, note, example}) {
+function OwnRuns({runs, onFile, note}) {
   const chooser = useRef(null);
   return html`<section class="card" aria-labelledby="runs-title" data-test="own-runs">
     <h2 id="runs-title">Own runs</h2>
@@ -98,13 +98,12 @@ function OwnRuns({runs, onFile, note, example}) {
     <input type="file" accept=".csv,.txt" class="hidden" tabindex="-1" aria-label="Own runs" ref=${chooser}
       onChange=${(event) => onFile(event.target.files[0])} data-test="runs-file" />
     ${note && html`<p class="refusal" role="alert">${note}</p>`}
-    ${example && html`<p class="hint">${example}</p>`}
   </section>`;
 }
 
 /** Materials and lubrication, which the task takes beside the rig. */
-function Materials({view, fault}) {
-  const known = useReply('materials', 'api/tasks/materials', useMemo(() => ({}), []));
+function Materials({view, fault, isFirst}) {
+  const known = useReply('materials', isFirst ? null : 'api/tasks/materials', useMemo(() => ({}), []));
   const names = Object.entries(known.content?.answer ?? {});
   const choose = (name) => (event) => change({view: {[name]: event.target.value || null}});
   const choice = (name, label) => html`<div class="field"><label for=${`material-${name}`}>${label}</label>
@@ -218,18 +217,20 @@ export default function Predict() {
   const changed = new Set(Object.keys(state.rig.changes));
   const materialsFault = failure?.faults.find((fault) => ['pin', 'disc', 'lubricant'].includes(fault.key))?.text;
   const shown = [...changed, 'pin', 'disc', 'lubricant'];
-  const extra = html`<${Materials} view=${state.view} fault=${materialsFault} />`;
+  const extra = html`<${Materials} view=${state.view} fault=${materialsFault} isFirst=${!content && !failure} />`;
+  const ownRuns = html`<${OwnRuns} runs=${runs} onFile=${onFile} note=${note} />`;
   const isDim = useLate(isWaiting || Boolean(failure));
   if (!content) {
     return html`<${Workspace} extra=${extra} lead=${html`<p class="overline">Predict</p><h1 class="statement is-pending">
       ${failure ? 'No answer yet' : 'Computing the first answer…'}</h1>
-      <${Failure} failure=${failure} shown=${shown} />`}>${!failure && html`<div class="skeleton" aria-hidden="true"></div>`}<//>`;
+      <${Failure} failure=${failure} shown=${shown} />`}>${failure ? runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}<//>`;
   }
   const [outcome, ...others] = content.answer.statement;
   const [first, rest] = outcome.split(/(?<=\.) (?=[A-Z])(.*)/s);
   const chart = content.charts[0];
   const lead = html`<p class="overline">${content.answer.rig}</p>
-    <h1 class=${`statement${isDim ? ' is-dim' : ''}`} data-test="statement">${first}</h1>
+    <h1 class=${`statement${isDim ? ' is-dim' : ''}`} aria-live=${isMoving ? 'off' : 'polite'}
+      data-test="statement">${first}</h1>
     <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">
       Keep this</button><span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
     <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
@@ -244,7 +245,7 @@ export default function Predict() {
       </section>
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
       <div class="columns">
-        <div class="stack"><${Sharpen} answer=${content} /><${OwnRuns} runs=${runs} onFile=${onFile} note=${note} /></div>
+        <div class="stack"><${Sharpen} answer=${content} />${ownRuns}</div>
         <div class="stack">
           <section class="card" aria-labelledby="more-title"><h2 id="more-title">In words</h2>
             ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
