@@ -1,5 +1,6 @@
 /** Parts of an answer as a page shows them: blocks of text, caveats, assumptions, refusals, differences. */
 import {html, useRef} from '../vendor/htm-preact-3.1.1.js';
+import {askAgain} from './api.js';
 import {focusField} from './fields.js';
 
 /** Table of texts. */
@@ -80,7 +81,8 @@ export function Failure({failure, shown = []}) {
   }
   return html`<div class="notice is-warning" role="alert" data-test="refused">
     <strong>${failure.kind === 'refused' ? 'Refused.' : 'Not computed.'}</strong>
-    ${texts.map((text) => html`<p key=${text}>${text}</p>`)}</div>`;
+    ${texts.map((text) => html`<p key=${text}>${text}</p>`)}
+    ${failure.kind === 'busy' && html`<button type="button" class="button" onClick=${askAgain}>Ask again</button>`}</div>`;
 }
 
 /**

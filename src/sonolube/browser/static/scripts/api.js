@@ -30,6 +30,12 @@ function setConnection(kind) {
   listeners.forEach((listener) => listener());
 }
 
+/** Ask again what hooks have asked. */
+export function askAgain() {
+  generation += 1;
+  listeners.forEach((listener) => listener());
+}
+
 /** Ask whether the workbench is back. */
 async function look() {
   await send('api/start');

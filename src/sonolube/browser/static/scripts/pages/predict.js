@@ -1,7 +1,7 @@
 /** Page Predict: how much friction and wear fall on the rig, how sure that is, and what would sharpen it. */
 import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
-import {callTask, inTurn, upload, useLate, useReply} from '../api.js';
+import {ask, callTask, inTurn, upload, useLate, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {focusField, short, split} from '../fields.js';
 import {textOf, useRig, Workspace} from '../rig-panel.js';
@@ -88,6 +88,12 @@ function Sharpen({answer}) {
 /** Files of own runs: dropped anywhere on the page, or chosen. */
 function OwnRuns({runs, onFile, note}) {
   const chooser = useRef(null);
+  const [help, setHelp] = useState('');
+  const read = async () => {
+    const {content, failure} = await ask('api/description');
+    const schema = content?.paths['/api/tasks/predict'].post.requestBody.content['application/json'].schema;
+    setHelp(schema?.properties.runs.description ?? failure.text);
+  };
   return html`<section class="card" aria-labelledby="runs-title" data-test="own-runs">
     <h2 id="runs-title">Own runs</h2>
     ${runs && html`<p class="row"><strong class="grow">${runs.name}</strong><button type="button" class="button"
@@ -98,6 +104,7 @@ function OwnRuns({runs, onFile, note}) {
     <input type="file" accept=".csv,.txt" class="hidden" tabindex="-1" aria-label="Own runs" ref=${chooser}
       onChange=${(event) => onFile(event.target.files[0])} data-test="runs-file" />
     ${note && html`<p class="refusal" role="alert">${note}</p>`}
+    <details onToggle=${read}><summary>What the file holds</summary><p class="hint">${help || 'Reading…'}</p></details>
   </section>`;
 }
 
