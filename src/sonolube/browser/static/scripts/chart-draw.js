@@ -5,35 +5,11 @@ import {css, dash, errors, short, withUnit} from './chart-scale.js';
 const LINE = 1.7; // px
 const MARKER = 3.6; // px, half of its width
 const NEAR = 16; // px from a point within which it is read
-const MARKERS = [
-  (path, size) => path.arc(0, 0, size, 0, 2 * Math.PI),
-  (path, size) => path.rect(-size * 0.9, -size * 0.9, size * 1.8, size * 1.8),
-  (path, size) => polygon(path, [[0, -size * 1.1], [size, size * 0.9], [-size, size * 0.9]]),
-  (path, size) => polygon(path, [[0, -size * 1.2], [size * 1.2, 0], [0, size * 1.2], [-size * 1.2, 0]]),
-  (path, size) => polygon(path, [[0, size * 1.1], [size, -size * 0.9], [-size, -size * 0.9]]),
-  (path, size) => polygon(path, star(size, 0)),
-  (path, size) => polygon(path, star(size, Math.PI / 4)),
+/** Markers of unit size about zero, as paths of SVG. */
+export const MARKERS = [
+  'M-1 0a1 1 0 1 0 2 0a1 1 0 1 0-2 0Z', 'M-.9-.9H.9V.9H-.9Z', 'M0-1.1 1 .9H-1Z', 'M0-1.25 1.25 0 0 1.25-1.25 0Z', 'M0 1.1 1-.9H-1Z',
+  'M-.4-1.2H.4V-.4H1.2V.4H.4V1.2H-.4V.4H-1.2V-.4H-.4Z', 'M-1.1-.6-.6-1.1 0-.5.6-1.1 1.1-.6.5 0 1.1.6.6 1.1 0 .5-.6 1.1-1.1.6-.5 0Z',
 ];
-
-function star(size, turn) {
-  return Array.from({length: 12}, (_, at) => {
-    const angle = turn + (at * Math.PI) / 6 - Math.PI / 12;
-    const out = at % 3 < 2 ? 1.15 * size : 0.55 * size;
-    return [out * Math.sin(angle), -out * Math.cos(angle)];
-  });
-}
-
-function polygon(path, corners) {
-  corners.forEach(([x, y], at) => (at ? path.lineTo(x, y) : path.moveTo(x, y)));
-  path.closePath();
-}
-
-/** Path of a marker about zero. */
-export function markerPath(number, size) {
-  const path = new Path2D();
-  MARKERS[(number ?? 0) % MARKERS.length](path, size);
-  return path;
-}
 
 /**
  * Places of values on a canvas and back.
@@ -51,38 +27,12 @@ export function mapping(panel, ranges, box) {
   return {box, x: axis('x', box.left, box.width), y: axis('y', box.top + box.height, -box.height)};
 }
 
-/** Pixels of a curve, at most four in each column where x ascends. */
+/** Pixels of a curve; null where it is interrupted. */
 function pixels(line, map) {
-  const found = [];
-  let column = null;
-  let [first, low, high, last] = [];
-  const leave = () => {
-    if (!first) return;
-    const inside = [low, high].sort((one, other) => one[0] - other[0]);
-    found.push(first, ...inside, last);
-    first = undefined;
-  };
-  const isDense = line.x.length > 4 * map.box.width;
-  for (let at = 0; at < line.x.length; at += 1) {
-    const [x, y] = [line.x[at], line.y[at]];
-    const place = x === null || y === null ? null : [map.x.to(x), map.y.to(y)];
-    if (!place || !Number.isFinite(place[0]) || Number.isNaN(place[1])) {
-      leave();
-      found.push(null);
-    } else if (!isDense) found.push(place);
-    else {
-      if (Math.floor(place[0]) !== column) {
-        leave();
-        column = Math.floor(place[0]);
-      }
-      first ??= (low = high = place);
-      last = place;
-      if (place[1] < low[1]) low = place;
-      if (place[1] > high[1]) high = place;
-    }
-  }
-  leave();
-  return found;
+  return line.x.map((x, at) => {
+    const place = x === null || line.y[at] === null ? null : [map.x.to(x), map.y.to(line.y[at])];
+    return place && Number.isFinite(place[0]) && Number.isFinite(place[1]) ? place : null;
+  });
 }
 
 function trace(context, places, isStepped) {
@@ -105,7 +55,7 @@ function trace(context, places, isStepped) {
  *   `behind` are kept lines; `held` is where the dragged `rule` stands, null where its data say it
  */
 export function drawParts(context, panel, {map, theme, scale, behind, rule: dragged, held}) {
-  const draw = {line, band, points, rule, zone, field, bars, note};
+  const draw = {line, band, points, rule, zone, bars, note, field: (part) => drawField(context, part, map, scale)};
   const {left, top, width, height} = map.box;
   const inside = (work) => {
     context.save();
@@ -115,19 +65,15 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
     work();
     context.restore();
   };
-  const parts = [...panel.parts];
-  const order = (part) => ({zone: 0, field: 1, points: part.is_faint ? 1 : 3, note: 4}[part.kind] ?? 2);
-  parts.sort((one, other) => order(one) - order(other));
-  const early = parts.filter((part) => order(part) < 2);
-  const late = parts.filter((part) => order(part) >= 2);
+  const order = (part) => ({zone: 0, field: 1, band: 2, points: part.is_faint ? 1 : 4, note: 5}[part.kind] ?? 3);
   const each = (part) => {
     if (part.kind === 'points' || part.kind === 'note') draw[part.kind](part);
     else inside(() => draw[part.kind](part));
   };
-  early.forEach(each);
-  late.filter((part) => part.kind === 'band').forEach(each);
+  const parts = [...panel.parts].sort((one, other) => order(one) - order(other));
+  parts.filter((part) => order(part) < 3).forEach(each);
   behind.forEach((part, at) => inside(() => line({...part, dash: at, weight: 0.9}, theme.kept)));
-  late.filter((part) => part.kind !== 'band').forEach(each);
+  parts.filter((part) => order(part) >= 3).forEach(each);
 
   function line(part, colour = theme.stroke(part.colour)) {
     const places = pixels(part, map);
@@ -144,38 +90,34 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
     context.stroke();
     context.setLineDash([]);
     if (part.marker == null) return;
-    const path = markerPath(part.marker, 0.8 * MARKER * scale);
-    places.filter(Boolean).forEach((place) => mark(path, place, colour));
+    places.filter(Boolean).forEach((place) => mark(part.marker, 0.8 * MARKER * scale, place, colour));
   }
 
-  function mark(path, [x, y], colour, {isHollow = false} = {}) {
+  function mark(marker, size, [x, y], colour, {isHollow = false, edge = theme.surface} = {}) {
+    const path = new Path2D(MARKERS[(marker ?? 0) % MARKERS.length]);
     context.save();
     context.translate(x, y);
-    context.fillStyle = isHollow ? theme.surface : colour;
-    context.strokeStyle = isHollow ? colour : theme.surface;
-    context.lineWidth = (isHollow ? 1.3 : 0.8) * scale;
+    context.scale(size, size);
+    context.fillStyle = colour;
+    context.strokeStyle = isHollow ? colour : edge;
+    context.lineWidth = ((isHollow || edge === 'white' ? 1.3 : 0.8) * scale) / size;
     if (!isHollow) context.fill(path);
     context.stroke(path);
     context.restore();
   }
 
   function band(part) {
+    const known = part.x.map((x, at) => at).filter((at) => part.x[at] !== null && part.low[at] !== null && part.high[at] !== null);
+    const edge = (values, places) => places.forEach((at) => context.lineTo(map.x.to(part.x[at]), map.y.to(values[at])));
     context.beginPath();
-    const run = (values, places) => places.forEach((at) => context.lineTo(map.x.to(part.x[at]), map.y.to(values[at])));
-    let places = [];
-    const close = () => {
-      if (!places.length) return;
-      context.moveTo(map.x.to(part.x[places[0]]), map.y.to(part.low[places[0]]));
-      run(part.low, places);
-      run(part.high, places.reverse());
-      context.closePath();
-      places = [];
-    };
-    part.x.forEach((x, at) => {
-      if (x === null || part.low[at] === null || part.high[at] === null) close();
-      else places.push(at);
-    });
-    close();
+    for (let first = 0, at = 1; at <= known.length; at += 1) {
+      if (known[at] === known[at - 1] + 1) continue; // a run without gaps
+      const run = known.slice(first, at);
+      context.moveTo(map.x.to(part.x[run[0]]), map.y.to(part.low[run[0]]));
+      edge(part.low, run);
+      edge(part.high, run.reverse());
+      first = at;
+    }
     context.globalAlpha = part.opacity ?? 0.25;
     context.fillStyle = theme.fill(part.colour);
     context.fill();
@@ -184,8 +126,7 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
 
   function points(part) {
     const colour = theme.stroke(part.colour);
-    const size = (part.is_faint ? 0.35 : part.size ?? 1) * MARKER * scale;
-    const path = markerPath(part.marker, size);
+    const size = (part.is_faint ? 0.35 : part.size ?? 1) * (part.shades ? 1.3 : 1) * MARKER * scale;
     const shade = part.shades && shadeOf(part, panel);
     part.x.forEach((x, at) => {
       if (x === null || part.y[at] === null) return;
@@ -193,7 +134,7 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
       bar(errors(part.y_error, at), part.y[at], place, 'y', colour);
       bar(errors(part.x_error, at), x, place, 'x', colour);
       context.globalAlpha = part.is_faint ? 0.6 : 1;
-      mark(path, place, shade ? css(shade(part.shades[at])) : colour, {isHollow: part.is_hollow});
+      mark(part.marker, size, place, shade ? css(shade(part.shades[at])) : colour, {isHollow: part.is_hollow, edge: shade ? 'white' : theme.surface});
       context.globalAlpha = 1;
       if (part.texts?.[at]) write(part.texts[at], place[0] + 7 * scale, place[1], 'left', theme.ink, true);
     });
@@ -242,10 +183,6 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
       else context.fillRect(left, other, width, one - other);
     });
     context.globalAlpha = 1;
-  }
-
-  function field(part) {
-    drawField(context, part, map, scale);
   }
 
   function bars(part) {
@@ -304,9 +241,12 @@ export function ownScale(part) {
   return {ends: [Math.min(...known), Math.max(...known)]};
 }
 
-/** Points of a panel by x, each with its part and number. */
+/** Points and ends of bars of a panel by x, each with its part and number. */
 export function pointsOf(panel) {
-  const found = panel.parts.filter((part) => part.kind === 'points').flatMap((part) => part.x.map((x, at) => ({part, at, x, y: part.y[at]})));
+  const found = panel.parts.filter((part) => part.kind === 'points' || part.kind === 'bars').map((part) => {
+    const [x, y] = (part.along ?? 'x') === 'x' ? [part.lengths, part.places] : [part.places, part.lengths];
+    return part.kind === 'bars' ? {...part, x, y, texts: []} : part;
+  }).flatMap((part) => part.x.map((x, at) => ({part, at, x, y: part.y[at]})));
   return found.filter(({x, y}) => x !== null && y !== null).sort((one, other) => one.x - other.x || one.y - other.y);
 }
 
@@ -356,8 +296,6 @@ export function valuesAt(panel, x, y) {
     const text = field.words ? field.words[Math.round(value)] : withUnit(value, field);
     return [`${field.label || 'Value'}: ${value === null ? 'not known' : text}`, `${across}: ${withUnit(x, panel.x)}`, `${up}: ${withUnit(y, panel.y)}`];
   }
-  const bars = panel.parts.filter((part) => part.kind === 'bars');
-  if (bars.length) return barTexts(panel, bars, x, y);
   const texts = [];
   for (const part of panel.parts) {
     if (part.kind === 'line' && ascends(part.x)) {
@@ -369,17 +307,4 @@ export function valuesAt(panel, x, y) {
     }
   }
   return texts.length ? [`${across}: ${withUnit(x, panel.x)}`, ...texts.reverse()] : [`${across}: ${withUnit(x, panel.x)}`, `${up}: ${withUnit(y, panel.y)}`];
-}
-
-function barTexts(panel, bars, x, y) {
-  const found = [];
-  for (const part of bars) {
-    const isLying = (part.along ?? 'x') === 'x';
-    const [across, along, at] = isLying ? [panel.y, panel.x, y] : [panel.x, panel.y, x];
-    part.places.forEach((place, number) => {
-      if (Math.abs(place - at) > (part.breadth ?? 0.6) / 2) return;
-      found.push(`${[part.label, withUnit(place, across)].filter(Boolean).join(', ')}: ${withUnit(part.lengths[number], along)}`);
-    });
-  }
-  return found.length ? found : [`${panel.x.label}: ${withUnit(x, panel.x)}`, `${panel.y.label}: ${withUnit(y, panel.y)}`];
 }

@@ -8,8 +8,8 @@ const STOPS = {
   grey: ['#ffffff', '#f0f0f0', '#d9d9d9', '#bdbdbd', '#969696', '#737373', '#525252', '#252525', '#000000'],
 };
 const CATEGORIES = ['#bfbfbf', '#9ecae1', '#fdd0a2', '#c7e9c0', '#dadaeb'];
-const LEAST_LINE = 60; // px of a contour line that gets a label
-const MARGIN = 0.06; // of the width, in which no label stands
+const LEAST_PIECES = 4; // of a contour line that gets a label
+const MARGIN = 0.06; // of width and height, in which no label stands
 
 /** Colour of a share of a scale. */
 export function colourAt(name, share) {
@@ -106,53 +106,25 @@ function imageOf(field, map) {
   return canvas;
 }
 
-/** Contour lines of a level: chains of places of the grid, by marching squares. */
-function chains(field, level) {
-  const {values} = field;
-  const [width, height] = [field.x.length, field.y.length];
-  const links = new Map(); // from a crossed edge of the grid to those it is joined with
-  const join = (one, other) => {
-    links.set(one, [...(links.get(one) ?? []), other]);
-    links.set(other, [...(links.get(other) ?? []), one]);
-  };
-  const across = (row, column) => 2 * (row * width + column); // edge to the right of a place; one more: the edge above it
-  for (let row = 0; row < height - 1; row += 1) {
-    for (let column = 0; column < width - 1; column += 1) {
-      const corners = [values[row][column], values[row][column + 1], values[row + 1][column + 1], values[row + 1][column]];
-      if (corners.includes(null)) continue;
-      const above = corners.map((value) => value >= level);
-      const edges = [across(row, column), across(row, column + 1) + 1, across(row + 1, column), across(row, column) + 1];
-      const crossed = edges.filter((_, side) => above[side] !== above[(side + 1) % 4]);
-      if (crossed.length === 2) join(...crossed);
-      else if (crossed.length === 4) {
-        const isMiddle = corners.reduce((sum, value) => sum + value, 0) / 4 >= level;
-        const isTurned = isMiddle === above[0];
-        join(edges[0], edges[isTurned ? 1 : 3]);
-        join(edges[2], edges[isTurned ? 3 : 1]);
-      }
-    }
-  }
-  const place = (edge) => {
-    const [row, column] = [Math.floor((edge >> 1) / width), (edge >> 1) % width];
-    const isUp = edge % 2;
-    const [one, other] = [values[row][column], values[row + isUp][column + 1 - isUp]];
-    const share = (level - one) / (other - one);
-    const between = (axis, from, to) => axis[from] + share * (axis[to] - axis[from]);
-    return [between(field.x, column, column + 1 - isUp), between(field.y, row, row + isUp)];
-  };
+/** Pieces of the contour line of a level, one or two for each crossed cell of the grid, by marching squares. */
+function pieces({x, y, values}, level, map) {
   const found = [];
-  const left = new Set(links.keys());
-  const starts = [...left].sort((one, other) => links.get(one).length - links.get(other).length); // open ends first
-  for (const start of starts) {
-    if (!left.has(start)) continue;
-    const chain = [];
-    for (let edge = start; edge !== undefined;) {
-      left.delete(edge);
-      chain.push(place(edge));
-      edge = links.get(edge).find((next) => left.has(next));
+  for (let row = 0; row < y.length - 1; row += 1) {
+    for (let column = 0; column < x.length - 1; column += 1) {
+      const corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(([right, up]) => [x[column + right], y[row + up], values[row + up][column + right]]);
+      if (corners.some(([, , value]) => value === null)) continue;
+      const isAbove = corners.map(([, , value]) => value >= level);
+      const crossed = corners.flatMap((one, side) => {
+        const next = (side + 1) % 4;
+        if (isAbove[side] === isAbove[next]) return [];
+        const share = (level - one[2]) / (corners[next][2] - one[2]);
+        const [across, upward] = [0, 1].map((axis) => one[axis] + share * (corners[next][axis] - one[axis]));
+        return [[map.x.to(across), map.y.to(upward)]];
+      });
+      const isMiddle = corners.reduce((sum, [, , value]) => sum + value, 0) / 4 >= level;
+      if (crossed.length === 4 && isMiddle !== isAbove[0]) crossed.push(crossed.shift()); // which corners of a saddle are joined
+      for (let at = 0; at < crossed.length; at += 2) found.push([crossed[at], crossed[at + 1]]);
     }
-    if (links.get(start).length === 2 && chain.length > 2) chain.push(chain[0]);
-    found.push(chain);
   }
   return found;
 }
@@ -161,48 +133,37 @@ function chains(field, level) {
 export function drawField(context, field, map, scale) {
   context.drawImage(imageOf(field, map), map.box.left, map.box.top);
   if (!field.levels || !field.lines) return;
-  const labels = [];
+  const lines = field.lines.map((level) => [short(level, 3), pieces(field, level, map)]);
   context.strokeStyle = 'white';
   context.lineWidth = 0.9 * scale;
-  for (const level of field.lines) {
-    for (const chain of chains(field, level)) {
-      const line = chain.map(([x, y]) => [map.x.to(x), map.y.to(y)]);
-      context.beginPath();
-      line.forEach(([x, y], at) => (at ? context.lineTo(x, y) : context.moveTo(x, y)));
-      context.stroke();
-      const label = labelOf(line, map.box, scale);
-      if (label) labels.push([short(level, 3), ...label]);
-    }
+  context.beginPath();
+  for (const [one, other] of lines.flatMap(([, found]) => found)) {
+    context.moveTo(...one);
+    context.lineTo(...other);
   }
-  context.font = `${9.5 * scale}px sans-serif`;
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
-  for (const [text, x, y, angle] of labels) {
+  context.stroke();
+  Object.assign(context, {font: `${9.5 * scale}px sans-serif`, textAlign: 'center', textBaseline: 'middle', lineJoin: 'round'});
+  Object.assign(context, {lineWidth: 3 * scale, strokeStyle: '#2a3f6e', fillStyle: 'white'});
+  for (const [text, found] of lines) {
+    const [x, y, angle] = labelOf(found, map.box) ?? [];
+    if (x === undefined) continue;
     context.save();
     context.translate(x, y);
     context.rotate(angle);
-    context.lineWidth = 3 * scale;
-    context.strokeStyle = '#2a3f6e';
-    context.lineJoin = 'round';
     context.strokeText(text, 0, 0);
-    context.fillStyle = 'white';
     context.fillText(text, 0, 0);
     context.restore();
   }
 }
 
-/** Place and angle of the label in the middle of a line; null where it would not fit. */
-function labelOf(line, box, scale) {
-  const steps = line.slice(1).map(([x, y], at) => Math.hypot(x - line[at][0], y - line[at][1]));
-  const length = steps.reduce((sum, step) => sum + step, 0);
-  if (length < LEAST_LINE * scale) return null;
-  let [at, gone] = [0, 0];
-  while (at < steps.length - 1 && gone + steps[at] < length / 2) gone += steps[at++];
-  const [[x, y], [nextX, nextY]] = [line[at], line[at + 1]];
-  const inside = (x - box.left) / box.width;
-  if (inside < MARGIN || inside > 1 - MARGIN) return null;
-  let angle = Math.atan2(nextY - y, nextX - x);
-  if (Math.abs(angle) > Math.PI / 2) angle -= Math.sign(angle) * Math.PI;
+/** Place and angle of the label of a line: where it is nearest to the rising diagonal; null where it has no room. */
+function labelOf(found, {left, top, width, height}) {
+  const far = ([[x, y]]) => Math.abs((x - left) / width - (top + height - y) / height);
+  const inner = found.filter(([[x, y]]) => x > left + MARGIN * width && x < left + (1 - MARGIN) * width
+    && y > top + MARGIN * height && y < top + (1 - MARGIN) * height);
+  if (inner.length < LEAST_PIECES) return null;
+  const [[x, y], [nextX, nextY]] = inner.reduce((best, each) => (far(each) < far(best) ? each : best));
+  const angle = Math.atan((nextY - y) / (nextX - x || 1e-9));
   return [(x + nextX) / 2, (y + nextY) / 2, angle];
 }
 

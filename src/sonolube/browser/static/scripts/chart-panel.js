@@ -7,8 +7,8 @@ import {tickTexts, ticksOf, withUnit} from './chart-scale.js';
 const FONT = '11.5px system-ui, sans-serif';
 const [NUMBER_HEIGHT, NUMBER_WIDTH] = [34, 50]; // px that a number takes along an axis
 const STEPS = 50; // of the arrow keys over an axis
-const RULE_STEPS = 100;
-const REST = 400; // ms after the last key until a dragged rule counts as released
+const RULE_STEPS = 400; // of the rule that is dragged
+const THUMB = 28; // px that it can be grasped at, as in the style
 const MOVED = 4; // px beyond which a press is no click
 
 /** What must be made anew, rather than given new data. */
@@ -60,6 +60,12 @@ function stepped(axis, [low, high], value, share) {
   return from(Math.min(Math.max(next, to(low)), to(high)));
 }
 
+/** Share of the length of an axis at which a value stands. */
+function shareOf(axis, [low, high], value) {
+  const to = axis.logarithmic ? Math.log : (each) => each;
+  return (to(value) - to(low)) / (to(high) - to(low));
+}
+
 const middle = (axis, ends) => stepped(axis, ends, ends[0], 0.5);
 
 /**
@@ -72,7 +78,7 @@ export function ChartPanel(props) {
   const latest = useRef(null);
   const [tip, setTip] = useState(null);
   const [held, setHeld] = useState(null);
-  const [isDragged, timer, at, grabbed] = [useRef(false), useRef(0), useRef(null), useRef(null)];
+  const [at, grabbed, pressed] = [useRef(null), useRef(null), useRef(null)];
   const ranges = grabbed.current ?? props.ranges; // an axis that follows the rule stands still under the pointer
   const rule = drag ? panel.parts.find((part) => part.kind === 'rule' && (part.along ?? 'x') === 'x') : null;
 
@@ -82,11 +88,8 @@ export function ChartPanel(props) {
       const map = mapOf(u);
       drawParts(u.ctx, panel, {map, theme, scale: devicePixelRatio, behind, rule, held});
       if (!handle.current || !rule) return;
-      const {style} = handle.current;
-      const [left, top, length] = [map.x.to(held ?? rule.value), map.box.top, map.box.height].map((each) => each / devicePixelRatio);
-      style.left = `${left}px`;
-      style.top = `${top}px`;
-      style.height = `${length}px`;
+      const [left, top, length, high] = [map.box.left, map.box.top, map.box.width, map.box.height].map((each) => each / devicePixelRatio);
+      Object.assign(handle.current.style, {left: `${left - THUMB / 2}px`, top: `${top}px`, width: `${length + THUMB}px`, height: `${high}px`});
     },
   };
 
@@ -105,10 +108,9 @@ export function ChartPanel(props) {
   }, [panel, ranges, behind, width, height, theme]);
   useLayoutEffect(() => plot.current.redraw(false), [held]);
   useEffect(() => {
-    if (!isDragged.current) setHeld(null);
+    if (!grabbed.current) setHeld(null);
     setTip((old) => (old?.isKept ? old : null));
   }, [panel]);
-  useEffect(() => () => clearTimeout(timer.current), []);
 
   /** Place of a pointer in pixels of the canvas, and in the axes; null beyond them. */
   const placeOf = (event) => {
@@ -133,7 +135,6 @@ export function ChartPanel(props) {
     at.current = {x: map.x.back(left), y: map.y.back(top), number: at.current?.number ?? -1};
     return showTip(map, left, top, found.texts);
   };
-  const pressed = useRef(null);
   const pick = (event) => {
     const start = pressed.current;
     if (!onPick || (start && Math.hypot(event.clientX - start[0], event.clientY - start[1]) > MOVED)) return;
@@ -173,50 +174,16 @@ export function ChartPanel(props) {
     say(texts.join('; '));
   };
 
-  const move = (x) => {
-    const [low, high] = ranges.x;
-    const value = Math.min(Math.max(x, low), high);
-    isDragged.current = true;
+  const share = (value) => Math.round(RULE_STEPS * shareOf(panel.x, ranges.x, value));
+  const move = (event) => {
     grabbed.current ??= props.ranges;
+    const value = stepped(panel.x, ranges.x, ranges.x[0], event.target.value / RULE_STEPS);
     setHeld(value);
     drag.onMove?.(value);
-    return value;
   };
-  const release = (value) => {
-    clearTimeout(timer.current);
-    if (!isDragged.current) return;
-    isDragged.current = false;
+  const release = (event) => {
     grabbed.current = null;
-    drag.onRelease?.(value);
-  };
-  const slide = (event) => {
-    const steps = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10}[event.key];
-    const ends = {Home: ranges.x[0], End: ranges.x[1]}[event.key];
-    if (steps === undefined && ends === undefined) return;
-    event.preventDefault();
-    const share = (steps * (event.shiftKey ? 10 : 1)) / RULE_STEPS;
-    const value = move(ends ?? stepped(panel.x, ranges.x, held ?? rule.value, share));
-    clearTimeout(timer.current);
-    timer.current = setTimeout(() => release(value), REST);
-  };
-  const grab = (event) => {
-    event.preventDefault();
-    event.currentTarget.focus();
-    event.currentTarget.setPointerCapture(event.pointerId);
-    isDragged.current = true;
-    hide();
-  };
-  const pull = (event) => {
-    if (event.currentTarget.hasPointerCapture(event.pointerId)) move(placeOf(event).x);
-  };
-  const letGo = (event) => {
-    if (!isDragged.current) return;
-    event.currentTarget.releasePointerCapture?.(event.pointerId);
-    if (held === null) {
-      isDragged.current = false; // pressed, not moved
-      return;
-    }
-    release(held ?? rule.value);
+    drag.onRelease?.(stepped(panel.x, ranges.x, ranges.x[0], event.target.value / RULE_STEPS));
   };
 
   const value = rule && (held ?? rule.value);
@@ -225,10 +192,8 @@ export function ChartPanel(props) {
     <div ref=${host} class=${`chart-plot${onPick ? ' is-pickable' : ''}`} role="img" tabindex="0" data-test=${`plot:${place}`}
       aria-label=${`${panelName(panel)}. ${hint}`} onPointerMove=${hover} onPointerLeave=${hide} onKeyDown=${press} onBlur=${hide}
       onPointerDown=${(event) => { pressed.current = [event.clientX, event.clientY]; hover(event); }} onClick=${pick}></div>
-    ${rule && html`<div ref=${handle} class="chart-handle" role="slider" tabindex="0" aria-label=${`${rule.label || 'Value'}, ${flat(panel.x.label)}`}
-      aria-valuemin=${ranges.x[0]} aria-valuemax=${ranges.x[1]} aria-valuenow=${value} aria-valuetext=${withUnit(value, panel.x)}
-      data-test=${`drag:${place}`} onKeyDown=${slide} onBlur=${() => release(held)} onPointerDown=${grab} onPointerMove=${pull}
-      onPointerUp=${letGo} onPointerCancel=${letGo}><span class="chart-grip"></span></div>`}
+    ${rule && html`<input ref=${handle} type="range" class="chart-handle" min="0" max=${RULE_STEPS} value=${share(value)} aria-valuetext=${withUnit(value, panel.x)}
+      aria-label=${`${rule.label || 'Value'}, ${flat(panel.x.label)}`} data-test=${`drag:${place}`} onInput=${move} onChange=${release} onPointerDown=${hide} />`}
     ${tip && html`<div class=${`chart-tip${tip.left > width / 2 ? ' is-left' : ''}${tip.top > height / 2 ? ' is-above' : ''}`}
       style=${{left: `${tip.left}px`, top: `${tip.top}px`, maxWidth: `${Math.max(150, Math.max(tip.left, width - tip.left) - 16)}px`}}
       aria-hidden="true" data-test="tip">

@@ -2,7 +2,7 @@
  * Figures of the workbench: a chart of the server as panels in a grid, with legend, scale of colours and tables.
  */
 import {html, useLayoutEffect, useMemo, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
-import {shadeOf, ownScale} from './chart-draw.js';
+import {MARKERS, ownScale} from './chart-draw.js';
 import {categoryColour, ColourScale} from './chart-field.js';
 import {ChartPanel, panelName} from './chart-panel.js';
 import {dash, rangesOf, themeOf} from './chart-scale.js';
@@ -71,18 +71,12 @@ function entriesOf(panels) {
           found.set(part.words[number], {kind: 'zone', colour: categoryColour(number), opacity: 1, isPlain: true});
         }
       } else if (part.label && part.kind !== 'field' && part.kind !== 'note' && !found.has(part.label)) {
-        found.set(part.label, part.shades ? {...part, colour: '#808080', shade: shadeOf(part, panel)} : part);
+        found.set(part.label, part.shades ? {...part, colour: '#808080'} : part);
       }
     }
   }
   return [...found];
 }
-
-const SHAPES = [
-  html`<circle cx="0" cy="0" r="4" />`, html`<rect x="-3.5" y="-3.5" width="7" height="7" />`, html`<path d="M0-4.5 4 3.5H-4Z" />`,
-  html`<path d="M0-5 5 0 0 5-5 0Z" />`, html`<path d="M0 4.5 4-3.5H-4Z" />`, html`<path d="M-1.5-4.5h3v3h3v3h-3v3h-3v-3h-3v-3h3Z" />`,
-  html`<path d="M-4-4 4 4M-4 4 4-4" stroke-width="3" />`,
-];
 
 function Swatch({part, theme}) {
   const [stroke, fill] = [theme.stroke(part.colour), part.isPlain ? part.colour : theme.fill(part.colour)];
@@ -92,8 +86,8 @@ function Swatch({part, theme}) {
     ${isFilled && html`<rect x="2" y="2" width="22" height="10" fill=${part.kind === 'bars' ? stroke : fill} fill-opacity=${part.opacity ?? (part.kind === 'band' ? 0.25 : 1)} />`}
     ${(part.kind === 'line' || part.kind === 'rule') && html`<path d="M1 7H25" fill="none" stroke=${part.isKept ? theme.kept : stroke} stroke-width="2"
       stroke-dasharray=${dash(part.dash ?? (part.kind === 'rule' ? 3 : 0)).join(' ')} />`}
-    ${mark != null && html`<g transform="translate(13 7)" fill=${part.is_hollow ? theme.surface : stroke} stroke=${stroke}
-      stroke-width=${part.is_hollow ? 1.4 : 0.5}>${SHAPES[mark % SHAPES.length]}</g>`}
+    ${mark != null && html`<path transform="translate(13 7) scale(4)" d=${MARKERS[mark % MARKERS.length]} fill=${part.is_hollow ? 'none' : stroke}
+      stroke=${stroke} stroke-width=${part.is_hollow ? 0.35 : 0.1} />`}
   </svg>`;
 }
 
