@@ -5,7 +5,8 @@
  * @typedef {{text: string, faults: Fault[], kind: 'refused'|'busy'|'offline'|'link'}} Failure
  * @typedef {{content?: any, failure?: Failure}} Reply
  */
-import {useEffect, useLayoutEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {useListening} from './state.js';
 
 const STATED = {'x-status': 'in-header'}; // a refusal is then no error of the browser's console
 const RETRY = 2000; // ms between questions whether the workbench is back
@@ -68,12 +69,8 @@ async function send(path, {method = 'GET', body, raw, signal} = {}) {
   }
   setConnection('ok');
   const text = await response.text().catch(() => '');
-  let content;
-  try {
-    content = JSON.parse(text);
-  } catch {
-    return failed('busy', text.slice(0, 300) || `the workbench answered ${status}`);
-  }
+  if (!/^[[{]/.test(text)) return failed('busy', text.slice(0, 300) || `the workbench answered ${status}`);
+  const content = JSON.parse(text);
   if (status < 300) return {content};
   const kind = status === 422 ? 'refused' : 'busy';
   return {failure: {kind, text: content.text ?? '', faults: content.faults ?? []}};
@@ -223,12 +220,7 @@ export const useTask = (name, args, slot = name) => useReply(slot, name === null
  * @returns {{connection: 'ok'|'offline'|'link', generation: number}}
  */
 export function useConnection() {
-  const [, draw] = useState({});
-  useLayoutEffect(() => {
-    const listener = () => draw({});
-    listeners.add(listener);
-    return () => listeners.delete(listener);
-  }, []);
+  useListening(listeners);
   return {connection, generation};
 }
 
@@ -252,11 +244,8 @@ export async function enter(link) {
 export function useLate(isSo, delay = 250) {
   const [isLate, setLate] = useState(false);
   useEffect(() => {
-    if (!isSo) {
-      setLate(false);
-      return undefined;
-    }
-    const waiting = setTimeout(() => setLate(true), delay);
+    setLate(false);
+    const waiting = isSo && setTimeout(() => setLate(true), delay);
     return () => clearTimeout(waiting);
   }, [isSo]);
   return isSo && isLate;

@@ -1,37 +1,18 @@
 /** Shell of the workbench: head with pages, undo, take away and theme; below it the page of the state. */
 import {html, render, useEffect, useErrorBoundary, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, enter, useConnection} from './api.js';
-import {addressOf, followAddress, PAGES, useApp} from './state.js';
+import {addressOf, followAddress, PAGES, stored, useApp} from './state.js';
 import {TakeAway} from './take-away.js';
 
-const PAGE_TITLES = {
-  predict: 'Predict', explore: 'Explore', dissertation: 'Dissertation', jobs: 'Jobs', new: 'New rig',
-};
-const MODULES = {
-  predict: () => import('./pages/predict.js'),
-  explore: () => import('./pages/explore.js'),
-  dissertation: () => import('./pages/dissertation.js'),
-  jobs: () => import('./pages/jobs.js'),
-  new: () => import('./pages/new-rig.js'),
-};
+const PAGE_TITLES = {predict: 'Predict', explore: 'Explore', dissertation: 'Dissertation', jobs: 'Jobs', new: 'New rig'};
+const read = (page) => import(`./pages/${page === 'new' ? 'new-rig' : page}.js`);
 const THEMES = ['system', 'light', 'dark'];
 const THEME_KEY = 'sonolube-theme';
-
-function storedTheme() {
-  try {
-    return localStorage.getItem(THEME_KEY) ?? 'system';
-  } catch {
-    return 'system';
-  }
-}
+const storedTheme = () => stored('localStorage', THEME_KEY) ?? THEMES[0];
 
 function setTheme(theme) {
   document.documentElement.dataset.theme = theme;
-  try {
-    localStorage.setItem(THEME_KEY, theme);
-  } catch {
-    // the choice then lasts until the page is closed
-  }
+  stored('localStorage', THEME_KEY, theme);
   dispatchEvent(new Event('themechange')); // what is drawn on a canvas draws again
 }
 
@@ -118,10 +99,7 @@ function Page() {
     isFirst.current = false;
     if (Shown) return;
     const {page} = state;
-    MODULES[page]().then(
-      (module) => setPages((old) => ({...old, [page]: module.default})),
-      () => setPages((old) => ({...old, [page]: Unread})),
-    );
+    read(page).then((module) => module.default, () => Unread).then((shown) => setPages((old) => ({...old, [page]: shown})));
   }, [state.page]);
   if (fault) return html`<${Broken} again=${clear} />`;
   return Shown ? html`<${Shown} />` : html`<p class="loading" role="status">Reading the page…</p>`;
@@ -151,7 +129,8 @@ function onKey(event) {
 
 async function start() {
   setTheme(storedTheme());
-  MODULES[/^#\/(\w+)/.exec(location.hash)?.[1] ?? PAGES[0]]?.().catch(() => null); // read while the start is asked for
+  const page = /^#\/(\w+)/.exec(location.hash)?.[1];
+  read(PAGES.includes(page) ? page : PAGES[0]).catch(() => null); // while the start is asked for
   let reply = await ask('api/start');
   const root = document.getElementById('app');
   if (!reply.content) {

@@ -18,28 +18,37 @@ let fragment = '';
 /** @type {string|null} Fragment before a value began to move. */
 let before = null;
 let isMoving = false;
-const stored = (name) => {
-  try {
-    return JSON.parse(sessionStorage.getItem(name) ?? '[]');
-  } catch {
-    return [];
-  }
-};
-let past = stored('past');
-let future = stored('future');
 const listeners = new Set();
 /** Compressed form of each rig text, and the way back. */
 const packed = new Map();
 
 const tell = () => listeners.forEach((listener) => listener());
 
-function keep() {
+/** Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more. */
+export function stored(store, name, value) {
   try {
-    sessionStorage.setItem('past', JSON.stringify(past));
-    sessionStorage.setItem('future', JSON.stringify(future));
+    if (value !== undefined) globalThis[store].setItem(name, value);
+    return globalThis[store].getItem(name) ?? undefined;
   } catch {
-    // a full or forbidden store costs the undo after a reload, no more
+    return value;
   }
+}
+let past = JSON.parse(stored('sessionStorage', 'past') ?? '[]');
+let future = JSON.parse(stored('sessionStorage', 'future') ?? '[]');
+
+function keep() {
+  stored('sessionStorage', 'past', JSON.stringify(past));
+  stored('sessionStorage', 'future', JSON.stringify(future));
+}
+
+/** Draw a component again whenever a set of listeners is told. */
+export function useListening(to) {
+  const [, draw] = useState({});
+  useLayoutEffect(() => {
+    const listener = () => draw({});
+    to.add(listener);
+    return () => to.delete(listener);
+  }, []);
 }
 
 /** Text as bytes through a stream of the browser, as base64url or back. */
@@ -59,7 +68,7 @@ export async function pack(text) {
   const fits = code.length <= LONGEST_TEXT;
   if (!fits) {
     const name = KEPT_PREFIX + code.slice(-24) + code.length;
-    sessionStorage.setItem(name, text);
+    stored('sessionStorage', name, text);
     code = name;
   }
   packed.set(text, code);
@@ -67,7 +76,7 @@ export async function pack(text) {
 }
 
 async function unpack(code) {
-  if (code.startsWith(KEPT_PREFIX)) return sessionStorage.getItem(code) ?? undefined;
+  if (code.startsWith(KEPT_PREFIX)) return stored('sessionStorage', code);
   const binary = atob(code.replaceAll('-', '+').replaceAll('_', '/'));
   const bytes = Uint8Array.from(binary, (letter) => letter.charCodeAt(0));
   const text = new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
@@ -83,11 +92,12 @@ const quoted = (text) => encodeURIComponent(text).replaceAll('%20', '+').replace
  * @returns {string}
  */
 export function encode(of) {
-  const parts = [];
-  if (of.rig.name) parts.push(['rig', of.rig.name]);
-  if (of.rig.text !== undefined) parts.push(['text', packed.get(of.rig.text) ?? '']);
-  for (const [key, text] of Object.entries(of.rig.changes)) parts.push(['set', `${key}:${text}`]);
-  for (const [key, text] of Object.entries(of.view)) parts.push([key, text]);
+  const parts = [
+    ...(of.rig.name ? [['rig', of.rig.name]] : []),
+    ...(of.rig.text === undefined ? [] : [['text', packed.get(of.rig.text) ?? '']]),
+    ...Object.entries(of.rig.changes).map(([key, text]) => ['set', `${key}:${text}`]),
+    ...Object.entries(of.view),
+  ];
   const query = parts.map(([name, text]) => `${name}=${quoted(text)}`).join('&');
   return `/${of.page}${query && `?${query}`}`;
 }
@@ -129,14 +139,14 @@ function merged(partial) {
  */
 export function change(partial, {replace = false} = {}) {
   state = merged(partial);
-  if (replace) {
-    before ??= fragment;
-    isMoving = true;
-    fragment = encode(state);
-    tell();
+  if (!replace) {
+    commit();
     return;
   }
-  commit();
+  before ??= fragment;
+  isMoving = true;
+  fragment = encode(state);
+  tell();
 }
 
 /** Enter what has moved into the history. */
@@ -145,18 +155,21 @@ export function settle() {
 }
 
 function commit() {
+  if (enter(encode(state))) history.pushState(null, '', `#${fragment}`);
+  tell();
+}
+
+/** Make a fragment that of now, the one before it a step to undo; false where it is the same. */
+function enter(to) {
   const from = before ?? fragment;
-  const to = encode(state);
   before = null;
   isMoving = false;
   fragment = to;
-  if (from !== to) {
-    past = [...past, from].slice(-STEPS);
-    future = [];
-    keep();
-    history.pushState(null, '', `#${to}`);
-  }
-  tell();
+  if (from === to) return false;
+  past = [...past, from].slice(-STEPS);
+  future = [];
+  keep();
+  return true;
 }
 
 /**
@@ -211,15 +224,9 @@ export async function followAddress(opened) {
   history.replaceState(null, '', `#${fragment}`);
   addEventListener('popstate', async () => {
     const found = await read();
-    const to = encode(found);
-    if (to === fragment) return;
-    past = [...past, before ?? fragment].slice(-STEPS);
-    future = [];
-    before = null;
-    isMoving = false;
+    if (encode(found) === fragment) return;
     state = found;
-    fragment = to;
-    keep();
+    enter(encode(state));
     tell();
   });
   tell();
@@ -231,12 +238,7 @@ export async function followAddress(opened) {
  *   undo: () => Promise<void>, redo: () => Promise<void>, canUndo: boolean, canRedo: boolean}}
  */
 export function useApp() {
-  const [, draw] = useState({});
-  useLayoutEffect(() => {
-    const listener = () => draw({});
-    listeners.add(listener);
-    return () => listeners.delete(listener);
-  }, []);
+  useListening(listeners);
   return {
     state, isMoving, change, setEntry, settle, undo, redo, canUndo: past.length > 0, canRedo: future.length > 0,
   };

@@ -3,9 +3,9 @@ import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preac
 import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
 import {ask, callTask, inTurn, upload, useLate, useReply} from '../api.js';
 import {Chart} from '../chart.js';
-import {focusField, short, split} from '../fields.js';
-import {textOf, useRig, Workspace} from '../rig-panel.js';
-import {change, decode, encode, setEntry, settle, useApp} from '../state.js';
+import {focusField, short} from '../fields.js';
+import {useRig, Workspace} from '../rig-panel.js';
+import {change, decode, encode, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
 const MOVING_DRAWS = 1000;
@@ -29,14 +29,8 @@ const ADVISED = [
 /** Arguments of the task for a state. */
 function argumentsOf(state, runs, isMoving) {
   const {pin, disc, lubricant} = state.view;
-  return {
-    rig: state.rig,
-    ...(runs && {runs}),
-    ...(pin && {pin}),
-    ...(disc && {disc}),
-    ...(lubricant && {lubricant: true}),
-    ...(isMoving && {draws: MOVING_DRAWS}),
-  };
+  const given = {runs, pin, disc, lubricant: Boolean(lubricant), draws: isMoving && MOVING_DRAWS};
+  return {rig: state.rig, ...Object.fromEntries(Object.entries(given).filter(([, value]) => value))};
 }
 
 /** Uploaded runs that the view names; they last as long as the workbench. */
@@ -59,10 +53,6 @@ function Numbers({answer}) {
   <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>`;
 }
 
-function focusFirst(keys) {
-  for (const key of keys) if (focusField(key)) return;
-}
-
 /** What would narrow the interval, most first; a click opens what it is about. */
 function Sharpen({answer}) {
   const table = answer.blocks.find((block) => block.kind === 'table' && block.heads[0] === MEASURES_HEAD);
@@ -73,7 +63,7 @@ function Sharpen({answer}) {
     <h2 id="sharpen-title">What would sharpen this</h2>
     <ul class="measures">${table.rows.map(([label, share]) => {
     const keys = ADVISED.find(([word]) => word.test(label))?.[1] ?? [];
-    const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : focusFirst(keys));
+    const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : keys.some(focusField));
     return html`<li key=${label}><button type="button" class="measure" onClick=${open} disabled=${!keys.length}>
         <span class="measure-name">${label}</span><span class="measure-share">
         <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
@@ -192,15 +182,14 @@ function useKept(state, content) {
 }
 
 /** What dragging the rule of a panel sets, where a number follows from it without computing. */
-function dragOf(view, rig, chart) {
+function dragOf(view, chart) {
   const fieldOf = (key) => view?.fields.find((field) => field.key === key);
   const entry = {[SPEED_PANEL]: fieldOf(SPEED), [AMPLITUDE_PANEL]: fieldOf(VOLTAGE) ? undefined : fieldOf(AMPLITUDE)};
-  const drags = Object.entries(entry).filter(([, field]) => field).map(([panel, field]) => {
+  return Object.entries(entry).filter(([, field]) => field).map(([panel, field]) => {
     const unit = chart.panels[panel]?.x.unit.replace('µ', 'u') ?? '';
     const set = (x, isMoving) => setEntry(field.key, `${short(x)} ${unit}`, {replace: isMoving});
-    return {panel: Number(panel), onMove: (x) => set(x, true), onRelease: (x) => { set(x, true); settle(); }};
+    return {panel: Number(panel), onMove: (x) => set(x, true), onRelease: (x) => set(x, false)};
   });
-  return drags;
 }
 
 export default function Predict() {
@@ -241,14 +230,13 @@ export default function Predict() {
     <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">
       Keep this</button><span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
     <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
-  const drags = chart ? dragOf(view, state.rig, chart.chart) : [];
   return html`<${Workspace} lead=${lead} extra=${extra}>
     <div class=${isDim ? 'is-dim' : ''} aria-busy=${isWaiting}>
       <${Numbers} answer=${content} />
       <section class="card" aria-label="Friction over amplitude and over speed">
         ${chart && html`<${Chart} name=${chart.name} caption=${chart.caption} chart=${chart.chart} tables=${chart.tables}
           dimmed=${isDim} kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))}
-          drag=${drags.length > 1 ? drags : drags[0]} />`}
+          drag=${dragOf(view, chart.chart)} />`}
       </section>
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
       <div class="columns">
@@ -273,27 +261,15 @@ function useDrop(onFile) {
   const latest = useRef(onFile);
   latest.current = onFile;
   useEffect(() => {
-    const over = (event) => {
+    const follow = (event) => {
       if (!event.dataTransfer?.types.includes('Files')) return;
       event.preventDefault();
-      setOver(true);
+      setOver(event.type === 'dragover');
+      if (event.type === 'drop') latest.current(event.dataTransfer.files[0]);
     };
-    const leave = (event) => {
-      if (!event.relatedTarget) setOver(false);
-    };
-    const drop = (event) => {
-      event.preventDefault();
-      setOver(false);
-      latest.current(event.dataTransfer.files[0]);
-    };
-    addEventListener('dragover', over);
-    addEventListener('dragleave', leave);
-    addEventListener('drop', drop);
-    return () => {
-      removeEventListener('dragover', over);
-      removeEventListener('dragleave', leave);
-      removeEventListener('drop', drop);
-    };
+    const kinds = ['dragover', 'dragleave', 'drop'];
+    kinds.forEach((kind) => addEventListener(kind, follow));
+    return () => kinds.forEach((kind) => removeEventListener(kind, follow));
   }, []);
   return isOver;
 }
