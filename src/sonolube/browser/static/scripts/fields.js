@@ -55,12 +55,12 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
   const timer = useRef(0);
   const latest = useRef(null);
   latest.current = draft;
+  const withUnit = (typed) => (unit && split(typed)?.rest.trim() === '' ? `${typed.trim()} ${unit}` : typed);
   const give = (isFinal) => {
     clearTimeout(timer.current);
     const typed = latest.current;
     if (typed === null) return;
-    const isBare = isFinal && unit && split(typed)?.rest.trim() === '';
-    const given = isBare ? `${typed.trim()} ${unit}` : typed;
+    const given = withUnit(typed);
     if (given !== text) onText(given, !isFinal);
     if (isFinal) {
       latest.current = null;
@@ -68,35 +68,31 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
     }
   };
   useEffect(() => () => clearTimeout(timer.current), []);
+  const leave = () => {
+    give(true);
+    onSettle();
+  };
   const type = (event) => {
     latest.current = event.target.value;
     setDraft(event.target.value);
     clearTimeout(timer.current);
     timer.current = setTimeout(() => {
-      const isBare = unit && split(latest.current ?? '')?.rest.trim() === '';
-      if (isBare) onText(`${latest.current.trim()} ${unit}`, true);
-      else give(false);
+      give(false);
       timer.current = setTimeout(onSettle, REST);
     }, PAUSE);
   };
   const press = (event) => {
-    if (event.key === 'Enter') {
-      give(true);
-      onSettle();
-    } else if (event.key === 'ArrowUp' || event.key === 'ArrowDown') {
+    if (event.key === 'Enter') leave();
+    else if (event.key === 'ArrowUp' || event.key === 'ArrowDown') {
       const next = stepped(latest.current ?? text, event.key === 'ArrowUp' ? 1 : -1, event.shiftKey);
       event.preventDefault();
       if (next === (latest.current ?? text)) return;
       clearTimeout(timer.current);
       latest.current = null;
       setDraft(null);
-      onText(next, true);
+      onText(withUnit(next), true);
       timer.current = setTimeout(onSettle, REST);
     }
-  };
-  const leave = () => {
-    give(true);
-    onSettle();
   };
   return html`<input type="text" id=${id} value=${draft ?? text} onInput=${type} onKeyDown=${press} onBlur=${leave}
     autocomplete="off" spellcheck=${false} maxlength="20000" ...${rest} />`;
@@ -130,10 +126,8 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
   const described = [refusal && `${id}-refusal`, field.help && `${id}-help`].filter(Boolean).join(' ') || undefined;
   const give = (given, isMoving) => onText(field.key, given, isMoving);
   const open = () => {
-    if (shown) {
-      if (spread !== undefined) onText(spreadKey(field.key), null, false);
-      setSpread(false);
-    } else setSpread(true);
+    if (spread !== undefined) onText(spreadKey(field.key), null, false);
+    setSpread(!shown);
   };
   return html`<div class=${`field${refusal ? ' is-refused' : ''}${isChanged ? ' is-changed' : ''}`}>
     <div class="field-head">

@@ -25,14 +25,7 @@ export function useRig() {
 /** Text of an entry: as it was typed, else as the file has it. */
 export const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
 
-const GROUPS = (fields) => {
-  const groups = new Map();
-  for (const field of fields) {
-    const table = field.key.slice(0, field.key.lastIndexOf('.'));
-    groups.set(table, [...(groups.get(table) ?? []), field]);
-  }
-  return [...groups];
-};
+const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 
 /** Chooser of a rig: the examples, the one that was opened, an own file. */
 function RigChoice({view}) {
@@ -45,7 +38,7 @@ function RigChoice({view}) {
     setNote('');
     change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
   };
-  const open = async (file) => setNote(await openRigFile(file));
+  const open = async ([file]) => setNote(await openRigText(file.name.replace(/\.toml$/i, ''), await file.text()));
   return html`<div class="rig-choice">
     <label for="rig-name">Rig</label>
     <div class="row">
@@ -57,7 +50,7 @@ function RigChoice({view}) {
       <button type="button" class="button" onClick=${() => chooser.current.click()} data-test="open-rig">Open…</button>
       <a class="button" href=${addressOf('new')}>New…</a>
       <input type="file" accept=".toml" class="hidden" tabindex="-1" aria-label="Rig file" ref=${chooser}
-        onChange=${(event) => open(event.target.files[0])} data-test="rig-file" />
+        onChange=${(event) => event.target.files.length && open(event.target.files)} data-test="rig-file" />
     </div>
     ${view && html`<p class="hint" data-test="rig-title">${view.title}</p>`}
     ${note && html`<p class="hint" role="status">${note}</p>`}
@@ -66,17 +59,7 @@ function RigChoice({view}) {
   </div>`;
 }
 
-/**
- * Make a rig file the rig of the state.
- * @param {File} file
- * @returns {Promise<string>} a note where a link cannot hold it
- */
-export async function openRigFile(file) {
-  if (!file) return '';
-  return openRigText(file.name.replace(/\.toml$/i, ''), await file.text());
-}
-
-/** As `openRigFile`, from a text; with a page to go to. */
+/** Make the text of a rig file the rig of the state, and go to a page; returns a note where a link cannot hold it. */
 export async function openRigText(name, text, page = undefined) {
   const {fits} = await pack(text);
   change({...(page && {page}), rig: {name, text, changes: {}}, view: {lost: null}});
@@ -114,8 +97,8 @@ export function RigPanel({extra}) {
       onClick=${() => change({rig: {...rig, changes: {}}})}>Take back ${count === 1 ? 'the change' : `all ${count} changes`}</button>`}
     ${extra}
     ${others.length > 0 && html`<${AllEntries} isOpen=${isAll}>
-      ${GROUPS(others).map(([table, some]) => html`<fieldset key=${table} class="fields"><legend>${table}</legend>
-        ${list(some)}</fieldset>`)}<//>`}
+      ${[...new Set(others.map(tableOf))].map((table) => html`<fieldset key=${table} class="fields"><legend>${table}</legend>
+        ${list(others.filter((field) => tableOf(field) === table))}</fieldset>`)}<//>`}
     ${view?.source && html`<p class="hint source">Source: ${view.source}</p>`}
   </aside>`;
 }

@@ -3,12 +3,8 @@ import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask} from './api.js';
 
 const FORMS = [
-  ['command', 'Command line', 'copies'],
-  ['python', 'Python', 'copies'],
-  ['toml', 'Rig file (TOML)', 'saves'],
-  ['notebook', 'Notebook', 'saves'],
-  ['csv', 'Table (CSV)', 'saves'],
-  ['svg', 'Figure (SVG)', 'saves'],
+  ['command', 'Command line', 'copies'], ['python', 'Python', 'copies'], ['toml', 'Rig file (TOML)', 'saves'],
+  ['notebook', 'Notebook', 'saves'], ['csv', 'Table (CSV)', 'saves'], ['svg', 'Figure (SVG)', 'saves'],
   ['report', 'Report (HTML)', 'saves'],
 ];
 
@@ -45,20 +41,15 @@ export function TakeAway() {
   const [note, setNote] = useState('');
   const place = useRef(null);
   useEffect(() => {
-    if (!isOpen) return undefined;
     const close = (event) => {
-      if (event.type === 'keydown' ? event.key === 'Escape' : !place.current.contains(event.target)) {
-        setOpen(false);
-        if (event.type === 'keydown') place.current.querySelector('button').focus();
-      }
+      const isEscape = event.key === 'Escape' && place.current.contains(document.activeElement);
+      if (isEscape) place.current.querySelector('button').focus();
+      if (event.key ? isEscape : !place.current.contains(event.target)) setOpen(false);
     };
-    addEventListener('keydown', close);
-    addEventListener('pointerdown', close);
-    return () => {
-      removeEventListener('keydown', close);
-      removeEventListener('pointerdown', close);
-    };
-  }, [isOpen]);
+    const kinds = ['keydown', 'pointerdown'];
+    kinds.forEach((kind) => addEventListener(kind, close));
+    return () => kinds.forEach((kind) => removeEventListener(kind, close));
+  }, []);
   const copy = async (what, text) => {
     setShown({what, text});
     const done = await navigator.clipboard?.writeText(text).then(() => true, () => false);
