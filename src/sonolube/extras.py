@@ -75,6 +75,12 @@ _ALL = (
         modules=("ContactMechanics", "SurfaceTopography"),
         needed_by="Boundary elements on height maps",
     ),
+    Extra(
+        name="app",
+        package="Starlette and uvicorn",
+        modules=("starlette", "uvicorn", "tomlkit"),
+        needed_by="The workbench in the browser",
+    ),
     Extra(name="web", package="Plotly", modules=("plotly",), needed_by="Interactive maps"),
     Extra(name="cluster", package="Dask", modules=("distributed",), needed_by="Sweeps on a cluster"),
     Extra(name="gpu", package="numba-cuda", modules=("numba_cuda",), needed_by="Vibrations on an NVIDIA GPU"),

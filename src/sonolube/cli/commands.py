@@ -26,7 +26,7 @@ class Command:
     name : str
         As typed; two words for a command of a group.
     where : str
-        Module below `sonolube.cli` and function in it, as "predict.friction:friction".
+        Module and function in it, as "sonolube.cli.lab.watch:watch"; of a task below `sonolube.tasks`.
     """
 
     panel: str
@@ -41,21 +41,28 @@ class Command:
             from sonolube.cli.generated import command_of
 
             return command_of(self.task)
-        where = _OWN_FUNCTIONS.get(self.name, self.where)
-        module, _, name = where.partition(":")
-        function: Callable[..., None] = getattr(import_module(f"sonolube.cli.{module}"), name)
+        module, _, name = _OWN_FUNCTIONS.get(self.name, self.where).partition(":")
+        function: Callable[..., None] = getattr(import_module(module), name)
         return function
 
     @property
     def help(self) -> str:
         """Docstring of the function, read from the source without importing the module."""
-        return docstring("sonolube.tasks" if self.task else "sonolube.cli", self.where)
+        return docstring("sonolube.tasks" if self.task else "", self.where)
 
 
-_OWN_FUNCTIONS = {"new": "new:new", "identify rig": "identify_rig:identify_rig", "mapping": "mapping:mapping"}
-"""Tasks of which a terminal has a function of its own, below `sonolube.cli`."""
+_OWN_FUNCTIONS = {
+    "new": "sonolube.cli.new:new",
+    "identify rig": "sonolube.cli.identify_rig:identify_rig",
+    "mapping": "sonolube.cli.mapping:mapping",
+}
+"""Tasks of which a terminal has a function of its own."""
 
-_TERMINAL_ONLY = (Command(_LAB, "lab watch", "lab.watch:watch"), Command(_LOOKUP, "doctor", "lookup.doctor:doctor"))
+_TERMINAL_ONLY = (
+    Command(_PREDICT, "app", "sonolube.browser.command:app"),
+    Command(_LAB, "lab watch", "sonolube.cli.lab.watch:watch"),
+    Command(_LOOKUP, "doctor", "sonolube.cli.lookup.doctor:doctor"),
+)
 
 _PANELS = (_PREDICT, _PART, _DESIGN, _MEASURE, _COMPARE, _LAB, _LOOKUP)
 COMMANDS = tuple(
@@ -77,6 +84,7 @@ GROUPS = {
 
 MOVED_COMMANDS = {
     "study": "now part of sweep: sonolube sweep RIG.toml --of voltage|speed|frequency|power|waveform|load",
+    "gui": "the workbench in the browser is opened by: sonolube app",
     "help": "all commands are listed by: sonolube --help; one is explained by: sonolube predict --help",
     "demo": "take an example: sonolube example tribometer, then: sonolube predict examples/rigs/tribometer.toml",
     "examples": "the example files are listed by: sonolube example; one is written by: sonolube example tribometer",

@@ -64,9 +64,10 @@ class Task:
 
 
 def docstring(package: str, where: str) -> str:
-    """Docstring of a function, such as "predict.friction:friction", read without importing its module."""
-    module, _, name = where.partition(":")
-    source = files(package).joinpath(f"{module.replace('.', '/')}.py").read_text(encoding="utf-8")
+    """Docstring of a function below a package, such as "predict.friction:friction", whose module is not imported."""
+    module, _, name = f"{package}.{where}".strip(".").partition(":")
+    root, _, inner = module.partition(".")
+    source = files(root).joinpath(f"{inner.replace('.', '/')}.py").read_text(encoding="utf-8")
     nodes = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef) and node.name == name)
     return ast.get_docstring(next(nodes)) or ""
 

@@ -77,3 +77,16 @@ def _median(prediction: LabelledArrays, name: str) -> float:
 def _text(name: str, value: float) -> str:
     """Value with two or three digits, reductions in percent."""
     return f"{100 * value:.0f} %" if name in _PERCENT else format_si(value, quantity(name).unit, digits=2)
+
+
+def operating_texts(prediction: LabelledArrays) -> list[dict[str, str]]:
+    """Amplitude with its spread, and power of the amplifier where it is known, as labels and texts."""
+    spread = dict(zip(column(prediction, "input"), column(prediction, "input_spread"), strict=True))
+    found = []
+    for name in ("vibration_amplitude", "actuator_power"):
+        value = prediction.attrs.get(name)
+        if value is not None:
+            within = f" within {100 * spread[name]:.0f} %" if name in spread else ""
+            text = f"{format_si(value, quantity(name).unit)}{within}"
+            found.append({"name": name, "label": quantity(name).meaning, "text": text})
+    return found

@@ -70,7 +70,7 @@ def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
     ----------
     content : dict
     key : str
-        Dotted, such as "drive.frequency".
+        Dotted, such as "drive.frequency"; "uncertainty.drive.frequency" for its spread.
     value : str or float
         Where a number follows from it, such as the rms height from a finish, it takes the place of that number; a decay
         length takes that of a normal stiffness, and the reverse.
@@ -81,6 +81,8 @@ def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
         If a part of the key is empty, or names an entry that is no table.
     """
     *tables, name = key.strip().split(".")
+    if tables and tables[0] == "uncertainty":
+        tables, name = tables[:1], key.strip().partition(".")[2]  # the keys of this table are whole
     if not name or not all(tables):
         raise InvalidInput(f"{key!r} is no key of a rig file, such as drive.frequency")
     place = content

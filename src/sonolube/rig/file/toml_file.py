@@ -73,7 +73,7 @@ def validated(file: type[_Content], content: Mapping[str, Any]) -> _Content:
     except ValidationError as refusal:
         found = _complaints(file, refusal, content)
     faults = [_fault(file, each) for each in found[:_MOST]]
-    keys = [_key_of(each) for each in found[:_MOST]]
+    keys = [_entry_of(file, each) for each in found[:_MOST]]
     if len(found) == 1:
         raise InvalidInput(faults[0], key=keys[0])
     raise SeveralFaults(faults, rest=len(found) - len(faults), keys=keys)
@@ -123,7 +123,7 @@ def _without_tags(place: Sequence[str | int]) -> list[str | int]:
 def _fault(file: type[Section], complaint: ErrorDetails) -> str:
     """Return a complaint in one line: the dotted key and what is wrong with it."""
     place = complaint["loc"]
-    reason = str(complaint["msg"]).removeprefix("Value error, ").strip()
+    reason = _reason_of(complaint)
     if complaint["type"] == "extra_forbidden":
         reason = f"unknown key; {suggestion(str(place[-1]), _keys(file, place[:-1]))}".removesuffix("; ")
     elif complaint["type"] == "missing":
@@ -134,6 +134,17 @@ def _fault(file: type[Section], complaint: ErrorDetails) -> str:
 def _key_of(complaint: ErrorDetails) -> str:
     """Return the dotted key of a complaint."""
     return ".".join(map(str, _without_tags(complaint["loc"])))
+
+
+def _entry_of(file: type[Section], complaint: ErrorDetails) -> str:
+    """Return the dotted key of the entry that a complaint is about, also where its table makes it."""
+    key, first = _key_of(complaint), _reason_of(complaint).partition(" ")[0]
+    return f"{key}.{first}" if key and first in _keys(file, complaint["loc"]) else key
+
+
+def _reason_of(complaint: ErrorDetails) -> str:
+    """Return what a complaint says."""
+    return str(complaint["msg"]).removeprefix("Value error, ").strip()
 
 
 def _missing(key: str) -> str:

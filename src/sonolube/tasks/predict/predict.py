@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 from sonolube.measurement.run_columns import runs_help
 from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
+from sonolube.prediction.predictive import DRAWS
 from sonolube.report import Drawing
 from sonolube.report.results import prediction as results
 from sonolube.report.results.measured_on_rig import Measurement, measured_on
@@ -41,6 +42,10 @@ def predict(
     pin: Pin = None,
     disc: Disc = None,
     lubricant: Annotated[bool, Parameter(help="The contact is lubricated: a dry prediction does not hold.")] = False,
+    draws: Annotated[
+        int,
+        Parameter(help="Equally probable outcomes, 4000 for two digits of the intervals.", lowest=100, highest=200_000),
+    ] = DRAWS,
     seed: Annotated[int, Parameter(help="Of the draws.", lowest=0)] = 0,
 ) -> "PredictionAnswer":
     """Friction and wear under vibration with 50, 80 and 95 % intervals, and what to measure next.
@@ -55,6 +60,7 @@ def predict(
         pin=pin,
         disc=disc,
         lubricant=lubricant,
+        draws=draws,
         seed=seed,
     ).first
     measured = measured_on(known, vibration_amplitude=result.attrs["vibration_amplitude"])
@@ -107,6 +113,7 @@ class PredictionAnswer(Answer):
             "measured": [one.object() for one in self.measured],
             "interval_share_left": dict(zip(results.column(found, "input"), shares, strict=True)),
             **{name: found.attrs.get(name) for name in ("runs", "actuator_power")},
+            "operating_point": results.operating_texts(found),
         }
 
     def caveats(self) -> Sequence[str]:

@@ -1,0 +1,57 @@
+"""Command `app`: the workbench in the browser."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sonolube.errors import InvalidInput
+from sonolube.extras import missing_package
+
+_LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+Rig = Annotated[
+    Path | None, typer.Argument(metavar="[RIG.toml]", help="The rig that the first page shows, as a TOML file.")
+]
+Port = Annotated[int, typer.Option(min=0, max=65535, help="Port on which it listens; 0 for any free one.")]
+Browser = Annotated[bool, typer.Option(help="Open the browser.")]
+Host = Annotated[str, typer.Option(help="Address on which it listens; others than this computer need --token-file.")]
+TokenFile = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="File with the token of the link, 32 characters or more, readable by you alone."),
+]
+Allowed = Annotated[
+    list[str] | None,
+    typer.Option("--allow-host", metavar="NAME", help="Name of a proxy by which pages may ask; may come again."),
+]
+
+
+def app(
+    rig: Rig = None,
+    port: Port = 8765,
+    browser: Browser = True,
+    host: Host = "127.0.0.1",
+    token_file: TokenFile = None,
+    allow_host: Allowed = None,
+) -> None:
+    """Open the workbench in the browser.
+
+    Example: sonolube app examples/rigs/tribometer.toml
+    """
+    try:
+        from sonolube.browser.server import Options, run, token_of_file
+    except ImportError:
+        raise missing_package("app", remedy="use the terminal or Python") from None
+    if host not in _LOOPBACK and token_file is None:
+        raise InvalidInput(
+            f"--host {host}: opens the workbench, which reads and computes as you do, to other computers; give a"
+            " --token-file, and let a proxy encrypt the connection"
+        )
+    if rig is not None:
+        from sonolube.rig import read_rig
+
+        read_rig(rig)  # its faults are said here, not on a page
+    token = "" if token_file is None else token_of_file(token_file)
+    if host not in _LOOPBACK:
+        typer.echo(f"Other computers can reach it at {host}; without a proxy, what is sent can be read on the way.")
+    run(Options(rig=rig, port=port, host=host, token=token, hosts=tuple(allow_host or ()), opens_browser=browser))

@@ -1,0 +1,82 @@
+"""The process of one job: `python -m sonolube.browser.job FOLDER` reads its request and writes progress and result."""
+
+import json
+import shutil
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sonolube.browser.answers import answer_object, called, given_arguments, offered_tasks
+from sonolube.browser.places import Places
+from sonolube.browser.worker import encoded, limit_process
+from sonolube.errors import SonolubeError
+from sonolube.files import write_atomically
+from sonolube.tasks.task import marks_of
+
+if TYPE_CHECKING:
+    from sonolube.tasks.answer import Content
+
+_CPU_TIME = 600  # seconds
+_BETWEEN = 0.2  # seconds from one record of progress to the next
+
+
+class _Record:
+    """State of the job, written as it changes."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / "state.json"
+        self._begun, self._written = time.monotonic(), 0.0
+
+    def progress(self, stage: str, done: int, total: int) -> None:
+        """Write the progress, not more often than people can read."""
+        if time.monotonic() - self._written > _BETWEEN:
+            self.write("running", stage=stage, done=done, total=total)
+
+    def write(self, state: str, **more: object) -> None:
+        """Write the state."""
+        self._written = time.monotonic()
+        content = {"state": state, "seconds": self._written - self._begun} | more
+        write_atomically(self._path, json.dumps(content))
+
+
+def main(folder: Path) -> None:
+    """Run a job to its end."""
+    limit_process(cpu_time=_CPU_TIME)
+    request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
+    record = _Record(folder)
+    record.write("running", stage="starting")
+    task = next(task for task in offered_tasks() if task.name == request["task"])
+    try:
+        with given_arguments(task, request["arguments"], Places(**request["places"])) as given:
+            watch = {"progress": record.progress} if "progress" in marks_of(task.function) else {}
+            answer = called(task, given | watch)
+            names = write_files(answer.files(), folder=folder / "files")
+            write_atomically(folder / "result.json", encoded(answer_object(answer) | {"files": names}).decode())
+    except SonolubeError as failure:
+        record.write("refused", reason=str(failure))
+    except MemoryError:
+        record.write("failed", reason="does not fit into the 2 GiB of memory of a job; ask for fewer points")
+    else:
+        record.write("done")
+
+
+def write_files(contents: "Mapping[str, Content]", *, folder: Path) -> list[str]:
+    """Write the files of an answer, and return their names."""
+    from sonolube.rig import write_netcdf
+
+    for name, content in contents.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(content, Path):
+            shutil.copyfile(content, path)
+        elif isinstance(content, str | bytes):
+            write_atomically(path, content)
+        else:
+            write_netcdf(content if hasattr(content, "to_netcdf") else content.dataset(), path=path)
+    return list(contents)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,203 @@
+"""A rig as a page shows it: its entries as fields with label, unit and usual range, and the drawing of its parts."""
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Any, Final
+
+from sonolube.browser.answers import given_rig, names_only, rig_path
+from sonolube.browser.places import Places
+from sonolube.errors import InvalidInput
+from sonolube.example_files import example_files
+from sonolube.rig import Rig
+from sonolube.rig.file.guidance import guidance
+from sonolube.rig.file.reader import rig_content
+from sonolube.units import convert
+from sonolube.vocabulary import quantities
+
+_FIRST: Final = (
+    "drive.voltage_peak_to_peak",
+    "vibration.vibration_amplitude",
+    "drive.frequency",
+    "sliding.sliding_speed",
+    "contact.normal_load",
+    "friction.friction_coefficient",
+)
+"""Entries of the operating point, above all others."""
+
+_DECADE: Final = 10.0  # of the value of the file, over which a slider runs below and above
+_STEPS: Final = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RigField:
+    """Entry of a rig file as a field.
+
+    Parameters
+    ----------
+    key : str
+        Dotted, as in the file.
+    label : str
+    text : str
+        Value as it is written.
+    unit : str
+        As it is written; empty for a pure number or a word.
+    lowest, highest : float or None
+        Ends of a slider, in this unit; None for what is no number.
+    assumed : str
+        Reason for a value without a source.
+    help : str
+        How the number is obtained.
+    is_first : bool
+        Whether it belongs to the operating point.
+    """
+
+    key: str
+    label: str
+    text: str
+    unit: str = ""
+    lowest: float | None = None
+    highest: float | None = None
+    assumed: str = ""
+    help: str = ""
+    is_first: bool = False
+
+    def object(self) -> dict[str, Any]:
+        """Field for JSON."""
+        return {name: getattr(self, name) for name in self.__slots__}
+
+
+def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Rig of a request as an object for JSON.
+
+    Parameters
+    ----------
+    payload : mapping
+        With `rig`: name or text, and changes.
+    places : Places
+
+    Returns
+    -------
+    dict
+        Title, source, fields by table, what a drawing shows, assumptions, and the rigs that may be chosen.
+
+    Raises
+    ------
+    InvalidInput
+        If the file or a change is refused.
+    """
+    source = payload.get("rig")
+    if not isinstance(source, Mapping):
+        raise InvalidInput("rig: give an object with its name or text, and changes", key="rig")
+    with ExitStack() as stack:
+        path = rig_path(source, places, stack)
+        changes = [f"{key}={value}" for key, value in (source.get("changes") or {}).items()]
+        rig = given_rig(source, places, stack)
+        with names_only(path):
+            original, content = rig_content(path), rig_content(path, changes=changes)
+    fields = list(rig_fields(content, original, rig.assumptions))
+    return {
+        "title": rig.title,
+        "source": rig.source,
+        "fields": [field.object() for field in sorted(fields, key=_order)],
+        "drawing": _drawing(rig),
+        "assumptions": dict(rig.assumptions),
+        "rigs": [*places.rigs, *(name for name, each in example_files().items() if each.is_rig)],
+    }
+
+
+def rig_fields(
+    content: Mapping[str, Any], original: Mapping[str, Any], assumptions: Mapping[str, str]
+) -> Iterator[RigField]:
+    """Entries of a rig file as fields.
+
+    Parameters
+    ----------
+    content : mapping
+        As `rig_content` returns it.
+    original : mapping
+        The same without changes, about whose values sliders run.
+    assumptions : mapping of str to str
+        Reasons by key.
+
+    Yields
+    ------
+    RigField
+    """
+    before = dict(_entries(original))
+    for key, value in _entries(content):
+        name = key.rpartition(".")[2]
+        known = quantities().get(name)
+        label = known.meaning if known is not None else name.replace("_", " ").capitalize()
+        text = value if isinstance(value, str) else f"{value:.6g}"
+        number, unit = _number_and_unit(text)
+        ends = _ends(before.get(key, value), text)
+        advice = guidance().get(name)
+        yield RigField(
+            key=key,
+            label=label,
+            text=text,
+            unit=unit,
+            lowest=None if number is None or ends is None else ends[0],
+            highest=None if number is None or ends is None else ends[1],
+            assumed=assumptions.get(key, ""),
+            help="" if advice is None else advice.text,
+            is_first=key in _FIRST,
+        )
+
+
+def _entries(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str | float]]:
+    """Entries of a file that are texts or numbers, with their dotted keys."""
+    for name, value in content.items():
+        key = f"{before}{name}"
+        if key in ("title", "source", "assumptions", "uncertainty", "notes"):
+            continue
+        if isinstance(value, Mapping):
+            yield from _entries(value, f"{key}.")
+        elif isinstance(value, str | int | float) and not isinstance(value, bool):
+            yield key, value
+
+
+def _order(field: RigField) -> int:
+    """Place of a field: those of the operating point first, the others as in the file."""
+    return _FIRST.index(field.key) if field.is_first else len(_FIRST)
+
+
+def _number_and_unit(text: str) -> tuple[float | None, str]:
+    """Number and unit of a value as it is written; None and nothing for words."""
+    number, _, unit = text.strip().partition(" ")
+    try:
+        return float(number), unit.strip()
+    except ValueError:
+        return None, ""
+
+
+def _ends(original: str | float, text: str) -> tuple[float, float] | None:
+    """Ends of a slider in the unit of the value: round numbers a decade below and above that of the file."""
+    number, unit = _number_and_unit(str(original))
+    _, shown = _number_and_unit(text)
+    if number is None or not math.isfinite(number) or number <= 0:
+        return None
+    if unit != shown:
+        try:
+            number = convert(number, from_unit=unit, to_unit=shown)
+        except InvalidInput:
+            return None
+    return _rounded(number / _DECADE), _rounded(number * _DECADE)
+
+
+def _rounded(number: float) -> float:
+    """Nearest round number."""
+    decade = 10.0 ** math.floor(math.log10(number))
+    return float(f"{decade * min(_STEPS, key=lambda step: abs(math.log(number / decade / step))):.3g}")
+
+
+def _drawing(rig: Rig) -> dict[str, Any]:
+    """What the schematic of a rig shows: its parts, and the keys of the values beside them."""
+    return {
+        "has_drive": rig.drive is not None,
+        "has_structure": rig.structure is not None,
+        "friction_model": rig.friction_model.name,
+        "amplitude_source": rig.amplitude_source or "",
+    }

@@ -1,0 +1,218 @@
+"""Routes of the workbench: pages and their files, tasks, rigs, uploads and jobs."""
+
+import json
+from collections.abc import Awaitable, Callable, Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Final
+
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.requests import Request
+from starlette.responses import FileResponse, Response
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from sonolube.browser.jobs import KEPT_DAYS, Jobs
+from sonolube.browser.places import Places
+from sonolube.browser.pool import Pool
+from sonolube.browser.uploads import Uploads
+from sonolube.errors import InvalidInput, SonolubeError
+
+_LARGEST_REQUEST: Final = 4 * 2**20  # bytes of JSON
+_JSON: Final = "application/json"
+Endpoint = Callable[[Request], Awaitable[Response]]
+
+
+class Workbench:
+    """What answers the requests of pages.
+
+    Parameters
+    ----------
+    pool : Pool
+    jobs : Jobs
+    uploads : Uploads
+    rigs : mapping of str to str
+        Paths of rig files by name, beside the examples.
+    opened : str
+        Name of the rig that the first page shows.
+    """
+
+    def __init__(self, *, pool: Pool, jobs: Jobs, uploads: Uploads, rigs: Mapping[str, str], opened: str) -> None:
+        self.pool, self.jobs, self.uploads, self.opened = pool, jobs, uploads, opened
+        self._places = Places(rigs=dict(rigs), uploads=str(uploads.folder))
+
+    def application(self) -> Starlette:
+        """Application by ASGI, without the checks of `Guard`."""
+        static = Path(str(files("sonolube.browser"))) / "static"
+        routes = [
+            Route("/", self._page),
+            Route("/api/start", self._start),
+            Route("/api/description", self._answering("description"), methods=["GET"]),
+            Route("/api/rig", self._answering("rig"), methods=["POST"]),
+            Route("/api/take", self._answering("take"), methods=["POST"]),
+            Route("/api/tasks/{name:path}", self._task, methods=["POST"]),
+            Route("/api/uploads", self._upload, methods=["POST"]),
+            Route("/api/jobs", self._list_jobs, methods=["GET"]),
+            Route("/api/jobs", self._start_job, methods=["POST"]),
+            Route("/api/jobs/{id}", self._job, methods=["GET", "DELETE"]),
+            Route("/api/jobs/{id}/cancel", self._cancel_job, methods=["POST"]),
+            Route("/api/jobs/{id}/result", self._job_result, methods=["GET"]),
+            Route("/api/jobs/{id}/files/{name:path}", self._job_file, methods=["GET"]),
+            Mount("/static", StaticFiles(directory=static)),
+        ]
+        return Starlette(routes=routes, middleware=[Middleware(GZipMiddleware, minimum_size=500)])
+
+    async def _page(self, request: Request) -> Response:
+        """The one page; everything else is in its scripts."""
+        del request
+        content = files("sonolube.browser").joinpath("static/index.html").read_bytes()
+        return Response(content, media_type="text/html", headers={"cache-control": "no-cache"})
+
+    async def _start(self, request: Request) -> Response:
+        """Rig that the first page shows, and what is offered."""
+        del request
+        from sonolube import __version__
+
+        content = {"rig": self.opened, "version": __version__, "jobs": str(len(self.jobs.list())), "days": KEPT_DAYS}
+        return _json(content)
+
+    def _answering(self, kind: str) -> Endpoint:
+        """Endpoint that a worker answers."""
+
+        async def endpoint(request: Request) -> Response:
+            payload = {} if request.method == "GET" else await _content(request)
+            return await self._ask(kind, payload)
+
+        return _refusing(endpoint)
+
+    async def _ask(self, kind: str, payload: Mapping[str, Any]) -> Response:
+        """Answer of a worker."""
+        status, body = await self.pool.ask(kind, payload, self._places)
+        return Response(body, status_code=status, media_type=_JSON, headers={"cache-control": "no-store"})
+
+    async def _task(self, request: Request) -> Response:
+        """Answer of a task."""
+
+        async def endpoint(request: Request) -> Response:
+            name = request.path_params["name"].replace("/", " ")
+            return await self._ask("task", {"task": name, "arguments": await _content(request)})
+
+        return await _refusing(endpoint)(request)
+
+    async def _upload(self, request: Request) -> Response:
+        """Name of an uploaded file."""
+
+        async def endpoint(request: Request) -> Response:
+            length = request.headers.get("content-length", "")
+            announced = int(length) if length.isdigit() else None
+            return _json({"upload": await self.uploads.keep(request.stream(), length=announced)})
+
+        return await _refusing(endpoint)(request)
+
+    async def _list_jobs(self, request: Request) -> Response:
+        """All jobs."""
+        del request
+        jobs = [job.object() for job in self.jobs.list()]
+        return _json({"jobs": jobs, "days": KEPT_DAYS, "folder": self.jobs.folder.name})
+
+    async def _start_job(self, request: Request) -> Response:
+        """Record of a job that was started."""
+
+        async def endpoint(request: Request) -> Response:
+            content = await _content(request)
+            places = {"rigs": dict(self._places.rigs), "uploads": self._places.uploads}
+            task, label = str(content.get("task", "")), str(content.get("label", ""))[:200]
+            _require_task(task)
+            job = self.jobs.start(task, content.get("arguments") or {}, label=label, places=places)
+            return _json(job.object())
+
+        return await _refusing(endpoint)(request)
+
+    async def _job(self, request: Request) -> Response:
+        """Record of a job; it is deleted where that is asked for."""
+
+        async def endpoint(request: Request) -> Response:
+            name = request.path_params["id"]
+            self.jobs.tend()
+            if request.method == "DELETE":
+                self.jobs.delete(name)
+                return _json({"deleted": name})
+            return _json(self.jobs.job(name).object() | {"request": self.jobs.request(name)})
+
+        return await _refusing(endpoint)(request)
+
+    async def _cancel_job(self, request: Request) -> Response:
+        """Record of a job that was stopped."""
+
+        async def endpoint(request: Request) -> Response:
+            return _json(self.jobs.cancel(request.path_params["id"]).object())
+
+        return await _refusing(endpoint)(request)
+
+    async def _job_result(self, request: Request) -> Response:
+        """Answer of a job that is done."""
+
+        async def endpoint(request: Request) -> Response:
+            self.jobs.tend()
+            return Response(self.jobs.result(request.path_params["id"]), media_type=_JSON)
+
+        return await _refusing(endpoint)(request)
+
+    async def _job_file(self, request: Request) -> Response:
+        """File of the answer of a job."""
+
+        async def endpoint(request: Request) -> Response:
+            path = self.jobs.file(request.path_params["id"], request.path_params["name"])
+            return FileResponse(path, headers={"content-disposition": f'attachment; filename="{path.name}"'})
+
+        return await _refusing(endpoint)(request)
+
+
+def _require_task(name: str) -> None:
+    """Raise if there is no task of this name; which of them are offered, the process of the job says."""
+    from sonolube.tasks.table import TASKS
+
+    if name not in {task.name for task in TASKS}:
+        raise InvalidInput(f"task: there is none named {name[:60]!r}", key="task")
+
+
+def _refusing(endpoint: Endpoint) -> Endpoint:
+    """Endpoint that answers refusals as JSON."""
+
+    async def guarded(request: Request) -> Response:
+        try:
+            return await endpoint(request)
+        except SonolubeError as failure:
+            text = str(failure)
+            return _json({"text": text, "faults": [{"key": getattr(failure, "key", ""), "text": text}]}, status=422)
+
+    return guarded
+
+
+async def _content(request: Request) -> dict[str, Any]:
+    """Object of a request as JSON."""
+    body = bytearray()
+    async for part in request.stream():
+        body += part
+        if len(body) > _LARGEST_REQUEST:
+            raise InvalidInput("the request is larger than 4 MiB; upload files instead")
+    try:
+        content = json.loads(body or b"{}", parse_constant=_refuse_constant)
+    except (ValueError, RecursionError):
+        raise InvalidInput("the request is no JSON") from None
+    if not isinstance(content, dict):
+        raise InvalidInput("the request is no object of JSON")
+    return content
+
+
+def _refuse_constant(name: str) -> None:
+    """Refuse what JSON lacks."""
+    raise ValueError(name)
+
+
+def _json(content: Mapping[str, Any], *, status: int = 200) -> Response:
+    """Answer as JSON."""
+    body = json.dumps(content).encode()
+    return Response(body, status_code=status, media_type=_JSON, headers={"cache-control": "no-store"})

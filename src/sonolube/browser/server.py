@@ -1,0 +1,149 @@
+"""The server of the workbench: its link, its processes, and their end."""
+
+import os
+import secrets
+import socket
+import sys
+import webbrowser
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import uvicorn
+
+from sonolube.browser.jobs import Jobs, jobs_folder
+from sonolube.browser.pool import Pool
+from sonolube.browser.routes import Workbench
+from sonolube.browser.security import Access, Guard
+from sonolube.browser.uploads import Uploads
+from sonolube.errors import InvalidInput
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Options:
+    """How the workbench is served.
+
+    Parameters
+    ----------
+    rig : Path or None
+        File that the first page shows; an example where None.
+    port : int
+        0 for any free one.
+    host : str
+        Address on which it listens.
+    token : str
+        Empty for a random one.
+    hosts : sequence of str
+        Names beyond those of this computer by which pages may ask.
+    opens_browser : bool
+    """
+
+    rig: Path | None = None
+    port: int = 8765
+    host: str = "127.0.0.1"
+    token: str = ""
+    hosts: Sequence[str] = ()
+    opens_browser: bool = True
+
+
+class _Server(uvicorn.Server):
+    """Server that prints the link once it listens."""
+
+    def __init__(self, config: uvicorn.Config, *, link: str, opens_browser: bool) -> None:
+        super().__init__(config)
+        self._link, self._opens = link, opens_browser
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen, and print the link."""
+        await super().startup(sockets)
+        sys.stdout.write(f"{self._link}\n")
+        sys.stdout.flush()
+        if self._opens:
+            webbrowser.open(self._link)
+
+
+def run(options: Options) -> None:
+    """Serve the workbench until it is interrupted.
+
+    Parameters
+    ----------
+    options : Options
+
+    Raises
+    ------
+    InvalidInput
+        If the port is taken, or the file is no rig.
+    """
+    listening = _listening(options.host, options.port)
+    port = listening.getsockname()[1]
+    access = Access(token=options.token or secrets.token_urlsafe(32), port=port, hosts=frozenset(options.hosts))
+    name = f"[{options.host}]" if ":" in options.host else options.host
+    link = f"http://{name}:{port}/?token={access.token}"
+    workbench = _workbench(options)
+    try:
+        server = _Server(
+            uvicorn.Config(
+                Guard(workbench.application(), access),
+                log_level="critical",
+                access_log=False,
+                server_header=False,
+                lifespan="off",
+                timeout_keep_alive=30,
+                limit_concurrency=400,
+                h11_max_incomplete_event_size=64 * 1024,
+            ),
+            link=link,
+            opens_browser=options.opens_browser,
+        )
+        server.run(sockets=[listening])
+    finally:
+        workbench.pool.end()
+        workbench.jobs.end()
+        workbench.uploads.end()
+
+
+def _workbench(options: Options) -> Workbench:
+    """Workbench with its processes."""
+    cores = os.cpu_count() or 1
+    rigs = {} if options.rig is None else {options.rig.stem: str(options.rig.resolve())}
+    return Workbench(
+        pool=Pool(max(2, min(cores, 4))),
+        jobs=Jobs(jobs_folder(), most=cores),
+        uploads=Uploads(),
+        rigs=rigs,
+        opened=next(iter(rigs), "tribometer"),
+    )
+
+
+def _listening(host: str, port: int) -> socket.socket:
+    """Socket that listens on an address."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    found = socket.socket(family, socket.SOCK_STREAM)
+    found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        found.bind((host, port))
+    except OSError as failure:
+        found.close()
+        raise InvalidInput(
+            f"--port {port}: {failure.strerror or failure}; name another, or 0 for any free one"
+        ) from None
+    return found
+
+
+def token_of_file(path: Path) -> str:
+    """Token in a file that only its owner can read.
+
+    Raises
+    ------
+    InvalidInput
+        If others can read it, or it is shorter than 32 characters.
+    """
+    try:
+        text = path.read_text(encoding="utf-8").strip()
+    except OSError as failure:
+        raise InvalidInput(f"--token-file {path}: {failure.strerror}") from None
+    if sys.platform != "win32" and path.stat().st_mode & 0o077:
+        raise InvalidInput(f"--token-file {path}: others can read it; protect it by: chmod 600 {path}")
+    if len(text) < 32 or not text.isascii() or not text.isprintable() or " " in text:
+        raise InvalidInput(f"--token-file {path}: needs one line of 32 or more printable characters without spaces")
+    return text

@@ -1,0 +1,185 @@
+/** Fields of a chart: filled contours or cells, contour lines with their values, and the scale of colours. */
+import {html} from '../vendor/htm-preact-3.1.1.js';
+import {mix, rgb, roundTicks, short} from './chart-scale.js';
+
+const STOPS = {
+  cividis: ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'],
+  viridis: ['#440154', '#482878', '#3e4989', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b', '#fde725'],
+  grey: ['#ffffff', '#f0f0f0', '#d9d9d9', '#bdbdbd', '#969696', '#737373', '#525252', '#252525', '#000000'],
+};
+const CATEGORIES = ['#bfbfbf', '#9ecae1', '#fdd0a2', '#c7e9c0', '#dadaeb'];
+const LEAST_PIECES = 4; // of a contour line that gets a label
+const MARGIN = 0.06; // of width and height, in which no label stands
+
+/** Colour of a share of a scale. */
+export function colourAt(name, share) {
+  const stops = STOPS[name] ?? STOPS.cividis;
+  const place = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
+  const low = Math.min(Math.floor(place), stops.length - 2);
+  return mix(rgb(stops[low]), rgb(stops[low + 1]), place - low);
+}
+
+export const categoryColour = (number) => CATEGORIES[number % CATEGORIES.length];
+
+/** Ends of the values of a field that are known. */
+function known(field) {
+  const values = field.values.flat().filter((value) => value !== null);
+  const [low, high] = values.reduce(([one, other], value) => [Math.min(one, value), Math.max(other, value)], [Infinity, -Infinity]);
+  return [field.lowest ?? low, field.highest ?? high];
+}
+
+/** Colours of a field: of a value, and the ends of the scale. */
+export function scaleOf(field) {
+  const {levels, scale, words} = field;
+  if (words) return {ends: [0, words.length - 1], colour: (value) => rgb(categoryColour(Math.round(value)))};
+  const [low, high] = levels ? [levels[0], levels.at(-1)] : known(field);
+  const share = (value) => (high > low ? (value - low) / (high - low) : 0.5);
+  if (!levels) return {ends: [low, high], colour: (value) => colourAt(scale, share(value))};
+  const colours = levels.slice(1).map((level, place) => colourAt(scale, share((level + levels[place]) / 2)));
+  const colour = (value) => {
+    let place = 0;
+    while (place < colours.length - 1 && value >= levels[place + 1]) place += 1;
+    return colours[place];
+  };
+  return {ends: [low, high], colour};
+}
+
+/** Place between the values of an ascending axis, as its number with a fraction; null beyond its ends. */
+function placeOn(axis, value, isCell) {
+  const last = axis.length - 1;
+  const [first, end] = [axis[0], axis[last]];
+  const half = isCell && last > 0 ? [(axis[1] - first) / 2, (end - axis[last - 1]) / 2] : [0, 0];
+  const slack = 1e-9 * Math.abs(end - first);
+  if (value < first - half[0] - slack || value > end + half[1] + slack) return null;
+  let [low, high] = [0, last];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (axis[middle] <= value) low = middle;
+    else high = middle;
+  }
+  return low + Math.min(Math.max((value - axis[low]) / (axis[high] - axis[low] || 1), -0.5), 1.5);
+}
+
+/** Value of a field at a place of its grid: between the grid's values for contours, of the cell otherwise. */
+function valueAt(field, column, row) {
+  const {values, levels} = field;
+  if (column === null || row === null) return null;
+  if (!levels) return values[Math.round(Math.max(row, 0))]?.[Math.round(Math.max(column, 0))] ?? null;
+  const [left, below] = [Math.min(Math.floor(column), field.x.length - 2), Math.min(Math.floor(row), field.y.length - 2)];
+  const [right, above] = [column - left, row - below];
+  const corners = [values[below][left], values[below][left + 1], values[below + 1][left], values[below + 1][left + 1]];
+  if (corners.includes(null)) return null;
+  return (1 - above) * ((1 - right) * corners[0] + right * corners[1]) + above * ((1 - right) * corners[2] + right * corners[3]);
+}
+
+/** Value of a field over the axes; null where it is not known. */
+export function readField(field, x, y) {
+  return valueAt(field, placeOn(field.x, x, !field.levels), placeOn(field.y, y, !field.levels));
+}
+
+const images = new WeakMap();
+
+/** Picture of a field in the pixels of a panel, computed once for each size. */
+function imageOf(field, map) {
+  const {width, height} = map.box;
+  const key = `${width} ${height} ${map.x.ends} ${map.y.ends}`;
+  const last = images.get(field);
+  if (last?.key === key) return last.canvas;
+  const canvas = new OffscreenCanvas(width, height);
+  const context = canvas.getContext('2d');
+  const image = context.createImageData(width, height);
+  const {colour} = scaleOf(field);
+  const columns = Array.from({length: width}, (_, at) => placeOn(field.x, map.x.back(map.box.left + at + 0.5), !field.levels));
+  for (let at = 0; at < height; at += 1) {
+    const row = placeOn(field.y, map.y.back(map.box.top + at + 0.5), !field.levels);
+    for (let across = 0; across < width && row !== null; across += 1) {
+      const value = valueAt(field, columns[across], row);
+      if (value === null) continue;
+      const found = colour(value);
+      const start = 4 * (at * width + across);
+      for (let part = 0; part < 3; part += 1) image.data[start + part] = found[part];
+      image.data[start + 3] = 255;
+    }
+  }
+  context.putImageData(image, 0, 0);
+  images.set(field, {key, canvas});
+  return canvas;
+}
+
+/** Pieces of the contour line of a level, one or two for each crossed cell of the grid, by marching squares. */
+function pieces({x, y, values}, level, map) {
+  const found = [];
+  for (let row = 0; row < y.length - 1; row += 1) {
+    for (let column = 0; column < x.length - 1; column += 1) {
+      const corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(([right, up]) => [x[column + right], y[row + up], values[row + up][column + right]]);
+      if (corners.some(([, , value]) => value === null)) continue;
+      const isAbove = corners.map(([, , value]) => value >= level);
+      const crossed = corners.flatMap((one, side) => {
+        const next = (side + 1) % 4;
+        if (isAbove[side] === isAbove[next]) return [];
+        const share = (level - one[2]) / (corners[next][2] - one[2]);
+        const [across, upward] = [0, 1].map((axis) => one[axis] + share * (corners[next][axis] - one[axis]));
+        return [[map.x.to(across), map.y.to(upward)]];
+      });
+      const isMiddle = corners.reduce((sum, [, , value]) => sum + value, 0) / 4 >= level;
+      if (crossed.length === 4 && isMiddle !== isAbove[0]) crossed.push(crossed.shift()); // which corners of a saddle are joined
+      for (let at = 0; at < crossed.length; at += 2) found.push([crossed[at], crossed[at + 1]]);
+    }
+  }
+  return found;
+}
+
+/** Draw a field between the axes. */
+export function drawField(context, field, map, scale) {
+  context.drawImage(imageOf(field, map), map.box.left, map.box.top);
+  if (!field.levels || !field.lines) return;
+  const lines = field.lines.map((level) => [short(level, 3), pieces(field, level, map)]);
+  context.strokeStyle = 'white';
+  context.lineWidth = 0.9 * scale;
+  context.beginPath();
+  for (const [one, other] of lines.flatMap(([, found]) => found)) {
+    context.moveTo(...one);
+    context.lineTo(...other);
+  }
+  context.stroke();
+  Object.assign(context, {font: `${9.5 * scale}px sans-serif`, textAlign: 'center', textBaseline: 'middle', lineJoin: 'round'});
+  Object.assign(context, {lineWidth: 3 * scale, strokeStyle: '#2a3f6e', fillStyle: 'white'});
+  for (const [text, found] of lines) {
+    const [x, y, angle] = labelOf(found, map.box) ?? [];
+    if (x === undefined) continue;
+    context.save();
+    context.translate(x, y);
+    context.rotate(angle);
+    context.strokeText(text, 0, 0);
+    context.fillText(text, 0, 0);
+    context.restore();
+  }
+}
+
+/** Place and angle of the label of a line: where it is nearest to the rising diagonal; null where it has no room. */
+function labelOf(found, {left, top, width, height}) {
+  const far = ([[x, y]]) => Math.abs((x - left) / width - (top + height - y) / height);
+  const inner = found.filter(([[x, y]]) => x > left + MARGIN * width && x < left + (1 - MARGIN) * width
+    && y > top + MARGIN * height && y < top + (1 - MARGIN) * height);
+  if (inner.length < LEAST_PIECES) return null;
+  const [[x, y], [nextX, nextY]] = inner.reduce((best, each) => (far(each) < far(best) ? each : best));
+  const angle = Math.atan((nextY - y) / (nextX - x || 1e-9));
+  return [(x + nextX) / 2, (y + nextY) / 2, angle];
+}
+
+/** Scale of colours with its text, as high as a panel. */
+export function ColourScale({field, height}) {
+  const {ends: [low, high], colour} = scaleOf(field);
+  const [top, room] = [8, Math.max(height - 16, 60)];
+  const edges = field.levels ?? Array.from({length: 65}, (_, at) => low + (at / 64) * (high - low));
+  const y = (value) => top + room * (1 - (value - low) / (high - low || 1));
+  const ticks = field.levels && field.lines
+    ? field.levels.filter((_, at) => at % Math.max(1, Math.floor((field.levels.length - 1) / 5)) === 0)
+    : roundTicks(low, high, 6);
+  return html`<svg class="chart-colours" width="66" height=${height} role="img" aria-label=${`Colours: ${field.scale_text}, from ${short(low)} to ${short(high)}`}>
+    ${edges.slice(1).map((edge, at) => html`<rect key=${at} x="2" width="13" y=${y(edge)} height=${y(edges[at]) - y(edge) + 0.5}
+      fill=${`rgb(${colour((edge + edges[at]) / 2).map(Math.round).join(' ')})`} />`)}
+    ${ticks.map((tick) => html`<text key=${tick} x="19" y=${y(tick)} dy="0.35em">${short(tick, 3)}</text>`)}
+    <text class="chart-axis-text" transform=${`translate(60 ${top + room / 2}) rotate(-90)`} text-anchor="middle">${field.scale_text}</text>
+  </svg>`;
+}

@@ -1,0 +1,196 @@
+/** Ends, ticks, numbers and colours of charts, as Matplotlib gives them to the same chart. */
+
+const MARGIN = 0.05; // of the range of the data, at both ends
+const LOG_RATIO = 3; // of the ends of a logarithmic axis, below which its ticks are those of a linear one
+const LEAST_CONTRAST = {light: 3, dark: 4.5}; // of a curve against what it is drawn on
+const DASHES = [[], [7, 4], [8, 3, 2, 3], [2, 3], [9, 2], [5, 2, 2, 2, 2, 2], [1.5, 1.5]];
+
+export const dash = (number) => DASHES[(number ?? 0) % DASHES.length];
+
+/** Number as a short text. */
+export function short(value, digits = 4) {
+  if (value == null || !Number.isFinite(value)) return '–';
+  const size = Math.abs(value);
+  if (size && (size >= 10 ** (digits + 1) || size < 1e-4)) return value.toExponential(digits - 1).replace(/\.?0+e/, 'e');
+  return String(Number(value.toPrecision(digits)));
+}
+
+/** Number of an axis or field with its unit, or the word that stands there. */
+export function withUnit(value, axis) {
+  const word = wordAt(axis, value);
+  if (word !== undefined) return word;
+  return axis.unit ? `${short(value)} ${axis.unit}` : short(value);
+}
+
+function wordAt(axis, value) {
+  if (!axis.words?.length) return undefined;
+  const place = axis.ticks ? axis.ticks.indexOf(value) : Math.round(value);
+  return axis.words[place];
+}
+
+/** Errors of points or bars below and above a place. */
+export function errors(error, place) {
+  if (!error) return null;
+  return Array.isArray(error[0]) ? [error[0][place], error[1][place]] : [error[place], error[place]];
+}
+
+/** Values of a part along an axis; `isEdge` where no margin is wanted beyond them. */
+function valuesOf(part, name) {
+  const {kind} = part;
+  const other = name === 'x' ? part.y : part.x;
+  if (kind === 'field') return {values: part[name], isEdge: true};
+  if (kind === 'line') return {values: part[name].filter((_, place) => other[place] !== null)};
+  if (kind === 'band') return {values: name === 'x' ? part.x.filter((_, place) => part.low[place] !== null) : [...part.low, ...part.high]};
+  if (kind === 'points') {
+    const error = part[`${name}_error`];
+    const ends = error ? part[name].flatMap((value, place) => {
+      const [below, above] = errors(error, place);
+      return [value - below, value + above];
+    }) : [];
+    return {values: [...part[name], ...ends]};
+  }
+  if (kind === 'rule') return {values: part.along === name ? [part.value] : []};
+  if (kind === 'zone') return {values: part.along === name ? [...part.first, ...part.last] : []};
+  if (kind === 'bars') {
+    if (part.along === name) return {values: [0, ...part.lengths]};
+    const half = (part.breadth ?? 0.6) / 2;
+    return {values: part.places.flatMap((place) => [place - half, place + half])};
+  }
+  return {values: []};
+}
+
+/** Ends of an axis over some panels. */
+function ends(panels, name) {
+  const axis = panels[0][name];
+  const {logarithmic} = axis;
+  let [low, high, isEdge, isFromZero] = [Infinity, -Infinity, false, false];
+  for (const panel of panels) {
+    for (const part of panel.parts) {
+      const found = valuesOf(part, name);
+      isEdge ||= found.isEdge;
+      isFromZero ||= part.kind === 'bars' && part.along === name;
+      for (const value of found.values) {
+        if (value === null || (logarithmic && value <= 0)) continue;
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    }
+  }
+  if (low > high) [low, high] = logarithmic ? [1, 10] : [0, 1];
+  const [to, from] = logarithmic ? [Math.log10, (value) => 10 ** value] : [(value) => value, (value) => value];
+  let [first, last] = [to(low), to(high)];
+  if (first === last) {
+    const half = first === 0 || logarithmic ? 0.5 : Math.abs(first) * MARGIN;
+    [first, last] = [first - half, last + half];
+  }
+  const margin = isEdge ? 0 : MARGIN * (last - first);
+  const isZero = (end) => isFromZero && end === 0;
+  const found = [axis.lowest ?? from(isZero(first) ? 0 : first - margin), axis.highest ?? from(isZero(last) ? 0 : last + margin)];
+  if (axis.ticks) found.splice(0, 2, Math.min(found[0], ...axis.ticks), Math.max(found[1], ...axis.ticks));
+  if (!(found[1] > found[0])) found[1] = found[0] + (Math.abs(found[0]) || 1);
+  return found;
+}
+
+/**
+ * Ends of both axes of each panel, common where the chart shares them.
+ * @param {Object} chart
+ * @param {Object[]} kept charts drawn behind
+ * @returns {{x: number[], y: number[]}[]}
+ */
+export function rangesOf(chart, kept = []) {
+  const columns = chart.columns ?? 1;
+  const joined = chart.panels.map((panel, place) => {
+    const behind = kept.flatMap((each) => (each.panels[place]?.parts ?? []).filter((part) => part.kind === 'line'));
+    return {...panel, parts: [...panel.parts, ...behind]};
+  });
+  const among = (name, isShared, same) => joined.map((panel, place) => ends(isShared
+    ? [panel, ...joined.filter((other, at) => at !== place && same(at, place) && other.parts.length)] : [panel], name));
+  const x = among('x', chart.shares_x, (one, other) => one % columns === other % columns);
+  const y = among('y', chart.shares_y, (one, other) => Math.floor(one / columns) === Math.floor(other / columns));
+  return joined.map((_, place) => ({x: x[place], y: y[place]}));
+}
+
+/** Round numbers within a range, at most `most`. */
+export function roundTicks(low, high, most) {
+  const rough = (high - low) / Math.max(1, most);
+  const decade = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 2.5, 5, 10].map((each) => each * decade).find((each) => each >= rough * (1 - 1e-9)) ?? 10 * decade;
+  const found = [];
+  for (let place = Math.ceil(low / step - 1e-9); place * step <= high + step * 1e-9; place += 1) {
+    found.push(Number((place * step).toPrecision(12)));
+  }
+  return found;
+}
+
+/** Ticks of an axis with room for so many numbers. */
+export function ticksOf(axis, [low, high], room) {
+  if (axis.ticks?.length) return axis.ticks;
+  if (axis.words?.length) return axis.words.map((_, place) => place);
+  if (!axis.logarithmic || high / low < LOG_RATIO) return roundTicks(low, high, Math.min(room, 8));
+  const decades = Math.log10(high / low);
+  const within = [];
+  const steps = 3 * decades < room ? [1, 2, 5] : [1];
+  const every = Math.max(1, Math.ceil(decades / room));
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power += 1) {
+    if (power % every) continue;
+    for (const step of steps) {
+      const value = Number((step * 10 ** power).toPrecision(3));
+      if (value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9)) within.push(value);
+    }
+  }
+  return within;
+}
+
+/** Texts at ticks. */
+export const tickTexts = (axis, ticks) => ticks.map((value) => wordAt(axis, value) ?? short(value, 5));
+
+/** Red, green and blue of "#rrggbb" or "rgb(…)". */
+export function rgb(text) {
+  if (text.startsWith('#')) return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
+  return (text.match(/[\d.]+/g) ?? [0, 0, 0]).slice(0, 3).map(Number);
+}
+
+export const css = (colour) => `rgb(${colour.map(Math.round).join(' ')})`;
+export const mix = (one, other, share) => one.map((value, place) => value + share * (other[place] - value));
+
+function luminance(colour) {
+  const [red, green, blue] = colour.map((value) => {
+    const part = value / 255;
+    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
+function contrast(one, other) {
+  const [low, high] = [luminance(one), luminance(other)].sort((a, b) => a - b);
+  return (high + 0.05) / (low + 0.05);
+}
+
+/**
+ * Colours of a theme, read from the style of an element.
+ * @param {Element} element
+ * @returns {{ink: string, surface: string, grid: string, stroke: (colour: string) => string, fill: (colour: string) => string}}
+ */
+export function themeOf(element) {
+  const style = getComputedStyle(element);
+  const [ink, surface] = [rgb(style.color), rgb(style.backgroundColor)];
+  const least = luminance(surface) < 0.2 ? LEAST_CONTRAST.dark : LEAST_CONTRAST.light;
+  const known = new Map();
+  const shown = (colour, isStroke) => {
+    const key = `${colour} ${isStroke}`;
+    if (!known.has(key)) {
+      let found = rgb(colour ?? '#000000');
+      const isGrey = found[0] === found[1] && found[1] === found[2];
+      if (isGrey) found = mix(surface, ink, 1 - found[0] / 255);
+      for (let step = 0; isStroke && !isGrey && step < 12 && contrast(found, surface) < least; step += 1) {
+        found = mix(found, ink, 0.1);
+      }
+      known.set(key, css(found));
+    }
+    return known.get(key);
+  };
+  return {
+    ink: css(ink), surface: css(surface), grid: css(mix(surface, ink, 0.13)), muted: css(mix(surface, ink, 0.72)),
+    kept: css(mix(surface, ink, 0.45)), stroke: (colour) => shown(colour, true), fill: (colour) => shown(colour, false),
+  };
+}

@@ -1,0 +1,157 @@
+/** Fields of a rig's entries: number and unit as one text, a slider, a spread, and what is refused below them. */
+import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+
+const SLIDER_STEPS = 400;
+const PAUSE = 300; // ms after the last key until a text is read
+const REST = 500; // ms without a key until a value is entered into the history
+const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
+
+export const fieldId = (key) => `field-${key.replaceAll(/[^\w]/g, '-')}`;
+export const spreadKey = (key) => `uncertainty.${key}`;
+
+/** Show the field of an entry, or the first of a table, open what it lies in, and put the cursor into it; false where there is none. */
+export function focusField(key) {
+  const field = document.getElementById(fieldId(key)) ?? document.querySelector(`input[id^="${fieldId(key)}-"]`);
+  if (!field) return false;
+  for (let around = field.closest('details'); around; around = around.parentElement.closest('details')) around.open = true;
+  field.scrollIntoView({block: 'center', behavior: matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth'});
+  field.focus({preventScroll: true});
+  field.select?.();
+  return true;
+}
+
+/** Number at the beginning of a text and what follows; null where there is none. */
+export function split(text) {
+  const found = NUMBER.exec(text);
+  const number = found ? Number(found[1]) : NaN;
+  return Number.isFinite(number) ? {number, rest: found[2], digits: found[1]} : null;
+}
+
+/** Number as a short text with three significant digits. */
+export function short(number) {
+  return String(Number(number.toPrecision(3)));
+}
+
+/** Text with its number one step up or down: one in its second digit, or ten of these. */
+function stepped(text, direction, isLarge) {
+  const parts = split(text);
+  if (!parts) return text;
+  const size = parts.number === 0 ? 0 : Math.floor(Math.log10(Math.abs(parts.number) * (1 + 1e-12)));
+  const shown = (parts.digits.split(/e/i)[0].split('.')[1] ?? '').length;
+  const power = Math.max(size - 1, -12);
+  const number = parts.number + direction * (isLarge ? 10 : 1) * 10 ** power;
+  const isScientific = /e/i.test(parts.digits);
+  const digits = isScientific ? String(Number(number.toPrecision(4))) : number.toFixed(Math.max(-power, shown, 0));
+  return `${digits}${parts.rest}`;
+}
+
+/**
+ * Text field that is read after a pause, on Enter and when it is left.
+ * @param {{id: string, text: string, unit?: string, onText: (text: string, isMoving: boolean) => void,
+ *   onSettle: () => void}} props further ones go to the input
+ */
+export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
+  const [draft, setDraft] = useState(null);
+  const timer = useRef(0);
+  const latest = useRef(null);
+  latest.current = draft;
+  const withUnit = (typed) => (unit && split(typed)?.rest.trim() === '' ? `${typed.trim()} ${unit}` : typed);
+  const give = (isFinal) => {
+    clearTimeout(timer.current);
+    const typed = latest.current;
+    if (typed === null) return;
+    const given = withUnit(typed);
+    if (given !== text) onText(given, !isFinal);
+    if (isFinal) {
+      latest.current = null;
+      setDraft(null);
+    }
+  };
+  useEffect(() => () => clearTimeout(timer.current), []);
+  const leave = () => {
+    give(true);
+    onSettle();
+  };
+  const type = (event) => {
+    latest.current = event.target.value;
+    setDraft(event.target.value);
+    clearTimeout(timer.current);
+    timer.current = setTimeout(() => {
+      give(false);
+      timer.current = setTimeout(onSettle, REST);
+    }, PAUSE);
+  };
+  const press = (event) => {
+    if (event.key === 'Enter') leave();
+    else if (event.key === 'ArrowUp' || event.key === 'ArrowDown') {
+      const next = stepped(latest.current ?? text, event.key === 'ArrowUp' ? 1 : -1, event.shiftKey);
+      event.preventDefault();
+      if (next === (latest.current ?? text)) return;
+      clearTimeout(timer.current);
+      latest.current = null;
+      setDraft(null);
+      onText(withUnit(next), true);
+      timer.current = setTimeout(onSettle, REST);
+    }
+  };
+  return html`<input type="text" id=${id} value=${draft ?? text} onInput=${type} onKeyDown=${press} onBlur=${leave}
+    autocomplete="off" spellcheck=${false} maxlength="20000" ...${rest} />`;
+}
+
+/** Slider over the usual range of a value, by decades where it spans more than one. */
+function Slider({field, text, onText, onSettle}) {
+  const {lowest, highest, unit, label, key} = field;
+  const parts = split(text);
+  const place = parts ? Math.log(Math.max(parts.number, lowest) / lowest) / Math.log(highest / lowest) : 0;
+  const move = (event) => {
+    const number = lowest * (highest / lowest) ** (event.target.value / SLIDER_STEPS);
+    onText(unit ? `${short(number)} ${unit}` : short(number), true);
+  };
+  return html`<input type="range" class="slider" min="0" max=${SLIDER_STEPS} step="1"
+    value=${Math.round(SLIDER_STEPS * Math.min(Math.max(place, 0), 1))} onInput=${move} onChange=${onSettle}
+    aria-label=${`${label}, slider`} aria-valuetext=${text} data-test=${`slider:${key}`} />`;
+}
+
+/**
+ * Entry of a rig.
+ * @param {{field: Object, text: string, spread?: string, isChanged: boolean, refusal?: string, spreadRefusal?: string,
+ *   onText: (key: string, text: string|null, isMoving: boolean) => void, onSettle: () => void}} props
+ */
+export function Field({field, text, spread, isChanged, refusal, spreadRefusal, onText, onSettle}) {
+  const id = fieldId(field.key);
+  const [isSpread, setSpread] = useState(false);
+  const hasSlider = field.lowest != null && field.highest != null;
+  const isNumber = hasSlider || split(field.text) !== null;
+  const shown = isSpread || spread !== undefined;
+  const described = [refusal && `${id}-refusal`, field.help && `${id}-help`].filter(Boolean).join(' ') || undefined;
+  const give = (given, isMoving) => onText(field.key, given, isMoving);
+  const open = () => {
+    if (spread !== undefined) onText(spreadKey(field.key), null, false);
+    setSpread(!shown);
+  };
+  return html`<div class=${`field${refusal ? ' is-refused' : ''}${isChanged ? ' is-changed' : ''}`}>
+    <div class="field-head">
+      <label for=${id}>${field.label}${field.assumed && html` <span class="tag" title=${field.assumed}>assumed</span>`}</label>
+      ${isChanged && html`<button type="button" class="small" onClick=${() => onText(field.key, null, false)}
+        aria-label=${`Take back the change of ${field.label}`} data-test=${`reset:${field.key}`}>take back</button>`}
+    </div>
+    <div class="field-row">
+      <${TextField} id=${id} text=${text} unit=${field.unit} onText=${give} onSettle=${onSettle}
+        aria-invalid=${refusal ? 'true' : undefined} aria-describedby=${described} title=${field.help || undefined}
+        data-test=${`field:${field.key}`} />
+      ${isNumber && html`<button type="button" class="spread-button" aria-expanded=${shown} onClick=${open}
+        aria-label=${`Spread of ${field.label}`} title="Give the spread of this value" data-test=${`spread-button:${field.key}`}>
+        ±</button>`}
+    </div>
+    ${hasSlider && html`<${Slider} field=${field} text=${text} onText=${give} onSettle=${onSettle} />`}
+    ${refusal && html`<p class="refusal" id=${`${id}-refusal`} data-test=${`refusal:${field.key}`}>${refusal}</p>`}
+    ${shown && html`<div class="field-spread"><label for=${`${id}-spread`}>Spread</label>
+      <${TextField} id=${`${id}-spread`} text=${spread ?? ''} placeholder="normal 5 %"
+        onText=${(given, isMoving) => onText(spreadKey(field.key), given.trim() === '' ? null : given, isMoving)}
+        onSettle=${onSettle} aria-invalid=${spreadRefusal ? 'true' : undefined}
+        aria-describedby=${`${id}-spread-help`} data-test=${`spread:${field.key}`} />
+      <p class=${spreadRefusal ? 'refusal' : 'hint'} id=${`${id}-spread-help`}>${spreadRefusal
+        || 'As in a rig file: normal 5 %, uniform 20 %, lognormal 10 %, or uniform with two values.'}</p></div>`}
+    ${field.help && html`<span class="hidden" id=${`${id}-help`}>${field.help}</span>`}
+  </div>`;
+}

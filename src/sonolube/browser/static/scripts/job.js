@@ -1,0 +1,91 @@
+/** Long tasks as jobs: found again by what was asked, started, followed, stopped. */
+import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {ask, useConnection} from './api.js';
+
+const BETWEEN = 400; // ms from one look at a job to the next
+const MOST_COMPARED = 12; // latest jobs of a task whose arguments are compared
+
+export const isActive = (job) => job?.state === 'waiting' || job?.state === 'running';
+
+/** Seconds that a job has taken. */
+export const secondsOf = (job) => (isActive(job) ? Math.max(0, Date.now() / 1000 - job.created) : job.seconds);
+
+/** Seconds as text. */
+export function duration(seconds) {
+  if (seconds < 60) return `${seconds < 9.95 ? seconds.toFixed(1) : Math.round(seconds)} s`;
+  return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
+}
+
+/** The latest job of a task with these arguments that was not stopped; undefined where there is none. */
+async function found(task, args) {
+  const {content} = await ask('api/jobs');
+  const same = (content?.jobs ?? []).filter((job) => job.task === task && job.state !== 'cancelled' && job.state !== 'interrupted');
+  for (const job of same.slice(0, MOST_COMPARED)) {
+    const {content: known} = await ask(`api/jobs/${job.id}`);
+    if (known && JSON.stringify(known.request.arguments) === JSON.stringify(args)) return known;
+  }
+  return undefined;
+}
+
+/**
+ * Job of a task with these arguments, and its result.
+ * @param {string|null} task null looks for none
+ * @param {Object} args
+ * @returns {{job: Object|null, content: any, isOld: boolean, failure: Object|null, isSought: boolean,
+ *   start: (label: string) => void, cancel: () => void}} `isOld` where the result is of other arguments
+ */
+export function useJob(task, args) {
+  const key = task === null ? '' : JSON.stringify([task, args]);
+  const [state, setState] = useState({key: '', job: null, failure: null});
+  const [result, setResult] = useState({key: '', content: null});
+  const {generation} = useConnection();
+  const latest = useRef(key);
+  latest.current = key;
+  const isKnown = state.key === key;
+  const {job} = isKnown ? state : {job: null};
+  const enter = (of, next, failure = null) => latest.current === of && setState({key: of, job: next ?? null, failure});
+  useEffect(() => {
+    if (task !== null) found(task, args).then((known) => enter(key, known));
+  }, [key, generation]);
+  useEffect(() => {
+    if (!job) return undefined;
+    if (job.state === 'done' && result.key !== key) {
+      ask(`api/jobs/${job.id}/result`).then(({content}) => content && latest.current === key && setResult({key, content}));
+    }
+    if (!isActive(job)) return undefined;
+    const timer = setTimeout(() => ask(`api/jobs/${job.id}`).then(({content, failure}) => {
+      if (content) enter(key, content);
+      else enter(key, failure.kind === 'refused' ? null : {...job}, failure);
+    }), BETWEEN);
+    return () => clearTimeout(timer);
+  }, [job]);
+  const post = (path, body) => ask(path, {body}).then(({content, failure}) => enter(key, content ?? job, failure));
+  return {
+    job, content: result.key.startsWith(JSON.stringify([task]).slice(0, -1)) ? result.content : null, isOld: result.key !== key,
+    failure: isKnown ? state.failure : null, isSought: task !== null && !isKnown,
+    start: (label) => post('api/jobs', {task, arguments: args, label}), cancel: () => post(`api/jobs/${job.id}/cancel`, {}),
+  };
+}
+
+/** What is said of the progress of a job. */
+export function progressText(job) {
+  if (job.state === 'waiting') return 'Waits until a running job has ended';
+  if (job.state !== 'running') return job.state[0].toUpperCase() + job.state.slice(1);
+  const parts = job.total ? `, ${job.done} of ${job.total}` : '';
+  const stage = job.total && job.stage ? job.stage : 'running';
+  return `${stage[0].toUpperCase()}${stage.slice(1)}${parts}`;
+}
+
+/** Progress of a job with what stops it; the reason where it failed. */
+export function JobState({job, cancel}) {
+  if (!isActive(job)) {
+    return job.reason ? html`<div class="notice is-warning" role="alert" data-test="job-failed"><strong>${progressText(job)}.</strong>
+      <p>${job.reason}</p></div>` : null;
+  }
+  return html`<div class="job-state" data-test="job-state"><${JobProgress} job=${job} />
+    <span role="status">${progressText(job)}</span><span class="hint">${duration(secondsOf(job))}</span>
+    <button type="button" class="button" onClick=${cancel} data-test="cancel-job">Cancel</button></div>`;
+}
+
+export const JobProgress = ({job}) => (job.total
+  ? html`<progress max=${job.total} value=${job.done} aria-label="Progress" />` : html`<progress aria-label="Progress" />`);

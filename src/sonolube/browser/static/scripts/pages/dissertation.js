@@ -1,0 +1,141 @@
+/** Page Dissertation: its claims judged, every published number beside the computed one, corrections, figures. */
+import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {callTask} from '../api.js';
+import {short} from '../chart-scale.js';
+import {isActive, JobState, useJob} from '../job.js';
+import {addressOf, change, settle, useApp} from '../state.js';
+
+const NO_ARGUMENTS = {};
+const LABEL = 'Reproduction of the dissertation';
+const MOST = 60; // rows shown before all are asked for
+const FILTERS = [['chapter', 'Chapter'], ['verdict', 'Verdict'], ['kind', 'Class']];
+const words = (name) => String(name).replaceAll('_', ' ');
+
+const Verdict = ({of}) => html`<span class=${`verdict is-${of.replaceAll(' ', '_')}`}>${words(of)}</span>`;
+
+/** Links to rows by their ids. */
+const RowLinks = ({ids, title}) => (ids.length ? html`<p class="hint">${title}: ${ids.map((id, place) => html`${place > 0 && ', '}<a key=${id}
+  href=${addressOf('dissertation', {row: id})}>${id}</a>`)}</p>` : null);
+
+/** Scorecard: each claim with its verdict, and what it rests on. */
+function Claims({claims}) {
+  return html`<section aria-labelledby="claims-title"><h2 id="claims-title">Claims</h2>
+    <ul class="claims" data-test="claims">${claims.map((claim) => html`<li key=${claim.id} class="card" data-test=${`claim:${claim.id}`}>
+      <div class="claim-head"><h3>${claim.statement}</h3><${Verdict} of=${claim.verdict} /></div>
+      <p>Claimed ${claim.claimed}; found ${claim.found}. <span class="hint">${claim.source}</span></p>
+      <details><summary>How it is judged</summary><p>${claim.judged}</p>
+        <${RowLinks} title="Decisive rows" ids=${claim.decisive_rows} /><${RowLinks} title="Supporting rows" ids=${claim.supporting_rows} /></details>
+    </li>`)}</ul></section>`;
+}
+
+/** Rows that the view asks for. */
+function filtered(rows, view) {
+  const search = (view.search ?? '').toLowerCase().split(/\s+/).filter(Boolean);
+  return rows.filter((row) => FILTERS.every(([name]) => !view[name] || String(row[name]) === view[name])
+    && search.every((word) => [row.id, row.source, words(row.quantity), row.note, row.printed].some((text) => String(text).toLowerCase().includes(word))));
+}
+
+function Filters({rows, view, count}) {
+  const choices = (name) => [...new Set(rows.map((row) => String(row[name])))].sort();
+  const set = (name) => (event) => change({view: {[name]: event.target.value || null, row: null}});
+  const search = (event) => change({view: {search: event.target.value || null, row: null}}, {replace: true});
+  return html`<div class="filters" role="search" aria-label="Rows"><div><label for="row-search">Search</label>
+      <input type="text" id="row-search" value=${view.search ?? ''} onInput=${search} onBlur=${settle} onChange=${settle} autocomplete="off"
+        maxlength="200" data-test="row-search" /></div>
+    ${FILTERS.map(([name, label]) => html`<div key=${name}><label for=${`row-${name}`}>${label}</label>
+      <select id=${`row-${name}`} value=${view[name] ?? ''} onChange=${set(name)} data-test=${`row-filter:${name}`}><option value="">all</option>
+        ${choices(name).map((each) => html`<option key=${each} value=${each} selected=${view[name] === each}>${words(each)}</option>`)}</select></div>`)}
+    <p role="status" data-test="row-count">${count} of ${rows.length} rows</p></div>`;
+}
+
+/** What other models give for the number of a row. */
+function Alternatives({of}) {
+  const found = Object.entries(of.alternatives);
+  if (!found.length) return null;
+  return html`<details><summary>${found.length === 1 ? '1 other model' : `${found.length} other models`}</summary><ul>${found.map(([name, each]) => html`<li key=${name}>
+    ${words(name)}: ${short(each.computed)} ${of.unit}${each.reproduced ? ', reproduced' : ''}. ${each.note}</li>`)}</ul></details>`;
+}
+
+const rowId = (id) => `row-${id.replaceAll(/[^\w]/g, '-')}`;
+
+const printed = (row) => `${row.printed}${row.unit ? ` ${row.unit}` : ''}`;
+
+function Rows({rows, view}) {
+  const [isAll, setAll] = useState(false);
+  const found = filtered(rows, view);
+  const {row: wanted} = view;
+  const shown = isAll || (wanted && found.findIndex((row) => row.id === wanted) >= MOST) ? found : found.slice(0, MOST);
+  useEffect(() => {
+    if (!wanted) return;
+    const place = document.getElementById(rowId(wanted));
+    place?.scrollIntoView({block: 'center'});
+    place?.focus({preventScroll: true});
+  }, [wanted, rows]);
+  return html`<section aria-labelledby="rows-title"><h2 id="rows-title">Numbers</h2>
+    <${Filters} rows=${rows} view=${view} count=${found.length} />
+    <div class="table-frame card" tabindex="0" role="group" aria-label="Published and computed numbers"><table class="table result-rows" data-test="rows">
+      <thead><tr><th scope="col">Row</th><th scope="col">Source</th><th scope="col">Quantity</th><th scope="col">Published</th><th scope="col">Computed</th>
+        <th scope="col">Difference</th><th scope="col">Verdict</th><th scope="col">Note</th></tr></thead>
+      <tbody>${shown.map((row) => html`<tr key=${row.id} id=${rowId(row.id)} tabindex="-1" class=${row.id === wanted ? 'is-shown' : ''} data-test=${`row:${row.id}`}>
+        <th scope="row"><a href=${addressOf('dissertation', {...view, row: row.id})}>${row.id}</a></th>
+        <td>${row.source}</td><td>${words(row.quantity)}</td><td>${printed(row)}</td><td>${row.computed === null ? '–' : short(row.computed)}</td>
+        <td>${row.relative_error === null ? '–' : `${row.relative_error > 0 ? '+' : ''}${short(100 * row.relative_error, 2)} %`}</td>
+        <td><${Verdict} of=${row.verdict} /><br /><span class="hint">${words(row.kind)}</span></td><td class="row-note">${row.note}<${Alternatives} of=${row} /></td></tr>`)}</tbody></table></div>
+    ${shown.length < found.length && html`<button type="button" class="button" onClick=${() => setAll(true)} data-test="all-rows">Show all ${found.length} rows</button>`}
+  </section>`;
+}
+
+/** Corrections of single cells of the published tables, read when they are opened. */
+function Errata() {
+  const [found, setFound] = useState(null);
+  const isAsked = useRef(false);
+  const read = async (event) => {
+    if (!event.target.open || isAsked.current) return;
+    isAsked.current = true;
+    const {content} = await callTask('published', {});
+    const tables = [];
+    for (const table of Object.keys(content?.answer ?? {})) tables.push((await callTask('published', {table})).content?.answer);
+    setFound(tables.filter(Boolean).flatMap((table) => table.corrections.map((each) => ({...each, table: table.id, title: table.title}))));
+  };
+  return html`<section aria-labelledby="errata-title"><h2 id="errata-title">Errata</h2><details onToggle=${read} data-test="errata">
+    <summary>Corrections of the printed tables, with their evidence</summary>
+    ${!found && html`<p class="loading" role="status">Reading the tables…</p>`}
+    ${found && html`<div class="table-frame card" tabindex="0" role="group" aria-label="Corrections"><table class="table"><thead><tr><th scope="col">Table</th>
+      <th scope="col">Erratum</th><th scope="col">Column</th><th scope="col">Printed</th><th scope="col">Corrected</th><th scope="col">Evidence</th></tr></thead>
+      <tbody>${found.map((each, place) => html`<tr key=${place}><th scope="row" title=${each.title}>${each.table}</th><td>${each.erratum}</td>
+        <td>${words(each.column)}${each.row === null ? '' : `, row ${each.row + 1}`}</td><td>${each.printed}</td><td>${each.corrected}</td><td>${each.evidence}</td></tr>`)}
+      </tbody></table></div>`}</details></section>`;
+}
+
+function Figures({job, files}) {
+  const names = files.filter((name) => name.endsWith('.svg'));
+  const address = (name) => `api/jobs/${job.id}/files/${name.split('/').map(encodeURIComponent).join('/')}`;
+  const title = (name) => words(name.split('/').at(-1).replace(/\.svg$/, '').replaceAll('-', ' '));
+  if (!names.length) return null;
+  return html`<section aria-labelledby="figures-title"><h2 id="figures-title">Figures</h2><div class="figures" data-test="figures">
+    ${names.map((name) => html`<figure key=${name} aria-label=${title(name)}><img src=${address(name)} alt=${`${title(name)}; its numbers are among the rows above`} loading="lazy" />
+      <figcaption>${title(name)} <a href=${address(name)} download=${name.split('/').at(-1)}>SVG</a></figcaption></figure>`)}</div>
+    <p><a href=${address('reproduction.html')} download="reproduction.html">The whole report as one page (HTML)</a></p></section>`;
+}
+
+export default function Dissertation() {
+  const {state} = useApp();
+  const job = useJob('reproduce', NO_ARGUMENTS);
+  const {content} = job;
+  const isComputing = isActive(job.job);
+  const isReady = job.job?.state === 'done' && content;
+  return html`<div class="page" id="answer" tabindex="-1"><h1>Dissertation</h1>
+    <p>Every published number of the dissertation beside the computed one, its claims judged by them.</p>
+    ${!isReady && !isComputing && !job.isSought && job.job?.state !== 'done' && html`<p class="row"><button type="button" class="button is-main" onClick=${() => job.start(LABEL)}
+      data-test="start-job">Compute</button><span class="hint">Takes some minutes, once; the result stays on this computer.</span></p>`}
+    ${!isReady && (job.isSought || job.job?.state === 'done') && html`<p class="loading" role="status">Reading the result…</p>`}
+    ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}
+    ${job.failure && html`<p class="refusal" role="alert">${job.failure.text}</p>`}
+    ${isReady && html`<p class="hint" data-test="verdicts">${content.answer.count} numbers: ${Object.entries(content.answer.verdicts).filter(([, count]) => count).map(([name, count]) => `${count} ${words(name)}`).join(', ')}.
+      sonolube ${content.answer.version}.</p>
+      ${content.answer.caveats.map((line) => html`<p key=${line} class="notice is-warning">${line}</p>`)}
+      <${Claims} claims=${content.answer.claims} /><${Rows} rows=${content.answer.rows} view=${state.view} />`}
+    <${Errata} />
+    ${isReady && html`<${Figures} job=${job.job} files=${content.files ?? []} />`}
+  </div>`;
+}

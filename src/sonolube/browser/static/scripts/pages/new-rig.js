@@ -1,0 +1,120 @@
+/** Page New rig: the questions of the task `new`, whose answer is a first rig file with what is least known of it. */
+import {html, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {Blocks, Caveats, Failure} from '../answer.js';
+import {upload, useReply} from '../api.js';
+import {TextField} from '../fields.js';
+import {openRigText} from '../rig-panel.js';
+import {change, settle, useApp} from '../state.js';
+
+const PATH = '/api/tasks/new';
+const EITHER = ['amplitude', 'actuator']; // one of them is needed
+const FIRST = ['amplitude', 'actuator', 'voltage'];
+const FILES = ['scan', 'pin_scan'];
+const LISTS = {pin: 'materials', disc: 'materials', actuator: 'actuators'};
+const NAME = 'name';
+
+const words = (name) => name[0].toUpperCase() + name.slice(1).replaceAll('_', ' ');
+
+/** Argument of a view: an upload for a file, else its text. */
+function argument(name, text) {
+  if (!FILES.includes(name)) return text;
+  const at = text.indexOf(' ');
+  return {name: text.slice(at + 1), upload: text.slice(0, at)};
+}
+
+/** One question. */
+function Question({name, schema, view, isNeeded, refusal, list}) {
+  const id = `new-${name}`;
+  const [note, setNote] = useState('');
+  const give = (text, isMoving) => change({view: {[name]: text || null}}, {replace: isMoving});
+  const take = async (event) => {
+    const [chosen] = event.target.files;
+    if (!chosen) return;
+    const {file, failure} = await upload(chosen);
+    setNote(failure?.text ?? '');
+    if (file) give(`${file.upload} ${file.name}`, false);
+  };
+  const described = [`${id}-help`, refusal && `${id}-refusal`].filter(Boolean).join(' ');
+  return html`<div class=${`field${refusal ? ' is-refused' : ''}`}>
+    <div class="field-head"><label for=${id}>${words(name)}${isNeeded && html` <span class="tag">needed</span>`}</label></div>
+    <div class="field-row">${FILES.includes(name)
+    ? html`<input type="file" id=${id} onChange=${take} aria-describedby=${described} data-test=${`new:${name}`} />`
+    : html`<${TextField} id=${id} text=${view[name] ?? ''} unit=${schema['x-unit']} onText=${give} onSettle=${settle}
+        list=${list} aria-describedby=${described} aria-invalid=${refusal ? 'true' : undefined} data-test=${`new:${name}`} />`}</div>
+    ${FILES.includes(name) && view[name] && html`<p class="row"><span class="grow">${argument(name, view[name]).name}</span>
+      <button type="button" class="small" onClick=${() => give('', false)}>leave out</button></p>`}
+    <p class="hint" id=${`${id}-help`}>${schema.description}</p>
+    ${(refusal || note) && html`<p class="refusal" id=${`${id}-refusal`} data-test=${`refusal:${name}`}>${refusal || note}</p>`}
+  </div>`;
+}
+
+/** Field that a refusal is of: by its key, else by the name with which its sentence begins. */
+const fieldOf = (fault, names) => (names.includes(fault.key) ? fault.key
+  : names.find((name) => new RegExp(`^${name}\\b`).test(fault.text)) ?? '');
+
+/** The rig that was made. */
+function Made({answer, name, isDim}) {
+  const form = useRef(null);
+  const {text, rig} = answer.answer;
+  const use = () => openRigText(name, text, 'predict');
+  return html`<section class=${`card${isDim ? ' is-dim' : ''}`} aria-labelledby="made-title" data-test="made" ref=${form}>
+    <h2 id="made-title">${rig}</h2>
+    <p class="row"><button type="button" class="button is-main" onClick=${use} data-test="use-rig">Predict with this rig</button>
+      <span class="hint">Every entry can be changed there, and the file taken away.</span></p>
+    <${Blocks} blocks=${answer.blocks.filter((block) => block.kind !== 'verbatim' && block.text !== rig)} />
+    <details><summary>Rig file</summary><pre class="verbatim" tabindex="0" aria-label="Rig file">${text}</pre></details>
+    <${Caveats} answer=${answer} isMoving=${false} of="" hasFields=${false} />
+  </section>`;
+}
+
+export default function NewRig() {
+  const {state: {view}} = useApp();
+  const nothing = useMemo(() => ({}), []);
+  const description = useReply('description', 'api/description', undefined);
+  const materials = useReply('materials', 'api/tasks/materials', nothing);
+  const actuators = useReply('actuators', 'api/tasks/actuators', nothing);
+  const schema = description.content?.paths[PATH].post.requestBody.content['application/json'].schema;
+  const names = Object.keys(schema?.properties ?? {});
+  const args = Object.fromEntries(names.filter((name) => view[name]).map((name) => [name, argument(name, view[name])]));
+  const needed = (schema?.required ?? []).filter((name) => !args[name]);
+  const isReady = schema && !needed.length && EITHER.some((name) => args[name]);
+  const {content, failure, isWaiting} = useReply('new', isReady ? 'api/tasks/new' : null, args);
+  if (!schema) {
+    return html`<div class="page"><h1>New rig</h1><${Failure} failure=${description.failure} />
+      ${!description.failure && html`<p class="loading" role="status">Reading the questions…</p>`}</div>`;
+  }
+  const refused = isReady && failure
+    ? {...failure, faults: failure.faults.map((fault) => ({...fault, key: fieldOf(fault, names)}))} : null;
+  const faults = new Map(refused?.faults.map((fault) => [fault.key, fault.text]));
+  const first = [...schema.required, ...FIRST];
+  const others = names.filter((name) => !first.includes(name));
+  const rigName = (view[NAME] ?? '').trim() || 'my-rig';
+  const ask = (some) => some.map((name) => html`<${Question} key=${name} name=${name} schema=${schema.properties[name]} view=${view}
+    isNeeded=${schema.required.includes(name) || EITHER[0] === name} refusal=${faults.get(name)}
+    list=${LISTS[name] && `known-${LISTS[name]}`} />`);
+  const missing = [...needed, ...(EITHER.some((name) => args[name]) ? [] : [EITHER.join(' or ')])];
+  return html`<div class="page">
+    <div id="answer" tabindex="-1"><h1 class="statement">A first rig from what is known before a test</h1>
+    <p class="hint">Numbers with their unit. What is not known is taken from published tests, and stated as least known.</p></div>
+    <datalist id="known-materials">${Object.entries(materials.content?.answer ?? {}).map(([name, {title}]) => html`
+      <option key=${name} value=${name}>${title}</option>`)}</datalist>
+    <datalist id="known-actuators">${Object.keys(actuators.content?.answer ?? {}).map((name) => html`
+      <option key=${name} value=${name} />`)}</datalist>
+    <div class="columns">
+      <form class="card" onSubmit=${(event) => event.preventDefault()} aria-label="Questions">
+        <div class="fields two">${ask(first)}</div>
+        <details><summary>Surfaces and what else is known</summary><div class="fields two">${ask(others)}</div></details>
+        <div class="field"><label for="new-rig-name">Name of the rig</label>
+          <${TextField} id="new-rig-name" text=${view[NAME] ?? ''} placeholder="my-rig" data-test="new:name"
+            onText=${(text, isMoving) => change({view: {[NAME]: text || null}}, {replace: isMoving})} onSettle=${settle} /></div>
+      </form>
+      <div class="stack">
+        ${missing.length > 0 && html`<p class="notice" role="status" data-test="missing">Still needed: ${missing.map((name) => name
+    .replaceAll('_', ' ')).join(', ')}.</p>`}
+        <${Failure} failure=${refused} shown=${names} />
+        ${isWaiting && !content && html`<p class="loading" role="status">Making the rig…</p>`}
+        ${content && html`<${Made} answer=${content} name=${rigName} isDim=${isWaiting || !isReady || Boolean(failure)} />`}
+      </div>
+    </div>
+  </div>`;
+}

@@ -1,0 +1,275 @@
+/** Page Predict: how much friction and wear fall on the rig, how sure that is, and what would sharpen it. */
+import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
+import {ask, callTask, inTurn, upload, useLate, useReply} from '../api.js';
+import {Chart} from '../chart.js';
+import {focusField, short} from '../fields.js';
+import {useRig, Workspace} from '../rig-panel.js';
+import {change, decode, encode, setEntry, useApp} from '../state.js';
+import {offer} from '../take-away.js';
+
+const MOVING_DRAWS = 1000;
+const MOST_KEPT = 3;
+const INTERVAL = '80 %';
+const AMPLITUDE_PANEL = 0;
+const SPEED_PANEL = 1;
+const SPEED = 'sliding.sliding_speed';
+const AMPLITUDE = 'vibration.vibration_amplitude';
+const VOLTAGE = 'drive.voltage_peak_to_peak';
+const MEASURES_HEAD = 'what would narrow it';
+/** Fields that a line of advice is about, by a word in it. */
+const ADVISED = [
+  [/decay length|stiffness/i, ['contact.decay_length', 'contact.normal_stiffness', 'contact.pair.effective_modulus']],
+  [/dry friction/i, ['friction.friction_coefficient']],
+  [/amplitude/i, [AMPLITUDE, 'actuator.amplitude_per_volt', VOLTAGE]],
+  [/speed/i, [SPEED]],
+  [/run at this point/i, ['runs']],
+];
+
+/** Arguments of the task for a state. */
+function argumentsOf(state, runs, isMoving) {
+  const {pin, disc, lubricant} = state.view;
+  const given = {runs, pin, disc, lubricant: Boolean(lubricant), draws: isMoving && MOVING_DRAWS};
+  return {rig: state.rig, ...Object.fromEntries(Object.entries(given).filter(([, value]) => value))};
+}
+
+/** Uploaded runs that the view names; they last as long as the workbench. */
+const runsOf = (view) => (view.runs ? {name: view.runs.slice(view.runs.indexOf(' ') + 1), upload: view.runs.split(' ')[0]} : null);
+
+/** Numbers of an answer: the table of quantities by name, with its median and interval, and the operating point. */
+function Numbers({answer}) {
+  const table = answer.blocks.find((block) => block.kind === 'table');
+  const at = table.heads.indexOf(INTERVAL);
+  const point = answer.answer.operating_point ?? [];
+  return html`<dl class="numbers" data-test="numbers">
+    ${table.rows.map((row) => html`<div key=${row[0]} class="number"><dt>${row[0]}</dt>
+      <dd class="median">${row[1]}</dd><dd class="interval">${row[at]}</dd></div>`)}
+    ${point.map(({name, label, text}) => {
+    const [value, within] = text.split(/ (?=within )/);
+    return html`<div key=${name} class="number"><dt>${label}</dt><dd class="median">${value}</dd>
+      ${within && html`<dd class="interval">${within}</dd>`}</div>`;
+  })}
+  </dl>
+  <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>`;
+}
+
+/** What would narrow the interval, most first; a click opens what it is about. */
+function Sharpen({answer}) {
+  const table = answer.blocks.find((block) => block.kind === 'table' && block.heads[0] === MEASURES_HEAD);
+  const inputs = answer.blocks.filter((block) => block.kind === 'table').at(-1);
+  const [what, left] = table?.heads ?? [];
+  if (!table?.rows.length) return null;
+  return html`<section class="card" aria-labelledby="sharpen-title" data-test="sharpen">
+    <h2 id="sharpen-title">What would sharpen this</h2>
+    <ul class="measures">${table.rows.map(([label, share]) => {
+    const keys = ADVISED.find(([word]) => word.test(label))?.[1] ?? [];
+    const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : keys.some(focusField));
+    return html`<li key=${label}><button type="button" class="measure" onClick=${open} disabled=${!keys.length}>
+        <span class="measure-name">${label}</span><span class="measure-share">
+        <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
+        ${share}</span></button></li>`;
+  })}</ul>
+    <p class="hint">${what[0].toUpperCase() + what.slice(1)}, and what each ${left}.</p>
+    <details><summary>Least known inputs</summary><${TextTable} heads=${inputs.heads} rows=${inputs.rows} />
+      ${answer.answer.stiffness_probes?.map((line) => html`<p key=${line} class="hint">${line}</p>`)}</details>
+  </section>`;
+}
+
+/** Files of own runs: dropped anywhere on the page, or chosen. */
+function OwnRuns({runs, onFile, note}) {
+  const chooser = useRef(null);
+  const [help, setHelp] = useState('');
+  const read = async () => {
+    const {content, failure} = await ask('api/description');
+    const schema = content?.paths['/api/tasks/predict'].post.requestBody.content['application/json'].schema;
+    setHelp(schema?.properties.runs.description ?? failure.text);
+  };
+  return html`<section class="card" aria-labelledby="runs-title" data-test="own-runs">
+    <h2 id="runs-title">Own runs</h2>
+    ${runs && html`<p class="row"><strong class="grow">${runs.name}</strong><button type="button" class="button"
+      onClick=${() => change({view: {runs: null}})} data-test="remove-runs">Leave out</button></p>`}
+    <p class="row"><button type="button" class="button" id="own-runs" onClick=${() => chooser.current.click()}
+      data-test="choose-runs">${runs ? 'Choose other runs…' : 'Choose runs…'}</button>
+      <span class="hint">or drop a CSV file on this page</span></p>
+    <input type="file" accept=".csv,.txt" class="hidden" tabindex="-1" aria-label="Own runs" ref=${chooser}
+      onChange=${(event) => onFile(event.target.files[0])} data-test="runs-file" />
+    ${note && html`<p class="refusal" role="alert">${note}</p>`}
+    <details onToggle=${read}><summary>What the file holds</summary><p class="hint">${help || 'Reading…'}</p></details>
+  </section>`;
+}
+
+/** Materials and lubrication, which the task takes beside the rig. */
+function Materials({view, fault, isFirst}) {
+  const known = useReply('materials', isFirst ? null : 'api/tasks/materials', useMemo(() => ({}), []));
+  const names = Object.entries(known.content?.answer ?? {});
+  const choose = (name) => (event) => change({view: {[name]: event.target.value || null}});
+  const choice = (name, label) => html`<div class="field"><label for=${`material-${name}`}>${label}</label>
+    <select id=${`material-${name}`} value=${view[name] ?? ''} onChange=${choose(name)} data-test=${`material:${name}`}
+      aria-describedby=${fault ? 'materials-refusal' : undefined}>
+      <option value="" selected=${!view[name]}>as in the rig</option>
+      ${view[name] && !names.some(([each]) => each === view[name]) && html`<option value=${view[name]} selected>${view[name]}</option>`}
+      ${names.map(([each, {title}]) => html`<option key=${each} value=${each} selected=${each === view[name]}>${title}</option>`)}
+    </select></div>`;
+  return html`<fieldset class="fields materials"><legend>For wear and heat</legend>
+    ${choice('pin', 'Material of the pin')}${choice('disc', 'Material of the disc')}
+    <label class="check"><input type="checkbox" checked=${Boolean(view.lubricant)} data-test="lubricant"
+      onChange=${(event) => change({view: {lubricant: event.target.checked ? 'yes' : null}})} /> The contact is lubricated</label>
+    ${fault && html`<p class="refusal" id="materials-refusal">${fault}</p>`}
+  </fieldset>`;
+}
+
+/** Answers that were kept, beside the answer of now. */
+function Kept({kept, now, onRemove}) {
+  if (!kept.length) return null;
+  const tables = [...kept.map((one) => one.answer), now].map((answer) => answer.blocks.find((block) => block.kind === 'table'));
+  const at = tables[0].heads.indexOf(INTERVAL);
+  const names = tables.at(-1).rows.map(([name]) => name);
+  const cell = (table, name) => {
+    const row = table.rows.find(([each]) => each === name);
+    return row ? `${row[1]} (${row[at]})` : '–';
+  };
+  const points = [...kept.map((one) => one.answer), now].map((answer) => answer.answer.operating_point ?? []);
+  const labels = points.at(-1).map((one) => one.label);
+  const rows = [
+    ...names.map((name) => [name, ...tables.map((table) => cell(table, name))]),
+    ...labels.map((label) => [label, ...points.map((some) => some.find((one) => one.label === label)?.text ?? '–')]),
+  ];
+  return html`<section class="card" aria-labelledby="kept-title" data-test="kept">
+    <h2 id="kept-title">Kept answers</h2>
+    <ul class="kept-list">${kept.map((one, place) => html`<li key=${one.id}><span class=${`swatch is-${place}`}></span>
+      <span class="grow">${one.label}</span><button type="button" class="small" onClick=${() => onRemove(one.id)}
+      aria-label=${`Remove ${one.label}`}>remove</button></li>`)}</ul>
+    <${TextTable} heads=${['', ...kept.map((one) => one.label), 'now']} rows=${rows} test="differences" />
+    <p class="hint">Median, and the interval of ${INTERVAL}.</p>
+  </section>`;
+}
+
+/** Answers that were kept, by the fragment of their state. */
+const keptAnswers = new Map();
+
+/** State without what was kept beside it. */
+const alone = (state) => ({...state, view: Object.fromEntries(Object.entries(state.view).filter(([name]) => name !== 'kept'))});
+
+/** Name of a kept state: its changes, else its rig. */
+function labelOf(state) {
+  const texts = Object.values(state.rig.changes);
+  return texts.length ? texts.slice(0, 3).join(', ') + (texts.length > 3 ? '…' : '') : state.rig.name;
+}
+
+/** States that the view keeps, with their answers; those that are not known yet are asked for. */
+function useKept(state, content) {
+  const [, draw] = useState({});
+  const fragments = (state.view.kept ?? '').split('\n').filter(Boolean);
+  useEffect(() => {
+    for (const fragment of fragments.filter((each) => !keptAnswers.has(each))) {
+      inTurn(fragment, async () => {
+        const of = await decode(fragment);
+        return {of, ...await callTask('predict', argumentsOf(of, runsOf(of.view), false))};
+      }).then((reply) => {
+        if (reply?.content) keptAnswers.set(fragment, {label: labelOf(reply.of), answer: reply.content});
+        draw({});
+      });
+    }
+  }, [state.view.kept]);
+  const enter = (some) => change({view: {kept: some.join('\n') || null}});
+  const keep = () => {
+    const fragment = encode(alone(state));
+    keptAnswers.set(fragment, {label: labelOf(state), answer: content});
+    enter([...fragments.filter((each) => each !== fragment), fragment].slice(-MOST_KEPT));
+  };
+  const kept = fragments.filter((each) => keptAnswers.has(each)).map((each) => ({id: each, ...keptAnswers.get(each)}));
+  return {kept, keep, remove: (fragment) => enter(fragments.filter((each) => each !== fragment))};
+}
+
+/** What dragging the rule of a panel sets, where a number follows from it without computing. */
+function dragOf(view, chart) {
+  const fieldOf = (key) => view?.fields.find((field) => field.key === key);
+  const entry = {[SPEED_PANEL]: fieldOf(SPEED), [AMPLITUDE_PANEL]: fieldOf(VOLTAGE) ? undefined : fieldOf(AMPLITUDE)};
+  return Object.entries(entry).filter(([, field]) => field).map(([panel, field]) => {
+    const unit = chart.panels[panel]?.x.unit.replace('µ', 'u') ?? '';
+    const set = (x, isMoving) => setEntry(field.key, `${short(x)} ${unit}`, {replace: isMoving});
+    return {panel: Number(panel), onMove: (x) => set(x, true), onRelease: (x) => set(x, false)};
+  });
+}
+
+export default function Predict() {
+  const {state, isMoving} = useApp();
+  const {view} = useRig();
+  const [note, setNote] = useState('');
+  const runs = runsOf(state.view);
+  const body = argumentsOf(state, runs, isMoving);
+  const reply = useReply('predict', state.rig.name ? 'api/tasks/predict' : null, body);
+  const {content, failure, refused, isWaiting} = reply;
+  const {kept, keep, remove} = useKept(state, content);
+  useEffect(() => offer('predict', argumentsOf(state, runs, false)), [JSON.stringify(body)]);
+  const onFile = async (file) => {
+    if (!file) return;
+    setNote('');
+    const {file: uploaded, failure: reason} = await upload(file);
+    if (reason) setNote(reason.text);
+    else change({view: {runs: `${uploaded.upload} ${uploaded.name}`}});
+  };
+  const isDropping = useDrop(onFile);
+  const changed = new Set(Object.keys(state.rig.changes));
+  const materialsFault = failure?.faults.find((fault) => ['pin', 'disc', 'lubricant'].includes(fault.key))?.text;
+  const shown = [...changed, 'pin', 'disc', 'lubricant'];
+  const extra = html`<${Materials} view=${state.view} fault=${materialsFault} isFirst=${!content && !failure} />`;
+  const ownRuns = html`<${OwnRuns} runs=${runs} onFile=${onFile} note=${note} />`;
+  const isDim = useLate(isWaiting || Boolean(failure));
+  if (!content) {
+    return html`<${Workspace} extra=${extra} lead=${html`<p class="overline">Predict</p><h1 class="statement is-pending">
+      ${failure ? 'No answer yet' : 'Computing the first answer…'}</h1>
+      <${Failure} failure=${failure} shown=${shown} />`}>${failure ? runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}<//>`;
+  }
+  const [outcome, ...others] = content.answer.statement;
+  const [first, rest] = outcome.split(/(?<=\.) (?=[A-Z])(.*)/s);
+  const chart = content.charts[0];
+  const lead = html`<p class="overline">${content.answer.rig}</p>
+    <h1 class=${`statement${isDim ? ' is-dim' : ''}`} aria-live=${isMoving ? 'off' : 'polite'}
+      data-test="statement">${first}</h1>
+    <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">
+      Keep this</button><span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
+    <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
+  return html`<${Workspace} lead=${lead} extra=${extra}>
+    <div class=${isDim ? 'is-dim' : ''} aria-busy=${isWaiting}>
+      <${Numbers} answer=${content} />
+      <section class="card" aria-label="Friction over amplitude and over speed">
+        ${chart && html`<${Chart} name=${chart.name} caption=${chart.caption} chart=${chart.chart} tables=${chart.tables}
+          dimmed=${isDim} kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))}
+          drag=${dragOf(view, chart.chart)} />`}
+      </section>
+      <${Kept} kept=${kept} now=${content} onRemove=${remove} />
+      <div class="columns">
+        <div class="stack"><${Sharpen} answer=${content} />${ownRuns}</div>
+        <div class="stack">
+          <section class="card" aria-labelledby="more-title"><h2 id="more-title">In words</h2>
+            ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
+            ${content.blocks.slice(-2).filter((block) => block.kind === 'text').map((block) => html`<p class="hint"
+              key=${block.text}>${block.text}</p>`)}</section>
+          <section class="card" aria-label="Caveats and assumptions"><${Caveats} answer=${content}
+            isMoving=${isMoving || isWaiting} of=${JSON.stringify(reply.of)} /></section>
+        </div>
+      </div>
+    </div>
+    ${isDropping && html`<div class="drop" aria-hidden="true">Drop the runs here</div>`}
+  <//>`;
+}
+
+/** Take a file that is dropped anywhere on the page. */
+function useDrop(onFile) {
+  const [isOver, setOver] = useState(false);
+  const latest = useRef(onFile);
+  latest.current = onFile;
+  useEffect(() => {
+    const follow = (event) => {
+      if (!event.dataTransfer?.types.includes('Files')) return;
+      event.preventDefault();
+      setOver(event.type === 'dragover');
+      if (event.type === 'drop') latest.current(event.dataTransfer.files[0]);
+    };
+    const kinds = ['dragover', 'dragleave', 'drop'];
+    kinds.forEach((kind) => addEventListener(kind, follow));
+    return () => kinds.forEach((kind) => removeEventListener(kind, follow));
+  }, []);
+  return isOver;
+}

@@ -1,0 +1,245 @@
+/**
+ * State of the workbench: which page, which rig with which changes, and what the page shows. It lies in the fragment of
+ * the address, so that a link, a reload or a restart gives the same screen; undo and redo go over the whole of it.
+ *
+ * @typedef {{name: string, text?: string, changes: Object<string, string>}} RigState
+ * @typedef {{page: string, rig: RigState, view: Object<string, string>}} State
+ */
+import {useLayoutEffect, useState} from '../vendor/htm-preact-3.1.1.js';
+
+export const PAGES = ['predict', 'explore', 'dissertation', 'jobs', 'new'];
+const STEPS = 100; // of undo
+const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
+const KEPT_PREFIX = 'kept-';
+
+/** @type {State} */
+let state = {page: 'predict', rig: {name: '', changes: {}}, view: {}};
+let fragment = '';
+/** @type {string|null} Fragment before a value began to move. */
+let before = null;
+let isMoving = false;
+const listeners = new Set();
+/** Compressed form of each rig text, and the way back. */
+const packed = new Map();
+
+const tell = () => listeners.forEach((listener) => listener());
+
+/** Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more. */
+export function stored(store, name, value) {
+  try {
+    if (value !== undefined) globalThis[store].setItem(name, value);
+    return globalThis[store].getItem(name) ?? undefined;
+  } catch {
+    return value;
+  }
+}
+let past = JSON.parse(stored('sessionStorage', 'past') ?? '[]');
+let future = JSON.parse(stored('sessionStorage', 'future') ?? '[]');
+
+function keep() {
+  stored('sessionStorage', 'past', JSON.stringify(past));
+  stored('sessionStorage', 'future', JSON.stringify(future));
+}
+
+/** Draw a component again whenever a set of listeners is told. */
+export function useListening(to) {
+  const [, draw] = useState({});
+  useLayoutEffect(() => {
+    const listener = () => draw({});
+    to.add(listener);
+    return () => to.delete(listener);
+  }, []);
+}
+
+/** Text as bytes through a stream of the browser, as base64url or back. */
+async function through(stream, bytes) {
+  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+}
+
+/**
+ * Compress the text of a rig so that a link can hold it.
+ * @param {string} text
+ * @returns {Promise<{code: string, fits: boolean}>} `fits` is false where only this tab can keep it.
+ */
+export async function pack(text) {
+  const bytes = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(text));
+  let code = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
+  code = code.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+  const fits = code.length <= LONGEST_TEXT;
+  if (!fits) {
+    const name = KEPT_PREFIX + code.slice(-24) + code.length;
+    stored('sessionStorage', name, text);
+    code = name;
+  }
+  packed.set(text, code);
+  return {code, fits};
+}
+
+async function unpack(code) {
+  if (code.startsWith(KEPT_PREFIX)) return stored('sessionStorage', code);
+  const binary = atob(code.replaceAll('-', '+').replaceAll('_', '/'));
+  const bytes = Uint8Array.from(binary, (letter) => letter.charCodeAt(0));
+  const text = new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+  packed.set(text, code);
+  return text;
+}
+
+const quoted = (text) => encodeURIComponent(text).replaceAll('%20', '+').replaceAll('%3A', ':').replaceAll('%2F', '/');
+
+/**
+ * Fragment of a state, without its hash.
+ * @param {State} of
+ * @returns {string}
+ */
+export function encode(of) {
+  const parts = [
+    ...(of.rig.name ? [['rig', of.rig.name]] : []),
+    ...(of.rig.text === undefined ? [] : [['text', packed.get(of.rig.text) ?? '']]),
+    ...Object.entries(of.rig.changes).map(([key, text]) => ['set', `${key}:${text}`]),
+    ...Object.entries(of.view),
+  ];
+  const query = parts.map(([name, text]) => `${name}=${quoted(text)}`).join('&');
+  return `/${of.page}${query && `?${query}`}`;
+}
+
+/**
+ * State of a fragment; what it lacks is empty.
+ * @param {string} of
+ * @returns {Promise<State>}
+ */
+export async function decode(of) {
+  const [path, query = ''] = of.replace(/^#/, '').split(/\?(.*)/s);
+  const page = path.replace(/^\//, '');
+  /** @type {State} */
+  const found = {page: PAGES.includes(page) ? page : 'predict', rig: {name: '', changes: {}}, view: {}};
+  for (const [name, text] of new URLSearchParams(query)) {
+    if (name === 'rig') found.rig.name = text;
+    else if (name === 'text') found.rig.text = await unpack(text).catch(() => undefined);
+    else if (name === 'set') {
+      const end = text.indexOf(':');
+      if (end > 0) found.rig.changes[text.slice(0, end)] = text.slice(end + 1);
+    } else found.view[name] = text;
+  }
+  return found;
+}
+
+/** State after a partial change; entries of `view` and `rig.changes` that are null are removed. */
+function merged(partial) {
+  const without = (entries) => Object.fromEntries(Object.entries(entries).filter(([, text]) => text != null));
+  const isNewPage = partial.page !== undefined && partial.page !== state.page;
+  const rig = partial.rig ? {...partial.rig, changes: without(partial.rig.changes ?? {})} : state.rig;
+  const view = without({...(isNewPage ? {} : state.view), ...partial.view});
+  return {page: partial.page ?? state.page, rig, view};
+}
+
+/**
+ * Change the state. With `replace` (a value that moves) there is no entry of history until `settle` or the next change.
+ * @param {Partial<State>} partial
+ * @param {{replace?: boolean}} [options]
+ */
+export function change(partial, {replace = false} = {}) {
+  state = merged(partial);
+  if (!replace) {
+    commit();
+    return;
+  }
+  before ??= fragment;
+  isMoving = true;
+  fragment = encode(state);
+  tell();
+}
+
+/** Enter what has moved into the history. */
+export function settle() {
+  if (isMoving) commit();
+}
+
+function commit() {
+  if (enter(encode(state))) history.pushState(null, '', `#${fragment}`);
+  tell();
+}
+
+/** Make a fragment that of now, the one before it a step to undo; false where it is the same. */
+function enter(to) {
+  const from = before ?? fragment;
+  before = null;
+  isMoving = false;
+  fragment = to;
+  if (from === to) return false;
+  past = [...past, from].slice(-STEPS);
+  future = [];
+  keep();
+  return true;
+}
+
+/**
+ * Set an entry of the rig, or take its change back with null.
+ * @param {string} key
+ * @param {string|null} text
+ * @param {{replace?: boolean}} [options]
+ */
+export function setEntry(key, text, options) {
+  change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
+}
+
+async function step(from, onto) {
+  settle();
+  if (!from.length) return;
+  const to = from.pop();
+  onto.push(fragment);
+  state = await decode(to);
+  fragment = to;
+  keep();
+  history.replaceState(null, '', `#${to}`);
+  tell();
+}
+
+export const undo = () => step(past, future);
+export const redo = () => step(future, past);
+
+/** Address of a page with the rig of now, for a link. */
+export function addressOf(page, view = {}) {
+  return `#${encode({page, rig: state.rig, view})}`;
+}
+
+/** The state as it is now, for what runs outside of a component. */
+export const current = () => state;
+
+/**
+ * Read the state from the address, and follow it; an address without a rig gets the one that was opened.
+ * @param {string} opened
+ */
+export async function followAddress(opened) {
+  const read = async () => {
+    const found = await decode(location.hash);
+    if (/[?&]text=/.test(location.hash) && found.rig.text === undefined) {
+      found.view = {lost: found.rig.name};
+      found.rig = {name: '', changes: {}};
+    }
+    if (!found.rig.name) found.rig.name = opened;
+    return found;
+  };
+  state = await read();
+  fragment = encode(state);
+  history.replaceState(null, '', `#${fragment}`);
+  addEventListener('popstate', async () => {
+    const found = await read();
+    if (encode(found) === fragment) return;
+    state = found;
+    enter(encode(state));
+    tell();
+  });
+  tell();
+}
+
+/**
+ * State and what changes it, for a component that is drawn again when it changes.
+ * @returns {{state: State, isMoving: boolean, change: typeof change, setEntry: typeof setEntry, settle: typeof settle,
+ *   undo: () => Promise<void>, redo: () => Promise<void>, canUndo: boolean, canRedo: boolean}}
+ */
+export function useApp() {
+  useListening(listeners);
+  return {
+    state, isMoving, change, setEntry, settle, undo, redo, canUndo: past.length > 0, canRedo: future.length > 0,
+  };
+}

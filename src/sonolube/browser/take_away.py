@@ -1,0 +1,258 @@
+"""What a page gives to take away of a call: command line, Python, rig file, notebook, table, figure and report."""
+
+import csv
+import io
+import json
+import shlex
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any, Final
+
+from sonolube import __version__
+from sonolube.browser.answers import called, given_arguments, offered_tasks, positional, rig_path
+from sonolube.browser.places import Places
+from sonolube.charts import chart_tables
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.report.page import Page, PageTable, rendered_files
+from sonolube.tasks.answer import Answer
+from sonolube.tasks.blocks import Rows, Table, Verbatim
+from sonolube.tasks.parameters import RigParameter
+from sonolube.tasks.table import Task
+from sonolube.tasks.task import marks_of
+
+_NOTEBOOK: Final = {"nbformat": 4, "nbformat_minor": 5, "metadata": {"language_info": {"name": "python"}}}
+
+
+def taken(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """File to take away.
+
+    Parameters
+    ----------
+    payload : mapping
+        With `form`, `task` and `arguments`.
+    places : Places
+
+    Returns
+    -------
+    dict
+        Its name, kind of content, and text. Command line and Python name the files that have to lie beside them.
+
+    Raises
+    ------
+    InvalidInput
+        If the task refuses its arguments, or has nothing of this form.
+    """
+    known = {task.name: task for task in offered_tasks()}
+    name, form = str(payload.get("task", "")), str(payload.get("form", ""))
+    if name not in known:
+        raise UnknownName.among(known, kind="task", name=name)
+    if form not in _FORMS:
+        raise UnknownName.among(_FORMS, kind="form", name=form)
+    return _FORMS[form](known[name], payload.get("arguments") or {}, places)
+
+
+def _file(name: str, kind: str, text: str) -> dict[str, Any]:
+    """File to take away."""
+    return {"name": name, "kind": kind, "text": text}
+
+
+def command_line(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Command of a terminal that gives the same numbers."""
+    del places
+    words = ["sonolube", *task.name.split()]
+    marks, by_place = marks_of(task.function), positional(task)
+    for name, value in arguments.items():
+        if isinstance(marks[name], RigParameter):
+            words.append(_rig_file(value))
+            words += [word for key, text in (value.get("changes") or {}).items() for word in ("--set", f"{key}={text}")]
+            continue
+        option = (marks[name].option or f"--{name.replace('_', '-')}").split()[0]  # type: ignore[union-attr]
+        if value is True:
+            words.append(option)
+        elif isinstance(value, Mapping) and not _is_file(value):
+            words += [word for key, each in value.items() for word in (option, f"{key}={each}")]
+        elif value is not None and value is not False:
+            named = _named(value)
+            several = named if isinstance(named, list) else [named]
+            flag = [] if name in by_place else [option]
+            words += [word for each in several for word in (*flag, str(each))]
+    return _file("command.txt", "text/plain", shlex.join(words))
+
+
+def python(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Program in Python that gives the same numbers."""
+    del places
+    return _file("answer.py", "text/x-python", _python_text(task, arguments))
+
+
+def _python_text(task: Task, arguments: Mapping[str, Any]) -> str:
+    """Lines of the program."""
+    marks, lines = marks_of(task.function), ["import sonolube as sl", ""]
+    given: list[str] = []
+    for name, value in arguments.items():
+        if isinstance(marks[name], RigParameter):
+            changes = [f"{key}={text}" for key, text in (value.get("changes") or {}).items()]
+            lines.append(f"rig = sl.read_rig({_rig_file(value)!r}, changes={changes!r})")
+            given.insert(0, "rig" if name == "rig" else f"{name}=rig")
+        elif value is not None:
+            given.append(f"{name}={_named(value)!r}")
+    function = f"sl.{task.name.replace(' ', '.').replace('-', '_')}"
+    return "\n".join([*lines, f"answer = {function}({', '.join(given)})", "print(answer)", ""])
+
+
+def rig_toml(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """File of the rig with its changes, comments kept."""
+    source = _rig_of(task, arguments)
+    with ExitStack() as stack:
+        text = rig_path(source, places, stack).read_text(encoding="utf-8")
+    return _file(_rig_file(source), "application/toml", changed_text(text, source.get("changes") or {}))
+
+
+def changed_text(text: str, changes: Mapping[str, str]) -> str:
+    """Return the text of a rig file with some entries replaced, its comments kept.
+
+    Parameters
+    ----------
+    text : str
+    changes : mapping of str to str
+        Values by dotted key.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InvalidInput
+        If a key is none of a rig file.
+    """
+    import tomlkit
+
+    from sonolube.rig.file.entries import set_entry
+
+    document = tomlkit.parse(text)
+    for key, value in changes.items():
+        set_entry(document, key, value)
+    return tomlkit.dumps(document)
+
+
+def notebook(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Notebook that gives the same numbers and draws the figure."""
+    del places
+    cells = [
+        _cell("markdown", f"Made by sonolube {__version__}: `{task.name}`", number=0),
+        _cell("code", _python_text(task, arguments).replace("print(answer)", "answer").rstrip(), number=1),
+        *([_cell("code", "sl.plot(answer)", number=2)] if task.writes else []),
+    ]
+    return _file("answer.ipynb", "application/x-ipynb+json", json.dumps(_NOTEBOOK | {"cells": cells}, indent=1))
+
+
+def _cell(kind: str, source: str, *, number: int) -> dict[str, Any]:
+    """Cell of a notebook."""
+    more: dict[str, Any] = {"execution_count": None, "outputs": []} if kind == "code" else {}
+    return {"cell_type": kind, "id": f"cell-{number}", "metadata": {}, "source": source} | more
+
+
+def table(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Numbers of the figures as CSV, one table below the other; without figures those of the answer."""
+    answer = _answer(task, arguments, places)
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    charts = [drawing.chart() for drawing in answer.figures().values() if drawing.chart is not None]
+    for each in (table for chart in charts for table in chart_tables(chart)):
+        writer.writerows([[each["title"]], each["heads"], *each["rows"], []])
+    if not charts:
+        writer.writerows([["quantity", "value", "unit"], *_scalars(answer.object())])
+    return _file("answer.csv", "text/csv", out.getvalue())
+
+
+def figure(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """First figure as SVG, as the task writes it."""
+    from sonolube.figure import render_figure
+
+    drawings = _answer(task, arguments, places).figures()
+    if not drawings:
+        raise InvalidInput(f"{task.name} has no figure to take away")
+    name, drawing = next(iter(drawings.items()))
+    return _file(f"{name}.svg", "image/svg+xml", render_figure(drawing.figure(), "svg").decode())
+
+
+def report(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Self-contained page with the answer's figures, numbers, caveats and assumptions."""
+    answer = _answer(task, arguments, places)
+    settings = [] if answer.call is None else answer.call.settings()
+    rig = [] if answer.rig is None else [("rig", answer.rig.title), *(("changed", each) for each in answer.rig.changes)]
+    page = answer.page() or _page_of_blocks(answer)
+    page = replace(page, name="answer", settings=[*page.settings, *rig, *settings])
+    notes = [*answer.every_caveat(), *(f"assumed {key}: {reason}" for key, reason in answer.assumptions().items())]
+    text = rendered_files(answer.figures(), page=page, notes=notes)["answer.html"]
+    return _file("answer.html", "text/html", str(text))
+
+
+def _page_of_blocks(answer: Answer) -> Page:
+    """Page with the text and tables of an answer that has none of its own."""
+    first, *blocks = answer.blocks()
+    facts: list[tuple[str, str]] = []
+    tables = []
+    for block in blocks:
+        if isinstance(block, Rows):
+            facts += [(name, value) for name, value in block.rows]
+        elif isinstance(block, Table):
+            tables.append(PageTable(title="", heads=tuple(block.heads), rows=tuple(map(tuple, block.rows))))
+        else:
+            facts.append(("", (block.text if isinstance(block, Verbatim) else block).strip()))
+    return Page(name="answer", title=str(first), settings=[], facts=facts, tables=tables)
+
+
+def _answer(task: Task, arguments: Mapping[str, Any], places: Places) -> Answer:
+    """Answer of a task to the arguments of a request."""
+    with given_arguments(task, arguments, places) as given:
+        return called(task, given)
+
+
+def _rig_of(task: Task, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Rig among the arguments of a request."""
+    name = next((name for name, mark in marks_of(task.function).items() if isinstance(mark, RigParameter)), "")
+    source = arguments.get(name)
+    if not isinstance(source, Mapping):
+        raise InvalidInput(f"{task.name} was asked without a rig")
+    return source
+
+
+def _rig_file(source: Mapping[str, Any]) -> str:
+    """Name of the file of a rig."""
+    return f"{source.get('name') or 'rig'}.toml"
+
+
+def _is_file(value: Any) -> bool:
+    """Whether a value of a request is a file."""
+    return isinstance(value, Mapping) and "name" in value and ("upload" in value or "content" in value)
+
+
+def _named(value: Any) -> Any:
+    """Value of an argument with the names of files in place of their content."""
+    if isinstance(value, list):
+        return [_named(each) for each in value]
+    return value["name"] if _is_file(value) else value
+
+
+def _scalars(content: Mapping[str, Any]) -> list[list[Any]]:
+    """Quantities of an object of JSON as rows."""
+    quantities = [(name, each) for name, each in content.items() if isinstance(each, Mapping) and "value" in each]
+    return [[name, each["value"], each.get("unit", "")] for name, each in quantities]
+
+
+_FORMS: Mapping[str, Callable[[Task, Mapping[str, Any], Places], dict[str, Any]]] = MappingProxyType(
+    {
+        "command": command_line,
+        "python": python,
+        "toml": rig_toml,
+        "notebook": notebook,
+        "csv": table,
+        "svg": figure,
+        "report": report,
+    }
+)
+"""Functions that make each form."""

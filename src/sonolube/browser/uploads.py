@@ -1,0 +1,81 @@
+"""Files that pages upload: in a private folder under names of ours, within limits, as long as the server runs."""
+
+import secrets
+import shutil
+import tempfile
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Final
+
+from sonolube.errors import InvalidInput
+
+_LARGEST: Final = 256 * 2**20  # bytes of one file
+_MOST: Final = 4 * _LARGEST  # of all files, beyond which the oldest go
+
+
+class Uploads:
+    """Uploaded files.
+
+    Parameters
+    ----------
+    largest : int
+        Bytes of one file.
+    """
+
+    def __init__(self, *, largest: int = _LARGEST) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="sonolube-uploads-"))
+        self._largest = largest
+
+    async def keep(self, content: AsyncIterator[bytes], *, length: int | None) -> str:
+        """Write a file as its bytes come in.
+
+        Parameters
+        ----------
+        content : async iterator of bytes
+        length : int or None
+            As announced.
+
+        Returns
+        -------
+        str
+            Its name here.
+
+        Raises
+        ------
+        InvalidInput
+            If it is too large; nothing of it is kept.
+        """
+        if length is not None and length > self._largest:
+            raise InvalidInput(self._refusal(length))
+        name = secrets.token_hex(16)
+        path, size = self.folder / name, 0
+        try:
+            with path.open("xb") as file:
+                async for part in content:
+                    size += len(part)
+                    if size > self._largest:
+                        raise InvalidInput(self._refusal(size))
+                    file.write(part)
+        except BaseException:
+            path.unlink(missing_ok=True)
+            raise
+        self._forget_oldest()
+        return name
+
+    def _refusal(self, size: int) -> str:
+        """Reason for which a file is not taken."""
+        return f"{size / 2**20:.0f} MiB are more than the {self._largest / 2**20:.0f} MiB that a page may upload"
+
+    def _forget_oldest(self) -> None:
+        """Delete the oldest files beyond the limit of all."""
+        files = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+        total = sum(path.stat().st_size for path in files)
+        for path in files[:-1]:
+            if total <= _MOST:
+                return
+            total -= path.stat().st_size
+            path.unlink(missing_ok=True)
+
+    def end(self) -> None:
+        """Delete all files."""
+        shutil.rmtree(self.folder, ignore_errors=True)

@@ -1,0 +1,84 @@
+"""Jobs: progress and result on disk, cancelled within a second, queued, found again, and limited."""
+
+import json
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sonolube.browser.jobs import Job, Jobs
+from sonolube.errors import InvalidInput
+
+RIG = {"name": "tribometer"}
+NOWHERE: dict[str, Any] = {"rigs": {}, "uploads": ""}
+LONG = {"rig": RIG, "over": {"drive.voltage_peak_to_peak": "1V:200V:200", "sliding.sliding_speed": "1mm/s:1m/s:2000"}}
+
+
+@pytest.fixture
+def jobs(tmp_path: Path) -> Iterator[Jobs]:
+    found = Jobs(tmp_path / "jobs", most=1)
+    yield found
+    found.end()
+
+
+def ended(jobs: Jobs, name: str) -> Job:
+    """Record of a job after its end; the test runner's own limit ends one that never comes."""
+    while True:
+        jobs.tend()
+        job = jobs.job(name)
+        if job.state not in ("waiting", "running"):
+            return job
+        time.sleep(0.02)
+
+
+def test_a_job_leaves_its_result_and_files_and_is_found_by_another_server(jobs: Jobs) -> None:
+    started = jobs.start("contact", {"rig": RIG}, label="contact of the tribometer", places=NOWHERE)
+    assert ended(jobs, started.id).state == "done"
+    others = Jobs(jobs.folder, most=1)
+    (found,) = others.list()
+    assert (found.task, found.label, found.state) == ("contact", "contact of the tribometer", "done")
+    content = json.loads(others.result(found.id))
+    assert content["answer"]["rig"].startswith("Modified pin-on-disc tribometer")
+    others.delete(found.id)
+    assert others.list() == []
+
+
+def test_a_refused_job_says_why(jobs: Jobs) -> None:
+    started = jobs.start("contact", {"rig": {"name": "nothing"}}, label="", places=NOWHERE)
+    job = ended(jobs, started.id)
+    assert job.state == "refused"
+    assert "unknown example 'nothing'" in job.reason
+    with pytest.raises(InvalidInput, match="it has no result"):
+        jobs.result(started.id)
+
+
+def test_jobs_beyond_the_processors_wait_and_a_cancelled_one_ends(jobs: Jobs) -> None:
+    first = jobs.start("sweep", LONG, label="", places=NOWHERE)
+    second = jobs.start("contact", {"rig": RIG}, label="", places=NOWHERE)
+    assert (jobs.job(first.id).state, jobs.job(second.id).state) == ("running", "waiting")
+    assert jobs.cancel(first.id).state == "cancelled"
+    assert ended(jobs, second.id).state == "done"
+    assert jobs.job(first.id).state == "cancelled"
+
+
+def test_a_job_whose_server_was_killed_counts_as_interrupted(jobs: Jobs) -> None:
+    started = jobs.start("sweep", LONG, label="", places=NOWHERE)
+    jobs.end()
+    assert Jobs(jobs.folder, most=1).job(started.id).state == "interrupted"
+
+
+@pytest.mark.parametrize("name", ["", "..", "../jobs", "no-such", "a/b", "x" * 300])
+def test_names_that_are_no_job_are_refused(jobs: Jobs, name: str) -> None:
+    for call in (jobs.job, jobs.result, jobs.cancel):
+        with pytest.raises(InvalidInput, match="there is no job"):
+            call(name)
+
+
+def test_no_file_beside_those_of_a_job_is_read(jobs: Jobs) -> None:
+    started = jobs.start("contact", {"rig": RIG}, label="", places=NOWHERE)
+    ended(jobs, started.id)
+    for name in ("../request.json", "/etc/passwd", "..", "nothing.txt"):
+        with pytest.raises(InvalidInput, match="has no file"):
+            jobs.file(started.id, name)
