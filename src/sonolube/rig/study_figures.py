@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS
-from sonolube.rig.commanded import CommandedQuantity, quantity_of_axis
+from sonolube.rig.operating_conditions import CommandedQuantity, quantity_of_axis
 from sonolube.units import format_si
 
 if TYPE_CHECKING:

@@ -206,7 +206,7 @@ def _study(
     return partial(rigs.load_study, rig, normal_load=values)
 
 
-def _curves(rig: Rig, of: str, voltages: Sequence[str], amplitudes: Sequence[str]) -> dict[str, Floats]:
+def _curves(rig: Rig, of: str, voltages: Sequence[str], amplitudes: Sequence[str]) -> dict[str, Any]:
     """Voltages or amplitudes of the curves of a study by name; empty where none are given."""
     if voltages and of not in ("speed", "frequency"):
         raise InvalidInput(f"{shown('voltage')} has no meaning for {shown('of')} {of}; it is for speed and frequency")
