@@ -42,7 +42,7 @@ class CommandedQuantity:
     axis_label : str
         Label of an axis of a figure, with its unit.
     axis_scale : float
-        Factor from SI to the unit of that axis. []
+        Factor from SI to the unit of that axis.
     """
 
     name: Literal["voltage_peak_to_peak", "vibration_amplitude"]
