@@ -29,7 +29,7 @@ from sonolube.rig import (
     quantity_of_axis,
     require_commanded,
 )
-from sonolube.rig.commanded import POWERS
+from sonolube.rig.operating_conditions import POWERS
 
 if TYPE_CHECKING:
     import xarray as xr

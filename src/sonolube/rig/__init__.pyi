@@ -4,16 +4,6 @@ from .amplitude_source import (
     available_sources as available_sources,
     resolved_vibration as resolved_vibration,
 )
-from .commanded import (
-    AMPLITUDE as AMPLITUDE,
-    VOLTAGE as VOLTAGE,
-    CommandedQuantity as CommandedQuantity,
-    commanded_quantity as commanded_quantity,
-    level_settings as level_settings,
-    own_level as own_level,
-    quantity_of_axis as quantity_of_axis,
-    require_commanded as require_commanded,
-)
 from .contact_temperature import (
     TemperaturePoint as TemperaturePoint,
     temperature_point as temperature_point,
@@ -45,6 +35,16 @@ from .lubrication import (
     lubrication_map as lubrication_map,
     lubrication_point as lubrication_point,
     wear_of_materials as wear_of_materials,
+)
+from .operating_conditions import (
+    AMPLITUDE as AMPLITUDE,
+    VOLTAGE as VOLTAGE,
+    CommandedQuantity as CommandedQuantity,
+    commanded_quantity as commanded_quantity,
+    level_settings as level_settings,
+    own_level as own_level,
+    quantity_of_axis as quantity_of_axis,
+    require_commanded as require_commanded,
 )
 from .operating_point import (
     ContactPoint as ContactPoint,

@@ -11,7 +11,11 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import WAVEFORMS, Status, contact_motion, modes
 from sonolube.rig.amplitude_source import amplitude_labels, moved_rig, resolved_vibration
-from sonolube.rig.commanded import (
+from sonolube.rig.datasets import gridded
+from sonolube.rig.driven_rig import DrivenRig, require_drive
+from sonolube.rig.friction_and_wear import prescribed_sine
+from sonolube.rig.linear_response import structure_in_contact
+from sonolube.rig.operating_conditions import (
     AMPLITUDE,
     POWERS,
     VOLTAGE,
@@ -21,10 +25,6 @@ from sonolube.rig.commanded import (
     own_level,
     require_commanded,
 )
-from sonolube.rig.datasets import gridded
-from sonolube.rig.driven_rig import DrivenRig, require_drive
-from sonolube.rig.friction_and_wear import prescribed_sine
-from sonolube.rig.linear_response import structure_in_contact
 from sonolube.rig.operating_point_batch import NUMBERS
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
 from sonolube.rig.record import Rig

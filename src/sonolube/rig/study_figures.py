@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.charts import Axis, Bars, Chart, Line, Panel, Points
 from sonolube.checks import Floats
-from sonolube.rig.commanded import CommandedQuantity, quantity_of_axis
+from sonolube.rig.operating_conditions import CommandedQuantity, quantity_of_axis
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -105,7 +105,7 @@ class FrictionLoop:
     tracker : FrequencyTracker or None
         None for a fixed frequency.
     level_maximum : float
-        Largest peak-to-peak voltage of the amplifier, or largest amplitude. [V or m]
+        Largest peak-to-peak voltage of the amplifier, or largest amplitude, in V or m.
     """
 
     plant: FrictionCharacteristic
@@ -133,7 +133,7 @@ class ClosedLoopRun:
     measured_force : ndarray
         Friction force as measured, with dead time and noise, in N.
     level : ndarray
-        Peak-to-peak drive voltage, or commanded amplitude, over the interval. [V or m]
+        Peak-to-peak drive voltage, or commanded amplitude, over the interval, in V or m.
     frequency : ndarray
         Drive frequency over the interval. [Hz]
     resonance_frequency : ndarray

@@ -119,7 +119,7 @@ class ControlDesign:
     friction_force : float
         Target friction force. [N]
     level_maximum : float
-        Largest peak-to-peak voltage within the limits of the amplifier, or largest amplitude. [V or m]
+        Largest peak-to-peak voltage within the limits of the amplifier, or largest amplitude, in V or m.
     limit : str
         Name of the limit that determines it.
     run : ClosedLoopRun

@@ -27,9 +27,9 @@ class FrictionController:
     force_reduction : tuple of float
         Reduction of the friction force at the points of the characteristic, increasing from zero, in N.
     level : tuple of float
-        Peak-to-peak drive voltages, or vibration amplitudes, at these points, increasing from zero. [V or m]
+        Peak-to-peak drive voltages, or vibration amplitudes, at these points, increasing from zero, in V or m.
     level_maximum : float
-        Largest of them that is commanded. [V or m]
+        Largest of them that is commanded, in V or m.
     quantity : CommandedQuantity
         Voltage or amplitude.
     feed_forward : bool
@@ -102,7 +102,7 @@ def tuned_controller(
         Of the plant; without feed-forward only its two ends are used.
     process : Process
     level_maximum : float
-        Largest commanded peak-to-peak voltage or amplitude. [V or m]
+        Largest commanded peak-to-peak voltage or amplitude, in V or m.
     closed_loop_time : float, optional
         Desired closed-loop time constant; by default the effective dead time. [s]
     feed_forward : bool

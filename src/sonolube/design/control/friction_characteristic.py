@@ -23,7 +23,7 @@ class FrictionCharacteristic:
     Parameters
     ----------
     level : ndarray, shape (n,)
-        Peak-to-peak drive voltages, or vibration amplitudes, increasing from zero. [V or m]
+        Peak-to-peak drive voltages, or vibration amplitudes, increasing from zero, in V or m.
     friction_force : ndarray, shape (n,)
         Mean friction force at each, decreasing. [N]
     quantity : CommandedQuantity
@@ -74,7 +74,7 @@ def friction_at_level(characteristic: FrictionCharacteristic, *, level: ArrayLik
     ----------
     characteristic : FrictionCharacteristic
     level : array_like, any shape
-        Peak-to-peak drive voltage, or vibration amplitude. [V or m]
+        Peak-to-peak drive voltage, or vibration amplitude, in V or m.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def friction_at_level(characteristic: FrictionCharacteristic, *, level: ArrayLik
 
 
 def level_for_friction(characteristic: FrictionCharacteristic, *, friction_force: ArrayLike) -> Floats:
-    """Peak-to-peak drive voltage or amplitude for friction forces, by the inverse of the characteristic. [V or m]
+    """Peak-to-peak drive voltage or amplitude for friction forces, by the inverse of the characteristic, in V or m.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def computed_characteristic(rig: Rig, *, level_maximum: float, points: int = 41)
     rig : Rig
         With an amplitude; without a drive voltage that amplitude is the commanded quantity.
     level_maximum : float
-        Highest peak-to-peak voltage, the offset scaled in the rig's own ratio, or highest amplitude. [V or m]
+        Highest peak-to-peak voltage, the offset scaled in the rig's own ratio, or highest amplitude, in V or m.
     points : int
         Number of voltages or amplitudes to compute.
 

@@ -22,7 +22,7 @@ class FinalState:
     Parameters
     ----------
     level : float
-        Mean drive voltage, or commanded amplitude. [V or m]
+        Mean drive voltage, or commanded amplitude, in V or m.
     tracking_error : float
         Root mean square of friction force less reference. [N]
     """

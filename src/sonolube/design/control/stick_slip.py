@@ -38,7 +38,7 @@ class StickSlipSuppression:
     still, vibrating : StickSlipMotion
         Without and with vibration.
     level : float
-        Drive voltage or amplitude of `vibrating`. [V or m]
+        Drive voltage or amplitude of `vibrating`, in V or m.
     quantity : CommandedQuantity
         Voltage or amplitude.
     damping : tuple of two float

@@ -159,7 +159,7 @@ def mass_on_belt(
         Velocity of the transition from static friction to that of sliding. [m/s]
     level : float
         Drive voltage, its offset scaled in the rig's own ratio, or amplitude of a rig without one; zero for no
-        vibration. [V or m]
+        vibration, in V or m.
 
     Returns
     -------

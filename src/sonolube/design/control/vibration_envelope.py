@@ -292,7 +292,7 @@ def next_envelope(
     envelope : complex
         Initial envelope, in V or m.
     level : float
-        Peak-to-peak drive voltage, or commanded amplitude. [V or m]
+        Peak-to-peak drive voltage, or commanded amplitude, in V or m.
     rate : complex
         Complex rate of `VibrationMode.rate`, in 1/s.
     duration : float
