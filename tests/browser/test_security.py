@@ -122,3 +122,19 @@ def test_every_answer_has_the_headers_also_a_refusal() -> None:
         assert reply.headers["cross-origin-opener-policy"] == "same-origin"
         assert reply.headers["cross-origin-resource-policy"] == "same-origin"
         assert not any(name.startswith("access-control") for name in reply.headers)
+
+
+def test_a_page_gets_the_status_of_its_refusal_in_a_header_and_nothing_else() -> None:
+    asked = {"x_status": "in-header"}
+    reply = ask("/api/jobs", **asked)
+    assert (reply.status, reply.headers["x-status"]) == (200, "401")
+    assert reply.body != b"inside"
+    assert ask("/api/jobs", method="POST", cookie=COOKIE, sec_fetch_site="cross-site", **asked).body != b"inside"
+    assert "x-status" not in ask("/api/jobs", cookie=COOKIE, **asked).headers
+
+
+@pytest.mark.parametrize("name", ["link.css", "link.js", "icon.svg"])
+def test_the_page_that_asks_for_the_link_is_read_with_its_files(name: str) -> None:
+    assert ask(f"/static/{name}").body == b"inside"
+    assert ask(f"/static/{name}", method="POST").status == 401
+    assert ask(f"/static/../{name}").status == 401

@@ -112,3 +112,8 @@ def test_a_value_that_the_file_lacks_can_still_be_given_ends() -> None:
     assert known('"friction.memory_length" = "uniform 1 um to 2 um"').quantile(0.5) == approx(
         to_si("1.5 um", unit="m", name="")
     )
+
+
+def test_the_spread_of_an_entry_is_set_by_its_whole_key() -> None:
+    rig = read_rig(RIGS / "tribometer.toml", changes=["uncertainty.contact.normal_load=normal 2 %"])
+    assert rig.content()["uncertainty"] == {"contact.normal_load": "normal 2 %"}

@@ -150,7 +150,7 @@ def _with_headers(send: Send, *, is_stated: bool) -> Send:
             status = message["status"]
             message["headers"] = [*message.get("headers", ()), *_HEADERS]
             if is_stated and status >= 400:
-                message |= {"status": 200, "headers": [*message["headers"], (b"x-status", str(status).encode())]}
+                message.update(status=200, headers=[*message["headers"], (b"x-status", str(status).encode())])
         await send(message)
 
     return guarded

@@ -47,3 +47,9 @@ def test_a_laboratory_is_a_mapping_of_files_or_pairs_of_rigs_and_runs(
 def test_materials_are_refused_by_name(tribometer: Path) -> None:
     with raises(UnknownName, match="unknown material 'aluminium_2042'; did you mean aluminium_2024"):
         sl.predict(tribometer, pin="aluminium_2042", disc="m50")
+
+
+def test_the_operating_point_is_stated_with_its_spread_and_power(tribometer: Path) -> None:
+    stated = {each["name"]: each["text"] for each in sl.predict(tribometer, draws=200).object()["operating_point"]}
+    assert stated["vibration_amplitude"].startswith("2.5 um within ")  # at 28 V, where it was measured
+    assert stated["actuator_power"].endswith(" W")

@@ -12,21 +12,33 @@ import {offer} from '../take-away.js';
 const ENDS = [['from', 'lowest', 'From'], ['to', 'highest', 'To']];
 const BODIES = [['pin', 'pin', 'Material of the pin'], ['disc', 'disc', 'Material of the disc']];
 const DIGITS = 3;
-/** Studies: task, arguments, which entries of the view it takes, and whether it takes seconds and is a job. */
+/** Studies beside those over one quantity, which the server names: task, entries of the view it takes, whether it is a job. */
 const STUDIES = {
-  voltage: {title: 'Voltage', task: 'sweep', args: {of: 'voltage'}, texts: ENDS},
-  speed: {title: 'Speed', task: 'sweep', args: {of: 'speed'}, texts: ENDS},
-  frequency: {title: 'Frequency', task: 'sweep', args: {of: 'frequency'}, texts: ENDS},
-  load: {title: 'Load', task: 'sweep', args: {of: 'load'}, texts: ENDS},
-  power: {title: 'Power', task: 'sweep', args: {of: 'power'}, texts: ENDS},
-  waveform: {title: 'Waveform', task: 'sweep', args: {of: 'waveform'}},
-  period: {title: 'One period', task: 'simulate', args: {}},
-  start: {title: 'Start-up', task: 'transient', args: {}, texts: [['duration', 'duration', 'Duration']], isLong: true},
-  response: {title: 'Impedance', task: 'response', args: {}, texts: ENDS},
-  map: {title: 'Map', task: 'map', args: {}, kinds: true, runs: true},
-  heat: {title: 'Temperature', task: 'thermal', args: {}, texts: [['duration', 'duration', 'Duration']], bodies: BODIES},
+  any: {title: 'Any entry', task: 'sweep', isOver: true, texts: ENDS},
+  period: {title: 'One period', task: 'simulate'},
+  start: {title: 'Start-up', task: 'transient', texts: [['duration', 'duration', 'Duration']], isLong: true},
+  response: {title: 'Impedance', task: 'response', texts: ENDS},
+  map: {title: 'Map', task: 'map', kinds: true, runs: true},
+  heat: {title: 'Temperature', task: 'thermal', texts: [['duration', 'duration', 'Duration']], bodies: BODIES},
 };
-const KINDS = {'velocity-power': 'speed and power', 'velocity-stress': 'speed and stress', 'frequency-voltage': 'frequency and voltage'};
+const VOLTAGE = 'drive.voltage_peak_to_peak';
+const OVER_POINTS = 41;
+const NO_FIELDS = [];
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
+
+/** Words of an argument of a task that the server allows. */
+function allowed(description, task, argument) {
+  const schema = description?.paths[`/api/tasks/${task}`]?.post.requestBody.content['application/json'].schema;
+  return (schema?.properties[argument]?.enum ?? []).filter((word) => word !== null);
+}
+
+/** Field that the study of any entry runs over, and its values. */
+function overOf(view, fields) {
+  const numbers = fields.filter((field) => field.lowest != null);
+  const field = numbers.find(({key}) => key === view.key) ?? numbers[0];
+  const end = (text, number) => text ?? `${number} ${field.unit}`.trim();
+  return field && {numbers, field, from: end(view.from, field.lowest), to: end(view.to, field.highest)};
+}
 
 /** Entries set by a click in a map, each as it was set and as the map was drawn with, so that the map stays as it is. */
 function fixedOf({view, rig}) {
@@ -48,15 +60,21 @@ function rigOf(state) {
   return {...state.rig, changes};
 }
 
-/** Study that the view names, and its arguments. */
-function studyOf(state) {
+/** Study that the view names, and its arguments; null before the rig is known. */
+function studyOf(state, fields) {
   const {view} = state;
+  const name = view.study ?? (fields.length && !fields.some(({key}) => key === VOLTAGE) ? 'amplitude' : 'voltage');
+  const study = STUDIES[name] ?? {title: capital(name), task: 'sweep', args: {of: name}, texts: name === 'waveform' ? [] : ENDS};
+  if (!fields.length) return {name, study, args: null};
   const rig = rigOf(state);
-  const name = view.study in STUDIES ? view.study : 'voltage';
-  const study = STUDIES[name];
+  if (study.isOver) {
+    const {field, from, to} = overOf(view, fields);
+    const {[field.key]: swept, ...changes} = rig.changes; // a change of what is swept would be without effect
+    return {name, study, args: {rig: {...rig, changes}, over: {[field.key]: `${from}:${to}:${OVER_POINTS}`}}};
+  }
   const texts = [...(study.texts ?? []), ...(study.bodies ?? [])].filter(([entry]) => view[entry]);
   const args = {
-    rig, ...study.args, ...(study.kinds && {kind: view.kind in KINDS ? view.kind : 'velocity-power'}),
+    rig, ...study.args, ...(study.kinds && view.kind && {kind: view.kind}),
     ...Object.fromEntries(texts.map(([entry, argument]) => [argument, view[entry]])),
     ...(study.runs && view.runs && {runs: runsOf(view)}),
   };
@@ -72,7 +90,7 @@ const plain = (label) => label.replaceAll('\n', ' ').toLowerCase();
 function fieldOf(axis, fields) {
   const label = plain(axis.label ?? '');
   const named = (field) => label && (label.endsWith(plain(field.label)) || plain(field.label).endsWith(label));
-  return fields.filter((field) => field.is_first).find(named);
+  return fields.find((field) => plain(field.label) === label) ?? fields.filter((field) => field.is_first).find(named);
 }
 
 const textAt = (value, axis) => [short(value, DIGITS), (axis.unit ?? '').replace('µ', 'u')].filter(Boolean).join(' ');
@@ -99,30 +117,37 @@ function withPoint(chart, fields, rig) {
   return {...chart, panels};
 }
 
-/** Links to the studies and kinds of maps. */
-function Studies({name, view}) {
-  const choose = (partial) => change({view: {from: null, to: null, duration: null, fixed: null, ...partial}});
-  return html`<fieldset class="choices"><legend>Study</legend>
-    ${Object.entries(STUDIES).map(([each, {title}]) => html`<label key=${each} class="choice"><input type="radio" name="study"
-      checked=${each === name} onChange=${() => choose({study: each})} data-test=${`study:${each}`} /><span>${title}</span></label>`)}
-    </fieldset>
-    ${name === 'map' && html`<fieldset class="choices"><legend>Map over</legend>
-      ${Object.entries(KINDS).map(([each, title]) => html`<label key=${each} class="choice"><input type="radio" name="kind"
-      checked=${each === (view.kind ?? 'velocity-power')} onChange=${() => choose({kind: each})} data-test=${`kind:${each}`} />
-      <span>${title}</span></label>`)}</fieldset>`}`;
+const Choice = ({group, name, title, isChosen, choose}) => html`<label class="choice"><input type="radio" name=${group} checked=${isChosen}
+  onChange=${choose} data-test=${`${group}:${name}`} /><span>${title}</span></label>`;
+
+/** Choice of a study, and of the kind of a map. */
+function Studies({name, view, description}) {
+  const choose = (partial) => () => change({view: {from: null, to: null, duration: null, fixed: null, ...partial}});
+  const quantities = allowed(description, 'sweep', 'of');
+  const kinds = allowed(description, 'map', 'kind');
+  const studies = [...quantities.map((each) => [each, capital(each)]), ...Object.entries(STUDIES).map(([each, {title}]) => [each, title])];
+  return html`<fieldset class="choices"><legend>Study</legend>${studies.map(([each, title]) => html`<${Choice} key=${each} group="study" name=${each}
+      title=${title} isChosen=${each === name} choose=${choose({study: each})} />`)}</fieldset>
+    ${name === 'map' && html`<fieldset class="choices"><legend>Map over</legend>${kinds.map((each) => html`<${Choice} key=${each} group="kind" name=${each}
+      title=${each.replaceAll('-', ' and ')} isChosen=${each === (view.kind ?? 'velocity-power')} choose=${choose({kind: each})} />`)}</fieldset>`}`;
 }
 
 /** Texts that a study takes beside the rig. */
-function StudyTexts({study, view, faults}) {
+function StudyTexts({study, view, faults, over}) {
   const fields = study.texts ?? [];
   const materials = useReply('materials', study.bodies ? 'api/tasks/materials' : null, useMemo(() => ({}), []));
   const names = Object.entries(materials.content?.answer ?? {});
   if (!fields.length && !study.bodies) return null;
+  const usual = {from: over?.from, to: over?.to};
   const faultOf = (argument) => faults.find((fault) => fault.key === argument)?.text;
-  return html`<div class="study-texts">${fields.map(([entry, argument, label]) => html`<div key=${entry} class="field">
+  return html`<div class="study-texts">
+    ${over && html`<div class="field"><label for="study-key">Entry</label><select id="study-key" value=${over.field.key} data-test="study-text:key"
+      onChange=${(event) => change({view: {key: event.target.value, from: null, to: null}})}>${over.numbers.map(({key, label}) => html`<option key=${key}
+        value=${key} selected=${key === over.field.key}>${label} (${key.slice(0, key.lastIndexOf('.'))})</option>`)}</select></div>`}
+    ${fields.map(([entry, argument, label]) => html`<div key=${entry} class="field">
       <label for=${`study-${entry}`}>${label}</label>
       <${TextField} id=${`study-${entry}`} text=${view[entry] ?? ''} onText=${(text, isMoving) => !isMoving && change({view: {[entry]: text.trim() || null}})}
-        onSettle=${settle} placeholder="usual" aria-invalid=${faultOf(argument) ? 'true' : undefined}
+        onSettle=${settle} placeholder=${usual[entry] ?? 'usual'} aria-invalid=${faultOf(argument) ? 'true' : undefined}
         aria-describedby=${faultOf(argument) ? `study-${entry}-refusal` : undefined} data-test=${`study-text:${entry}`} />
       ${faultOf(argument) && html`<p class="refusal" id=${`study-${entry}-refusal`}>${faultOf(argument)}</p>`}</div>`)}
     ${(study.bodies ?? []).map(([entry, argument, label]) => html`<div key=${entry} class="field"><label for=${`study-${entry}`}>${label}</label>
@@ -170,58 +195,57 @@ function useStudy(study, args, isMoving) {
   const rest = useRef(args);
   if (!isMoving) rest.current = args;
   const asked = rest.current;
-  const direct = useTask(study.isLong ? null : study.task, asked, 'study');
-  const job = useJob(study.isLong ? study.task : null, asked);
+  const direct = useTask(study.isLong || !asked ? null : study.task, asked, 'study');
+  const job = useJob(study.isLong && asked ? study.task : null, asked);
   if (study.isLong) {
     return {content: job.content, failure: job.failure, refused: [], isWaiting: isActive(job.job) || job.isSought, isOld: job.isOld || isMoving, job, of: asked};
   }
   return {...direct, isOld: isMoving || direct.isWaiting || Boolean(direct.failure), job: null};
 }
 
-export default function Explore() {
+/** A study: what it takes, its figures, numbers and caveats; made anew for another study. */
+function Study({study, args, fields, title}) {
   const {state, isMoving} = useApp();
-  const {view: rigView} = useRig();
-  const {name, study, args} = studyOf(state);
   const {content, failure, refused, isWaiting, isOld, job, of} = useStudy(study, args, isMoving);
   const [note, setNote] = useState('');
-  const fields = rigView?.fields ?? [];
-  const text = JSON.stringify(args);
-  useEffect(() => offer(study.task, args), [text]);
-  useEffect(() => setNote(''), [name, state.view.kind]);
-  const isOfStudy = content && (study.isLong || sameStudy(of, args));
-  const charts = useMemo(() => (isOfStudy ? content.charts.filter((one) => one.chart).map((one) => ({...one, chart: withPoint(one.chart, fields, state.rig)})) : []),
-    [content, isOfStudy, rigView, JSON.stringify(state.rig)]);
+  const charts = useMemo(() => (content?.charts ?? []).filter((one) => one.chart).map((one) => ({...one, chart: withPoint(one.chart, fields, state.rig)})),
+    [content, fields, JSON.stringify(state.rig)]);
   const own = [...(study.texts ?? []), ...(study.bodies ?? [])].map(([, argument]) => argument);
   const faults = (failure?.faults ?? []).map((fault) => ({...fault, key: fault.key || (own.find((argument) => fault.text.startsWith(argument)) ?? '')}));
-  const start = () => job.start(`${study.title}: ${rigView?.title ?? state.rig.name}`);
-  const lead = html`<p class="overline">Explore</p>
-    <h1 class="statement">Choose an operating point</h1>
-    <${Studies} name=${name} view=${state.view} />`;
-  return html`<${Workspace} lead=${lead}>
-    <${StudyTexts} study=${study} view=${state.view} faults=${faults} />
+  return html`<${StudyTexts} study=${study} view=${state.view} faults=${faults} over=${study.isOver ? overOf(state.view, fields) : undefined} />
     ${study.runs && html`<${OwnRuns} view=${state.view} />`}
-    ${study.isLong && html`<div class="row">${job.isOld && !isActive(job.job) && !job.isSought && html`<button type="button" class="button is-main" onClick=${start}
-      data-test="start-job">${content ? 'Compute again' : 'Compute'}</button>
+    ${job && html`<div class="row">${job.isOld && !isActive(job.job) && !job.isSought && html`<button type="button" class="button is-main"
+        onClick=${() => job.start(`${study.title}: ${title}`)} data-test="start-job">${content ? 'Compute again' : 'Compute'}</button>
       <span class="hint">${content ? 'The figure is of the rig before.' : 'Takes some seconds.'}</span>`}
       ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}</div>`}
-    <div class="row study-status">${!study.isLong && html`<${Waiting} isWaiting=${isWaiting} />`}
+    <div class="row study-status">${!job && html`<${Waiting} isWaiting=${isWaiting} />`}
       ${note && html`<span role="status" class="status" data-test="picked">${note}</span>`}
       ${Object.keys(fixedOf(state)).length > 0 && html`<span class="hint">Map and caveats are of the rig before the click.</span>
         <button type="button" class="small" onClick=${() => change({view: {fixed: null}})} data-test="draw-anew">Draw anew</button>`}</div>
-    <${Failure} failure=${failure && {...failure, faults}} shown=${Object.keys(state.rig.changes)} /><${RefusedNote} refused=${refused} />
-    ${!isOfStudy && !failure && !study.isLong && html`<div class="skeleton" aria-hidden="true"></div>`}
-    ${isOfStudy && html`<div aria-busy=${isWaiting} data-test="study">
-      ${charts.map((one) => html`<${Chart} key=${one.name} name=${one.name} caption=${one.caption} chart=${one.chart} tables=${one.tables}
-        dimmed=${isOld} onPick=${(at) => setNote(pick(at, one.chart, fields, state))} canPick=${(panel) => Boolean(pickedOf(one.chart.panels[panel], fields).length)} />`)}
+    <${Failure} failure=${failure && {...failure, faults}} shown=${[...Object.keys(state.rig.changes), ...own]} /><${RefusedNote} refused=${refused} />
+    ${!content && !failure && !job && html`<div class="skeleton" aria-hidden="true"></div>`}
+    ${content && html`<div aria-busy=${isWaiting} data-test="study">
+      ${charts.map((one) => html`<${Chart} key=${one.name} name=${one.name} caption=${one.caption} chart=${one.chart} tables=${one.tables} dimmed=${isOld}
+        onPick=${(at) => setNote(pick(at, one.chart, fields, state))} canPick=${(panel) => Boolean(pickedOf(one.chart.panels[panel], fields).length)} />`)}
       <div class="columns"><div class="stack"><section class=${`card${isOld ? ' is-dim' : ''}`} aria-labelledby="study-numbers">
         <h2 id="study-numbers">Result</h2><${Blocks} blocks=${content.blocks} /></section></div>
-        <div class="stack"><section class="card" aria-label="Caveats and assumptions"><h2 class="hidden">Caveats and assumptions</h2><${Caveats} answer=${content} isMoving=${isMoving || isWaiting} of=${JSON.stringify(of)} /></section></div></div>
-    </div>`}
-  <//>`;
+        <div class="stack"><section class="card" aria-labelledby="study-caveats"><h2 class="hidden" id="study-caveats">Caveats and assumptions</h2>
+          <${Caveats} answer=${content} isMoving=${isMoving || isWaiting} of=${JSON.stringify(of)} /></section></div></div>
+    </div>`}`;
 }
 
-/** Whether an answer is of the same study, whatever its rig. */
-const sameStudy = (one, other) => JSON.stringify([one?.of, one?.kind, Object.keys(one ?? {})]) === JSON.stringify([other.of, other.kind, Object.keys(other)]);
+export default function Explore() {
+  const {state} = useApp();
+  const {view: rigView} = useRig();
+  const fields = rigView?.fields ?? NO_FIELDS;
+  const {name, study, args} = studyOf(state, fields);
+  const {content: description} = useReply('description', 'api/description', undefined);
+  useEffect(() => (args ? offer(study.task, args) : undefined), [JSON.stringify(args)]);
+  const lead = html`<p class="overline">Explore</p><h1 class="statement">Choose an operating point</h1>
+    <${Studies} name=${name} view=${state.view} description=${description} />`;
+  return html`<${Workspace} lead=${lead}>${args && html`<${Study} key=${[name, args.kind, state.view.key, state.rig.name].join(' ')}
+    study=${study} args=${args} fields=${fields} title=${rigView.title} />`}<//>`;
+}
 
 /** Axes of a panel that are of the rig: those of x, and of y where a field lies over both. */
 function pickedOf(panel, fields) {
