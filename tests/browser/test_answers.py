@@ -113,7 +113,8 @@ def test_files_of_this_computer_are_not_read(arguments: dict[str, Any], words: s
 
 
 def test_a_rig_without_name_or_text_and_a_call_without_a_rig_are_refused() -> None:
-    for arguments in ({}, {"rig": "tribometer"}, {"rig": {}}, {"rig": {"name": "../secret"}}):
+    cases: tuple[dict[str, Any], ...] = ({}, {"rig": "tribometer"}, {"rig": {}}, {"rig": {"name": "../secret"}})
+    for arguments in cases:
         with pytest.raises(SonolubeError):
             answered(task_named("friction"), arguments, NOWHERE)
 

@@ -27,7 +27,7 @@ async def application(scope: Scope, receive: Receive, send: Send) -> None:
     await send({"type": "http.response.body", "body": b"inside"})
 
 
-def ask(path: str = "/", *, query: str = "", method: str = "GET", access: Access = ACCESS, **headers: str) -> Reply:
+def ask(path: str = "/", *, query: str = "", method: str = "GET", access: Access = ACCESS, **headers: Any) -> Reply:
     """Reply of the guarded application; header names with _ for -."""
     sent: list[MutableMapping[str, Any]] = []
     named = {"host": "127.0.0.1:8765"} | {name.replace("_", "-"): value for name, value in headers.items()}

@@ -10,9 +10,9 @@ import pytest
 from matplotlib.transforms import Bbox
 from pytest import approx, mark
 
-from sonolube.design.horn_drawing import horn_drawing
-from sonolube.design.horn_profile import HornProfile, horn_profile, profile_dxf
-from sonolube.design.horn_shapes import SHAPES, TunableBody, body_from_geometry, horn_body
+from sonolube.design.horns.drawing import horn_drawing
+from sonolube.design.horns.profile import HornProfile, horn_profile, profile_dxf
+from sonolube.design.horns.shapes import SHAPES, TunableBody, body_from_geometry, horn_body
 
 NOTES = ["horn of brass, 1 kg", "⌀ in mm"]
 SIZES: Mapping[str, Mapping[str, float]] = {

@@ -10,7 +10,7 @@ from pytest import approx
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
-from sonolube.design.horn_shapes import horn_body
+from sonolube.design.horns.shapes import horn_body
 from sonolube.models.fem import cylinder, stepped_horn
 
 Program = Callable[..., Any]

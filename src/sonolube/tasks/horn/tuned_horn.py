@@ -6,11 +6,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from sonolube.design.horn import HornDesign, amplitude_limits, face_motion, loaded_frequency, section_motion, tuned_horn
-from sonolube.design.horn_drawing import horn_drawing, horn_notes
-from sonolube.design.horn_figures import horn_axis_chart
-from sonolube.design.horn_profile import HornProfile, horn_profile, profile_dxf
-from sonolube.design.horn_shapes import TunableBody, body_from_geometry, horn_body
+from sonolube.design.horns.drawing import horn_drawing, horn_notes
+from sonolube.design.horns.figure import horn_axis_chart
+from sonolube.design.horns.profile import HornProfile, horn_profile, profile_dxf
+from sonolube.design.horns.shapes import TunableBody, body_from_geometry, horn_body
+from sonolube.design.horns.tuning import (
+    HornDesign,
+    amplitude_limits,
+    face_motion,
+    loaded_frequency,
+    section_motion,
+    tuned_horn,
+)
 from sonolube.facts import materials
 from sonolube.facts.materials import Material
 from sonolube.models.fem import generate_mesh, medium_from_material, step_text

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sonolube.checks import Floats, require_positive
-from sonolube.design.horn_shapes import TunableBody
+from sonolube.design.horns.shapes import TunableBody
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import Material
 from sonolube.models.fem import Geometry, Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode

@@ -5,7 +5,7 @@ from scipy.interpolate import PchipInterpolator
 
 from sonolube.charts import Axis, Band, Chart, Line, Panel, Rule
 from sonolube.checks import Floats
-from sonolube.design.horn import HornDesign, face_motion, nodal_stress, section_motion
+from sonolube.design.horns.tuning import HornDesign, face_motion, nodal_stress, section_motion
 from sonolube.models.fem import face_triangulation
 from sonolube.models.fem.solver.model import DIRECTIONS
 

@@ -8,7 +8,7 @@ from math import pi, tan
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.horn_shapes import TunableBody
+from sonolube.design.horns.shapes import TunableBody
 
 _STATIONS = 5  # of an exponential horn at which its diameter is stated
 _CURVE_POINTS = 201

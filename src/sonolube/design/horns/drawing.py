@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.horn import HornDesign
-from sonolube.design.horn_profile import HornProfile
+from sonolube.design.horns.profile import HornProfile
+from sonolube.design.horns.tuning import HornDesign
 from sonolube.facts.materials import Material
 from sonolube.figure import FIGURE_STYLES
 

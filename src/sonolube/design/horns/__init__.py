@@ -1,0 +1,1 @@
+"""Horns: shapes, tuning by finite elements, profile, drawing and figure."""
