@@ -101,13 +101,13 @@ def test_a_proxy_is_let_in_by_its_name() -> None:
         {"origin": "http://127.0.0.1:8765", "sec_fetch_site": "cross-site"},
     ],
 )
-def test_other_pages_change_nothing(headers: dict[str, str]) -> None:
+def test_other_pages_change_nothing(headers: dict[str, Any]) -> None:
     assert ask("/api/jobs", method="POST", cookie=COOKIE, **headers).status == 403
     assert ask("/api/jobs/x", method="DELETE", cookie=COOKIE, **headers).status == 403
 
 
 @pytest.mark.parametrize("headers", [{}, {"origin": "http://127.0.0.1:8765", "sec_fetch_site": "same-origin"}])
-def test_own_pages_and_programs_with_the_cookie_may_change(headers: dict[str, str]) -> None:
+def test_own_pages_and_programs_with_the_cookie_may_change(headers: dict[str, Any]) -> None:
     assert ask("/api/jobs", method="POST", cookie=COOKIE, **headers).status == 200
 
 
@@ -125,7 +125,7 @@ def test_every_answer_has_the_headers_also_a_refusal() -> None:
 
 
 def test_a_page_gets_the_status_of_its_refusal_in_a_header_and_nothing_else() -> None:
-    asked = {"x_status": "in-header"}
+    asked: dict[str, Any] = {"x_status": "in-header"}
     reply = ask("/api/jobs", **asked)
     assert (reply.status, reply.headers["x-status"]) == (200, "401")
     assert reply.body != b"inside"
