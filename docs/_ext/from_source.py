@@ -38,8 +38,8 @@ from sonolube.facts.materials import (
 from sonolube.facts.published import errata
 from sonolube.measurement.file_format import FileFormat
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
-from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.recordings.formats import RECORDING_FORMATS
+from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.models.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
 from sonolube.models.friction import FRICTION_MODELS

@@ -12,9 +12,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import sonolube as sl
-from sonolube.design.horn import amplitude_limits, tuned_horn
-from sonolube.design.horn_figures import horn_axis_figure
-from sonolube.design.horn_shapes import horn_body
+from sonolube.charts import draw_chart
+from sonolube.design.horns.figure import horn_axis_chart
+from sonolube.design.horns.shapes import horn_body
+from sonolube.design.horns.tuning import amplitude_limits, tuned_horn
 from sonolube.facts.materials import material
 from sonolube.figure import publication_style, shown_in_notebooks
 from sonolube.models import fem
@@ -52,7 +53,7 @@ for strength, limit in amplitude_limits(horn, material=titanium).items():
 
 # %%
 with publication_style():
-    figure = horn_axis_figure(horn)
+    figure = draw_chart(horn_axis_chart(horn))
 shown_in_notebooks(figure)
 
 # %% [markdown]
