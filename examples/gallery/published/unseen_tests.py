@@ -4,11 +4,12 @@ Every published rig predicted from all the others: bands of 50, 80 and 95 % and 
 is worth something where the points fall inside as often as the bands say.
 """
 
+from sonolube.charts import draw_chart
 from sonolube.figure import publication_style
-from sonolube.prediction.published_figures import unseen_figure
+from sonolube.prediction.published_figures import unseen_chart
 
 with publication_style():
-    figure = unseen_figure()
+    figure = draw_chart(unseen_chart())
 
 if __name__ == "__main__":
     figure.savefig("unseen-tests.png", dpi=150)
