@@ -1,0 +1,118 @@
+"""The server of the workbench as a process: uploads, foreign requests, slow clients, killed workers, ends."""
+
+import http.client
+import json
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from tests.browser.workbench import Served, served
+
+RIG = {"name": "tribometer"}
+
+
+@pytest.fixture(scope="module")
+def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with served(tmp_path_factory.mktemp("server")) as found:
+        yield found
+
+
+def cookie(workbench: Served) -> str:
+    connection = http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=60)
+    connection.request("GET", f"/?token={workbench.token}")
+    return str(connection.getresponse().headers["set-cookie"]).partition(";")[0]
+
+
+def ask(workbench: Served, method: str, path: str, body: bytes | None = None, **headers: str) -> tuple[int, bytes]:
+    connection = http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=120)
+    connection.request(method, path, body=body, headers={"cookie": cookie(workbench)} | headers)
+    reply = connection.getresponse()
+    return reply.status, reply.read()
+
+
+def asked(workbench: Served, path: str, content: object) -> tuple[int, Any]:
+    status, body = ask(workbench, "POST", path, json.dumps(content).encode())
+    return status, json.loads(body)
+
+
+def test_a_task_is_answered_and_a_fault_is_refused_with_its_key(workbench: Served) -> None:
+    status, content = asked(workbench, "/api/tasks/friction", {"rig": RIG})
+    assert (status, content["answer"]["rig"][:8]) == (200, "Modified")
+    changes = {"contact.normal_load": "3 kg"}
+    status, content = asked(workbench, "/api/tasks/friction", {"rig": RIG | {"changes": changes}})
+    assert (status, content["faults"][0]["key"]) == (422, "contact.normal_load")
+
+
+@pytest.mark.parametrize("body", [b"", b"[]", b"{", b'{"rig": NaN}', b"[" * 100_000, b"\xff\xfe"])
+def test_what_is_no_object_of_json_is_refused(workbench: Served, body: bytes) -> None:
+    status, reply = ask(workbench, "POST", "/api/tasks/friction", body)
+    assert status == 422
+    assert "\n" not in json.loads(reply)["text"]
+
+
+def test_a_large_request_and_a_large_upload_are_refused(workbench: Served) -> None:
+    status, reply = ask(workbench, "POST", "/api/tasks/friction", b" " * (5 * 2**20))
+    assert (status, "larger than 4 MiB" in json.loads(reply)["text"]) == (422, True)
+    connection = http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=60)
+    connection.putrequest("POST", "/api/uploads")
+    connection.putheader("cookie", cookie(workbench))
+    connection.putheader("content-length", str(2**30))
+    connection.endheaders()
+    reply_of = connection.getresponse()
+    assert reply_of.status == 422
+    assert "1024 MiB are more than the 256 MiB" in json.loads(reply_of.read())["text"]
+
+
+def test_an_uploaded_file_is_used_by_its_name_here(workbench: Served) -> None:
+    table = (Path(__file__).parents[2] / "examples" / "tribometer-runs.csv").read_bytes()
+    status, reply = ask(workbench, "POST", "/api/uploads?name=../../x", table)
+    assert status == 200
+    runs = {"name": "own.csv", "upload": json.loads(reply)["upload"]}
+    status, content = asked(workbench, "/api/tasks/predict", {"rig": RIG, "runs": runs, "draws": 400})
+    assert (status, content["answer"]["runs"]) == (200, 4)
+
+
+@pytest.mark.parametrize("path", ["/../pyproject.toml", "/static/../routes.py", "/static/%2e%2e/routes.py", "/etc/passwd", "/static//etc/passwd"])
+def test_no_file_outside_the_pages_is_served(workbench: Served, path: str) -> None:
+    assert ask(workbench, "GET", path)[0] == 404
+
+
+def test_a_foreign_host_and_no_cookie_are_refused_by_the_server_itself(workbench: Served) -> None:
+    assert ask(workbench, "GET", "/api/jobs", host="evil.example")[0] == 421
+    connection = http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=60)
+    connection.request("GET", "/api/jobs")
+    assert connection.getresponse().status == 401
+
+
+def test_many_idle_connections_and_a_slow_client_leave_others_answered(workbench: Served) -> None:
+    idle = [socket.create_connection(("127.0.0.1", workbench.port)) for _ in range(300)]
+    idle[0].sendall(b"POST /api/tasks/friction HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\n\r\n{")
+    try:
+        assert asked(workbench, "/api/tasks/contact", {"rig": RIG})[0] == 200
+    finally:
+        for each in idle:
+            each.close()
+
+
+def test_a_killed_worker_is_one_sentence_and_is_replaced(workbench: Served) -> None:
+    workers = [child for child in psutil.Process(workbench.process.pid).children() if "spawn_main" in " ".join(child.cmdline())]
+    assert workers
+    for worker in workers:
+        worker.kill()
+        worker.wait(30)
+    replies = [asked(workbench, "/api/tasks/contact", {"rig": RIG}) for _ in range(len(workers) + 1)]
+    assert replies[-1][0] == 200
+    assert all(status in (200, 503) for status, _ in replies)
+
+
+def test_a_restart_with_the_same_folder_finds_the_jobs(tmp_path: Path) -> None:
+    with served(tmp_path) as first:
+        status, job = asked(first, "/api/jobs", {"task": "contact", "arguments": {"rig": RIG}, "label": "contact"})
+        assert status == 200
+    with served(tmp_path) as second:
+        jobs = json.loads(ask(second, "GET", "/api/jobs")[1])["jobs"]
+    assert [(each["id"], each["label"]) for each in jobs] == [(job["id"], "contact")]
+    assert jobs[0]["state"] in ("done", "interrupted")

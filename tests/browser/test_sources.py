@@ -1,0 +1,45 @@
+"""Sources of the pages: no markup from text, no other host, modules of others unchanged, and sizes."""
+
+import gzip
+import re
+from hashlib import sha256
+from pathlib import Path
+
+STATIC = Path(__file__).parents[2] / "src" / "sonolube" / "browser" / "static"
+SCRIPTS = sorted((STATIC / "scripts").rglob("*.js")) + [STATIC / "link.js"]
+FORBIDDEN = ("innerHTML", "outerHTML", "insertAdjacentHTML", "dangerouslySetInnerHTML", "document.write", "eval(", "new Function")
+FIRST = ("index.html", "app.css", "charts.css", "icon.svg", "vendor/uplot-1.6.32.css", "vendor/htm-preact-3.1.1.js", "vendor/uplot-1.6.32.js")
+
+
+def test_no_script_makes_markup_from_text() -> None:
+    assert [(path.name, word) for path in SCRIPTS for word in FORBIDDEN if word in path.read_text(encoding="utf-8")] == []
+
+
+def test_no_page_names_another_host_or_an_address_from_the_root() -> None:
+    for path in [*SCRIPTS, *STATIC.glob("*.html"), *STATIC.glob("*.css")]:
+        text = path.read_text(encoding="utf-8")
+        assert re.findall(r"https?://(?!www\.w3\.org/)[\w.]+", text) == [], path.name
+        assert re.findall(r"""(?:src|href)=["']/""", text) == [], path.name
+        assert re.findall(r"""fetch\(["'`]/""", text) == [], path.name
+
+
+def test_no_page_has_scripts_or_styles_in_its_text() -> None:
+    for path in STATIC.glob("*.html"):
+        text = path.read_text(encoding="utf-8")
+        assert re.findall(r"<script(?![^>]*\bsrc=)|<style|\bon\w+=|\bstyle=", text) == [], path.name
+
+
+def test_own_scripts_stay_below_three_thousand_lines() -> None:
+    assert sum(len(path.read_text(encoding="utf-8").splitlines()) for path in SCRIPTS) < 3000
+
+
+def test_modules_of_others_are_those_that_are_listed() -> None:
+    listed = dict(re.findall(r"\| `([^`]+)` \|.*`([0-9a-f]{64})` \|", (STATIC / "vendor" / "README.md").read_text(encoding="utf-8")))
+    found = {path.name: sha256(path.read_bytes()).hexdigest() for path in STATIC.glob("vendor/*") if path.suffix in (".js", ".css")}
+    assert found == listed
+    assert {path.name for path in STATIC.glob("vendor/*-LICENSE.txt")} == {f"{name}-LICENSE.txt" for name in ("htm", "preact", "uplot")}
+
+
+def test_the_first_page_transfers_at_most_150_kilobytes() -> None:
+    files = [STATIC / name for name in FIRST] + sorted((STATIC / "scripts").rglob("*.js"))
+    assert sum(len(gzip.compress(path.read_bytes())) for path in files) <= 150_000
