@@ -13,6 +13,7 @@ const [LOWEST, HIGHEST, WIDEST] = [180, 400, 760]; // px
 const GAP = 16;
 const COLOURS_WIDTH = 72;
 const TEXT_HEIGHT = 18; // of the label of an axis
+const WORD_HEIGHT = 19; // px along y that a word takes
 const NO_KEPT = [];
 
 /** Width of an element and colours of its theme, followed while it is shown. */
@@ -46,10 +47,10 @@ function useRoom() {
 function scaledOf(panel) {
   const field = panel.parts.find((part) => part.kind === 'field');
   if (field) return field.words ? null : field;
-  const shaded = panel.parts.find((part) => part.kind === 'points' && part.shades);
+  const shaded = panel.parts.find((part) => part.kind === 'points' && part.shades && part.scale_text);
   if (!shaded) return null;
   const [lowest, highest] = ownScale(shaded).ends;
-  return {values: [[lowest, highest]], lowest, highest, scale: 'viridis', scale_text: shaded.scale_text ?? ''};
+  return {values: [[lowest, highest]], lowest, highest, scale: 'viridis', scale_text: shaded.scale_text};
 }
 
 /** The scale that serves all panels; null where each has its own. */
@@ -113,7 +114,8 @@ function layoutOf(chart, width, isScaled) {
       const full = (room * shares[place % columns]) / whole;
       const base = Math.min(Math.max((room / columns) * aspect, LOWEST), HIGHEST);
       const own = high[Math.floor(place / (chart.columns ?? 1))] / mean;
-      return {width: Math.floor(full - (isScaled(place) ? COLOURS_WIDTH : 0)), height: Math.round(base * own)};
+      const words = WORD_HEIGHT * (chart.panels[place].y.words?.length ?? 0);
+      return {width: Math.floor(full - (isScaled(place) ? COLOURS_WIDTH : 0)), height: Math.round(Math.max(base * own, words))};
     },
   };
 }
