@@ -9,6 +9,7 @@ const NEAR = 16; // px from a point within which it is read
 export const MARKERS = [
   'M-1 0a1 1 0 1 0 2 0a1 1 0 1 0-2 0Z', 'M-.9-.9H.9V.9H-.9Z', 'M0-1.1 1 .9H-1Z', 'M0-1.25 1.25 0 0 1.25-1.25 0Z', 'M0 1.1 1-.9H-1Z',
   'M-.4-1.2H.4V-.4H1.2V.4H.4V1.2H-.4V.4H-1.2V-.4H-.4Z', 'M-1.1-.6-.6-1.1 0-.5.6-1.1 1.1-.6.5 0 1.1.6.6 1.1 0 .5-.6 1.1-1.1.6-.5 0Z',
+  'M-1.1 0 .9-1V1Z', 'M1.1 0-.9-1V1Z', 'M0-1.4.33-.45 1.33-.43.53.17.82 1.13 0 .56-.82 1.13-.53.17-1.33-.43-.33-.45Z',
 ];
 
 /**
@@ -126,15 +127,17 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
 
   function points(part) {
     const colour = theme.stroke(part.colour);
-    const size = (part.is_faint ? 0.35 : part.size ?? 1) * (part.shades ? 1.3 : 1) * MARKER * scale;
+    const size = (part.is_faint ? 0.4 : part.shades ? 1.3 * Math.sqrt(part.size ?? 1) : part.size ?? 1) * MARKER * scale;
     const shade = part.shades && shadeOf(part, panel);
     part.x.forEach((x, at) => {
       if (x === null || part.y[at] === null) return;
       const place = [map.x.to(x), map.y.to(part.y[at])];
-      bar(errors(part.y_error, at), part.y[at], place, 'y', colour);
-      bar(errors(part.x_error, at), x, place, 'x', colour);
+      inside(() => {
+        bar(errors(part.y_error, at), part.y[at], place, 'y', colour);
+        bar(errors(part.x_error, at), x, place, 'x', colour);
+      });
       context.globalAlpha = part.is_faint ? 0.6 : 1;
-      mark(part.marker, size, place, shade ? css(shade(part.shades[at])) : colour, {isHollow: part.is_hollow, edge: shade ? 'white' : theme.surface});
+      mark(part.marker, size, place, shade ? css(shade(part.shades[at])) : colour, {isHollow: part.is_hollow, edge: part.is_faint ? colour : shade ? 'white' : theme.surface});
       context.globalAlpha = 1;
       if (part.texts?.[at]) write(part.texts[at], place[0] + 7 * scale, place[1], 'left', theme.ink, true);
     });
@@ -237,6 +240,7 @@ export function shadeOf(part, panel) {
 
 /** The scale of shaded points as that of a field. */
 export function ownScale(part) {
+  if (part.scale_ends) return {ends: part.scale_ends};
   const known = part.shades.filter((value) => value !== null);
   return {ends: [Math.min(...known), Math.max(...known)]};
 }

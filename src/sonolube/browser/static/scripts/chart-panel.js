@@ -12,7 +12,7 @@ const THUMB = 28; // px that it can be grasped at, as in the style
 const MOVED = 4; // px beyond which a press is no click
 
 /** What must be made anew, rather than given new data. */
-const structureOf = ({x, y}) => JSON.stringify([x, y].map((axis) => [axis.text, axis.logarithmic, axis.words, axis.reciprocal]));
+const structureOf = ({x, y}) => JSON.stringify([x, y].map((axis) => [axis.text, axis.logarithmic, axis.words, axis.reciprocal, axis.proportional, axis.lowest > axis.highest]));
 
 const flat = (text) => text.replaceAll('\n', ' ');
 export const panelName = (panel) => [panel.title, `${flat(panel.y.text)} over ${flat(panel.x.text)}`].filter(Boolean).join(': ');
@@ -21,7 +21,8 @@ export const panelName = (panel) => [panel.title, `${flat(panel.y.text)} over ${
 function optionsOf(latest) {
   const now = () => latest.current;
   const scale = (name) => ({
-    time: false, distr: now().panel[name].logarithmic ? 3 : 1, log: 10, range: () => now().ranges[name],
+    time: false, distr: now().panel[name].logarithmic ? 3 : 1, log: 10, dir: now().ranges[name][0] > now().ranges[name][1] ? -1 : 1,
+    range: () => [...now().ranges[name]].sort((one, other) => one - other),
   });
   const axis = (name) => ({
     scale: name, font: FONT, labelFont: FONT, stroke: () => now().theme.muted,
@@ -36,13 +37,16 @@ function optionsOf(latest) {
     values: (u, splits) => tickTexts(now().panel[name], splits),
   });
   const axes = [
-    {...axis('x'), label: now().hasXText ? flat(now().panel.x.text) : undefined, labelSize: 18, size: 28, labelGap: 0},
+    {...axis('x'), label: now().hasXText ? flat(now().panel.x.text) : undefined, labelSize: 18, labelGap: 0,
+      size: 15 + 13 * Math.max(1, ...(now().panel.x.words ?? []).map((word) => word.split('\n').length))},
     {...axis('y'), size: (u, values) => 14 + 6.6 * Math.max(2, ...(values ?? []).map((text) => text.length))},
   ];
-  const {reciprocal} = now().panel.x;
-  if (reciprocal) {
-    axes.push({...axis('x'), side: 0, grid: {show: false}, size: 24, label: reciprocal[1], labelSize: 18,
-      values: (u, splits) => tickTexts({}, splits.map((value) => reciprocal[0] / value))});
+  for (const [name, side] of [['x', 0], ['y', 1]]) {
+    const {reciprocal, proportional} = now().panel[name];
+    const [constant, label] = reciprocal ?? proportional ?? [];
+    if (label === undefined) continue;
+    const other = (value) => (reciprocal ? constant / value : constant * value);
+    axes.push({...axis(name), side, grid: {show: false}, size: name === 'x' ? 24 : 44, label, labelSize: 18, values: (u, splits) => tickTexts({}, splits.map(other))});
   }
   return {
     width: now().width, height: now().height, scales: {x: scale('x'), y: scale('y')}, axes,
@@ -57,7 +61,7 @@ function optionsOf(latest) {
 function stepped(axis, [low, high], value, share) {
   const [to, from] = axis.logarithmic ? [Math.log, Math.exp] : [(each) => each, (each) => each];
   const next = to(value) + share * (to(high) - to(low));
-  return from(Math.min(Math.max(next, to(low)), to(high)));
+  return from(Math.min(Math.max(next, Math.min(to(low), to(high))), Math.max(to(low), to(high))));
 }
 
 /** Share of the length of an axis at which a value stands. */

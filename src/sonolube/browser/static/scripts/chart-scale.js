@@ -1,5 +1,6 @@
 /** Ends, ticks, numbers and colours of charts, as Matplotlib gives them to the same chart. */
 
+const SUPERSCRIPTS = '⁻⁰¹²³⁴⁵⁶⁷⁸⁹';
 const MARGIN = 0.05; // of the range of the data, at both ends
 const LOG_RATIO = 3; // of the ends of a logarithmic axis, below which its ticks are those of a linear one
 const LEAST_CONTRAST = {light: 3, dark: 4.5}; // of a curve against what it is drawn on
@@ -11,7 +12,11 @@ export const dash = (number) => DASHES[(number ?? 0) % DASHES.length];
 export function short(value, digits = 4) {
   if (value == null || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  if (size && (size >= 10 ** (digits + 1) || size < 1e-4)) return value.toExponential(digits - 1).replace(/\.?0+e/, 'e');
+  if (size && (size >= 10 ** Math.max(digits + 1, 6) || size < 1e-4)) {
+    const [number, power] = value.toExponential(digits - 1).split('e');
+    const raised = [...String(Number(power))].map((sign) => SUPERSCRIPTS['-0123456789'.indexOf(sign)]).join('');
+    return Number(number) === 1 ? `10${raised}` : `${Number(number)}·10${raised}`;
+  }
   return String(Number(value.toPrecision(digits)));
 }
 
@@ -87,7 +92,7 @@ function ends(panels, name) {
   const isZero = (end) => isFromZero && end === 0;
   const found = [axis.lowest ?? from(isZero(first) ? 0 : first - margin), axis.highest ?? from(isZero(last) ? 0 : last + margin)];
   if (axis.ticks) found.splice(0, 2, Math.min(found[0], ...axis.ticks), Math.max(found[1], ...axis.ticks));
-  if (!(found[1] > found[0])) found[1] = found[0] + (Math.abs(found[0]) || 1);
+  if (!(found[1] > found[0]) && !(axis.lowest > axis.highest)) found[1] = found[0] + (Math.abs(found[0]) || 1);
   return found;
 }
 
@@ -123,7 +128,8 @@ export function roundTicks(low, high, most) {
 }
 
 /** Ticks of an axis with room for so many numbers. */
-export function ticksOf(axis, [low, high], room) {
+export function ticksOf(axis, ends, room) {
+  const [low, high] = [...ends].sort((one, other) => one - other);
   if (axis.ticks?.length) return axis.ticks;
   if (axis.words?.length) return axis.words.map((_, place) => place);
   if (!axis.logarithmic || high / low < LOG_RATIO) return roundTicks(low, high, Math.min(room, 8));

@@ -13,6 +13,8 @@ const [LOWEST, HIGHEST, WIDEST] = [180, 400, 760]; // px
 const GAP = 16;
 const COLOURS_WIDTH = 72;
 const TEXT_HEIGHT = 18; // of the label of an axis
+const [BESIDE, BELOW] = [50, 38]; // px that numbers take beside and below a panel
+const WORD_HEIGHT = 19; // px along y that a word takes
 const NO_KEPT = [];
 
 /** Width of an element and colours of its theme, followed while it is shown. */
@@ -46,10 +48,10 @@ function useRoom() {
 function scaledOf(panel) {
   const field = panel.parts.find((part) => part.kind === 'field');
   if (field) return field.words ? null : field;
-  const shaded = panel.parts.find((part) => part.kind === 'points' && part.shades);
+  const shaded = panel.parts.find((part) => part.kind === 'points' && part.shades && part.scale_text);
   if (!shaded) return null;
   const [lowest, highest] = ownScale(shaded).ends;
-  return {values: [[lowest, highest]], lowest, highest, scale: 'viridis', scale_text: shaded.scale_text ?? ''};
+  return {values: [[lowest, highest]], lowest, highest, scale: 'viridis', scale_text: shaded.scale_text};
 }
 
 /** The scale that serves all panels; null where each has its own. */
@@ -97,7 +99,7 @@ const Legend = ({entries, theme, title}) => (entries.length ? html`<div class="c
 </div>` : null);
 
 /** Width and height of each panel in px, and the number of columns. */
-function layoutOf(chart, width, isScaled) {
+function layoutOf(chart, ranges, width, isScaled) {
   const columns = Math.max(1, Math.min(chart.columns ?? 1, Math.floor((width + GAP) / (LEAST_WIDTH + GAP))));
   const isWhole = columns === (chart.columns ?? 1);
   const rows = Math.ceil(chart.panels.length / (chart.columns ?? 1));
@@ -105,15 +107,20 @@ function layoutOf(chart, width, isScaled) {
   const shares = isWhole && chart.widths?.length === columns ? chart.widths : Array(columns).fill(1);
   const whole = shares.reduce((sum, share) => sum + share, 0);
   const room = Math.min(width, WIDEST * columns) - GAP * (columns - 1);
-  const high = chart.heights?.length === rows ? chart.heights : Array(rows).fill(1);
-  const mean = high.reduce((sum, share) => sum + share, 0) / rows;
+  const heights = chart.heights?.length === rows ? chart.heights : Array(rows).fill(1);
+  const mean = heights.reduce((sum, share) => sum + share, 0) / rows;
   const aspect = (inchHigh / rows) / (inchWide / (chart.columns ?? 1));
   return {
     columns, isWhole, size: (place) => {
       const full = (room * shares[place % columns]) / whole;
       const base = Math.min(Math.max((room / columns) * aspect, LOWEST), HIGHEST);
-      const own = high[Math.floor(place / (chart.columns ?? 1))] / mean;
-      return {width: Math.floor(full - (isScaled(place) ? COLOURS_WIDTH : 0)), height: Math.round(base * own)};
+      const own = heights[Math.floor(place / (chart.columns ?? 1))] / mean;
+      const words = WORD_HEIGHT * (chart.panels[place].y.words?.length ?? 0);
+      const wide = Math.floor(full - (isScaled(place) ? COLOURS_WIDTH : 0));
+      const [across, up] = ['x', 'y'].map((name) => Math.abs(ranges[place][name][1] - ranges[place][name][0]));
+      const isEqual = chart.panels[place].has_equal_scales;
+      const high = isEqual ? Math.min(((wide - BESIDE) * up) / across + BELOW, WIDEST) : base * own;
+      return {width: wide, height: Math.round(Math.max(high, words))};
     },
   };
 }
@@ -135,7 +142,7 @@ export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onP
   const isScaled = (place) => !common && Boolean(scaledOf(chart.panels[place]));
   const draggable = Array.isArray(drag) ? drag : drag ? [drag] : [];
   const room = width - (common ? COLOURS_WIDTH : 0);
-  const layout = width && theme ? layoutOf(chart, room, isScaled) : null;
+  const layout = width && theme ? layoutOf(chart, ranges, room, isScaled) : null;
   const legend = chart.legend ?? 'panels';
   const keptEntries = kept.map((each, place) => [`kept: ${each.label}`, {kind: 'line', colour: '#808080', dash: place, isKept: true}]);
   const label = caption || chart.title?.replaceAll('\n', ', ') || panelName(chart.panels[0]);
