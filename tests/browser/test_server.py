@@ -4,6 +4,7 @@ import http.client
 import json
 import socket
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -20,17 +21,24 @@ def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield found
 
 
+def request(
+    workbench: Served, method: str, path: str, body: bytes | None = None, **headers: str
+) -> tuple[int, Any, bytes]:
+    """Status, headers and body of a reply."""
+    with closing(http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=120)) as connection:
+        connection.request(method, path, body=body, headers=headers)
+        reply = connection.getresponse()
+        return reply.status, reply.headers, reply.read()
+
+
 def cookie(workbench: Served) -> str:
-    connection = http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=60)
-    connection.request("GET", f"/?token={workbench.token}")
-    return str(connection.getresponse().headers["set-cookie"]).partition(";")[0]
+    _, headers, _ = request(workbench, "GET", f"/?token={workbench.token}")
+    return str(headers["set-cookie"]).partition(";")[0]
 
 
 def ask(workbench: Served, method: str, path: str, body: bytes | None = None, **headers: str) -> tuple[int, bytes]:
-    connection = http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=120)
-    connection.request(method, path, body=body, headers={"cookie": cookie(workbench)} | headers)
-    reply = connection.getresponse()
-    return reply.status, reply.read()
+    status, _, content = request(workbench, method, path, body, **({"cookie": cookie(workbench)} | headers))
+    return status, content
 
 
 def asked(workbench: Served, path: str, content: object) -> tuple[int, Any]:
@@ -56,14 +64,14 @@ def test_what_is_no_object_of_json_is_refused(workbench: Served, body: bytes) ->
 def test_a_large_request_and_a_large_upload_are_refused(workbench: Served) -> None:
     status, reply = ask(workbench, "POST", "/api/tasks/friction", b" " * (5 * 2**20))
     assert (status, "larger than 4 MiB" in json.loads(reply)["text"]) == (422, True)
-    connection = http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=60)
-    connection.putrequest("POST", "/api/uploads")
-    connection.putheader("cookie", cookie(workbench))
-    connection.putheader("content-length", str(2**30))
-    connection.endheaders()
-    reply_of = connection.getresponse()
-    assert reply_of.status == 422
-    assert "1024 MiB are more than the 256 MiB" in json.loads(reply_of.read())["text"]
+    with closing(http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=60)) as connection:
+        connection.putrequest("POST", "/api/uploads")
+        connection.putheader("cookie", cookie(workbench))
+        connection.putheader("content-length", str(2**30))
+        connection.endheaders()
+        refused = connection.getresponse()
+        assert refused.status == 422
+        assert "1024 MiB are more than the 256 MiB" in json.loads(refused.read())["text"]
 
 
 def test_an_uploaded_file_is_used_by_its_name_here(workbench: Served) -> None:
@@ -75,16 +83,23 @@ def test_an_uploaded_file_is_used_by_its_name_here(workbench: Served) -> None:
     assert (status, content["answer"]["runs"]) == (200, 4)
 
 
-@pytest.mark.parametrize("path", ["/../pyproject.toml", "/static/../routes.py", "/static/%2e%2e/routes.py", "/etc/passwd", "/static//etc/passwd"])
+OUTSIDE = (
+    "/../pyproject.toml",
+    "/static/../routes.py",
+    "/static/%2e%2e/routes.py",
+    "/etc/passwd",
+    "/static//etc/passwd",
+)
+
+
+@pytest.mark.parametrize("path", OUTSIDE)
 def test_no_file_outside_the_pages_is_served(workbench: Served, path: str) -> None:
     assert ask(workbench, "GET", path)[0] == 404
 
 
 def test_a_foreign_host_and_no_cookie_are_refused_by_the_server_itself(workbench: Served) -> None:
     assert ask(workbench, "GET", "/api/jobs", host="evil.example")[0] == 421
-    connection = http.client.HTTPConnection("127.0.0.1", workbench.port, timeout=60)
-    connection.request("GET", "/api/jobs")
-    assert connection.getresponse().status == 401
+    assert request(workbench, "GET", "/api/jobs")[0] == 401
 
 
 def test_many_idle_connections_and_a_slow_client_leave_others_answered(workbench: Served) -> None:
@@ -98,11 +113,12 @@ def test_many_idle_connections_and_a_slow_client_leave_others_answered(workbench
 
 
 def test_a_killed_worker_is_one_sentence_and_is_replaced(workbench: Served) -> None:
-    workers = [child for child in psutil.Process(workbench.process.pid).children() if "spawn_main" in " ".join(child.cmdline())]
+    workers = [
+        child for child in psutil.Process(workbench.process.pid).children() if "spawn_main" in " ".join(child.cmdline())
+    ]
     assert workers
     for worker in workers:
         worker.kill()
-        worker.wait(30)
     replies = [asked(workbench, "/api/tasks/contact", {"rig": RIG}) for _ in range(len(workers) + 1)]
     assert replies[-1][0] == 200
     assert all(status in (200, 503) for status, _ in replies)

@@ -33,7 +33,7 @@ class Served:
 
 @contextmanager
 def served(folder: Path, *arguments: str) -> Iterator[Served]:
-    """Run `sonolube app` without a browser, its jobs kept below a folder; the token never appears again in its output."""
+    """Run `sonolube app` without a browser, its jobs below a folder; the token appears once in its output."""
     command = [sys.executable, "-m", "sonolube", "app", "--no-browser", *arguments]
     if "--port" not in arguments:
         command += ["--port", "0"]

@@ -102,13 +102,13 @@ function Page() {
     read(page).then((module) => module.default, () => Unread).then((shown) => setPages((old) => ({...old, [page]: shown})));
   }, [state.page]);
   if (fault) return html`<${Broken} again=${clear} />`;
-  return Shown ? html`<${Shown} />` : html`<p class="loading" role="status">Reading the page…</p>`;
+  return Shown ? html`<${Shown} />` : html`<p class="loading" id="answer" tabindex="-1" role="status">Reading the page…</p>`;
 }
 
-const Unread = () => html`<div class="notice is-warning" role="alert">This page could not be read from the workbench.
+const Unread = () => html`<div class="notice is-warning" id="answer" tabindex="-1" role="alert">This page could not be read from the workbench.
   <a href="">Read it again</a></div>`;
 
-const Broken = ({again}) => html`<div class="notice is-warning" role="alert">
+const Broken = ({again}) => html`<div class="notice is-warning" id="answer" tabindex="-1" role="alert">
   <p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
   <button type="button" class="button" onClick=${again}>Draw it again</button></div>`;
 

@@ -80,7 +80,7 @@ export default function NewRig() {
   const isReady = schema && !needed.length && EITHER.some((name) => args[name]);
   const {content, failure, isWaiting} = useReply('new', isReady ? 'api/tasks/new' : null, args);
   if (!schema) {
-    return html`<div class="page"><h1>New rig</h1><${Failure} failure=${description.failure} />
+    return html`<div class="page" id="answer" tabindex="-1"><h1>New rig</h1><${Failure} failure=${description.failure} />
       ${!description.failure && html`<p class="loading" role="status">Reading the questions…</p>`}</div>`;
   }
   const refused = isReady && failure
