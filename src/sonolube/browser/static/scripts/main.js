@@ -102,7 +102,7 @@ function Page() {
     read(page).then((module) => module.default, () => Unread).then((shown) => setPages((old) => ({...old, [page]: shown})));
   }, [state.page]);
   if (fault) return html`<${Broken} again=${clear} />`;
-  return Shown ? html`<${Shown} />` : html`<p class="loading" id="answer" tabindex="-1" role="status">Reading the page…</p>`;
+  return Shown ? html`<${Shown} />` : html`<div id="answer" tabindex="-1"><p class="loading" role="status">Reading the page…</p></div>`;
 }
 
 const Unread = () => html`<div class="notice is-warning" id="answer" tabindex="-1" role="alert">This page could not be read from the workbench.
