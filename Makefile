@@ -14,7 +14,7 @@ OUT := out
 export SURFALIZE_PYTHON ?= $(abspath $(wildcard $(RIVAL)/bin/python))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lowest surfalize lint docs bench reliability lock clean
+.PHONY: help demo app browser test lowest surfalize lint docs bench reliability lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
@@ -23,6 +23,12 @@ help: ## list the targets
 demo: $(VENV)/demo ## predict the reference rig and judge the dissertation's claims; report and figures go to out/
 	$(RUN) $(BIN)/sonolube predict examples/rigs/tribometer.toml --out $(OUT)
 	$(RUN) $(BIN)/sonolube reproduce --out $(OUT)
+
+app: $(VENV)/app ## open the workbench in the browser
+	$(BIN)/sonolube app examples/rigs/tribometer.toml
+
+browser: ## install Debian's Chromium, in which the pages are tested
+	apt-get install --no-install-recommends -y chromium
 
 test: $(VENV)/test ## lint and run every test, of types too
 	$(BIN)/ruff check .
@@ -59,7 +65,9 @@ lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    pyproject.toml --extra fem -c requirements/runtime.txt -o requirements/demo.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
-	    pyproject.toml --group test -c requirements/demo.txt -o requirements/test.txt
+	    pyproject.toml --extra app -c requirements/runtime.txt -o requirements/app.txt
+	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	    pyproject.toml --group test -c requirements/demo.txt -c requirements/app.txt -o requirements/test.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    pyproject.toml --group test --group docs -c requirements/test.txt -o requirements/docs.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
@@ -86,6 +94,10 @@ $(VENV)/runtime: $(VENV)/uv requirements/runtime.txt pyproject.toml
 
 $(VENV)/demo: $(VENV)/runtime requirements/demo.txt
 	$(INSTALL) --require-hashes -r requirements/demo.txt
+	@touch $@
+
+$(VENV)/app: $(VENV)/runtime requirements/app.txt
+	$(INSTALL) --require-hashes -r requirements/app.txt
 	@touch $@
 
 $(VENV)/test: $(VENV)/runtime requirements/test.txt
