@@ -66,7 +66,7 @@ def test_a_script_of_the_gallery_is_short_and_has_a_caption(script: Path) -> Non
 @pytest.mark.parametrize("script", SCRIPTS, ids=name_of)
 def test_a_script_of_the_gallery_draws_a_figure_with_labels_inside_its_edges(script: Path) -> None:
     figure = figure_of(script)
-    assert any(axes.get_xlabel() for axes in figure.axes)
+    assert any(axes.get_xlabel() or not axes.axison for axes in figure.axes)  # a picture of a solid has no axes
     assert not texts_beyond_the_edge(figure)
     assert any(axes.get_ylabel() or named_ticks(axes) for axes in figure.axes)
 

@@ -14,8 +14,13 @@ METHODS = {  # of paths, or of modules that move and remove files
 }
 MODULES = {"shutil", "tempfile", "sqlite3"}  # made to write
 READING = {"which", "get_terminal_size"}  # of these modules
-EXCEPTED = {  # calls of modules that replace nothing: a file without a name, and a folder among temporary files
+EXCEPTED = {  # calls of modules that replace nothing of users: a file without a name, and folders of their own
+    "browser/jobs.py": ("import shutil", "mkdir(", "shutil.rmtree("),
+    "browser/pool.py": ("import tempfile", "TemporaryDirectory("),
+    "browser/server.py": ("webbrowser.open(",),
+    "browser/uploads.py": ("import ", "mkdtemp(", "rmtree(", "path.open('xb')", "path.unlink("),
     "models/fem/solver/cad.py": ("TemporaryFile",),
+    "models/fem/solver/geometry.py": ("import TemporaryDirectory",),
     "input_files.py": ("os.O_RDONLY",),  # reads pipes
     "tasks/files.py": ("tempfile", "TemporaryDirectory", "path.write_bytes(file.content)"),
     "compilation.py": ("import tempfile", "tempfile.gettempdir()", "folder.mkdir(mode=stat.S_IRWXU"),

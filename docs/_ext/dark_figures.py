@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import Collection, QuadMesh
+from matplotlib.collections import Collection, PolyCollection, QuadMesh
 from matplotlib.colors import to_rgba, to_rgba_array
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
@@ -80,8 +80,9 @@ def _furniture(figure: Figure) -> Iterator[Artist]:
 def _is_map(axes: Axes) -> bool:
     """Whether axes show colours for values over a plane, or a body in space."""
     kinds = (AxesImage, QuadMesh)
+    solid = any(isinstance(part, PolyCollection) and len(part.get_facecolor()) > 1 for part in axes.collections)
     filled = any(isinstance(part, ContourSet) and part.filled for part in axes.collections)
-    return filled or isinstance(axes, Axes3D) or any(isinstance(part, kinds) for part in axes.get_children())
+    return filled or solid or isinstance(axes, Axes3D) or any(isinstance(part, kinds) for part in axes.get_children())
 
 
 def _content(axes: Axes) -> list[Artist]:

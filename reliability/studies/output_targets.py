@@ -30,6 +30,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "sweep": (INPUT, "--of", "speed"),
     "map": (INPUT,),
     "plan": (INPUT,),
+    "mapping": (INPUT,),
     "uncertainty": (INPUT,),
     "optimise": (INPUT, "--target-friction", "0.15"),
     "control": (INPUT,),

@@ -230,10 +230,10 @@ def fit_to_style(figure: "Figure") -> None:
         text.set_fontsize(max(text.get_fontsize(), style.smallest_text))
 
 
-def width_in_print(width: float) -> float:
-    """Return the width in inches that a figure of this width gets in a journal: that of a column or of the page."""
+def inches_in_print(inches: float) -> float:
+    """Return the width that a figure of a width in inches gets in a journal: that of a column or of the page."""
     style = FIGURE_STYLES["journal"]
-    return (style.column_width if width <= _NARROW else style.page_width) / _INCH
+    return (style.column_width if inches <= _NARROW else style.page_width) / _INCH
 
 
 def render_figure(figure: "Figure", file_format: str, *, resolution: float | None = None) -> bytes:

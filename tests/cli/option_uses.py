@@ -82,7 +82,13 @@ MODES = {
         (RIG, "--runs", OWN_RUNS, "--pin", "m50", "--disc", "m50"),
         {
             **{"--runs": RUNS, "--laboratory": f"{RIG}={OWN_RUNS}", "--pin": "aluminium_2024"},
-            **{"--disc": "aluminium_2024", "--seed": "1", "--mapping": "FOLDER/halved.toml", **VIBRATED},
+            **{
+                "--disc": "aluminium_2024",
+                "--seed": "1",
+                "--draws": "500",
+                "--mapping": "FOLDER/halved.toml",
+                **VIBRATED,
+            },
         },
         ("--lubricant",),
     ),

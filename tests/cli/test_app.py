@@ -89,12 +89,15 @@ def test_the_help_lists_every_command_under_the_heading_of_its_task() -> None:
         assert re.search(rf"^│ {command.name.split()[0]} ", panel, flags=re.MULTILINE), command
 
 
+SERVERS = ("app",)  # answer in a browser
+
+
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
 def test_every_command_has_json_and_an_example_in_its_help(command: Command) -> None:
     function = command.function
     assert f"Example: sonolube {command.name}" in (function.__doc__ or "")
     assert command.help == inspect.getdoc(function)
-    assert "json" in function.__annotations__
+    assert ("json" in function.__annotations__) == (command.name not in SERVERS)
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["measure", "--help"], ["frictoin"], ["study"]])

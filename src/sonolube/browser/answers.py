@@ -3,7 +3,6 @@
 import base64
 import binascii
 import os
-import tempfile
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path, PurePath
@@ -15,7 +14,7 @@ from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError
 from sonolube.example_files import example_file
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.blocks import Block, Rows, Table, Verbatim
-from sonolube.tasks.files import NamedBytes, with_names_only
+from sonolube.tasks.files import NamedBytes, file_path, private_files, with_names_only
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
 
     from sonolube.rig import Rig
 
-_PRIVATE: Final = "sonolube-bytes-"  # folders whose names `with_names_only` takes out of texts
 _DEVICES: Final = ("lab run", "lab hold", "lab check")  # which open a device
 
 
@@ -144,10 +142,10 @@ def rig_path(source: Mapping[str, Any], places: Places, stack: ExitStack) -> Pat
     """Path of the file of a rig: of the one that the workbench was opened with, of an example, or of a text."""
     text, name = source.get("text"), source.get("name")
     if isinstance(text, str) and text:
-        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix=_PRIVATE))
-        path = Path(folder, f"{_plain_name(name) if isinstance(name, str) else 'rig'}.toml")
-        path.write_text(text, encoding="utf-8")
-        return path
+        stack.enter_context(private_files())
+        return file_path(
+            NamedBytes(f"{_plain_name(name) if isinstance(name, str) else 'rig'}.toml", text.encode("utf-8", "replace"))
+        )
     if not isinstance(name, str):
         raise InvalidInput("rig: give the name of an example, or the text of a file", key="rig")
     if name in places.rigs:

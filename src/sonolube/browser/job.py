@@ -1,7 +1,6 @@
 """The process of one job: `python -m sonolube.browser.job FOLDER` reads its request and writes progress and result."""
 
 import json
-import shutil
 import sys
 import time
 from collections.abc import Mapping
@@ -68,9 +67,8 @@ def write_files(contents: "Mapping[str, Content]", *, folder: Path) -> list[str]
 
     for name, content in contents.items():
         path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
         if isinstance(content, Path):
-            shutil.copyfile(content, path)
+            write_atomically(path, content.read_bytes())
         elif isinstance(content, str | bytes):
             write_atomically(path, content)
         else:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.charts.chart import Axis, Band, Bars, Chart, Colour, Field, Line, Note, Part, Points, Rule, Zone
-from sonolube.figure import COLOURS, LINES, MARKERS, subplots, width_in_print
+from sonolube.figure import COLOURS, LINES, MARKERS, inches_in_print, subplots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -371,7 +371,7 @@ def _draw_scale(figure: "Figure", place: Any, scale: _Scale) -> None:
 
 def _draw_texts(figure: "Figure", grid: Any, chart: Chart) -> None:
     """Title, and the labels of all panels, each once, beside the panels; a title over a legend is part of it."""
-    title = _wrapped(chart.title, width_in_print(chart.size[0]))
+    title = _wrapped(chart.title, inches_in_print(chart.size[0]))
     entries: dict[str, Any] = {}
     for axes in grid.flat if chart.legend not in ("panels", "none") else ():
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):

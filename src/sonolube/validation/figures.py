@@ -197,7 +197,7 @@ def predicted_against_measured_chart(result: "xr.Dataset") -> Chart:
     columns = min(4, count)
     legend_columns = 1 if columns < 3 else 2
     width = min(max(2.15 * columns + 0.6, 4.9), _PAGE)
-    height = -(-count // columns) * (min(width / columns, 2.6) + 0.6) + 0.6 + 1.8 / legend_columns
+    height = -(-count // columns) * (min(width / columns, 2.6) + 0.6) + 1.1 + 1.8 / legend_columns
     fitted = assessed["test"].to_numpy()[assessed["fitted_ratio"].notnull().any("model").to_numpy()]
     letters = sorted({test[0] for test in fitted})
     return Chart(

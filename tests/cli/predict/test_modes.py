@@ -103,7 +103,7 @@ def test_every_frame_of_an_animation_shows_the_same_scale_of_colours(tmp_path: P
             animation.seek(number)
             frames.append(np.asarray(animation.convert("RGB"), dtype=int))
     assert len(frames) == 16
-    scale = slice(int(0.85 * frames[0].shape[1]), None)  # what stands to the right of the part
+    scale = slice(int(0.88 * frames[0].shape[1]), None)  # what stands to the right of the part
     assert all(np.abs(frame[:, scale] - frames[0][:, scale]).max() <= 2 for frame in frames)
     assert np.abs(frames[8] - frames[0]).max() > 50
 

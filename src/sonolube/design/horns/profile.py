@@ -28,11 +28,11 @@ class HornProfile:
         Distance from the driven face, distance from the axis, both in m, and the bulge of the edge to the next vertex:
         zero for a straight line, the tangent of a quarter of its angle for an arc.
     stations : tuple of float
-        Distances from the driven face at which sections begin and end. [m]
+        Distances from the driven face at which sections begin and end, in m.
     widths : tuple of (float, float)
-        Distance from the driven face, and the diameter, or width of a block, there. [m]
+        Distance from the driven face, and the diameter, or width of a block, there, in m.
     fillets : tuple of (float, float, float)
-        Distance from the driven face, distance from the axis, and radius of each fillet. [m]
+        Distance from the driven face, distance from the axis, and radius of each fillet, in m.
     thickness : float or None
         Of a block; None for a body of revolution. [m]
     notes : tuple of str
