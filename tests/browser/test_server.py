@@ -12,6 +12,8 @@ import psutil  # type: ignore[import-untyped]
 import pytest
 from tests.browser.workbench import Served, served
 
+from sonolube.cli import main
+
 RIG = {"name": "tribometer"}
 
 
@@ -132,3 +134,26 @@ def test_a_restart_with_the_same_folder_finds_the_jobs(tmp_path: Path) -> None:
         jobs = json.loads(ask(second, "GET", "/api/jobs")[1])["jobs"]
     assert [(each["id"], each["label"]) for each in jobs] == [(job["id"], "contact")]
     assert jobs[0]["state"] in ("done", "interrupted")
+
+
+def test_other_computers_need_a_token_file_that_only_its_owner_reads(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "token"
+    path.write_text("short", encoding="utf-8")
+    path.chmod(0o644)
+    for arguments, words in (
+        (("--host", "0.0.0.0"), "opens the workbench"),
+        (("--token-file", str(path)), "others can read it"),
+        (("--token-file", str(tmp_path / "none")), "No such file"),
+        (("--port", "1", "--token-file", str(path)), "others can read it"),
+    ):
+        with pytest.raises(SystemExit) as end:
+            main(["app", *arguments])
+        assert end.value.code == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert words in line
+    path.chmod(0o600)
+    with pytest.raises(SystemExit):
+        main(["app", "--token-file", str(path)])
+    assert "32 or more printable characters" in capsys.readouterr().err

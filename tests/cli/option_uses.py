@@ -58,6 +58,7 @@ EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--schedu
 PLACES = {"--out", "--json", "--help", "--brief"}
 # A run takes a minute; tests of these commands try them.
 TESTED_ELSEWHERE = {
+    *(("app", option) for option in ("--port", "--no-browser", "--host", "--token-file", "--allow-host")),
     ("reproduce", "--chapter"),
     ("uncertainty", "--identified"),
     ("identify rig", "--facts"),

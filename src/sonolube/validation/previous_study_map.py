@@ -118,7 +118,7 @@ def study_chart(added: StudyPoint | None = None, *, others: tuple[StudyPoint, ..
         parts=tuple(parts),
     )
     aside = Panel(
-        x=Axis(label="speed and pressure not stated", lowest=-0.1, highest=1.0, ticks=(0.0,), words=("",)),
+        x=Axis(label="neither stated", lowest=-0.1, highest=1.0, ticks=(0.0,), words=("",)),
         y=Axis(lowest=0.5 - max(len(unplaced), 5), highest=0.5, ticks=(0.5,), words=("",)),
         parts=_points([(point, (0.0, -float(row))) for row, point in enumerate(unplaced)], others),
     )
