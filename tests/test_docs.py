@@ -33,13 +33,17 @@ def help_example(name: str) -> str:
     return found[1].strip()
 
 
+SERVERS = ("sonolube app",)  # which run until they are ended
+
+
 def calls() -> list[tuple[str, bool]]:
     """Commands on rigs that the pages show, and whether each is shown to be refused."""
     text = text_of(*PAGES)
     answered = re.findall(r"^```\{answer\} (sonolube .*)\n(:refused:)?", text, flags=re.MULTILINE)
     typed = re.findall(r"^\$ (sonolube .*)$", text, flags=re.MULTILINE)
     shown = {(call, bool(refused)) for call, refused in answered} | {(call, False) for call in typed}
-    return sorted((call, refused) for call, refused in shown if "examples/rigs/" in call or "my-rig.toml" in call)
+    rigs = ("examples/rigs/", "my-rig.toml")
+    return sorted(each for each in shown if any(rig in each[0] for rig in rigs) and not each[0].startswith(SERVERS))
 
 
 def documented_modules() -> set[str]:
