@@ -112,6 +112,18 @@ def test_files_of_this_computer_are_not_read(arguments: dict[str, Any], words: s
         answered(task_named("predict"), {"rig": rig()} | arguments, NOWHERE)
 
 
+@pytest.mark.parametrize("file", ["/etc/passwd", "../../modes.csv", "modes.csv"])
+def test_a_rig_names_no_file_of_this_computer(file: str) -> None:
+    text = TRIBOMETER.read_text(encoding="utf-8").replace(
+        "[structure]", f'[structure]\nkind = "modes"\nfile = "{file}"'
+    )
+    for source in ({"name": "own", "text": text}, {"name": "tribometer", "changes": {"structure.file": file}}):
+        with pytest.raises(InvalidInput, match=r"structure\.file: a page reads no file"):
+            answered(task_named("friction"), {"rig": source}, NOWHERE)
+        with pytest.raises(InvalidInput, match=r"structure\.file: a page reads no file"):
+            rig_view({"rig": source}, NOWHERE)
+
+
 def test_a_rig_without_name_or_text_and_a_call_without_a_rig_are_refused() -> None:
     cases: tuple[dict[str, Any], ...] = ({}, {"rig": "tribometer"}, {"rig": {}}, {"rig": {"name": "../secret"}})
     for arguments in cases:

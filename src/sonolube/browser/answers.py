@@ -3,8 +3,9 @@
 import base64
 import binascii
 import os
+import tomllib
 from collections.abc import Callable, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from sonolube.rig import Rig
 
+_MODES: Final = "structure.file"  # the entry of a rig that names another file
 _DEVICES: Final = ("lab run", "lab hold", "lab check")  # which open a device
 
 
@@ -118,8 +120,22 @@ def given_rig(source: Any, places: Places, stack: ExitStack) -> "Rig":
     if not isinstance(changes, Mapping) or not all(isinstance(value, str) for value in changes.values()):
         raise InvalidInput("rig.changes: give texts by dotted key, such as drive.frequency: 22 kHz", key="rig")
     path = rig_path(source, places, stack)
+    _refuse_other_files(source, changes)
     with names_only(path):
         return read_rig(path, changes=[f"{key}={value}" for key, value in changes.items()])
+
+
+def _refuse_other_files(source: Mapping[str, Any], changes: Mapping[str, str]) -> None:
+    """Raise if a rig names a file beside it, which would be one of this computer."""
+    is_named = any(key.strip() == _MODES for key in changes)
+    if source.get("text"):
+        with suppress(tomllib.TOMLDecodeError, RecursionError):  # of which the reader of rigs says what is wrong
+            structure = tomllib.loads(str(source["text"])).get("structure")
+            is_named = is_named or (isinstance(structure, Mapping) and "file" in structure)
+    if is_named:
+        raise InvalidInput(
+            f"{_MODES}: a page reads no file of this computer; give the modes as lists in the rig file", key=_MODES
+        )
 
 
 @contextmanager

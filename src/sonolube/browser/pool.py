@@ -7,7 +7,6 @@ import multiprocessing
 import tempfile
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, Final
 
@@ -93,10 +92,6 @@ class Pool:
             return await loop.run_in_executor(self._threads, worker.ask, (kind, payload, places), longest)
         finally:
             self._free.put_nowait(place)
-
-    def connections(self) -> list[Connection]:
-        """Connections of the workers, for tests."""
-        return [worker.connection for worker in self._workers]
 
     def end(self) -> None:
         """End all workers."""

@@ -75,7 +75,7 @@ class Workbench:
         del request
         from sonolube import __version__
 
-        content = {"rig": self.opened, "version": __version__, "jobs": str(len(self.jobs.list())), "days": KEPT_DAYS}
+        content = {"rig": self.opened, "version": __version__}
         return _json(content)
 
     def _answering(self, kind: str) -> Endpoint:

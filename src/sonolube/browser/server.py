@@ -56,7 +56,7 @@ class _Server(uvicorn.Server):
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Listen, and print the link."""
         await super().startup(sockets)
-        sys.stdout.write(f"{self._link}\n")
+        sys.stdout.write(f"The workbench is at {self._link}\nCtrl-C ends it.\n")
         sys.stdout.flush()
         if self._opens:
             webbrowser.open(self._link)
