@@ -116,6 +116,13 @@ def test_the_object_for_a_browser_has_all_numbers_and_no_nan() -> None:
     assert words["parts"][0]["words"] == ["dry", "oil"]
 
 
+def test_numbers_for_a_browser_have_six_digits() -> None:
+    line = Line(x=np.array([0.0123456789, 98765.4321]), y=np.array([1e-12 / 3, -2.0]))
+    (part,) = chart_object(Chart(panels=(Panel(x=SPEED, y=SPEED, parts=(line,)),)))["panels"][0]["parts"]
+    assert part["x"] == [0.0123457, 98765.4]
+    assert part["y"] == [3.33333e-13, -2.0]
+
+
 def test_the_value_nought_of_a_rule_is_kept() -> None:
     panel = Panel(x=SPEED, y=Axis(label="Gap", unit="µm"), parts=(Rule(along="y", value=0.0),))
     (part,) = chart_object(Chart(panels=(panel,)))["panels"][0]["parts"]

@@ -12,7 +12,7 @@ import xarray as xr
 from pytest import approx, mark, raises
 from scipy.stats import norm
 
-from sonolube.charts import Panel, Points
+from sonolube.charts import Line, Panel, Points
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import si_value
 from sonolube.measurement.measured_runs import read_runs
@@ -282,6 +282,10 @@ def test_a_run_at_another_speed_is_moved_to_that_of_the_operating_point(tmp_path
     assert measured.y[0] == approx(0.8)
     assert measured.x[0] == approx(100)
     assert 0 <= moved.y[0] < 0.7  # slower sliding has less friction
+    (median,) = (part for part in over_speed.parts if getattr(part, "label", "") == "median")
+    assert isinstance(median, Line)
+    at_point, at_run = np.interp(np.log([20.3, 100.0]), np.log(median.x), median.y)
+    assert moved.y[0] == approx(0.8 + at_point - at_run, abs=0.01)
     assert "0.8 at 2.5 um, 100 mm/s" in moved.sources[0]
 
 
