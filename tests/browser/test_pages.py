@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
@@ -12,21 +11,13 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 from tests.browser.workbench import Served, served
+from tests.chromium import CHROMIUM, FLAGS
 
 import sonolube as sl
 from sonolube.cli import main
 from sonolube.report.results.prediction import HEADS, quantity_rows
 from sonolube.rig import read_rig
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-]
 EXAMPLES = Path(__file__).parents[2] / "examples"
 RIGS = EXAMPLES / "rigs"
 VOLTS, SPEED, LOAD = "drive.voltage_peak_to_peak", "sliding.sliding_speed", "contact.normal_load"

@@ -1,6 +1,5 @@
 """All pages in a real browser: drawn, narrow enough for a phone, without network requests, and usable."""
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from types import MappingProxyType
@@ -8,21 +7,13 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
+from tests.chromium import CHROMIUM, FLAGS
 
 from sonolube.cli import main
 from sonolube.files import write_atomically
 from sonolube.report import MeasurementReport, PinOnDiscSheet, measurement_page
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-]
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 VOLTS = "drive.voltage_peak_to_peak"
 DESIGNS = {

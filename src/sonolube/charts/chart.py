@@ -45,7 +45,7 @@ class Axis:
     @property
     def text(self) -> str:
         """Label with its unit in brackets."""
-        return f"{self.label} [{self.unit}]" if self.unit else self.label
+        return _with_unit(self.label, self.unit)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -196,7 +196,7 @@ class Field:
     @property
     def scale_text(self) -> str:
         """Label of the scale of colours, with its unit in brackets."""
-        return f"{self.label} [{self.unit}]" if self.unit else self.label
+        return _with_unit(self.label, self.unit)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -289,3 +289,8 @@ class Chart:
         """Return the chart with further parts in one of its panels."""
         changed = replace(self.panels[place], parts=(*self.panels[place].parts, *parts))
         return replace(self, panels=(*self.panels[:place], changed, *self.panels[place + 1 :]))
+
+
+def _with_unit(label: str, unit: str) -> str:
+    """Label with its unit in brackets; alone for a pure number."""
+    return f"{label} [{unit}]" if unit else label
