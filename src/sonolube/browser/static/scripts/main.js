@@ -102,15 +102,16 @@ function Page() {
     read(page).then((module) => module.default, () => Unread).then((shown) => setPages((old) => ({...old, [page]: shown})));
   }, [state.page]);
   if (fault) return html`<${Broken} again=${clear} />`;
-  return Shown ? html`<${Shown} />` : html`<div id="answer" tabindex="-1"><p class="loading" role="status">Reading the page…</p></div>`;
+  return Shown ? html`<${Shown} />` : html`<div class="page" id="answer" tabindex="-1"><h1>${PAGE_TITLES[state.page]}</h1>
+    <p class="loading" role="status">Reading the page…</p></div>`;
 }
 
-const Unread = () => html`<div class="notice is-warning" id="answer" tabindex="-1" role="alert">This page could not be read from the workbench.
-  <a href="">Read it again</a></div>`;
+const Unread = () => html`<div class="page" id="answer" tabindex="-1"><h1>No page</h1>
+  <div class="notice is-warning" role="alert">This page could not be read from the workbench. <a href="">Read it again</a></div></div>`;
 
-const Broken = ({again}) => html`<div class="notice is-warning" id="answer" tabindex="-1" role="alert">
-  <p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
-  <button type="button" class="button" onClick=${again}>Draw it again</button></div>`;
+const Broken = ({again}) => html`<div class="page" id="answer" tabindex="-1"><h1>No answer</h1>
+  <div class="notice is-warning" role="alert"><p><strong>This page made a mistake.</strong> What you typed is in the address of
+    this page and not lost.</p><button type="button" class="button" onClick=${again}>Draw it again</button></div></div>`;
 
 function Workbench() {
   return html`<${Head} /><${Connection} /><main id="main"><${Page} /></main>`;
