@@ -45,6 +45,11 @@ class DriveSetting:
     voltage_offset: float = 0.0
     waveform: str = "sine"
 
+    @property
+    def voltage_maximum(self) -> float:
+        """Greatest magnitude of the voltage, its offset included. [V]"""
+        return abs(self.voltage_offset) + self.voltage_peak_to_peak / 2
+
 
 class Acquisition(Protocol):
     """Analogue inputs with one hardware clock."""

@@ -7,7 +7,9 @@ from pathlib import Path
 from sonolube.facts.protocol import Protocol, protocol_text
 from sonolube.input_files import input_text
 from sonolube.laboratory.devices import Devices
-from sonolube.laboratory.records import RunRecorder, new_run
+from sonolube.laboratory.drive_sampling import DriveSampling, recorded_channels
+from sonolube.laboratory.interlocks import interlocks_for
+from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
 from sonolube.rig import Rig
 
 
@@ -25,6 +27,8 @@ class RunPlan:
         None for the virtual tribometer.
     seed : int
     tags : sequence of str
+    drive : DriveSampling or None
+        How often the drive is sampled; None where nothing is driven.
     """
 
     protocol: Protocol
@@ -33,6 +37,23 @@ class RunPlan:
     device_file: Path | None = None
     seed: int = 0
     tags: Sequence[str] = ()
+    drive: DriveSampling | None = None
+
+    def unresolved(self, devices: Devices) -> str:
+        """What record and limits do not show of the drive, in one line; empty where they show it.
+
+        Parameters
+        ----------
+        devices : Devices
+
+        Returns
+        -------
+        str
+        """
+        if self.drive is None:
+            return ""
+        locks = interlocks_for(self.protocol.limits, devices.acquisition.channels, self.drive)
+        return self.drive.caveat([*recorded_channels(self.protocol), *(lock.channel.name for lock in locks)])
 
 
 def begin_record(
@@ -81,6 +102,8 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
         "simulated": devices.simulated,
         **{f"device_{name.replace(' ', '_')}": text for name, text in devices.description.items()},
     }
+    if unresolved := plan.unresolved(devices):
+        facts[UNRESOLVED] = unresolved
     if plan.tags:
         facts["tags"] = ", ".join(plan.tags)
     if devices.simulated:

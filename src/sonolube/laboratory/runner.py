@@ -11,8 +11,9 @@ from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, connect_devices, switch_outputs_off
+from sonolube.laboratory.drive_sampling import drive_sampling, idle_rate
 from sonolube.laboratory.ending import RunEnded, ending, release_devices
-from sonolube.laboratory.interlocks import Trip, interlocks_for
+from sonolube.laboratory.interlocks import Trip, interlocks_for, set_point_trip
 from sonolube.laboratory.sampling import BLOCK_DURATION, Recorder, Sampling
 from sonolube.laboratory.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
 from sonolube.laboratory.states import Event, RunState, State, after
@@ -137,7 +138,7 @@ class _Run:
         self._points = flattened(protocol)
         self._point = self._points[0]
         self._diameter = groove_diameter(protocol, devices)
-        locks = interlocks_for(protocol.limits, devices.acquisition.channels)
+        locks = interlocks_for(protocol.limits, devices.acquisition.channels, drive_sampling(protocol))
         self._sampling = Sampling(devices.acquisition, recorder, locks)
         self._present = RunState()
         self._drive: DriveSetting | None = None
@@ -219,7 +220,7 @@ class _Run:
             assert point.sample_rate is not None
             self._sampling.record(point.channels, sample_rate=point.sample_rate)
         else:
-            self._sampling.start(point.channels, sample_rate=point.sample_rate)
+            self._sampling.start(point.channels, sample_rate=point.sample_rate or idle_rate(self._points))
 
     @property
     def _records_now(self) -> bool:
@@ -240,10 +241,17 @@ class _Run:
             if setting is None:
                 self._devices.drive.off()
             else:
+                self._require_within(setting)
                 self._devices.drive.drive(setting)
             self._drive = setting
             frequency = 0.0 if setting is None else setting.frequency
             self._note("drive", step=point.step, voltage_peak_to_peak=point.voltage_peak_to_peak, frequency=frequency)
+
+    def _require_within(self, setting: DriveSetting) -> None:
+        """End the run before a setting beyond the limit of the voltage is sent."""
+        excess = set_point_trip(setting, self._protocol.limits)
+        if excess:
+            raise RunEnded(Event.TRIP, excess)
 
     def _ask(self, prompt: Prompt) -> None:
         """Ask the operator with motor and drive off, while the clock stands."""

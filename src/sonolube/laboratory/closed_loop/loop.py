@@ -20,7 +20,7 @@ from sonolube.laboratory.devices import (
     switch_outputs_off,
 )
 from sonolube.laboratory.ending import RunEnded, ending, release_devices
-from sonolube.laboratory.interlocks import first_trip, interlocks_for
+from sonolube.laboratory.interlocks import first_trip, interlocks_for, set_point_trip
 from sonolube.laboratory.runner import Advance, RunControl
 from sonolube.laboratory.sampling import Recorder
 from sonolube.laboratory.states import Event, RunState, State, after
@@ -80,7 +80,7 @@ class _Loop:
     def __init__(self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
         self._hold, self._devices, self._recorder, self._control = hold, devices, recorder, control
         channels = devices.acquisition.channels
-        self._locks = interlocks_for(hold.limits, channels)
+        self._locks = interlocks_for(hold.limits, channels, hold.drive_sampling)
         self._names = list(recorded_channels(hold, channels))
         self._present, self._is_recording = RunState(), False
         self._next_sample, self._rate, self._count = 0, 0.0, 0
@@ -179,13 +179,15 @@ class _Loop:
         if voltage <= 0:
             self._devices.drive.off()
             return
-        self._devices.drive.drive(
-            DriveSetting(
-                voltage_peak_to_peak=voltage,
-                voltage_offset=self._hold.offset_ratio * voltage,
-                frequency=self._hold.frequency,
-            )
+        setting = DriveSetting(
+            voltage_peak_to_peak=voltage,
+            voltage_offset=self._hold.offset_ratio * voltage,
+            frequency=self._hold.frequency,
         )
+        excess = set_point_trip(setting, self._hold.limits)
+        if excess:
+            raise RunEnded(Event.TRIP, excess)
+        self._devices.drive.drive(setting)
 
     def _measure(self) -> tuple[float, float]:
         """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""
@@ -265,7 +267,7 @@ def require_holdable(hold: FrictionHold, devices: Devices) -> None:
     InvalidInput
         Naming what is asked for, and the device or limit that forbids it.
     """
-    interlocks_for(hold.limits, devices.acquisition.channels)
+    interlocks_for(hold.limits, devices.acquisition.channels, hold.drive_sampling)
     if _FRICTION not in devices.acquisition.channels:
         raise InvalidInput(f"{devices.acquisition.name} has no channel {_FRICTION}, which the loop needs")
     reached = format_si(hold.voltage_maximum, "V")

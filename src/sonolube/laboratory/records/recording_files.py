@@ -13,9 +13,10 @@ import numpy as np
 
 from sonolube.files import unfinished_file
 from sonolube.laboratory.records.recorded_part import Floats, RecordedPart
-from sonolube.laboratory.records.run_folder import RunFacts
+from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts
 from sonolube.vocabulary import quantity
 
+_WAVES: Final = {"stack_voltage", "stack_current"}  # quantities of which samples are values of the wave itself
 _CSV_DIGITS: Final = "%.17g"  # what 64-bit floats hold
 
 
@@ -129,7 +130,10 @@ def _attributes(part: RecordedPart, known: RunFacts) -> dict[str, str | float]:
         "begun": _start(part).astype(datetime).strftime("%Y-%m-%d %H:%M:%S.%f"),
         "facts": json.dumps(dict(known.facts)),
     }
-    return found | ({"caveats": "\n".join(part.caveats)} if part.caveats else {})
+    caveats = [*part.caveats]
+    if UNRESOLVED in known.facts and _WAVES & set(part.variables.values()):
+        caveats.append(str(known.facts[UNRESOLVED]))
+    return found | ({"caveats": "\n".join(caveats)} if caveats else {})
 
 
 def _waveform(part: RecordedPart, of: str) -> Mapping[str, Any]:

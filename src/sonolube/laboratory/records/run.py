@@ -15,6 +15,7 @@ from sonolube.laboratory.records.run_folder import (
     LATEST,
     PROTOCOL,
     RUN,
+    UNRESOLVED,
     RunFacts,
     changed_files,
     raw_path,
@@ -317,6 +318,8 @@ def note_of(event: Mapping[str, Any]) -> Note:
 def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: RunSummary) -> list[str]:
     """What speaks against the record of a run."""
     found = [f"{name} is missing or was changed since the run began" for name in changed_files(folder, known)]
+    if UNRESOLVED in known.facts:
+        found.append(str(known.facts[UNRESOLVED]))
     if summary.outcome == UNFINISHED:
         found.append("the program was killed during the run; sonolube lab recover completes its record")
     elif summary.outcome not in ("completed", RUNNING):

@@ -113,6 +113,7 @@ def hold(
         device_file=file,
         seed=seed,
         tags=tag,
+        drive=wanted.drive_sampling,
     )
     recorder = begin_record(plan, devices, out=Path(out), facts={"reference_friction_force": wanted.friction_force})
     requests = control or RunControl()

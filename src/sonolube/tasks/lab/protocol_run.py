@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.protocol import protocol_by_name_or_file
+from sonolube.laboratory.drive_sampling import drive_sampling
 from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import EXPORT_FORMATS, export_run
 from sonolube.laboratory.run_plan import RunPlan
@@ -49,7 +50,15 @@ def run(
         refuse_unused(*unused, because=f"with {shown('dry_run')}, which runs nothing")
         return DryRunAnswer(protocol=read, found=dry_runs.dry_run(read, rig=known))
     file = device_file(device_map)
-    plan = RunPlan(protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, tags=tag)
+    plan = RunPlan(
+        protocol=read,
+        name=Path(path).stem,
+        rig=known,
+        device_file=file,
+        seed=seed,
+        tags=tag,
+        drive=drive_sampling(read),
+    )
     simulated = _virtual_rig(plan, real_time=real_time) if file is None else None
     return run_and_record(
         plan,
@@ -81,7 +90,8 @@ def virtual(
     if file_format not in EXPORT_FORMATS:
         raise UnknownName.among(EXPORT_FORMATS, kind="format", name=file_format)
     path = str(file_path(protocol))
-    plan = RunPlan(protocol=protocol_by_name_or_file(path), name=Path(path).stem, rig=rig_of(rig), seed=seed)
+    read = protocol_by_name_or_file(path)
+    plan = RunPlan(protocol=read, name=Path(path).stem, rig=rig_of(rig), seed=seed, drive=drive_sampling(read))
     simulated = _virtual_rig(plan)
     found = run_and_record(plan, simulated.devices, out=Path(out), virtual=simulated)
     if file_format != "netcdf":
