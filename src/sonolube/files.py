@@ -231,6 +231,18 @@ def locked_folder(folder: Path, *, purpose: str) -> Iterator[None]:
             _release(handle, place)
 
 
+def user_state_folder() -> Path:
+    """Folder of states of this user, which outlive a program.
+
+    Returns
+    -------
+    Path
+        `sonolube` below $XDG_STATE_HOME, %LOCALAPPDATA% or ~/.local/state.
+    """
+    base = os.environ.get("XDG_STATE_HOME") or (os.environ.get("LOCALAPPDATA") if os.name == "nt" else None)
+    return Path(base or Path.home() / ".local" / "state") / "sonolube"
+
+
 def is_locked(folder: Path) -> bool:
     """Whether a process, this one included, is at work in a folder by `locked_folder`."""
     try:

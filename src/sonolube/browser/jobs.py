@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import os
 import secrets
 import shutil
 import subprocess
@@ -14,7 +13,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_atomically
+from sonolube.files import user_state_folder, write_atomically
 
 KEPT_DAYS: Final = 30
 """Days after which a finished job is deleted."""
@@ -26,8 +25,7 @@ _REQUEST, _STATE, _RESULT = "request.json", "state.json", "result.json"
 
 def jobs_folder() -> Path:
     """Folder in which jobs are kept: `sonolube/jobs` in the folder of states of this user."""
-    base = os.environ.get("XDG_STATE_HOME") or (os.environ.get("LOCALAPPDATA") if os.name == "nt" else None)
-    return Path(base or Path.home() / ".local" / "state") / "sonolube" / "jobs"
+    return user_state_folder() / "jobs"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -142,6 +142,8 @@ class Devices:
     prepare : callable or None
         Works out what the devices need for a drive setting (None for off) at a speed of the disc, in 1/s. It is called
         for every set point before anything is connected; None where no set point takes the devices time.
+    resources : tuple of str
+        Canonical names of the hardware (device, address, port), which one run of a user has at a time.
     """
 
     acquisition: Acquisition
@@ -151,10 +153,11 @@ class Devices:
     groove_diameter: float
     simulated: bool = False
     prepare: Callable[[DriveSetting | None, float], None] | None = None
+    resources: tuple[str, ...] = ()
 
 
 def connect_devices(devices: Devices) -> None:
-    """Connect all devices, outputs off; drive and motor first, so that what ran before is off.
+    """Connect all devices, outputs off: the acquisition first, which touches no output where another program has it.
 
     Parameters
     ----------
@@ -165,7 +168,7 @@ def connect_devices(devices: Devices) -> None:
     DeviceError
         If a device does not answer.
     """
-    for device in (devices.drive, devices.motor, devices.acquisition):
+    for device in (devices.acquisition, devices.drive, devices.motor):
         device.connect()
 
 

@@ -54,11 +54,8 @@ class DriveSampling:
         blind = [name for name in _WAVES if name in set(channels)]
         if self.is_resolved or not blind:
             return ""
-        verb = "do" if len(blind) > 1 else "does"
-        return (
-            f"{' and '.join(blind)} at {format_si(self.sample_rate, 'Hz')} {verb} not resolve the drive (fewer than five"
-            " samples a period)"
-        )
+        them = f"{' and '.join(blind)} at {format_si(self.sample_rate, 'Hz')} {'do' if len(blind) > 1 else 'does'}"
+        return f"{them} not resolve the drive (fewer than five samples a period)"
 
 
 def drive_sampling(protocol: Protocol) -> DriveSampling | None:

@@ -77,7 +77,7 @@ def begin_record(
     Raises
     ------
     InvalidInput
-        If another run is at work at the rig.
+        If the folder cannot be written.
     """
     return new_run(
         out,
@@ -114,5 +114,5 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
         if rig.changes:
             facts["changed_entries"] = "; ".join(rig.changes)
     if plan.device_file is not None:
-        facts["rig"] = plan.device_file.stem  # one run at a time on the devices of a map, whatever rig file is given
+        facts["rig"] = plan.device_file.stem
     return facts
