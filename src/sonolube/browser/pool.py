@@ -23,7 +23,8 @@ class _Worker:
 
     def __init__(self, folder: str) -> None:
         self.connection, other = _CONTEXT.Pipe()
-        self.process: BaseProcess = _CONTEXT.Process(target=serve, args=(other, folder), daemon=True)
+        self.warm = _CONTEXT.Event()
+        self.process: BaseProcess = _CONTEXT.Process(target=serve, args=(other, folder, self.warm), daemon=True)
         self.process.start()
         other.close()
 
@@ -64,6 +65,11 @@ class Pool:
         self._free: asyncio.Queue[int] = asyncio.Queue()
         for place in range(count):
             self._free.put_nowait(place)
+
+    @property
+    def is_warm(self) -> bool:
+        """Whether a worker has imported what most requests need."""
+        return any(worker.warm.is_set() for worker in self._workers)
 
     async def ask(
         self, kind: str, payload: Mapping[str, Any], places: Places, *, longest: float = _LONGEST

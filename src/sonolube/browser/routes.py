@@ -14,6 +14,7 @@ from starlette.responses import FileResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
+from sonolube.browser.first_page import shipped_answer
 from sonolube.browser.jobs import KEPT_DAYS, Jobs
 from sonolube.browser.places import Places
 from sonolube.browser.pool import Pool
@@ -88,8 +89,9 @@ class Workbench:
         return _refusing(endpoint)
 
     async def _ask(self, kind: str, payload: Mapping[str, Any]) -> Response:
-        """Answer of a worker."""
-        status, body = await self.pool.ask(kind, payload, self._places)
+        """Answer of a worker, or the shipped one to the first page while they start."""
+        shipped = None if self.pool.is_warm or self._places.rigs else shipped_answer(kind, payload)
+        status, body = (200, shipped) if shipped else await self.pool.ask(kind, payload, self._places)
         return Response(body, status_code=status, media_type=_JSON, headers={"cache-control": "no-store"})
 
     async def _task(self, request: Request) -> Response:

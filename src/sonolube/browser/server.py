@@ -11,6 +11,7 @@ from pathlib import Path
 
 import uvicorn
 
+from sonolube.browser.first_page import OPENED
 from sonolube.browser.jobs import Jobs, jobs_folder
 from sonolube.browser.pool import Pool
 from sonolube.browser.routes import Workbench
@@ -111,7 +112,7 @@ def _workbench(options: Options) -> Workbench:
         jobs=Jobs(jobs_folder(), most=cores),
         uploads=Uploads(),
         rigs=rigs,
-        opened=next(iter(rigs), "tribometer"),
+        opened=next(iter(rigs), OPENED),
     )
 
 

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from sonolube import __version__
-from sonolube.browser.answers import called, given_arguments, offered_tasks, positional, rig_path
+from sonolube.browser.answers import called, given_arguments, offered_task, positional, rig_path
 from sonolube.browser.places import Places
 from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, UnknownName
@@ -44,13 +44,10 @@ def taken(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     InvalidInput
         If the task refuses its arguments, or has nothing of this form.
     """
-    known = {task.name: task for task in offered_tasks()}
-    name, form = str(payload.get("task", "")), str(payload.get("form", ""))
-    if name not in known:
-        raise UnknownName.among(known, kind="task", name=name)
+    task, form = offered_task(str(payload.get("task", ""))), str(payload.get("form", ""))
     if form not in _FORMS:
         raise UnknownName.among(_FORMS, kind="form", name=form)
-    return _FORMS[form](known[name], payload.get("arguments") or {}, places)
+    return _FORMS[form](task, payload.get("arguments") or {}, places)
 
 
 def _file(name: str, kind: str, text: str) -> dict[str, Any]:
