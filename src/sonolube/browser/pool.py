@@ -23,10 +23,16 @@ class _Worker:
 
     def __init__(self, folder: str) -> None:
         self.connection, other = _CONTEXT.Pipe()
-        self.warm = _CONTEXT.Event()
-        self.process: BaseProcess = _CONTEXT.Process(target=serve, args=(other, folder, self.warm), daemon=True)
+        self._warm, warm = _CONTEXT.Pipe(duplex=False)
+        self.process: BaseProcess = _CONTEXT.Process(target=serve, args=(other, folder, warm), daemon=True)
         self.process.start()
         other.close()
+        warm.close()
+
+    @property
+    def is_warm(self) -> bool:
+        """Whether it has imported what most requests need, or has ended."""
+        return self._warm.poll()
 
     def ask(self, request: tuple[str, Mapping[str, Any], Places], longest: float) -> tuple[int, bytes]:
         """Answer to a request; the process is dead afterwards where it did not answer in time."""
@@ -52,6 +58,9 @@ class _Worker:
 class Pool:
     """Workers that answer requests in the order in which they come.
 
+    The first one starts alone, so that it and the first page in the browser share the processors; the others start when
+    it has.
+
     Parameters
     ----------
     count : int
@@ -61,15 +70,24 @@ class Pool:
     def __init__(self, count: int) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="sonolube-work-")
         self._threads = ThreadPoolExecutor(count, thread_name_prefix="worker")
-        self._workers = [_Worker(self._folder.name) for _ in range(count)]
+        self._count, self._workers = count, [_Worker(self._folder.name)]
         self._free: asyncio.Queue[int] = asyncio.Queue()
-        for place in range(count):
-            self._free.put_nowait(place)
+        self._free.put_nowait(0)
+        self._starting: list[int] = []
 
     @property
     def is_warm(self) -> bool:
-        """Whether a worker has imported what most requests need."""
-        return any(worker.warm.is_set() for worker in self._workers)
+        """Whether the first worker has imported what most requests need."""
+        return self._workers[0].is_warm
+
+    def _widen(self) -> None:
+        """Start the other workers once the first is warm, and let in those that are."""
+        if len(self._workers) < self._count and self.is_warm:
+            self._starting = list(range(1, self._count))
+            self._workers += [_Worker(self._folder.name) for _ in self._starting]
+        for place in [place for place in self._starting if self._workers[place].is_warm]:
+            self._starting.remove(place)
+            self._free.put_nowait(place)
 
     async def ask(
         self, kind: str, payload: Mapping[str, Any], places: Places, *, longest: float = _LONGEST
@@ -89,6 +107,7 @@ class Pool:
         -------
         (int, bytes)
         """
+        self._widen()
         place = await self._free.get()
         try:
             worker = self._workers[place]
@@ -98,6 +117,7 @@ class Pool:
             return await loop.run_in_executor(self._threads, worker.ask, (kind, payload, places), longest)
         finally:
             self._free.put_nowait(place)
+            self._widen()
 
     def end(self) -> None:
         """End all workers."""

@@ -9,7 +9,6 @@ import sys
 import traceback
 from collections.abc import Mapping
 from multiprocessing.connection import Connection
-from multiprocessing.synchronize import Event
 from typing import Any, Final
 
 from sonolube.browser.first_page import OPENED
@@ -34,7 +33,7 @@ def limit_process(*, memory: int = 2 * _GIBIBYTE, file_size: int = _GIBIBYTE, cp
             resource.setrlimit(kind, (most, most))
 
 
-def serve(connection: Connection, folder: str, warm: Event) -> None:
+def serve(connection: Connection, folder: str, warm: Connection) -> None:
     """Answer requests from a connection until it ends.
 
     Parameters
@@ -43,14 +42,15 @@ def serve(connection: Connection, folder: str, warm: Event) -> None:
         Sends (kind, payload, places), gets (status, JSON as bytes).
     folder : str
         Empty one, in which relative names of requests lie.
-    warm : Event
-        Set once what most requests need is imported.
+    warm : Connection
+        Gets one message once what most requests need is imported.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends its workers
     os.chdir(folder)
     limit_process()
     warm_up()
-    warm.set()
+    with contextlib.suppress(OSError):  # where the workbench has ended meanwhile, as the next line sees
+        warm.send(True)
     while True:
         try:
             request = connection.recv()
