@@ -40,7 +40,10 @@ STEPS = """async ([key, steps]) => {
   for (let step = 0; step < steps; step += 1) {
     const begun = performance.now();
     const changed = new Promise((done) => {
-      const seen = new MutationObserver(() => { seen.disconnect(); requestAnimationFrame(() => setTimeout(() => done(true))); });
+      const seen = new MutationObserver(() => {
+        seen.disconnect();
+        requestAnimationFrame(() => setTimeout(() => done(true)));
+      });
       seen.observe(numbers, {subtree: true, characterData: true, childList: true});
       setTimeout(() => done(false), 5000);
     });
@@ -130,7 +133,7 @@ def updates(page: Page, parent: psutil.Process, steps: int) -> tuple[list[float]
 
     def busy() -> float:
         metrics = devtools.send("Performance.getMetrics")["metrics"]
-        return next(each["value"] for each in metrics if each["name"] == "TaskDuration")
+        return float(next(each["value"] for each in metrics if each["name"] == "TaskDuration"))
 
     page.evaluate(STEPS, [VOLTS, 20])
     browser, server = busy(), processor_time(parent)
@@ -141,7 +144,7 @@ def updates(page: Page, parent: psutil.Process, steps: int) -> tuple[list[float]
 def processor_time(parent: psutil.Process) -> float:
     """Seconds of processor time of a process and its children."""
     times = [each.cpu_times() for each in (parent, *parent.children(recursive=True))]
-    return sum(each.user + each.system for each in times)
+    return float(sum(each.user + each.system for each in times))
 
 
 def memory(parent: psutil.Process) -> list[float]:
