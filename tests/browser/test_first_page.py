@@ -48,7 +48,7 @@ class SlowPool:
     def __init__(self, *, is_warm: bool) -> None:
         self.is_warm = is_warm
 
-    async def ask(self, kind: str, payload: Mapping[str, Any], places: object) -> tuple[int, bytes]:
+    async def ask(self, kind: str, payload: Mapping[str, Any], places: object, **more: object) -> tuple[int, bytes]:
         return 200, encoded("computed")
 
 

@@ -129,6 +129,13 @@ def given_rig(source: Any, places: Places, stack: ExitStack) -> "Rig":
     """Rig of a request: an example or the text of a file, with entries replaced."""
     from sonolube.rig import read_rig
 
+    path, changes = requested_file(source, places, stack)
+    with names_only(path):
+        return read_rig(path, changes=changes)
+
+
+def requested_file(source: Any, places: Places, stack: ExitStack) -> tuple[Path, list[str]]:
+    """Path of the file of a rig of a request, and the entries to replace in it."""
     if not isinstance(source, Mapping):
         raise InvalidInput("rig: give an object with its name or text, and changes", key="rig")
     changes = source.get("changes") or {}
@@ -136,8 +143,7 @@ def given_rig(source: Any, places: Places, stack: ExitStack) -> "Rig":
         raise InvalidInput("rig.changes: give texts by dotted key, such as drive.frequency: 22 kHz", key="rig")
     path = rig_path(source, places, stack)
     _refuse_other_files(source, changes)
-    with names_only(path):
-        return read_rig(path, changes=[f"{key}={value}" for key, value in changes.items()])
+    return path, [f"{key}={value}" for key, value in changes.items()]
 
 
 def _refuse_other_files(source: Mapping[str, Any], changes: Mapping[str, str]) -> None:

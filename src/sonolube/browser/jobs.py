@@ -43,7 +43,7 @@ class Job:
     created : float
         Time of day in seconds since 1970.
     state : str
-        "waiting", "running", "done", "refused", "failed", "cancelled" or "interrupted".
+        "waiting", "running", "running elsewhere", "done", "refused", "failed", "cancelled" or "interrupted".
     stage : str
         What is done now.
     done, total : int
@@ -85,6 +85,7 @@ class Jobs:
         self.folder, self._most = folder, most
         self._running: dict[str, subprocess.Popen[bytes]] = {}
         self._waiting: list[str] = []
+        self._owner = {"process": os.getpid(), "begun": _begun(os.getpid())}
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         self._settle()
 
@@ -94,7 +95,7 @@ class Jobs:
         place = self.folder / name
         place.mkdir(mode=0o700)
         request = {"task": task, "arguments": arguments, "label": label, "places": places, "created": time.time()}
-        write_atomically(place / _REQUEST, json.dumps(request))
+        write_atomically(place / _REQUEST, json.dumps(request | {"owner": self._owner}))
         self._waiting.append(name)
         self.tend()
         return self.job(name)
@@ -123,7 +124,7 @@ class Jobs:
         elif name in self._running:
             known["state"] = "running"
         elif known.get("state") not in _ENDED:
-            known["state"] = "interrupted"
+            known["state"] = "running elsewhere" if self._is_of_another(request.get("owner")) else "interrupted"
         about = {key: request[key] for key in ("task", "label", "created")}
         return Job(id=name, **(about | known))
 
@@ -157,8 +158,15 @@ class Jobs:
         return path
 
     def cancel(self, name: str) -> Job:
-        """Stop a job within a second; what it computed is gone."""
-        self.job(name)
+        """Stop a job within a second; what it computed is gone.
+
+        Raises
+        ------
+        InvalidInput
+            If another workbench of this user runs it.
+        """
+        if self.job(name).state == "running elsewhere":
+            raise InvalidInput("another workbench of yours runs this job; stop it there")
         if name in self._waiting:
             self._waiting.remove(name)
             self._record(name, state="cancelled")
@@ -191,6 +199,13 @@ class Jobs:
             _end(process)
         self._running.clear()
 
+    def _is_of_another(self, owner: Any) -> bool:
+        """Whether the owner of a job is another workbench that still runs."""
+        if not isinstance(owner, dict) or owner == self._owner:
+            return False
+        begun = owner.get("begun")
+        return bool(begun) and _begun(owner.get("process")) == begun
+
     def _note_end(self, name: str, code: int) -> None:
         """Record the end of a process that did not record it itself."""
         state = self._read(name, _STATE) or {}
@@ -219,6 +234,18 @@ class Jobs:
         """Write the state of a job."""
         known = self._read(name, _STATE) or {}
         write_atomically(self.folder / name / _STATE, json.dumps(known | state))
+
+
+def _begun(process: Any) -> str:
+    """When a process of a number began, as the system writes it; empty where there is none."""
+    if not isinstance(process, int):
+        return ""
+    with contextlib.suppress(OSError, IndexError):
+        return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[19]
+    with contextlib.suppress(OSError, subprocess.SubprocessError):  # where the system keeps no /proc
+        command = ["ps", "-o", "lstart=", "-p", str(process)]
+        return subprocess.run(command, capture_output=True, text=True, check=False, timeout=5).stdout.strip()
+    return ""
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:

@@ -5,7 +5,7 @@ import contextlib
 import json
 import multiprocessing
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.process import BaseProcess
 from typing import Any, Final
@@ -14,6 +14,7 @@ from sonolube.browser.places import Places
 from sonolube.browser.worker import serve
 
 _LONGEST: Final = 120.0  # seconds of one request, beyond which it belongs to a job
+_BETWEEN: Final = 0.5  # seconds between questions whether somebody still waits
 _DIED: Final = 503
 _CONTEXT: Final = multiprocessing.get_context("spawn")
 
@@ -90,7 +91,13 @@ class Pool:
             self._free.put_nowait(place)
 
     async def ask(
-        self, kind: str, payload: Mapping[str, Any], places: Places, *, longest: float = _LONGEST
+        self,
+        kind: str,
+        payload: Mapping[str, Any],
+        places: Places,
+        *,
+        longest: float = _LONGEST,
+        is_gone: Callable[[], Awaitable[bool]] | None = None,
     ) -> tuple[int, bytes]:
         """Status and JSON of the answer to a request.
 
@@ -102,6 +109,8 @@ class Pool:
         places : Places
         longest : float
             Seconds, after which the worker is ended and a refusal is returned.
+        is_gone : callable
+            Asked now and then whether nobody waits for the answer any more; the worker is then ended.
 
         Returns
         -------
@@ -114,7 +123,11 @@ class Pool:
             if not worker.process.is_alive():
                 worker = self._workers[place] = _Worker(self._folder.name)
             loop = asyncio.get_running_loop()
-            return await loop.run_in_executor(self._threads, worker.ask, (kind, payload, places), longest)
+            answer = loop.run_in_executor(self._threads, worker.ask, (kind, payload, places), longest)
+            while not (await asyncio.wait({answer}, timeout=_BETWEEN))[0]:
+                if is_gone is not None and await is_gone():
+                    worker.process.kill()
+            return await answer
         finally:
             self._free.put_nowait(place)
             self._widen()

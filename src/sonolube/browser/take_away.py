@@ -181,8 +181,9 @@ def report(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str
     answer = _answer(task, arguments, places)
     settings = [] if answer.call is None else answer.call.settings()
     rig = [] if answer.rig is None else [("rig", answer.rig.title), *(("changed", each) for each in answer.rig.changes)]
+    point = [(each["label"], each["text"]) for each in answer.object().get("operating_point", ())]
     page = answer.page() or _page_of_blocks(answer)
-    page = replace(page, name="answer", settings=[*page.settings, *rig, *settings])
+    page = replace(page, name="answer", settings=[*page.settings, *rig, *point, *settings])
     notes = [*answer.every_caveat(), *(f"assumed {key}: {reason}" for key, reason in answer.assumptions().items())]
     text = rendered_files(answer.figures(), page=page, notes=notes)["answer.html"]
     return _file("answer.html", "text/html", str(text))

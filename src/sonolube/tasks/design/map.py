@@ -222,6 +222,12 @@ class MapAnswer(Answer):
         return caption if self.runs is None else f"{caption} Circles: measured runs, with their reductions in percent."
 
 
+def kinds_of_map(rig: Rig) -> list[str]:
+    """Kinds of map that a rig has, its default first."""
+    quantity = commanded_quantity(rig)
+    return sorted(map_kinds(quantity), key=lambda kind: kind != _DEFAULTS[quantity])
+
+
 def _kind(rig: Rig, kind: str | None) -> str:
     """Kind of map that was chosen, which the rig must have, or its default one."""
     quantity = commanded_quantity(rig)

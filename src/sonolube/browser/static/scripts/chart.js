@@ -148,8 +148,7 @@ export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onP
   const label = caption || chart.title?.replaceAll('\n', ', ') || panelName(chart.panels[0]);
   const hasXText = (place) => !chart.shares_x || !layout.isWhole || !chart.panels[place + layout.columns]?.parts.length;
 
-  return html`<figure ref=${figure} class=${`chart${dimmed ? ' is-dimmed' : ''}`} aria-label=${label}
-    aria-busy=${dimmed ? 'true' : undefined} data-test=${`chart:${name}`}>
+  return html`<figure ref=${figure} class=${`chart${dimmed ? ' is-dimmed' : ''}`} aria-label=${label} data-test=${`chart:${name}`}>
     ${chart.title && html`<p class="chart-title">${chart.title.split('\n').map((row, place) => html`<span key=${place}>${row}</span>`)}</p>`}
     ${layout && legend !== 'panels' && html`<${Legend} theme=${theme} title=${chart.legend_title}
       entries=${[...(legend === 'none' ? [] : entriesOf(chart.panels)), ...keptEntries]} />`}
