@@ -8,12 +8,12 @@ from typing import Any, Final
 
 from sonolube.browser.answers import names_only, requested_file
 from sonolube.browser.places import Places
+from sonolube.design import map_kinds
 from sonolube.errors import InvalidInput
 from sonolube.example_files import example_files
-from sonolube.rig import Rig
+from sonolube.rig import Rig, commanded_quantity
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.reader import rig_contents, rig_of_file
-from sonolube.tasks.design.map import kinds_of_map
 from sonolube.tasks.design.parametric_study import studies_of
 from sonolube.units import convert, to_si
 from sonolube.vocabulary import quantities
@@ -108,7 +108,7 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         "drawing": _drawing(rig),
         "assumptions": dict(rig.assumptions),
         "studies": studies_of(rig),
-        "maps": kinds_of_map(rig),
+        "maps": map_kinds(commanded_quantity(rig)),
         "rigs": [*places.rigs, *(name for name, each in example_files().items() if each.is_rig)],
     }
 

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
-_DEFAULTS = {VOLTAGE: "velocity-power", AMPLITUDE: "velocity-amplitude"}  # kind of map by commanded quantity
 _SETTINGS = ("sliding_speed", "normal_load", "frequency", VOLTAGE.name, AMPLITUDE.name, "actuator_power")
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
 _OVER = Parameter(
@@ -222,18 +221,12 @@ class MapAnswer(Answer):
         return caption if self.runs is None else f"{caption} Circles: measured runs, with their reductions in percent."
 
 
-def kinds_of_map(rig: Rig) -> list[str]:
-    """Kinds of map that a rig has, its default first."""
-    quantity = commanded_quantity(rig)
-    return sorted(map_kinds(quantity), key=lambda kind: kind != _DEFAULTS[quantity])
-
-
 def _kind(rig: Rig, kind: str | None) -> str:
     """Kind of map that was chosen, which the rig must have, or its default one."""
     quantity = commanded_quantity(rig)
     known = map_kinds(quantity)
     if kind is None or kind in known:
-        return kind or _DEFAULTS[quantity]
+        return kind or known[0]
     if quantity is AMPLITUDE:
         raise InvalidInput(
             f"{shown('kind')} {kind} needs a drive voltage, and {rig.title} has an amplitude alone: take"
