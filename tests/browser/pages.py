@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM, FLAGS
 
@@ -19,7 +19,11 @@ PROXIED = "lab.example"
 _PLAIN = "Cross-Origin-Opener-Policy header has been ignored"  # of a name without TLS, behind a proxy of a test
 _PATIENCE = 120_000  # ms; a limit for what never comes, on a slow machine too
 _SETTLED = """() => document.querySelector('#main #answer')
-    && !document.querySelector('#main .loading, #main .skeleton, #main [aria-busy=true]')"""
+    && ![...document.querySelectorAll('#main .loading, #main .skeleton, #main [aria-busy=true]')]
+      .some((element) => element.checkVisibility())"""
+
+
+expect.set_options(timeout=_PATIENCE)
 
 
 @contextmanager

@@ -90,7 +90,7 @@ def run(options: Options) -> None:
                 server_header=False,
                 lifespan="off",
                 timeout_keep_alive=30,
-                limit_concurrency=400,
+                limit_concurrency=2000,
                 h11_max_incomplete_event_size=64 * 1024,
             ),
             link=link,
