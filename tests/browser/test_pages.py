@@ -162,6 +162,40 @@ def test_without_a_connection_the_last_numbers_stay(browser: Browser, tmp_path: 
         context.close()
 
 
+def offered(page: Page) -> list[str]:
+    """Studies that the page Explore offers."""
+    names: list[str] = page.locator("[data-test^='study:']").evaluate_all("all => all.map((each) => each.dataset.test)")
+    return [name.removeprefix("study:") for name in names]
+
+
+def test_explore_offers_what_the_rig_has(page: Page, workbench: Served) -> None:
+    show(page, workbench, "cutter_head", {}, where="explore")  # without a voltage and without a structure
+    assert offered(page) == ["amplitude", "speed", "load", "any", "period", "map", "heat"]
+    show(page, workbench, "tribometer", {}, where="explore")
+    assert offered(page)[:2] == ["voltage", "speed"]
+    assert {"start", "response", "frequency"} <= set(offered(page))
+    assert page.get_by_test_id("refused").count() == 0
+
+
+def test_explore_marks_the_operating_point_whatever_its_unit(page: Page, workbench: Served) -> None:
+    show(page, workbench, "tribometer", {SPEED: "1 in/s", VOLTS: "0.028 kV"}, where="explore")
+    for study in ("voltage", "speed"):
+        page.get_by_test_id(f"study:{study}").check()
+        at_rest(page)
+        expect(page.locator(".chart-legend").get_by_text("operating point").first).to_be_visible()
+
+
+def test_a_study_that_takes_long_is_cancelled(page: Page, workbench: Served) -> None:
+    page.route("**/api/tasks/response", lambda route: None)  # never answered
+    show(page, workbench, "tribometer", {}, where="explore")
+    page.get_by_test_id("study:response").check()
+    page.get_by_test_id("cancel-study").click()
+    expect(page.get_by_test_id("refused")).to_contain_text("It was cancelled.")
+    page.get_by_test_id("study:speed").check()
+    at_rest(page)
+    expect(page.get_by_test_id("study")).to_be_visible()
+
+
 def test_jobs_are_listed_and_deleted(page: Page) -> None:
     page.evaluate(
         """async () => fetch('api/jobs', {method: 'POST', body: JSON.stringify(

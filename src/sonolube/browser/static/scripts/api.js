@@ -212,9 +212,6 @@ export function useReply(slot, path, body) {
   return {...found, isWaiting: path !== null && found.text !== text};
 }
 
-/** Answer of a task to its latest arguments, as `useReply`. */
-export const useTask = (name, args, slot = name) => useReply(slot, name === null ? null : taskPath(name), args);
-
 /**
  * Whether the workbench answers, and how often it came back.
  * @returns {{connection: 'ok'|'offline'|'link', generation: number}}

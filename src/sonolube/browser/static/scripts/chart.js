@@ -2,11 +2,11 @@
  * Figures of the workbench: a chart of the server as panels in a grid, with legend, scale of colours and tables.
  */
 import {html, useLayoutEffect, useMemo, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {TextTable} from './answer.js';
 import {MARKERS, ownScale} from './chart-draw.js';
 import {categoryColour, ColourScale} from './chart-field.js';
 import {ChartPanel, panelName} from './chart-panel.js';
 import {dash, rangesOf, themeOf} from './chart-scale.js';
-import {ChartTables} from './chart-table.js';
 
 const LEAST_WIDTH = 250; // px of a panel
 const [LOWEST, HIGHEST, WIDEST] = [180, 400, 760]; // px
@@ -123,6 +123,17 @@ function layoutOf(chart, ranges, width, isScaled) {
       return {width: wide, height: Math.round(Math.max(high, words))};
     },
   };
+}
+
+/** Numbers of a chart as tables, below it. */
+function ChartTables({tables, name}) {
+  const [isOpen, setOpen] = useState(false);
+  if (!tables?.length) return null;
+  return html`<details class="chart-numbers" onToggle=${(event) => setOpen(event.target.open)} data-test=${`numbers:${name}`}>
+    <summary>Numbers</summary>
+    ${isOpen && tables.map((table, at) => html`<${TextTable} key=${at} caption=${table.title || 'Numbers'}
+      heads=${table.heads} rows=${table.rows} kind="chart-table" hasRowHeads=${false} />`)}
+  </details>`;
 }
 
 /**

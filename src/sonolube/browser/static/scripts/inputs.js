@@ -4,7 +4,7 @@ import {upload, useReply} from './api.js';
 import {change} from './state.js';
 
 const BODIES = [['pin', 'Material of the pin'], ['disc', 'Material of the disc']];
-const NOTHING = {};
+export const NOTHING = {};
 
 /** Text of a view that names an upload, and back as the argument of a task; it lasts as long as the workbench. */
 const uploadText = ({name, upload: id}) => `${id} ${name}`;

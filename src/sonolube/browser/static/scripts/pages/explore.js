@@ -1,7 +1,7 @@
 /** Page Explore: a study of the rig over one or two quantities; a click in its figure sets the rig. */
 import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats, Failure, RefusedNote} from '../answer.js';
-import {cancelRequest, useTask} from '../api.js';
+import {cancelRequest, taskPath, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {short, TextField} from '../fields.js';
 import {MaterialChoices, RunsChoice, takeFile, uploadOf} from '../inputs.js';
@@ -165,8 +165,8 @@ function useStudy(study, args, isMoving) {
   const rest = useRef(args);
   if (!isMoving) rest.current = args;
   const asked = rest.current;
-  const direct = useTask(study.isLong || !asked ? null : study.task, asked, 'study');
-  const job = useJob(study.isLong && asked ? study.task : null, asked);
+  const direct = useReply('study', study.isLong ? null : taskPath(study.task), asked);
+  const job = useJob(study.isLong ? study.task : null, asked);
   if (study.isLong) {
     return {content: job.content, failure: job.failure, refused: [], isWaiting: isActive(job.job) || job.isSought, isOld: job.isOld || isMoving, job, of: asked};
   }

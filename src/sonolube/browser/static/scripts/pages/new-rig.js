@@ -1,9 +1,9 @@
 /** Page New rig: the questions of the task `new`, whose answer is a first rig file with what is least known of it. */
-import {html, useMemo, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats, Failure} from '../answer.js';
 import {useReply} from '../api.js';
 import {TextField} from '../fields.js';
-import {takeFile, uploadOf} from '../inputs.js';
+import {NOTHING, takeFile, uploadOf} from '../inputs.js';
 import {openRigText} from '../rig-panel.js';
 import {change, settle, useApp} from '../state.js';
 
@@ -59,10 +59,9 @@ function Made({answer, name, isDim}) {
 
 export default function NewRig() {
   const {state: {view}} = useApp();
-  const nothing = useMemo(() => ({}), []);
   const description = useReply('description', 'api/description', undefined);
-  const materials = useReply('materials', 'api/tasks/materials', nothing);
-  const actuators = useReply('actuators', 'api/tasks/actuators', nothing);
+  const materials = useReply('materials', 'api/tasks/materials', NOTHING);
+  const actuators = useReply('actuators', 'api/tasks/actuators', NOTHING);
   const schema = description.content?.paths[PATH].post.requestBody.content['application/json'].schema;
   const names = Object.keys(schema?.properties ?? {});
   const args = Object.fromEntries(names.filter((name) => view[name]).map((name) => [name, argument(name, view[name])]));
