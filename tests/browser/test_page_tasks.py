@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect
 from tests.browser.pages import LOAD, SPEED, VOLTS, at_rest, numbers, opened, reach, show
+from tests.browser.pictures import NEW
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
 
@@ -113,9 +114,6 @@ def test_a_new_rig_by_keyboard_alone(page: Page) -> None:
     at_rest(page)
     expect(page.get_by_test_id(f"field:{LOAD}")).to_have_value("5 N")
     assert len(numbers(page)) >= 5
-
-
-NEW = {"pin": "steel", "disc": "steel", "load": "5 N", "speed": "0.1 m/s", "frequency": "22 kHz", "amplitude": "2 um"}
 
 
 def test_predict_by_touch(phone: Page, workbench: Served) -> None:

@@ -183,6 +183,15 @@ def test_a_killed_worker_is_one_sentence_and_is_replaced(workbench: Served) -> N
     assert all(status in (200, 503) for status, _ in replies)
 
 
+def test_a_server_that_is_terminated_ends_its_jobs(tmp_path: Path) -> None:
+    with served(tmp_path) as workbench:
+        status, _ = asked(workbench, "/api/jobs", {"task": "sweep", "arguments": {"rig": RIG, "over": LONG}})
+        assert status == 200
+        children = psutil.Process(workbench.process.pid).children()
+    _, left = psutil.wait_procs(children, timeout=60)
+    assert left == []
+
+
 def test_a_restart_with_the_same_folder_finds_the_jobs(tmp_path: Path) -> None:
     with served(tmp_path) as first:
         status, job = asked(first, "/api/jobs", {"task": "contact", "arguments": {"rig": RIG}, "label": "contact"})

@@ -2,6 +2,7 @@
 
 import os
 import secrets
+import signal
 import socket
 import sys
 import webbrowser
@@ -81,6 +82,7 @@ def run(options: Options) -> None:
     name = f"[{options.host}]" if ":" in options.host else options.host
     link = f"http://{name}:{port}/?token={access.token}"
     workbench = _workbench(options)
+    signal.signal(signal.SIGTERM, _leave)  # the server raises it again once it has shut down
     try:
         server = _Server(
             uvicorn.Config(
@@ -101,6 +103,12 @@ def run(options: Options) -> None:
         workbench.pool.end()
         workbench.jobs.end()
         workbench.uploads.end()
+
+
+def _leave(number: int, frame: object) -> None:
+    """End this process by way of what ends its workers and jobs."""
+    del frame
+    sys.exit(128 + number)
 
 
 def _workbench(options: Options) -> Workbench:
