@@ -277,8 +277,7 @@ def _revolutions_of_parts(f: Floats, revolutions: Floats, parts: Sequence[slice]
 def _stick_slip(parts: SampledParts, forces: Sequence[Floats]) -> list[StickSlipEstimate]:
     """Return the stick-slip of each step; a reason where the samples are uneven or too few."""
     try:
-        interval = max(uniform_sample_interval(time=t) for t in parts.times)
-        return stick_slip_of_parts(parts.times, forces, sample_interval=interval)
+        return stick_slip_of_parts(parts.times, forces)
     except InvalidInput as refusal:
         return [not_detected(str(refusal), 0.0) for _ in parts.times]
 
