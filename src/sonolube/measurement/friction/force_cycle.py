@@ -1,4 +1,4 @@
-"""Steady cycle in a friction force: stick-slip near the natural frequency of the holder, whose force swings like a sine."""
+"""Steady cycle in a friction force: stick-slip near the natural frequency of the holder, nearly a sine."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ MIN_SAMPLES_OF_CYCLE = 6
 """Samples of a cycle, below which its shape is not resolved."""
 
 CYCLE_SCORE = 12.0
-"""Logarithm of the likelihood ratio of a steady amplitude over that of a resonance in noise, from which it is a cycle."""
+"""Logarithm of the likelihood ratio of a steady amplitude over a resonance in noise, from which it is a cycle."""
 
 SHARE_OF_VARIANCE = 0.5
 """Of a section or a signal, from which a cycle or a line of the spectrum dominates it."""

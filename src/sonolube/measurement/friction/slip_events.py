@@ -124,11 +124,11 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
     .. math:: z(t) = \frac{\mathcal{F}^{-1}[Y H^* / S]}{\sqrt{\sum |H|^2 / S}} .
 
     A chain of slips, with gaps of 0.6 to 1.6 periods, scores :math:`\sum (z^2/2 - c)`, found by dynamic programming,
-    for periods from six samples to a quarter of the signal, and last for the median gap. The period whose sawtooth
-    explains most of the signal counts: a long signal is part of its own noise, and wrong periods score too. What is symmetric in time
+    for periods from six samples to a quarter of the signal, and last for the median gap. What is symmetric in time
     (Gaussian noise of any colour, wobble, hum) scores equally for rises, :math:`-z`; their largest response in a median
-    period gives the cost c, and their score is deducted. Where nothing is found, S is taken as flat, for clear
-    stick-slip that fills the signal and would be part of its own noise.
+    period gives the cost c, and their score is deducted. Of periods that score enough, the one whose sawtooth explains
+    most of the signal counts: stick-slip that fills a long signal is part of its own noise, and wrong periods score
+    too. Where nothing is found, S is taken as flat, for clear stick-slip.
 
     References
     ----------

@@ -1,7 +1,6 @@
 """Stick-slip in a friction force signal: recurring slips, the fall of the force in a slip, and when it happens."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -12,13 +11,9 @@ from scipy.stats import t as student
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.force_cycle import (
-    MIN_SAMPLES_OF_CYCLE,
-    SHARE_OF_VARIANCE,
-    ForceCycle,
-    find_cycle,
-)
+from sonolube.measurement.friction.force_cycle import MIN_SAMPLES_OF_CYCLE, SHARE_OF_VARIANCE, ForceCycle, find_cycle
 from sonolube.measurement.friction.slip_events import DETECTION_SCORE, Indices, SlipChain, find_slips, noise_spectra
+from sonolube.measurement.friction.stick_slip_estimate import StickSlipBurst, StickSlipEstimate, combined, not_detected
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import even_stretches, evenly_sampled, require_time_series
 
@@ -32,72 +27,6 @@ _HALF = 0.5  # of the median fall, from which a slip at the end of a burst is on
 _TIMING = 20  # of a gap, over which a slip may be moved to where the force falls
 _OVERSHOOT = 0.8  # of the fall below its middle
 _PROFILE = 0.25  # of a period, before and after a slip
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class StickSlipBurst:
-    """Time in which slips recur without interruption.
-
-    Parameters
-    ----------
-    start_time : float
-        Beginning of the stick phase before the first slip. [s]
-    end_time : float
-        Last slip. [s]
-    force_drops : int
-        Number of slips.
-    """
-
-    start_time: float
-    end_time: float
-    force_drops: int
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class StickSlipEstimate:
-    """Stick-slip in a friction force: whether, how often, how much the force falls, and when.
-
-    Parameters
-    ----------
-    detected : bool
-        Whether sudden falls of the force recur more strongly than noise explains.
-    resolved : bool
-        Whether the sampling rate shows it: False where a line with fewer than six samples a period dominates the force,
-        so that stick-slip is neither detected nor excluded.
-    reason : str
-        Why stick-slip was not detected, and up to which frequency it was sought; empty where it was.
-    stick_slip_frequency : float
-        Slips per time within the bursts; the frequency of the spectral peak where not detected. [Hz]
-    spectral_frequency : float
-        Frequency of the highest peak of the spectrum, in Hz.
-    stick_slip_amplitude : float
-        Mean fall of the force in a slip; 0 where not detected. [N]
-    stick_slip_amplitude_uncertainty : float
-        Its standard error. [N]
-    stick_slip_amplitude_interval : tuple of two float
-        Its 95 % interval. [N]
-    force_drops : int
-        Number of slips found.
-    stick_slip_fraction : float
-        Share of the time in which slips recur. []
-    bursts : tuple of StickSlipBurst
-        When they do.
-    slip_time : ndarray, shape (force_drops,)
-        Time of each slip, in s.
-    """
-
-    detected: bool
-    resolved: bool
-    reason: str
-    stick_slip_frequency: float
-    spectral_frequency: float
-    stick_slip_amplitude: float
-    stick_slip_amplitude_uncertainty: float
-    stick_slip_amplitude_interval: tuple[float, float]
-    force_drops: int
-    stick_slip_fraction: float
-    bursts: tuple[StickSlipBurst, ...]
-    slip_time: Floats
 
 
 def estimate_stick_slip(
@@ -205,37 +134,7 @@ def stick_slip_of_parts(
             estimates[part].append(_estimate(t, force, signal, spectrum, interval, minimum_drop))
         else:
             estimates[part].append(not_detected("the friction is constant", 0.0))
-    return [_combined(own, span) for own, span in zip(estimates, spans, strict=True)]
-
-
-def _combined(estimates: Sequence[StickSlipEstimate], spans: Sequence[float]) -> StickSlipEstimate:
-    """Return the estimate of a part by those of its stretches."""
-    if not estimates:
-        return not_detected(f"no {_FEWEST_SAMPLES} samples follow one another without a gap", 0.0)
-    longest = estimates[int(np.argmax(spans))]
-    found = [one for one in estimates if one.detected]
-    if len(estimates) == 1 or not found:
-        return next((one for one in estimates if not one.resolved), longest)
-    drops = np.array([one.force_drops for one in found])
-    weights = drops / drops.sum()
-    ends = weights @ np.array([one.stick_slip_amplitude_interval for one in found])
-    filled = sum(one.stick_slip_fraction * span for one, span in zip(estimates, spans, strict=True))
-    return StickSlipEstimate(
-        detected=True,
-        resolved=True,
-        reason="",
-        stick_slip_frequency=float(weights @ [one.stick_slip_frequency for one in found]),
-        spectral_frequency=longest.spectral_frequency,
-        stick_slip_amplitude=float(weights @ [one.stick_slip_amplitude for one in found]),
-        stick_slip_amplitude_uncertainty=float(
-            np.sqrt(weights**2 @ np.square([one.stick_slip_amplitude_uncertainty for one in found]))
-        ),
-        stick_slip_amplitude_interval=(float(ends[0]), float(ends[1])),
-        force_drops=int(drops.sum()),
-        stick_slip_fraction=filled / sum(spans),
-        bursts=tuple(burst for one in found for burst in one.bursts),
-        slip_time=np.concatenate([one.slip_time for one in found]),
-    )
+    return [combined(own, span) for own, span in zip(estimates, spans, strict=True)]
 
 
 def _estimate(
@@ -433,24 +332,6 @@ def _by_cycle(t: Floats, signal: Floats, cycle: ForceCycle, spectral: float) -> 
 def _within_range(mean: float, reach: float, signal: Floats) -> tuple[float, float]:
     """Return the interval about a fall, which neither rises nor exceeds the range of the force."""
     return max(0.0, mean - reach), min(mean + reach, float(np.ptp(signal)))
-
-
-def not_detected(reason: str, spectral_frequency: float, *, resolved: bool = True) -> StickSlipEstimate:
-    """Return the estimate for a signal without recurring falls, with the reason and the frequency of its spectrum."""
-    return StickSlipEstimate(
-        detected=False,
-        resolved=resolved,
-        reason=reason,
-        stick_slip_frequency=spectral_frequency,
-        spectral_frequency=spectral_frequency,
-        stick_slip_amplitude=0.0,
-        stick_slip_amplitude_uncertainty=0.0,
-        stick_slip_amplitude_interval=(0.0, 0.0),
-        force_drops=0,
-        stick_slip_fraction=0.0,
-        bursts=(),
-        slip_time=np.empty(0),
-    )
 
 
 def _spectral_peak(f: Floats, interval: float) -> tuple[float, float]:
