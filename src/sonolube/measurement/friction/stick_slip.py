@@ -18,6 +18,7 @@ from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import even_stretches, evenly_sampled, require_time_series
 
 _FEWEST_SAMPLES = 64
+_FEWEST_SLIPS = 3
 _PADDING = 4  # zero padding of the spectrum, in lengths of the signal
 _SLOW_FALL = 0.2  # of the period, from which a cycle has no sawtooth's ramps
 _FEW_SAMPLES = 16  # of a period, below which slips cannot be told from the ramps
@@ -152,7 +153,7 @@ def _estimate(
     cycle, other = find_cycle(signal, sample_interval=interval, frequency=frequency)
     chain = find_slips(signal, spectrum=spectrum, sample_interval=interval)
     if cycle is not None and _is_smooth(cycle, interval):
-        found = _by_cycle(t, signal, cycle, frequency)
+        found = _by_cycle(t, force, cycle, frequency)
     elif cycle is not None and not _has_frequency(chain, cycle.frequency * interval):
         found = _by_slips(t, force, [cycle.slips], frequency)
     elif chain.bursts and not other:
@@ -161,6 +162,8 @@ def _estimate(
         recur = f"falls of the force recur no more than noise explains (score {chain.score:.3g} of {DETECTION_SCORE:g})"
         reason = f"{other or recur}; the spectrum peaks at {frequency:.3g} Hz; sought up to {fastest:.3g} Hz"
         return not_detected(reason, frequency)
+    if found.force_drops < _FEWEST_SLIPS:
+        return not_detected(f"{found.force_drops} falls of the force are too few to recur", frequency)
     if not found.stick_slip_amplitude > minimum:
         return not_detected(f"the force falls by {found.stick_slip_amplitude:.3g} N only", frequency)
     return found
@@ -298,9 +301,9 @@ def _slip_duration(signal: Floats, bursts: Sequence[Indices], fall: float) -> fl
     return float((ends - begins) / 0.6)
 
 
-def _by_cycle(t: Floats, signal: Floats, cycle: ForceCycle, spectral: float) -> StickSlipEstimate:
+def _by_cycle(t: Floats, force: Floats, cycle: ForceCycle, spectral: float) -> StickSlipEstimate:
     """Return the estimate by a steady cycle without ramps: its range in each section."""
-    mean = float(min(np.mean(cycle.falls), np.ptp(signal)))
+    mean = float(min(np.mean(cycle.falls), np.ptp(force)))
     spread = correlated_mean(cycle.falls)
     resolution = max(cycle.truncation, mean * cycle.frequency * float(t[-1] - t[0]) / (t.size - 1))
     reach = float(student.ppf(0.975, max(spread.effective_samples - 1, 1))) * spread.uncertainty + resolution
@@ -321,7 +324,7 @@ def _by_cycle(t: Floats, signal: Floats, cycle: ForceCycle, spectral: float) -> 
         spectral_frequency=spectral,
         stick_slip_amplitude=mean,
         stick_slip_amplitude_uncertainty=spread.uncertainty,
-        stick_slip_amplitude_interval=_within_range(mean, reach, signal),
+        stick_slip_amplitude_interval=_within_range(mean, reach, force),
         force_drops=sum(burst.force_drops for burst in bursts),
         stick_slip_fraction=min(1.0, sum(b.end_time - b.start_time for b in bursts) / float(t[-1] - t[0])),
         bursts=bursts,

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction_analysis import analyse_rotation_speed, analyse_voltage_steps, channel_values
-from sonolube.measurement.recorded_sliding import speed_channel
+from sonolube.measurement.recorded_sliding import speed_changes, speed_channel
 from sonolube.report.measured import friction_figures as figures, sheet
 from sonolube.units import format_si
 
@@ -64,7 +64,7 @@ def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> shee
     found = analyse_rotation_speed(recording) if rotation_speed is None else None
     speed = found if rotation_speed is None else rotation_speed
     steps = analyse_voltage_steps(recording, rotation_speed=speed)
-    has_speed = speed_channel(recording) in _SPEEDS and steps[0].sliding_speed is not None
+    has_speed = speed_channel(recording) in _SPEEDS and speed_changes(recording)
     labels = {name: label for name, label in _STEP_LABELS.items() if has_speed or name != "sliding_speed"}
     table = sheet.Table(
         name="steps",
