@@ -83,7 +83,9 @@ def _missed(records: Sequence[Record]) -> list[Measure]:
     found = []
     for protocol, count in _STEPS.items():
         wrong = sum(len(record[protocol]["force"]) != count for record in records)  # type: ignore[index]
-        found.append(Measure(label=f"{protocol} without its {count} levels", value=f"{wrong}", bar="0", holds=not wrong))
+        found.append(
+            Measure(label=f"{protocol} without its {count} levels", value=f"{wrong}", bar="0", holds=not wrong)
+        )
     sticking = int(sum(_pooled(records, protocol, "sticking").sum() for protocol in _STEPS))
     return [*found, Measure(label="levels with stick-slip", value=f"{sticking}", bar="0", holds=not sticking)]
 

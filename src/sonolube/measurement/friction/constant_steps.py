@@ -7,8 +7,10 @@ import numpy as np
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.sliding import at_rest, stretches, voltage_threshold
+from sonolube.measurement.friction.sliding import Mask, at_rest, stretches, voltage_threshold
 
+_SECTION = 0.05  # s, by whose medians a disc that coasts down is told from one at rest
+_COASTS = 0.1  # of the level, above which it does
 _SECTIONS_PER_STEP = 10  # sections of the shortest step, by whose medians steps are separated
 
 
@@ -28,6 +30,8 @@ class SlidingSteps:
         Median sliding speed of each; NaN where it is not known. [m/s]
     threshold : float
         Voltage up to which there is none. [V]
+    at_rest : ndarray
+        Known force while the surfaces rest before they first slide. [N]
     """
 
     steps: list[tuple[int, int]]
@@ -35,6 +39,7 @@ class SlidingSteps:
     voltages: list[float]
     speeds: list[float]
     threshold: float
+    at_rest: Floats
 
 
 def sliding_steps(
@@ -92,7 +97,22 @@ def sliding_steps(
         voltages=[float(np.nanmedian(u[part])) for part in settled],
         speeds=[np.nan if v is None else float(np.nanmedian(v[part])) for part in settled],
         threshold=threshold,
+        at_rest=_force_before_sliding(t, f, rest, steps[0]),
     )
+
+
+def _force_before_sliding(t: Floats, f: Floats, rest: Mask, step: tuple[int, int]) -> Floats:
+    """Known force in the last rest before the first step, from where a disc that coasts down has come to rest on."""
+    found = stretches(rest[: step[0]])
+    if not found:
+        return np.empty(0)
+    first, last = found[-1]
+    size = max(1, round(_SECTION / float(np.median(np.diff(t)))))
+    force = f[first:last]
+    medians = [float(np.nanmedian(force[k : k + size])) for k in range(0, force.size, size)]
+    moving = np.flatnonzero(np.abs(medians) > _COASTS * float(np.nanmedian(np.abs(f[slice(*step)]))))
+    begin = (int(moving[-1]) + 2) * size if moving.size else 0
+    return np.asarray(force[begin:][np.isfinite(force[begin:])])
 
 
 def _common(one: list[tuple[int, int]], other: list[tuple[int, int]]) -> list[tuple[int, int]]:

@@ -21,8 +21,11 @@ from sonolube.measurement.friction.step_means import (
 )
 from sonolube.measurement.friction.stick_slip import stick_slip_of_parts
 from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate, not_detected
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import require_equal_length, require_time_series, uniform_sample_interval
 
+_FEWEST_AT_REST = 20  # samples, from which their mean tells the zero of the force
+_TENSION = 0.1  # of the highest level, above which a force at rest is that of a holder under tension, not a zero
 _SAME_SPEED = 0.05  # relative deviation of speeds that are the same
 
 
@@ -50,6 +53,8 @@ class VoltageStep:
         Against the steps without voltage at the same speed; None for these themselves and where there are none. []
     friction_reduction_uncertainty : float or None
         Its standard uncertainty. []
+    force_zero : float
+        Mean force at rest that was taken off; 0 where none is known by a speed. [N]
     stick_slip : StickSlipEstimate
         In the step after the settling time, without wobble.
     """
@@ -63,6 +68,7 @@ class VoltageStep:
     sliding_speed: float | None
     friction_reduction: float | None
     friction_reduction_uncertainty: float | None
+    force_zero: float
     stick_slip: StickSlipEstimate
 
 
@@ -164,6 +170,11 @@ def friction_at_voltage_steps(
 
     .. math:: P_f = 1 - \frac{F_1}{F_0} , \qquad u_P^2 = g^T C g , \qquad g = \nabla P_f .
 
+    The mean force at rest before the first step, r, is the zero of the force where a speed tells that rest, and is
+    taken off; its variance :math:`u_r^2` is added to all elements of C. Where the force tells the rest, it is not taken
+    off, and :math:`r^2 - u_r^2` is added where that is positive. A force at rest above a tenth of the level is no zero: the
+    holder is under tension.
+
     A step shorter than a revolution is as uncertain as its part of the wobble, which the other steps determine.
 
     References
@@ -182,6 +193,8 @@ def friction_at_voltage_steps(
     waves = wobble_columns(parts, revolutions=turned, places=places, harmonics=harmonics)[0]
     stick_slip = _stick_slip(parts, without_wobble(parts, waves))
     means = mean_of_parts(parts, waves=waves, stick_slip=stick_slip, onset=float(t[found.steps[0][0]]))
+    zero, variance = _zero(found.at_rest, means.friction_force, by_speed=v is not None)
+    means = StepMeans(friction_force=means.friction_force - zero, covariance=means.covariance + variance)
     without = np.array(found.voltages) <= found.threshold
     reductions = _reductions(means, without, found.speeds, np.array([part.size for part in parts.times]))
     return tuple(
@@ -195,6 +208,7 @@ def friction_at_voltage_steps(
             sliding_speed=None if v is None else found.speeds[j],
             friction_reduction=reductions[j][0],
             friction_reduction_uncertainty=reductions[j][1],
+            force_zero=zero,
             stick_slip=stick_slip[j],
         )
         for j, (first, last) in enumerate(found.steps)
@@ -248,6 +262,18 @@ def _slid(t: Floats, v: Floats) -> Floats:
     moving = speed > 0
     distance = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(t))])
     return np.asarray(distance / float(speed[moving].mean()) if moving.any() else t - t[0])
+
+
+def _zero(at_rest: Floats, levels: Floats, *, by_speed: bool) -> tuple[float, float]:
+    """Return the zero of the force and its variance, by its mean at rest: taken off where a speed tells the rest."""
+    if at_rest.size < _FEWEST_AT_REST:
+        return 0.0, 0.0
+    mean = correlated_mean(at_rest)
+    if abs(mean.mean) > _TENSION * float(np.max(np.abs(levels))):
+        return 0.0, 0.0
+    if by_speed:
+        return mean.mean, mean.uncertainty**2
+    return 0.0, max(0.0, mean.mean**2 - mean.uncertainty**2)
 
 
 def _stick_slip(parts: SampledParts, forces: Sequence[Floats]) -> list[StickSlipEstimate]:

@@ -89,9 +89,16 @@ def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> shee
         values=values,
         tables=tuple(tables),
         figures=tuple(pictures),
-        caveats=() if speed is not None else (_unknown_rotation(steps),),
+        caveats=(*_zero_taken_off(steps[0]), *(() if speed is not None else (_unknown_rotation(steps),))),
         not_found=() if sticking else (reason,),
     )
+
+
+def _zero_taken_off(step: VoltageStep) -> tuple[str, ...]:
+    """Caveat that the force at rest was taken for its zero."""
+    if not step.force_zero:
+        return ()
+    return (f"{format_si(step.force_zero, 'N')}, the mean force at rest before sliding, is taken off as its zero",)
 
 
 def _unknown_rotation(steps: Sequence[VoltageStep]) -> str:
