@@ -27,7 +27,7 @@ def at_rest(
     sliding_speed: Floats | None = None,
     tolerance: float = 0.05,
 ) -> Mask:
-    """Whether the surfaces rest at each sample: by the speed, else by the force where there is no vibration.
+    """Whether the surfaces rest at each sample: by the speed where it is known, else by the force without vibration.
 
     Parameters
     ----------
@@ -47,14 +47,14 @@ def at_rest(
     ndarray of bool, shape (samples,)
         False everywhere where neither speed nor voltage are known.
     """
-    if sliding_speed is not None and np.isfinite(sliding_speed).any():
-        return rest_by_speed(time=time, speed=sliding_speed)
-    if voltage_peak_to_peak is None:
-        return np.zeros(time.size, bool)
-    threshold = voltage_threshold(voltage_peak_to_peak, tolerance=tolerance)
-    return rest_by_force(
-        time=time, friction_force=friction_force, without_voltage=np.nan_to_num(voltage_peak_to_peak) <= threshold
-    )
+    unknown = np.ones(time.size, bool) if sliding_speed is None else ~np.isfinite(sliding_speed)
+    rest = np.zeros(time.size, bool)
+    if sliding_speed is not None and not unknown.all():
+        rest = rest_by_speed(time=time, speed=sliding_speed)
+    if voltage_peak_to_peak is not None and unknown.any():
+        without = np.nan_to_num(voltage_peak_to_peak) <= voltage_threshold(voltage_peak_to_peak, tolerance=tolerance)
+        rest |= unknown & rest_by_force(time=time, friction_force=friction_force, without_voltage=without)
+    return rest
 
 
 def voltage_threshold(voltage_peak_to_peak: Floats, *, tolerance: float) -> float:

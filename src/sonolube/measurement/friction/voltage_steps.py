@@ -172,8 +172,8 @@ def friction_at_voltage_steps(
 
     The mean force at rest before the first step, r, is the zero of the force where a speed tells that rest, and is
     taken off; its variance :math:`u_r^2` is added to all elements of C. Where the force tells the rest, it is not taken
-    off, and :math:`r^2 - u_r^2` is added where that is positive. A force at rest above a tenth of the level is no zero: the
-    holder is under tension.
+    off, and :math:`r^2 - u_r^2` is added where that is positive. A force at rest above a tenth of the level is no zero:
+    the holder is under tension.
 
     A step shorter than a revolution is as uncertain as its part of the wobble, which the other steps determine.
 
@@ -258,7 +258,8 @@ def _of_parts(f: Floats, values: Floats, parts: Sequence[slice]) -> list[Floats]
 
 def _slid(t: Floats, v: Floats) -> Floats:
     """Return the distance slid until each sample over the mean speed while sliding, as a time. [s]"""
-    speed = np.abs(np.nan_to_num(v))
+    known = np.isfinite(v)
+    speed = np.interp(t, t[known], np.abs(v[known]))
     moving = speed > 0
     distance = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(t))])
     return np.asarray(distance / float(speed[moving].mean()) if moving.any() else t - t[0])
