@@ -6,7 +6,17 @@ from typing import Any, Final
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol.record import Protocol
-from sonolube.facts.protocol.steps import Acquire, Drive, MotorSpeed, Repeat, Step, Sweep, VoltageSteps, Wait
+from sonolube.facts.protocol.steps import (
+    Acquire,
+    Drive,
+    MotorSpeed,
+    Prompt,
+    Repeat,
+    Step,
+    Sweep,
+    VoltageSteps,
+    Wait,
+)
 from sonolube.units import format_si
 
 MOST_SET_POINTS: Final = 10_000
@@ -44,6 +54,10 @@ class SetPoint:
         Of the recording. [Hz]
     recorded_until : float or None
         Time at which the recording ends, in s.
+    normal_load : float or None
+        None where the protocol does not tell it. [N]
+    lubricant : str
+        Empty where none was applied.
     """
 
     time: float
@@ -58,6 +72,8 @@ class SetPoint:
     channels: tuple[str, ...] = ()
     sample_rate: float | None = None
     recorded_until: float | None = None
+    normal_load: float | None = None
+    lubricant: str = ""
 
     @property
     def voltage_maximum(self) -> float:
@@ -96,7 +112,7 @@ def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
     """
     _require_bounded(protocol.steps)
     now, until = 0.0, 0.0
-    state = SetPoint(time=0.0, step="", kind="")
+    state = SetPoint(time=0.0, step="", kind="", normal_load=protocol.metadata.normal_load)
     points = []
     for move in _moves(protocol.steps, ""):
         if move.records is not None:
@@ -207,6 +223,9 @@ def _single(step: Step, place: str) -> _Move:
             return _Move(place, step.kind, 0.0, changes)
         case Acquire():
             return _Move(place, step.kind, 0.0, {"channels": step.channels}, step)
+        case Prompt():
+            told = {"normal_load": step.normal_load, "lubricant": step.lubricant}
+            return _Move(place, step.kind, 0.0, {name: value for name, value in told.items() if value is not None})
     return _Move(place, step.kind, 0.0, {})
 
 

@@ -53,7 +53,7 @@ def export_run(folder: Path, *, file_format: str, out: Path) -> list[Path]:
         raise UnknownName.among(EXPORT_FORMATS, kind="format", name=file_format)
     ending, write = _WRITERS[file_format]
     known, documents = read_run_facts(folder), read_documents(folder)
-    parts = [(number, recorded_part(folder, number, documents)) for number in raw_parts(folder)]
+    parts = [(number, recorded_part(folder, number, documents, facts=known.facts)) for number in raw_parts(folder)]
     filled = [(number, part) for number, part in parts if part.raw.samples]
     if not filled:
         raise InvalidInput(f"{folder}: has no recording in raw blocks to export")

@@ -270,7 +270,7 @@ class RunRecorder:
         documents = read_documents(self.folder)
         try:
             for number in raw_parts(self.folder):
-                part = recorded_part(self.folder, number, documents)
+                part = recorded_part(self.folder, number, documents, facts=self._known.facts)
                 if part.raw.samples:
                     write_netcdf_recording(part, self._known, recording_path(self.folder, number))
         except InvalidInput as failure:

@@ -16,6 +16,8 @@ from sonolube.laboratory.records.recorded_part import Floats, RecordedPart
 from sonolube.laboratory.records.run_folder import RunFacts
 from sonolube.vocabulary import quantity
 
+_PACKED: Final[Mapping[str, Any]] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+_ROWS: Final = 1 << 16  # of a chunk of set points
 _CSV_DIGITS: Final = "%.17g"  # what 64-bit floats hold
 
 
@@ -93,7 +95,9 @@ class _NetCdfRecording:
             self._file.attrs.update(_attributes(self._part, self._known))
             for name, of in {"time": "time", **self._part.variables}.items():
                 known = quantity(of)
-                variable = self._file.create_variable(name, ("time",), np.float64)
+                packed = _PACKED if name in self._part.steps.names else {}
+                chunks = (max(1, min(_ROWS, self._part.raw.samples)),) if packed else None
+                variable = self._file.create_variable(name, ("time",), np.float64, chunks=chunks, **packed)
                 variable.attrs.update({"units": known.unit or "1", "long_name": known.meaning})
             self._open = stack.pop_all()
         return self
@@ -129,6 +133,8 @@ def _attributes(part: RecordedPart, known: RunFacts) -> dict[str, str | float]:
         "begun": _start(part).astype(datetime).strftime("%Y-%m-%d %H:%M:%S.%f"),
         "facts": json.dumps(dict(known.facts)),
     }
+    if part.steps.lubricants:
+        found["lubricants"] = json.dumps(part.steps.lubricants)
     return found | ({"caveats": "\n".join(part.caveats)} if part.caveats else {})
 
 

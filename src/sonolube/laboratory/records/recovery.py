@@ -132,7 +132,8 @@ def _write_missing(folder: Path, known: RunFacts, parts: dict[int, RawPart], don
     for number, raw in parts.items():
         path = recording_path(folder, number)
         if raw.samples and not path.is_file():
-            write_netcdf_recording(recorded_part(folder, number, documents, raw=raw), known, path)
+            part = recorded_part(folder, number, documents, facts=known.facts, raw=raw)
+            write_netcdf_recording(part, known, path)
             done.append(f"{path.name} written")
 
 
