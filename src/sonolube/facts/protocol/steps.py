@@ -229,6 +229,9 @@ class Prompt(Table):
         That the operator sets; None where it stays as it is. [N]
     lubricant : str or None
         That the operator applies, empty for a cleaned contact; None where it stays as it is.
+    applied_force : float or None
+        Greatest force with which the operator pulls at the pin along the sliding during the next recording, in loops
+        of 30 s of which each goes further. [N]
     """
 
     kind: Literal["prompt"] = "prompt"
@@ -236,6 +239,7 @@ class Prompt(Table):
     text: str = Field(min_length=1, max_length=_LONGEST_TEXT)
     normal_load: Newtons | None = None
     lubricant: str | None = Field(default=None, max_length=_LONGEST_NAME)
+    applied_force: Newtons | None = None
 
 
 class Repeat(Table):
