@@ -90,12 +90,18 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
     }
     facts["groove_diameter"] = groove_diameter(plan.protocol, devices)
     facts |= {name: text for name in _STATED if (text := getattr(metadata, name))} | dict(plan.facts)
+    if metadata.normal_load is not None:
+        facts["normal_load"] = metadata.normal_load
     if plan.tags:
         facts["tags"] = ", ".join(plan.tags)
     if devices.simulated:
         facts["seed"] = plan.seed
     if rig is not None:
-        facts |= {"normal_load": metadata.normal_load or rig.normal_load, "rig_title": rig.title, "nominal_area": rig.contact.nominal_area}
+        facts |= {
+            "normal_load": facts.get("normal_load", rig.normal_load),
+            "rig_title": rig.title,
+            "nominal_area": rig.contact.nominal_area,
+        }
         facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
         if rig.changes:
             facts["changed_entries"] = "; ".join(rig.changes)

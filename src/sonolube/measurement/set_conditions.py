@@ -1,6 +1,7 @@
 """Stretches of a recording in which everything that was set is constant, by its channels of set points."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -93,4 +94,4 @@ def _stretches(columns: list[Floats]) -> list[tuple[int, int]]:
     for values in columns:
         changes |= (values[1:] != values[:-1]) & ~(np.isnan(values[1:]) & np.isnan(values[:-1]))
     edges = [0, *(np.flatnonzero(changes) + 1).tolist(), size]
-    return [(begin, end) for begin, end in zip(edges, edges[1:], strict=False) if end > begin]
+    return [(begin, end) for begin, end in pairwise(edges) if end > begin]

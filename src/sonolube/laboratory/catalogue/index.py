@@ -156,8 +156,8 @@ def _refresh(connection: "Connection", folders: list[Path], caveats: list[str]) 
             caveats.append(str(failure))
             continue
         connection.execute(f"INSERT INTO runs VALUES ({', '.join('?' * 9)})", _row(folder.name, stamp, entry))
-        settings = [("load", value) for value in entry.normal_loads] + [("speed", value) for value in entry.sliding_speeds]
-        rows = [(folder.name, *setting) for setting in settings]
+        settings = {"load": entry.normal_loads, "speed": entry.sliding_speeds}
+        rows = [(folder.name, quantity, value) for quantity, values in settings.items() for value in values]
         connection.executemany("INSERT INTO settings VALUES (?, ?, ?)", rows)
 
 

@@ -132,6 +132,17 @@ class Run:
         paths = (recording_path(self.folder, part) for part in numbered_parts(self._documents))
         return tuple(path for path in paths if path.is_file())
 
+    @property
+    def part_channels(self) -> dict[Path, tuple[str, ...]]:
+        """Channels of each part of the recording, as the protocol names them, by its file."""
+        named = {str(each.get("name")): each for each in self._documents.of("descriptor")}
+        found = {}
+        for part in numbered_parts(self._documents):
+            path = recording_path(self.folder, part)
+            if path.is_file():
+                found[path] = tuple(map(str, named[part_name(part)]["data_keys"]))
+        return found
+
     def dataset(self, part: int | None = None) -> "xr.Dataset":
         """Recording in SI over `time`, its variables named by their quantities.
 

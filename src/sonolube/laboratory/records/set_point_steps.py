@@ -1,7 +1,7 @@
 """Set points of a part of a recording, as a table of steps that is read from the notes of a run."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -127,7 +127,9 @@ class _Steps:
         """Set points that a note changes."""
         if kind == "pause":
             off = {"voltage_peak_to_peak_set": 0.0, "frequency_set": 0.0}
-            return off | {name: 0.0 for name in ("sliding_speed_set", "motor_on") if self._state[name] == self._state[name]}
+            return off | {
+                name: 0.0 for name in ("sliding_speed_set", "motor_on") if self._state[name] == self._state[name]
+            }
         if kind not in ("drive", "motor", "conditions"):
             return {}
         try:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.laboratory.block import Block, Channel, quantity_of
 from sonolube.facts.protocol import Prompt
+from sonolube.laboratory.block import Block, Channel, quantity_of
 from sonolube.laboratory.devices import DeviceError, DeviceLost, DriveSetting, SamplesLost
 from sonolube.laboratory.dry_run.record import PROMPT_DURATIONS
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
@@ -29,6 +29,7 @@ from sonolube.laboratory.virtual_tribometer.signals import (
 from sonolube.laboratory.virtual_tribometer.stick_slip import Bursts, StickSlip
 from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures, Thermocouple
 from sonolube.laboratory.virtual_tribometer.truth import TruthSetting, truth_dataset
+from sonolube.models.dynamics.structure import electrical_admittance
 from sonolube.rig import Rig
 from sonolube.rig.excitation import actuator_capacitance
 
@@ -107,6 +108,7 @@ class VirtualRig:
         thermocouple = Thermocouple(disturbances.contact_share, disturbances.thermocouple_time)
         self._temperatures = Temperatures(rig, heating, thermocouple)
         self._capacitance = actuator_capacitance(rig)
+        self._admittances: dict[float, complex] = {}
         held = None if rig.structure is None else arm_resonance(rig.structure)
         self._arm = held or (disturbances.natural_frequency, disturbances.holder_damping_ratio)
         self._stick_slip = self._sticking(0.0)
@@ -270,9 +272,7 @@ class VirtualRig:
         wobble, sizes = self._wobble(time), self._sizes
         of_name = {
             "friction_force": lambda: self._friction_force(time, wobble),
-            "normal_load": lambda: (
-                self._load * wobble + self._white("normal_load", sizes.sensor_noise, time)
-            ),
+            "normal_load": lambda: self._load * wobble + self._white("normal_load", sizes.sensor_noise, time),
             "voltage": lambda: self._voltage(time),
             "voltage_peak_to_peak": lambda: self._monitor(time),
             "current": lambda: self._current(time),
@@ -359,15 +359,29 @@ class VirtualRig:
         return voltage + self._sizes.voltage_noise * max(voltage, 1.0) * self._white("voltage_peak_to_peak", 1.0, time)
 
     def _current(self, time: Floats) -> Floats:
-        """Current into the capacitance of the actuator, without that of its motion."""
+        """Current into the actuator: by the admittance of its structure for a sine, else into its capacitance."""
         noise = self._white("current", self._sizes.current_noise, time)
         setting, capacitance = self._setting, self._capacitance
         if setting is None or capacitance is None:
             return noise
+        admittance = self._admittance(setting.frequency)
+        if admittance is not None and setting.waveform == "sine":
+            lead = float(np.angle(admittance)) / (2 * pi)
+            wave = waveform(periods=self._phase(time, setting) + lead, shape="sine")
+            return np.asarray(noise + abs(admittance) * setting.voltage_peak_to_peak / 2 * wave)
         step = 1 / (400 * setting.frequency)
         phases = (self._phase(time + shift, setting) for shift in (-step / 2, step / 2))
         before, after = (waveform(periods=phase, shape=setting.waveform) for phase in phases)
         return noise + capacitance * setting.voltage_peak_to_peak / 2 * (after - before) / step
+
+    def _admittance(self, frequency: float) -> complex | None:
+        """Admittance of the actuator in its structure; None where the rig has no stack in one. [S]"""
+        if self._rig.stack is None or self._rig.structure is None:
+            return None
+        if frequency not in self._admittances:
+            found = electrical_admittance(self._rig.structure, frequency=np.array([frequency]))
+            self._admittances[frequency] = complex(found[0])
+        return self._admittances[frequency]
 
     def _flux(self, time: Floats) -> Floats:
         """Reading of the Hall probe."""

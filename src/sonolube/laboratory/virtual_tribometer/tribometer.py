@@ -74,11 +74,7 @@ def virtual_tribometer(
     assumed = heating or HeatingAssumptions()
     friction = FrictionDraw(rig, seed=seed)
     virtual = VirtualRig(rig, friction, drawn, assumed, streams, groove_diameter, real_time, fault)
-    described = {
-        "device": "virtual tribometer",
-        "rig": rig.title,
-        "seed": str(seed),
-    }
+    described = {"device": "virtual tribometer", "rig": rig.title, "seed": str(seed)}
     return VirtualTribometer(virtual, described, groove_diameter)
 
 
