@@ -113,15 +113,22 @@ def _rows(entry: CatalogueEntry, left_out: list[str]) -> list[list[str]]:
     block, area = run.facts.get("block", ""), run.facts.get("nominal_area", "")
     told = (str(area), entry.summary.title, str(entry.summary.folder), "")
     rows = []
+    lubricated = list[str]()
     for part in range(1, len(run.recordings) + 1):
-        for level in _levels(run, part, left_out):
+        for level in _levels(run, part, left_out, lubricated):
             setting = (level.load, level.speed, level.voltage, level.frequency if level.voltage else None)
             rows.append([entry.summary.folder.name, str(block), *map(_cell, (*setting, *level.friction)), *told])
+    if lubricated:
+        parts = "part " if len(lubricated) == 1 else "parts "
+        left_out.append(
+            f"{entry.summary.folder.name}: {parts}{', '.join(lubricated)} of the recording left out: lubricated, and"
+            " models of friction are of dry contacts"
+        )
     return rows
 
 
-def _levels(run: Run, part: int, left_out: list[str]) -> Iterator[_Level]:
-    """Friction at each setting of a part of a recording; empty for one that measures none."""
+def _levels(run: Run, part: int, left_out: list[str], lubricated: list[str]) -> Iterator[_Level]:
+    """Friction at each dry setting of a part of a recording; of a part without friction a line, a lubricated one."""
     recording = run.dataset(part)
     conditions = set_conditions(recording)
     if not conditions:
@@ -130,10 +137,8 @@ def _levels(run: Run, part: int, left_out: list[str]) -> Iterator[_Level]:
     if "friction_force" not in recording:
         left_out.append(f"{run.folder.name}: part {part} is left out: it has no channel friction_force")
         return
-    lubricated = [stretch for stretch in conditions if stretch.slides and stretch.lubricant]
-    if lubricated:
-        line = f"{run.folder.name}: part {part} is left out: it was lubricated, and friction models are of dry contacts"
-        left_out.append(line)
+    if any(stretch.slides and stretch.lubricant for stretch in conditions):
+        lubricated.append(str(part))
     for stretch in conditions:
         if stretch.slides and not stretch.lubricant:
             yield from _levels_of_stretch(run, recording, stretch)

@@ -17,6 +17,8 @@ SET_POINT_CHANNELS: Final = (
 )
 """Channels of a recording that hold set points, by their names in the vocabulary."""
 
+_MOTOR: Final = ("sliding_speed_set", "motor_on")
+_DRIVE: Final = ("voltage_peak_to_peak_set", "frequency_set")
 _NUMBER: Final = (int, float)
 
 
@@ -89,7 +91,8 @@ class _Steps:
         load = facts.get("normal_load")
         known = float(load) if isinstance(load, _NUMBER) and not isinstance(load, bool) else float("nan")
         self._state = dict.fromkeys(SET_POINT_CHANNELS, 0.0)
-        self._state |= {"sliding_speed_set": float("nan"), "motor_on": float("nan"), "normal_load_set": known}
+        self._state |= dict.fromkeys((*_MOTOR, *_DRIVE), float("nan"))
+        self._state["normal_load_set"] = known
         self._first, self._lubricants = first_sample, list[str]()
         self._samples, self._rows = list[int](), list[dict[str, float]]()
         self._drives = False
@@ -116,20 +119,18 @@ class _Steps:
         if not self._samples:
             self.begin()
         rows = tuple(row | {"recording_part": float(part)} for row in self._rows)
-        if not self._drives:
-            unused = {"voltage_peak_to_peak_set": float("nan"), "frequency_set": float("nan")}
-            rows = tuple(row | unused for row in rows)
+        if self._drives:  # before its first note the drive was off
+            rows = tuple(row | {name: 0.0 for name in _DRIVE if row[name] != row[name]} for row in rows)
         return SetPointSteps(
             samples=tuple(self._samples), rows=rows, lubricants=tuple(self._lubricants), drives=self._drives
         )
 
     def _changes(self, kind: str, data: Mapping[str, Any]) -> dict[str, float]:
         """Set points that a note changes."""
+        if kind == "prepared":  # devices were connected, motor and drive off
+            return dict.fromkeys((*_MOTOR, *_DRIVE), 0.0)
         if kind == "pause":
-            off = {"voltage_peak_to_peak_set": 0.0, "frequency_set": 0.0}
-            return off | {
-                name: 0.0 for name in ("sliding_speed_set", "motor_on") if self._state[name] == self._state[name]
-            }
+            return {name: 0.0 for name in (*_MOTOR, *_DRIVE) if self._state[name] == self._state[name]}
         if kind not in ("drive", "motor", "conditions"):
             return {}
         try:
