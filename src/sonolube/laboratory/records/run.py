@@ -14,9 +14,10 @@ from sonolube.laboratory.records.run_folder import (
     DOCUMENTS,
     LATEST,
     PROTOCOL,
-    RUN,
     RunFacts,
     changed_files,
+    changed_recordings,
+    is_run_folder,
     raw_path,
     read_run_facts,
     recording_path,
@@ -208,7 +209,7 @@ def read_run(folder: Path) -> Run:
 def run_folders(parent: Path) -> list[Path]:
     """Folders of runs in a folder, by name, which is by time."""
     try:
-        return sorted(path for path in parent.iterdir() if (path / RUN).is_file() or (path / DOCUMENTS).is_file())
+        return sorted(path for path in parent.iterdir() if is_run_folder(path))
     except OSError as failure:
         raise InvalidInput(f"{parent}: cannot be read: {failure.strerror}") from None
 
@@ -328,6 +329,7 @@ def note_of(event: Mapping[str, Any]) -> Note:
 def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: RunSummary) -> list[str]:
     """What speaks against the record of a run."""
     found = [f"{name} is missing or was changed since the run began" for name in changed_files(folder, known)]
+    found += [f"{name} was changed after the run wrote it" for name in changed_recordings(folder, known)]
     if summary.outcome == UNFINISHED:
         found.append("the program was killed during the run; sonolube lab recover completes its record")
     elif summary.outcome not in ("completed", RUNNING):
