@@ -10,6 +10,7 @@ from sonolube.facts.protocol.quantity_text import (
     Hertz,
     MetresPerSecond,
     Newtons,
+    NoOrMoreNewtons,
     Seconds,
     SignedVolts,
     Table,
@@ -226,7 +227,7 @@ class Prompt(Table):
     text : str
         What to do.
     normal_load : float or None
-        That the operator sets; None where it stays as it is. [N]
+        That the operator sets, 0 for a lifted pin; None where it stays as it is. [N]
     lubricant : str or None
         That the operator applies, empty for a cleaned contact; None where it stays as it is.
     applied_force : float or None
@@ -237,7 +238,7 @@ class Prompt(Table):
     kind: Literal["prompt"] = "prompt"
     task: Literal["cleaning", "mounting", "load", "profilometry", "other"] = "other"
     text: str = Field(min_length=1, max_length=_LONGEST_TEXT)
-    normal_load: Newtons | None = None
+    normal_load: NoOrMoreNewtons | None = None
     lubricant: str | None = Field(default=None, max_length=_LONGEST_NAME)
     applied_force: Newtons | None = None
 

@@ -12,6 +12,7 @@ from sonolube.units import format_si
 MOST_SET_POINTS: Final = 10_000
 """Number of set points of a protocol, repeats included."""
 
+_ROUNDING: Final = 1e-9  # relative
 _DEEPEST: Final = 8  # repeats within each other
 
 
@@ -116,6 +117,8 @@ def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
         state = replace(state, time=now, step=move.step, kind=move.kind, **move.changes)
         points.append(state)
         now += move.lasts
+        if abs(now - until) < _ROUNDING * max(1.0, until):
+            now = until  # the end of a recording, but for rounding
     return (*points, SetPoint(time=max(now, until), step="", kind="end"))
 
 

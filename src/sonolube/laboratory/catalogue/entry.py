@@ -101,7 +101,7 @@ def _loads(run: Run, protocol: Protocol | None) -> tuple[float, ...]:
         points = flattened(protocol)
         told = {point.normal_load if point.normal_load != stated else known for point in points if _turns(point)}
         loads = told or loads
-    return tuple(sorted(load for load in loads if load is not None))
+    return tuple(sorted(load for load in loads if load))
 
 
 def _turns(point: SetPoint) -> bool:

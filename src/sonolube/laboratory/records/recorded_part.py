@@ -40,6 +40,36 @@ class RecordedPart:
     steps: SetPointSteps
 
     @property
+    def samples(self) -> int:
+        """Samples of each channel."""
+        return self.raw.samples
+
+    @property
+    def missing(self) -> int:
+        """Samples that are missing in gaps."""
+        return self.raw.missing
+
+    @property
+    def sample_rate(self) -> float:
+        """Of each channel. [Hz]"""
+        return self.raw.sample_rate
+
+    @property
+    def begun(self) -> float:
+        """Begin in s since 1970."""
+        return self.raw.begun
+
+    @property
+    def set_points(self) -> tuple[str, ...]:
+        """Names of the variables that hold set points."""
+        return tuple(name for name in self.variables if name in self.steps.names)
+
+    @property
+    def lubricants(self) -> tuple[str, ...]:
+        """Names of the lubricants 1, 2, ..."""
+        return self.steps.lubricants
+
+    @property
     def variables(self) -> Mapping[str, str]:
         """Quantity of each variable by its name: that of the quantity, that of the channel where several share it.
 

@@ -344,6 +344,9 @@ def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: R
             for part in numbered_parts(documents)
             if raw_path(folder, part).is_file() and not recording_path(folder, part).is_file() and summary.samples
         ]
+    gone = (part for part in numbered_parts(documents) if not raw_path(folder, part).is_file())
+    missing = (recording_path(folder, part).name for part in gone)
+    found += [f"{name} is missing" for name in missing if name in known.recordings and not (folder / name).is_file()]
     jumps = sum(event["data"]["kind"] == "clock jump" for event in documents.of("event"))
     if jumps:
         found.append(f"the clock of the computer was set {jumps} times during the run; times are by sample counters")

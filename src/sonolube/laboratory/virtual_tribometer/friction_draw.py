@@ -93,7 +93,7 @@ class FrictionDraw:
         FrictionLevel
         """
         load = self._rig.normal_load if normal_load is None else normal_load
-        if setting is None or not sliding_speed > 0:
+        if setting is None or not sliding_speed > 0 or not load:
             return FrictionLevel(
                 friction_force=self.friction_coefficient * load,
                 friction_ratio=1.0,
@@ -121,7 +121,7 @@ class FrictionDraw:
 
     def _unvibrated_wear(self, load: float) -> float:
         """Wear rate without vibration under a load. [m2]"""
-        return float(cube_wear_rate(self._rig.contact, normal_load=load))
+        return float(cube_wear_rate(self._rig.contact, normal_load=load)) if load else 0.0
 
     def _computed(self, setting: DriveSetting, sliding_speed: float, load: float) -> FrictionLevel:
         """Level with vibration, by the models of the rig."""

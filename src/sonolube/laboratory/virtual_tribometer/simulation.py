@@ -93,6 +93,7 @@ class VirtualRig:
         phases = np.random.default_rng(streams[_PHASES])
         self._bursts = Bursts(np.random.default_rng(streams[_BURSTS]), disturbances.burst_duration)
         self._load, self._pull, self._pulled_from, self._zeroed = rig.normal_load, 0.0, 0.0, 0.0
+        self._lifted_at, self._untouched = 0.0, 0.0  # m, distance at the latest change of load, and without contact
         self._bent = 0.0  # m, of the holder by its play
         self._wobble_phases = phases.uniform(0, 1, 2)
         self._drift = float(disturbances.drift_rate * phases.standard_normal())
@@ -211,10 +212,17 @@ class VirtualRig:
         self._volume_until_now()
         self._time += PROMPT_DURATIONS[prompt.task]
         if prompt.normal_load is not None:
-            self._load = prompt.normal_load
+            self._hang(prompt.normal_load)
         self._pull, self._pulled_from = prompt.applied_force or 0.0, self._time
         self._zeroed = self._time
         self._settle()
+
+    def _hang(self, load: float) -> None:
+        """Take another load; while it is 0 the track does not run in."""
+        turned = float(self._distance(np.asarray(self._time)))
+        if self._load == 0:
+            self._untouched += turned - self._lifted_at
+        self._load, self._lifted_at = load, turned
 
     def drive(self, setting: DriveSetting | None) -> None:
         """Set the drive, None for off."""
@@ -303,7 +311,8 @@ class VirtualRig:
         mean = self._friction.friction_coefficient * self._load
         distance = self._distance(time)
         ratio = self._ratio.at(time)
-        level = mean * wobble * ratio * (1 + sizes.run_in_share * np.exp(-distance / sizes.run_in_distance))
+        run_in = np.exp(-(distance - self._untouched) / sizes.run_in_distance)
+        level = mean * wobble * ratio * (1 + sizes.run_in_share * run_in)
         noise = sizes.friction_noise * self._noises["friction noise"].next(time.size)
         force = level * (1 + noise + sizes.ringing * self._noises["ringing"].next(time.size))
         if self._setting is None and self._stick_slip.occurs:

@@ -9,7 +9,7 @@ from sonolube.units import format_si
 
 
 def next_command(run: Run) -> str:
-    """Command for what was recorded: calibration, friction, impedance or rotation, else what shows the run.
+    """Command for what was recorded: decay length, calibration, friction, impedance, rotation, or to show it.
 
     Parameters
     ----------
@@ -23,6 +23,9 @@ def next_command(run: Run) -> str:
     parts = run.part_channels
     friction = _having(parts, "friction_force")
     gauges = [path for path in friction if "displacement" in parts[path]]
+    lifts = any(note.facts.get("normal_load") == 0 for note in run.notes if note.kind == "conditions")
+    if lifts and any("normal_load" in parts[path] for path in friction):
+        return f"sonolube identify decay-length {quote(str(run.folder))}"
     if gauges:
         applied = "".join(f" --apply {quote(str(path))}" for path in gauges[1:])
         return f"sonolube measure calibration {quote(str(gauges[0]))}{applied}"
