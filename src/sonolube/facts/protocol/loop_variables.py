@@ -17,7 +17,7 @@ def written_out(content: Mapping[str, Any]) -> dict[str, Any]:
     Parameters
     ----------
     content : mapping
-        Of the table as TOML gives it. What is no table of lists of texts is left for the validation of the record.
+        Of the table as TOML gives it. What is no table is left for the validation of the record.
 
     Returns
     -------
@@ -27,14 +27,15 @@ def written_out(content: Mapping[str, Any]) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If the name of a variable is no name, no step uses it, or the steps are too many.
+        If the name of a variable is no name, its values are no list of texts, no step uses it, or the steps are too
+        many.
     """
     over, steps = content.get("over"), content.get("steps")
     if not over or not isinstance(over, Mapping) or not isinstance(steps, Sequence) or isinstance(steps, str):
         return dict(content)
-    if not all(_is_list_of_texts(values) for values in over.values()):
-        return dict(content)
-    for name in over:
+    for name, values in over.items():
+        if not _is_list_of_texts(values):
+            raise ValueError(f'over.{name}: must be a list of texts, such as ["3 N", "6 N"]')
         if not _NAME.fullmatch(name):
             raise ValueError(f"over: {name[:40]!r} is no name of a variable; letters, digits and _, such as speed")
         if f"{{{name}}}" not in "".join(_texts(steps)):

@@ -131,7 +131,7 @@ def _mended_parts(folder: Path, done: list[str]) -> dict[int, RawPart]:
 def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -> None:
     """Write the documents with which an interrupted run ends."""
     earlier = read_documents(folder)
-    log = DocumentLog(folder, earlier=earlier)
+    log = DocumentLog(folder, earlier=earlier if (folder / DOCUMENTS).exists() else None)
     try:
         if not earlier.of("start"):
             log.start(known)
