@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from sonolube.errors import SonolubeError
+from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel
 
 
@@ -137,6 +138,8 @@ class Devices:
     prepare : callable or None
         Works out what the devices need for a drive setting (None for off) at a speed of the disc, in 1/s. It is called
         for every set point before anything is connected; None where no set point takes the devices time.
+    attend : callable or None
+        Takes a prompt after it was confirmed: of simulated devices the time passes, and load and lubricant change.
     """
 
     acquisition: Acquisition
@@ -146,6 +149,7 @@ class Devices:
     groove_diameter: float
     simulated: bool = False
     prepare: Callable[[DriveSetting | None, float], None] | None = None
+    attend: Callable[[Prompt], None] | None = None
 
 
 def connect_devices(devices: Devices) -> None:

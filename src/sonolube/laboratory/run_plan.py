@@ -1,14 +1,18 @@
 """Plan of a run: its protocol, rig and devices, and what its record says of them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Final
 
 from sonolube.facts.protocol import Protocol, protocol_text
 from sonolube.input_files import input_text
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.records import RunRecorder, new_run
+from sonolube.laboratory.set_points import groove_diameter
 from sonolube.rig import Rig
+
+_STATED: Final = ("specimen", "operator", "humidity", "calibrated", "block", "run")  # of the metadata of a protocol
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +29,8 @@ class RunPlan:
         None for the virtual tribometer.
     seed : int
     tags : sequence of str
+    facts : mapping of str to str or float
+        What is known besides, such as operator, humidity or the date of a calibration; before those of the protocol.
     """
 
     protocol: Protocol
@@ -33,6 +39,7 @@ class RunPlan:
     device_file: Path | None = None
     seed: int = 0
     tags: Sequence[str] = ()
+    facts: Mapping[str, str | float] = field(default_factory=dict)
 
 
 def begin_record(
@@ -75,18 +82,26 @@ def _files(plan: RunPlan) -> dict[str, str]:
 
 def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | bool]:
     """What is known of the run, for its record and the catalogue."""
-    rig = plan.rig
+    rig, metadata = plan.rig, plan.protocol.metadata
     facts: dict[str, str | float | int | bool] = {
         "protocol": plan.name,
         "simulated": devices.simulated,
         **{f"device_{name.replace(' ', '_')}": text for name, text in devices.description.items()},
     }
+    facts["groove_diameter"] = groove_diameter(plan.protocol, devices)
+    facts |= {name: text for name in _STATED if (text := getattr(metadata, name))} | dict(plan.facts)
+    if metadata.normal_load is not None:
+        facts["normal_load"] = metadata.normal_load
     if plan.tags:
         facts["tags"] = ", ".join(plan.tags)
     if devices.simulated:
         facts["seed"] = plan.seed
     if rig is not None:
-        facts |= {"normal_load": rig.normal_load, "rig_title": rig.title, "nominal_area": rig.contact.nominal_area}
+        facts |= {
+            "normal_load": facts.get("normal_load", rig.normal_load),
+            "rig_title": rig.title,
+            "nominal_area": rig.contact.nominal_area,
+        }
         facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
         if rig.changes:
             facts["changed_entries"] = "; ".join(rig.changes)
