@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from sonolube.errors import SonolubeError
+from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel
 
 
@@ -144,6 +145,8 @@ class Devices:
         for every set point before anything is connected; None where no set point takes the devices time.
     resources : tuple of str
         Canonical names of the hardware (device, address, port), which one run of a user has at a time.
+    attend : callable or None
+        Takes a prompt after it was confirmed: of simulated devices the time passes, and load and lubricant change.
     """
 
     acquisition: Acquisition
@@ -154,6 +157,7 @@ class Devices:
     simulated: bool = False
     prepare: Callable[[DriveSetting | None, float], None] | None = None
     resources: tuple[str, ...] = ()
+    attend: Callable[[Prompt], None] | None = None
 
 
 def connect_devices(devices: Devices) -> None:

@@ -5,20 +5,17 @@ import json
 import os
 import platform
 import re
-import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import is_locked, locked_folder, remove_file, user_state_folder, write_atomically
+from sonolube.files import is_locked, locked_folder, process_start, remove_file, user_state_folder, write_atomically
 from sonolube.laboratory.devices import DeviceError
 
 _HOLDER: Final = "holder.json"  # process that has a device
 _LARGEST: Final = 10_000  # bytes of it
-_PATIENCE: Final = 5.0  # s, for an answer of ps
 
 
 class DeviceInUse(DeviceError):
@@ -75,7 +72,7 @@ def _reserved(resource: str) -> Iterator[None]:
             raise
         if _is_alive(_holder(folder)):  # of a file system without locks
             raise _in_use(resource, folder)
-        own = {"process": os.getpid(), "started": _started(os.getpid()), "folder": str(Path.cwd())}
+        own = {"process": os.getpid(), "started": process_start(os.getpid()), "folder": str(Path.cwd())}
         write_atomically(folder / _HOLDER, json.dumps(own))
         held.callback(remove_file, folder / _HOLDER)
         yield
@@ -114,21 +111,5 @@ def _holder(folder: Path) -> dict[str, Any]:
 
 def _is_alive(holder: dict[str, Any]) -> bool:
     """Whether the very process lives, and not a later one of the same number."""
-    started = _started(holder["process"]) if holder else ""
+    started = process_start(holder["process"]) if holder else ""
     return bool(started) and started == holder.get("started")
-
-
-def _started(process: int) -> str:
-    """Time at which a process has started; empty where it does not live or the system does not tell."""
-    if sys.platform == "linux":
-        with suppress(OSError, IndexError):
-            boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
-            fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2]
-            state, *rest = fields.split()
-            return "" if state == "Z" else f"{boot} {rest[18]}"
-    elif os.name == "posix":
-        with suppress(OSError, subprocess.SubprocessError):
-            command = ["ps", "-o", "lstart=", "-p", str(process)]
-            told = subprocess.run(command, capture_output=True, text=True, check=False, timeout=_PATIENCE)
-            return told.stdout.strip()
-    return ""  # the locks of Windows suffice

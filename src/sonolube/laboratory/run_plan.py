@@ -1,16 +1,20 @@
 """Plan of a run: its protocol, rig and devices, and what its record says of them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Final
 
 from sonolube.facts.protocol import Protocol, protocol_text
 from sonolube.input_files import input_text
 from sonolube.laboratory.devices import Devices
-from sonolube.laboratory.drive_sampling import DriveSampling, recorded_channels
+from sonolube.laboratory.drive_sampling import DriveSampling, drive_sampling, recorded_channels
 from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
+from sonolube.laboratory.set_points import groove_diameter
 from sonolube.rig import Rig
+
+_STATED: Final = ("specimen", "operator", "humidity", "calibrated", "block", "run")  # of the metadata of a protocol
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +32,9 @@ class RunPlan:
     seed : int
     tags : sequence of str
     drive : DriveSampling or None
-        How often the drive is sampled; None where nothing is driven.
+        How often the drive is sampled, where the protocol does not tell it.
+    facts : mapping of str to str or float
+        What is known besides, such as operator, humidity or the date of a calibration; before those of the protocol.
     """
 
     protocol: Protocol
@@ -38,6 +44,7 @@ class RunPlan:
     seed: int = 0
     tags: Sequence[str] = ()
     drive: DriveSampling | None = None
+    facts: Mapping[str, str | float] = field(default_factory=dict)
 
     def unresolved(self, devices: Devices) -> str:
         """What record and limits do not show of the drive, in one line; empty where they show it.
@@ -50,10 +57,11 @@ class RunPlan:
         -------
         str
         """
-        if self.drive is None:
+        drive = self.drive or drive_sampling(self.protocol)
+        if drive is None:
             return ""
-        locks = interlocks_for(self.protocol.limits, devices.acquisition.channels, self.drive)
-        return self.drive.caveat([*recorded_channels(self.protocol), *(lock.channel.name for lock in locks)])
+        locks = interlocks_for(self.protocol.limits, devices.acquisition.channels, drive)
+        return drive.caveat([*recorded_channels(self.protocol), *(lock.channel.name for lock in locks)])
 
 
 def begin_record(
@@ -96,7 +104,7 @@ def _files(plan: RunPlan) -> dict[str, str]:
 
 def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | bool]:
     """What is known of the run, for its record and the catalogue."""
-    rig = plan.rig
+    rig, metadata = plan.rig, plan.protocol.metadata
     facts: dict[str, str | float | int | bool] = {
         "protocol": plan.name,
         "simulated": devices.simulated,
@@ -104,12 +112,20 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
     }
     if unresolved := plan.unresolved(devices):
         facts[UNRESOLVED] = unresolved
+    facts["groove_diameter"] = groove_diameter(plan.protocol, devices)
+    facts |= {name: text for name in _STATED if (text := getattr(metadata, name))} | dict(plan.facts)
+    if metadata.normal_load is not None:
+        facts["normal_load"] = metadata.normal_load
     if plan.tags:
         facts["tags"] = ", ".join(plan.tags)
     if devices.simulated:
         facts["seed"] = plan.seed
     if rig is not None:
-        facts |= {"normal_load": rig.normal_load, "rig_title": rig.title, "nominal_area": rig.contact.nominal_area}
+        facts |= {
+            "normal_load": facts.get("normal_load", rig.normal_load),
+            "rig_title": rig.title,
+            "nominal_area": rig.contact.nominal_area,
+        }
         facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
         if rig.changes:
             facts["changed_entries"] = "; ".join(rig.changes)

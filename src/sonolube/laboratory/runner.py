@@ -145,6 +145,7 @@ class _Run:
         self._present, self._is_connected = RunState(), False
         self._drive: DriveSetting | None = None
         self._turns = 0.0
+        self._conditions: dict[str, float | str] = {"lubricant": ""}
 
     def complete(self, advance: Advance | None) -> RunResult:
         """Follow the protocol to its end, whatever that is."""
@@ -207,6 +208,7 @@ class _Run:
         step = step_at(self._protocol, point.step)
         if isinstance(step, Prompt):
             self._ask(step)
+        self._note_conditions()
         if not self._sampling.is_running:
             self._sample_again()
         if isinstance(step, Check):
@@ -240,7 +242,7 @@ class _Run:
         if turns != self._turns:
             self._devices.motor.turn(turns)
             self._turns = turns
-            self._note("motor", step=point.step, rotation_speed=turns)
+            self._note("motor", step=point.step, rotation_speed=turns, sliding_speed=turns * pi * self._diameter)
         setting = drive_setting(point)
         if setting != self._drive:
             if setting is None:
@@ -258,11 +260,22 @@ class _Run:
         if excess:
             raise RunEnded(Event.TRIP, excess)
 
+    def _note_conditions(self) -> None:
+        """Note load and lubricant where the protocol tells others than before."""
+        found: dict[str, float | str] = {"lubricant": self._point.lubricant}
+        if self._point.normal_load is not None:
+            found["normal_load"] = self._point.normal_load
+        if found != self._conditions:
+            self._conditions = found
+            self._note("conditions", step=self._point.step, **found)
+
     def _ask(self, prompt: Prompt) -> None:
         """Ask the operator with motor and drive off, while the clock stands."""
         self._pause(f"{prompt.task}: {prompt.text}")
         if not self._operator(prompt):
             raise RunEnded(Event.STOP, f"the operator did not confirm: {prompt.text}")
+        if self._devices.attend is not None:
+            self._devices.attend(prompt)
         self._happens(Event.RESUME)
 
     def _pause(self, reason: str) -> None:

@@ -105,11 +105,15 @@ def _with_references(columns: dict[str, Floats]) -> tuple[dict[str, Floats], np.
         return columns, without
     settings = np.stack([columns.get(name, np.zeros(count)) for name in ("sliding_speed", "normal_load")], axis=1)
     intrinsic = columns.get("intrinsic_friction_force", np.full(count, np.nan)).copy()
+    deviation = columns.get("friction_force_uncertainty", np.full(count, np.nan))
+    of_intrinsic = columns.get("intrinsic_friction_force_uncertainty", np.full(count, np.nan)).copy()
     for row in np.flatnonzero(np.isnan(intrinsic) & ~without):
         same = without & np.all(np.isclose(settings, settings[row], rtol=1e-2, equal_nan=True), axis=1)
         if same.any():
             intrinsic[row] = np.mean(force[same])
-    return columns | {
+            of_intrinsic[row] = np.sqrt(np.sum(deviation[same] ** 2)) / np.count_nonzero(same)
+    stated = {"intrinsic_friction_force_uncertainty": of_intrinsic} if np.isfinite(of_intrinsic).any() else {}
+    return columns | stated | {
         "intrinsic_friction_force": intrinsic,
         "friction_force": np.where(without, np.nan, force),
     }, without
@@ -144,11 +148,13 @@ def _derive_wear(columns: dict[str, Floats]) -> None:
 def _derive_uncertainty(columns: dict[str, Floats]) -> None:
     """Add the standard uncertainty of the reduction where only those of the forces are stated, independent."""
     names = ("friction_force", "intrinsic_friction_force", "friction_force_uncertainty")
-    if "friction_reduction_uncertainty" in columns or not set(names) <= columns.keys():
+    if not set(names) <= columns.keys():
         return
     force, without, deviation = (columns[name] for name in names)
     other = columns.get("intrinsic_friction_force_uncertainty", np.zeros(force.size))
-    columns["friction_reduction_uncertainty"] = np.hypot(deviation, force / without * other) / without
+    derived = np.hypot(deviation, force / without * np.where(np.isnan(other), 0.0, other)) / without
+    stated = columns.get("friction_reduction_uncertainty", np.full(force.size, np.nan))
+    columns["friction_reduction_uncertainty"] = np.where(np.isnan(stated), derived, stated)
 
 
 def _skipped(empty: np.ndarray, lines: Sequence[int]) -> str:

@@ -59,6 +59,7 @@ TOTALS = {
     "waveguide_calibration": 5 * 30 + 11 / (54.9 / 60),  # Table 2.8: 11 rounds at 54.9 rpm; loops assumed
     "lubrication_comparison": 4 * 3 * (1 + 9 * 5),  # D 4.2.2: four methods, three loads; times assumed
     "resonance_sweep": 81 * 0.5,  # assumed
+    "decay_length_run": 60 * (5 / 0.065 + 21 * 0.05 + 5),  # 300 m switched every 5 m; sweep and zero assumed
 }
 
 

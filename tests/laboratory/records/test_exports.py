@@ -50,7 +50,7 @@ def test_unknown_formats_and_empty_runs_are_refused(tmp_path: Path) -> None:
     folder = begun(tmp_path).finish("stopped").folder
     with pytest.raises(UnknownName, match="unknown format 'tdm'; did you mean tdms"):
         export_run(folder, file_format="tdm", out=tmp_path)
-    with pytest.raises(InvalidInput, match="no recording in raw blocks"):
+    with pytest.raises(InvalidInput, match="no recording to export"):
         export_run(folder, file_format="tdms", out=tmp_path)
 
 

@@ -209,11 +209,11 @@ def test_faults_of_the_hardware_come_at_their_sample(kind: str, error: type[Devi
         devices.acquisition.read(1)
 
 
-@pytest.mark.parametrize(("kind", "reason"), [("saturated", "saturated at 25 N"), ("no number", "gives no number")])
+@pytest.mark.parametrize(("kind", "reason"), [("saturated", "saturated at 60 N"), ("no number", "gives no number")])
 def test_a_broken_gauge_trips_the_limit_of_the_force(kind: str, reason: str) -> None:
     protocol = protocol_by_name_or_file("map_test")
     limited = protocol.model_copy(
-        update={"limits": protocol.limits.model_copy(update={"friction_force_maximum": 25.0})}
+        update={"limits": protocol.limits.model_copy(update={"friction_force_maximum": 60.0})}
     )
     virtual = tribometer(fault=Fault(2000, kind))  # type: ignore[arg-type]
     result = run_protocol(limited, virtual.devices, MemoryRecord(), operator=lambda prompt: True)

@@ -3,6 +3,7 @@ from .library import (
     protocol_names as protocol_names,
     protocol_path as protocol_path,
 )
+from .operating_point import protocol_at as protocol_at
 from .quantity_text import exact_text as exact_text
 from .record import Limits as Limits, Metadata as Metadata, Protocol as Protocol
 from .steps import (

@@ -46,6 +46,12 @@ class Metadata(Table):
         Of the middle of the wear track. [m]
     specimen : str
         Name of the pair of bodies.
+    operator : str
+        Who makes the test.
+    humidity : str
+        Relative humidity of the air, such as 45 %.
+    calibrated : str
+        Date of the latest calibration of the sensors, such as 2026-03-01.
     run : int or None
         Row of the table of runs.
     block : int or None
@@ -57,6 +63,9 @@ class Metadata(Table):
     normal_load: Newtons | None = None
     groove_diameter: Metres | None = None
     specimen: str = Field(default="", max_length=_TEXT)
+    operator: str = Field(default="", max_length=_TEXT)
+    humidity: str = Field(default="", max_length=_TEXT)
+    calibrated: str = Field(default="", max_length=_TEXT)
     run: int | None = Field(default=None, ge=1)
     block: int | None = Field(default=None, ge=1)
 

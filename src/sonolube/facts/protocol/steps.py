@@ -1,13 +1,16 @@
 """Steps of a test protocol, one record a kind."""
 
 import re
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from sonolube.facts.protocol.loop_variables import MAX_STEPS, written_out
 from sonolube.facts.protocol.quantity_text import (
     Hertz,
     MetresPerSecond,
+    Newtons,
+    NoOrMoreNewtons,
     Seconds,
     SignedVolts,
     Table,
@@ -24,6 +27,7 @@ CheckedQuantity = Literal[
 
 _CHANNEL: Final = re.compile(r"[A-Za-z]\w{0,63}")
 _LONGEST_TEXT: Final = 2000
+_LONGEST_NAME: Final = 500
 
 
 class Wait(Table):
@@ -222,25 +226,51 @@ class Prompt(Table):
         Kind of work.
     text : str
         What to do.
+    normal_load : float or None
+        That the operator sets, 0 for a lifted pin; None where it stays as it is. [N]
+    lubricant : str or None
+        That the operator applies, empty for a cleaned contact; None where it stays as it is.
+    applied_force : float or None
+        Greatest force with which the operator pulls at the pin along the sliding during the next recording, in loops
+        of 30 s of which each goes further. [N]
     """
 
     kind: Literal["prompt"] = "prompt"
     task: Literal["cleaning", "mounting", "load", "profilometry", "other"] = "other"
     text: str = Field(min_length=1, max_length=_LONGEST_TEXT)
+    normal_load: NoOrMoreNewtons | None = None
+    lubricant: str | None = Field(default=None, max_length=_LONGEST_NAME)
+    applied_force: Newtons | None = None
 
 
 class Repeat(Table):
-    """Make steps several times.
+    """Make steps several times, or once for each value of variables.
 
     Parameters
     ----------
     count : int
     steps : tuple of step
+        Written out for all values where there are variables.
+    over : mapping of str to tuple of str
+        Values of variables, which stand as {name} in the texts of the steps: all combinations, those of the last
+        variable in turn for each of the one before. Empty in a record that was read, whose steps are written out.
     """
 
     kind: Literal["repeat"] = "repeat"
-    count: int = Field(ge=1, le=10_000)
-    steps: "Annotated[tuple[Step, ...], Field(strict=False, min_length=1, max_length=1000)]"
+    count: int = Field(default=1, ge=1, le=10_000)
+    steps: "Annotated[tuple[Step, ...], Field(strict=False, min_length=1, max_length=MAX_STEPS)]"
+    over: dict[str, Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=1000)]] = Field(
+        default_factory=dict
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _write_out(cls, content: Any) -> Any:
+        if not isinstance(content, dict):
+            return content
+        if "count" not in content and not content.get("over"):
+            raise ValueError("needs count, or over with the values of variables")
+        return written_out(content)
 
 
 Step = Annotated[

@@ -101,7 +101,8 @@ def protocol_text(protocol: Protocol) -> str:
 def _step_lines(steps: Sequence[Mapping[str, Any]], name: str) -> Iterator[str]:
     """Lines of steps as an array of tables, the steps of a repeat below it."""
     for step in steps:
-        yield from ("", f"[[{name}]]", *_entries({key: value for key, value in step.items() if value != ""}))
+        written = {key: value for key, value in step.items() if value != "" or key == "lubricant"}
+        yield from ("", f"[[{name}]]", *_entries(written))
         yield from _step_lines(step.get("steps", ()), f"{name}.steps")
 
 

@@ -6,12 +6,13 @@ from typing import Any, Final
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol.record import Protocol
-from sonolube.facts.protocol.steps import Acquire, Drive, MotorSpeed, Repeat, Step, Sweep, VoltageSteps, Wait
+from sonolube.facts.protocol.steps import Acquire, Drive, MotorSpeed, Prompt, Repeat, Step, Sweep, VoltageSteps, Wait
 from sonolube.units import format_si
 
 MOST_SET_POINTS: Final = 10_000
 """Number of set points of a protocol, repeats included."""
 
+_ROUNDING: Final = 1e-9  # relative
 _DEEPEST: Final = 8  # repeats within each other
 
 
@@ -44,6 +45,10 @@ class SetPoint:
         Of the recording. [Hz]
     recorded_until : float or None
         Time at which the recording ends, in s.
+    normal_load : float or None
+        None where the protocol does not tell it. [N]
+    lubricant : str
+        Empty where none was applied.
     """
 
     time: float
@@ -58,6 +63,8 @@ class SetPoint:
     channels: tuple[str, ...] = ()
     sample_rate: float | None = None
     recorded_until: float | None = None
+    normal_load: float | None = None
+    lubricant: str = ""
 
     @property
     def voltage_maximum(self) -> float:
@@ -96,7 +103,7 @@ def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
     """
     _require_bounded(protocol.steps)
     now, until = 0.0, 0.0
-    state = SetPoint(time=0.0, step="", kind="")
+    state = SetPoint(time=0.0, step="", kind="", normal_load=protocol.metadata.normal_load)
     points = []
     for move in _moves(protocol.steps, ""):
         if move.records is not None:
@@ -110,6 +117,8 @@ def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
         state = replace(state, time=now, step=move.step, kind=move.kind, **move.changes)
         points.append(state)
         now += move.lasts
+        if abs(now - until) < _ROUNDING * max(1.0, until):
+            now = until  # the end of a recording, but for rounding
     return (*points, SetPoint(time=max(now, until), step="", kind="end"))
 
 
@@ -207,6 +216,9 @@ def _single(step: Step, place: str) -> _Move:
             return _Move(place, step.kind, 0.0, changes)
         case Acquire():
             return _Move(place, step.kind, 0.0, {"channels": step.channels}, step)
+        case Prompt():
+            told = {"normal_load": step.normal_load, "lubricant": step.lubricant}
+            return _Move(place, step.kind, 0.0, {name: value for name, value in told.items() if value is not None})
     return _Move(place, step.kind, 0.0, {})
 
 

@@ -21,6 +21,8 @@ _DRIVEN: Final = 0.1  # of the largest voltage, above which the vibration is on
 _SETTLING: Final = 0.1  # of a part at either end, left out of means
 _FEWEST: Final = 8  # samples of a mean
 _HARMONICS: Final = 2
+_PAUSE: Final = 1.5  # sample intervals, beyond which nothing was recorded between two samples
+_RECTIFIED: Final = 0.5  # of the standard deviation, above which the mean of a current is its reading
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +57,8 @@ def recorded_switches(
     recording : xarray.Dataset
         With the channels `friction_force`, `voltage_peak_to_peak` and `normal_load`, in which the pin counts as lifted
         below a tenth of the median load, and `stack_current`, `small_drive_shift` and `large_drive_shift` where they
-        were recorded: shifts in the samples about a switch, NaN elsewhere.
+        were recorded: shifts in the samples about a switch, NaN elsewhere. A current that alternates counts by its
+        amplitude. The set point `sliding_speed_set`, where there is one, tells the distance.
     sliding_speed : float
         While the pin is on the track. [m/s]
     rotation_speed : float, optional
@@ -85,7 +88,7 @@ def recorded_switches(
     if not switches:
         raise InvalidInput(f"{title}: the vibration is never switched on or off; record several switches in one run")
     steady = _without_wobble(time, force, [part for part in parts if not part.lifted], rotation_speed)
-    slid = np.concatenate([[0.0], np.cumsum(np.diff(time) * sliding_speed * ~_lifted(parts, time.size)[1:])])
+    slid = _slid(recording, time, sliding_speed * ~_lifted(parts, time.size))
     columns: dict[str, list[float]] = {}
     for before, between, after in switches:
         on, off = (after.half(last=False), before.half(last=True))
@@ -95,7 +98,7 @@ def recorded_switches(
         row |= _mean("friction_force", steady[on]) | _mean("intrinsic_friction_force", steady[off])
         row |= _mean("force_zero", force[between.inner] if between else np.empty(0))
         if "stack_current" in recording:
-            row |= _mean("stack_current", channel_values(recording, "stack_current")[on])
+            row |= _current(channel_values(recording, "stack_current")[on])
         for name in ("small_drive_shift", "large_drive_shift"):
             if name in recording:
                 near = slice(before.half(last=True).start, after.half(last=False).stop)
@@ -142,6 +145,26 @@ def _lifted(parts: list[_Part], samples: int) -> np.ndarray:
     for part in parts:
         lifted[part.begin : part.end] = part.lifted
     return lifted
+
+
+def _slid(recording: "xr.Dataset", time: Floats, speed: Floats) -> Floats:
+    """Distance until each sample, by the speed that was set where it was recorded; none while nothing was recorded."""
+    if "sliding_speed_set" in recording:
+        speed = channel_values(recording, "sliding_speed_set")
+    steps = np.diff(time)
+    recorded = steps < _PAUSE * np.median(steps)
+    return np.concatenate([[0.0], np.cumsum(steps * speed[1:] * recorded)])
+
+
+def _current(values: Floats) -> dict[str, float]:
+    """Amplitude of an alternating current, or mean of one that was rectified, with its standard uncertainty."""
+    known = values[np.isfinite(values)]
+    if known.size < _FEWEST or abs(known.mean()) > _RECTIFIED * known.std():
+        return _mean("stack_current", known)
+    squares = correlated_mean(2 * (known - known.mean()) ** 2)
+    amplitude = float(np.sqrt(squares.mean))
+    uncertainty = squares.uncertainty / (2 * amplitude) if amplitude else 0.0
+    return {"stack_current": amplitude, "stack_current_uncertainty": max(uncertainty, 1e-9 * amplitude + 1e-15)}
 
 
 def _without_wobble(time: Floats, force: Floats, slides: list[_Part], rotation_speed: float | None) -> Floats:

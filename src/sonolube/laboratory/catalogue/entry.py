@@ -6,7 +6,7 @@ from math import pi
 from pathlib import Path
 
 from sonolube.errors import SonolubeError
-from sonolube.facts.protocol import Protocol, flattened, protocol_from
+from sonolube.facts.protocol import Protocol, SetPoint, flattened, protocol_from
 from sonolube.laboratory.records import Run, RunSummary, read_run
 from sonolube.printable_text import printable
 
@@ -20,10 +20,10 @@ class CatalogueEntry:
     summary : RunSummary
     pin_material, disc_material : str
         Empty where they are not known.
-    normal_load : float or None
-        [N]
-    sliding_speed : float or None
-        Highest of the protocol. [m/s]
+    normal_loads : tuple of float
+        All that were set, ascending, in N.
+    sliding_speeds : tuple of float
+        All above 0 that were set, ascending, in m/s.
     tags : tuple of str
     text : str
         Everything of the run that is text, for a search by words.
@@ -32,14 +32,24 @@ class CatalogueEntry:
     summary: RunSummary
     pin_material: str
     disc_material: str
-    normal_load: float | None
-    sliding_speed: float | None
+    normal_loads: tuple[float, ...]
+    sliding_speeds: tuple[float, ...]
     tags: tuple[str, ...]
     text: str
 
+    @property
+    def normal_load(self) -> float | None:
+        """Load of the run; None where it is not known, or there were several. [N]"""
+        return self.normal_loads[0] if len(self.normal_loads) == 1 else None
+
+    @property
+    def sliding_speed(self) -> float | None:
+        """Sliding speed of the run; None where it is not known, or there were several. [m/s]"""
+        return self.sliding_speeds[0] if len(self.sliding_speeds) == 1 else None
+
 
 def catalogue_entry(folder: Path) -> CatalogueEntry:
-    """Entry of a run by its folder; facts of the run go before its protocol.
+    """Entry of a run by its folder; facts of the run go before its protocol, but for what its steps set.
 
     Parameters
     ----------
@@ -64,8 +74,8 @@ def catalogue_entry(folder: Path) -> CatalogueEntry:
         summary=run.summary,
         pin_material=materials[0],
         disc_material=materials[1],
-        normal_load=_number(run, "normal_load", None if protocol is None else protocol.metadata.normal_load),
-        sliding_speed=_number(run, "sliding_speed", None if protocol is None else _speed(run, protocol)),
+        normal_loads=_loads(run, protocol),
+        sliding_speeds=_speeds(run, protocol),
         tags=tuple(filter(None, tags)),
         text=printable("\n".join([folder.name, run.summary.title, run.summary.reason, run.protocol, *facts, *notes])),
     )
@@ -82,16 +92,36 @@ def _protocol(run: Run) -> Protocol | None:
         return None
 
 
-def _speed(run: Run, protocol: Protocol) -> float | None:
-    """Highest sliding speed of a protocol; None where nothing slides or the groove is not known. [m/s]"""
+def _loads(run: Run, protocol: Protocol | None) -> tuple[float, ...]:
+    """Loads that were set while the disc turned, those of prompts before that of the facts. [N]"""
+    stated = protocol.metadata.normal_load if protocol else None
+    known = _number(run, "normal_load", stated)
+    loads = {known}
+    if protocol is not None:
+        points = flattened(protocol)
+        told = {point.normal_load if point.normal_load != stated else known for point in points if _turns(point)}
+        loads = told or loads
+    return tuple(sorted(load for load in loads if load))
+
+
+def _turns(point: SetPoint) -> bool:
+    """Whether the disc turns."""
+    return bool(point.sliding_speed or point.rotation_speed)
+
+
+def _speeds(run: Run, protocol: Protocol | None) -> tuple[float, ...]:
+    """Sliding speeds above 0 that were set; none where the groove is not known. [m/s]"""
+    stated = _number(run, "sliding_speed", None)
+    if stated is not None or protocol is None:
+        return () if stated is None else (stated,)
     diameter = protocol.metadata.groove_diameter or _number(run, "groove_diameter", None)
-    speeds = [0.0]
+    speeds = set()
     for point in flattened(protocol):
         if point.sliding_speed is not None:
-            speeds.append(point.sliding_speed)
+            speeds.add(point.sliding_speed)
         elif point.rotation_speed is not None and diameter is not None:
-            speeds.append(pi * diameter * point.rotation_speed)
-    return max(speeds) or None
+            speeds.add(pi * diameter * point.rotation_speed)
+    return tuple(sorted(speeds - {0.0}))
 
 
 def _text(run: Run, name: str) -> str:

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,13 +20,14 @@ if TYPE_CHECKING:
 CATALOGUE: Final = "catalogue.sqlite"
 """Name of the index beside the folders of runs."""
 
-_FORMAT: Final = 1
+_FORMAT: Final = 2
 _OWN: Final = 0x534C4C42  # application number of the database
 _SCHEMA: Final = """
 CREATE TABLE runs (
-    folder TEXT PRIMARY KEY, stamp TEXT, begun REAL, outcome TEXT, pin TEXT, disc TEXT, load REAL, speed REAL,
-    tags TEXT, text TEXT, entry TEXT
+    folder TEXT PRIMARY KEY, stamp TEXT, begun REAL, outcome TEXT, pin TEXT, disc TEXT, tags TEXT, text TEXT, entry TEXT
 );
+CREATE TABLE settings (folder TEXT, quantity TEXT, value REAL);
+CREATE INDEX by_folder ON settings (folder);
 CREATE INDEX by_time ON runs (begun);
 """
 
@@ -69,9 +70,18 @@ def query_runs(parent: Path, query: RunQuery | None = None) -> FoundRuns:
         If the folder cannot be read.
     """
     folders = run_folders(parent)
+    try:
+        return _found(parent, folders, query or RunQuery(), parent / CATALOGUE)
+    except InvalidInput as failure:  # such as a full disk: the folders are the truth
+        found = _found(parent, folders, query or RunQuery(), None)
+        return replace(found, caveats=(f"listed without an index: {failure}", *found.caveats))
+
+
+def _found(parent: Path, folders: list[Path], query: RunQuery, index: Path | None) -> FoundRuns:
+    """Runs that meet a query, by an index that is brought up to date; by one in memory where it is None."""
     caveats: list[str] = []
-    condition, values = _condition(query or RunQuery())
-    with _opened(parent / CATALOGUE, caveats) as connection:
+    condition, values = _condition(query)
+    with _opened(index, caveats) as connection:
         _refresh(connection, folders, caveats)
         (total,) = connection.execute("SELECT count(*) FROM runs").fetchone()
         rows = connection.execute(f"SELECT entry FROM runs{condition} ORDER BY begun, folder", values).fetchall()
@@ -79,12 +89,11 @@ def query_runs(parent: Path, query: RunQuery | None = None) -> FoundRuns:
 
 
 @contextmanager
-def _opened(path: Path, caveats: list[str]) -> "Iterator[Connection]":
+def _opened(path: Path | None, caveats: list[str]) -> "Iterator[Connection]":
     """Provide the index, rebuilt where it is damaged or old, in memory where none can be written."""
-    place: Path | None = path
+    place = path
     try:
-        is_whole = _is_current(path)
-        if not is_whole:
+        if path is not None and not _is_current(path):
             caveats.append(f"{path.name} was damaged or of another version, and is built anew")
             set_database_aside(path)
     except InvalidInput:
@@ -135,18 +144,27 @@ def _refresh(connection: "Connection", folders: list[Path], caveats: list[str]) 
     """Bring the index up to date with the folders."""
     known = dict(connection.execute("SELECT folder, stamp FROM runs").fetchall())
     for name in known.keys() - {folder.name for folder in folders}:
-        connection.execute("DELETE FROM runs WHERE folder = ?", (name,))
+        _remove(connection, name)
     for folder in folders:
         stamp = _stamp(folder)
         if known.get(folder.name) == stamp:
             continue
-        connection.execute("DELETE FROM runs WHERE folder = ?", (folder.name,))
+        _remove(connection, folder.name)
         try:
             entry = catalogue_entry(folder)
         except InvalidInput as failure:
             caveats.append(str(failure))
             continue
-        connection.execute(f"INSERT INTO runs VALUES ({', '.join('?' * 11)})", _row(folder.name, stamp, entry))
+        connection.execute(f"INSERT INTO runs VALUES ({', '.join('?' * 9)})", _row(folder.name, stamp, entry))
+        settings = {"load": entry.normal_loads, "speed": entry.sliding_speeds}
+        rows = [(folder.name, quantity, value) for quantity, values in settings.items() for value in values]
+        connection.executemany("INSERT INTO settings VALUES (?, ?, ?)", rows)
+
+
+def _remove(connection: "Connection", name: str) -> None:
+    """Remove a run from the index."""
+    for table in ("runs", "settings"):
+        connection.execute(f"DELETE FROM {table} WHERE folder = ?", (name,))
 
 
 def _stamp(folder: Path) -> str:
@@ -169,7 +187,7 @@ def _row(name: str, stamp: str, entry: CatalogueEntry) -> tuple[Any, ...]:
     tags = "".join(f",{tag.casefold()}" for tag in entry.tags) + ","
     return (
         *(name, stamp, summary.begun, summary.outcome, entry.pin_material.casefold(), entry.disc_material.casefold()),
-        *(entry.normal_load, entry.sliding_speed, tags, entry.text.casefold()),
+        *(tags, entry.text.casefold()),
         json.dumps({"folder": name, **content}),
     )
 
@@ -179,7 +197,8 @@ def _entry(parent: Path, text: str) -> CatalogueEntry:
     content = json.loads(text)
     summary = {field: content.pop(field) for field in RunSummary.__slots__}
     summary |= {"folder": parent / summary["folder"], "channels": tuple(summary["channels"])}
-    return CatalogueEntry(**content | {"tags": tuple(content["tags"])}, summary=RunSummary(**summary), text="")
+    content |= {name: tuple(content[name]) for name in ("tags", "normal_loads", "sliding_speeds")}
+    return CatalogueEntry(**content, summary=RunSummary(**summary), text="")
 
 
 def _condition(query: RunQuery) -> tuple[str, list[Any]]:
@@ -189,10 +208,11 @@ def _condition(query: RunQuery) -> tuple[str, list[Any]]:
     for material in query.materials:
         terms.append("(instr(pin, ?) OR instr(disc, ?))")
         values += [material.casefold()] * 2
-    for column, limits in (("load", query.normal_load), ("speed", query.sliding_speed)):
+    for setting, limits in (("load", query.normal_load), ("speed", query.sliding_speed)):
         if limits is not None:
-            terms.append(f"{column} BETWEEN ? AND ?")
-            values += limits
+            within = "SELECT folder FROM settings WHERE quantity = ? AND value BETWEEN ? AND ?"
+            terms.append(f"folder IN ({within})")
+            values += [setting, *limits]
     for comparison, moment in (("begun >= ?", query.since), ("begun < ?", query.until)):
         if moment is not None:
             terms.append(comparison)

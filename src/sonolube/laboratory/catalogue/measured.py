@@ -1,18 +1,26 @@
 """Friction of catalogued runs, measured from their recordings, as a table of runs."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.laboratory.catalogue.entry import CatalogueEntry
+from sonolube.laboratory.catalogue.entry import CatalogueEntry, catalogue_entry
 from sonolube.laboratory.catalogue.index import query_runs
 from sonolube.laboratory.catalogue.query import query_from
 from sonolube.laboratory.records import Run, read_run
-from sonolube.measurement.friction_analysis import analyse_rotation_speed, analyse_voltage_steps, channel_values
+from sonolube.measurement.friction_analysis import (
+    analyse_rotation_speed,
+    analyse_voltage_steps,
+    analyse_wobble,
+    channel_values,
+)
 from sonolube.measurement.measured_runs import runs_of_rows
+from sonolube.measurement.set_conditions import SetConditions, set_conditions
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 
 if TYPE_CHECKING:
@@ -25,6 +33,7 @@ RUNS_FOLDER: Final = Path("runs")
 """Folder of runs where a query names none by `in=FOLDER`."""
 
 _SETTLING: Final = 0.5  # s, left out at the begin of each level, as `analyse_voltage_steps` does
+_FEWEST: Final = 20  # samples of a level
 _HEADER: Final = (
     *("run", "block", "normal_load [N]", "sliding_speed [m/s]", "voltage_peak_to_peak [V]", "frequency [Hz]"),
     *("friction_force [N]", "friction_force_uncertainty [N]", "friction_reduction", "friction_reduction_uncertainty"),
@@ -58,7 +67,7 @@ def catalogued_runs(text: str) -> "xr.Dataset":
     refused = list(found.caveats)
     for entry in found.entries:
         try:
-            rows += _rows(entry)
+            rows += _rows(entry, refused)
         except SonolubeError as failure:
             refused.append(f"{entry.summary.folder.name}: left out: {failure}")
     if not rows:
@@ -86,44 +95,130 @@ def _conditions(text: str) -> tuple[Path, dict[str, list[str]]]:
     return parent, values
 
 
-def _rows(entry: CatalogueEntry) -> list[list[str]]:
-    """Rows of one run."""
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Level:
+    """Friction at one setting of a run, with what was set; None where it is not known."""
+
+    voltage: float | None
+    frequency: float | None = None
+    load: float | None = None
+    speed: float | None = None
+    friction: tuple[float | None, ...] = (None,) * 4  # force and its uncertainty, reduction and its uncertainty
+
+
+def _rows(entry: CatalogueEntry, left_out: list[str]) -> list[list[str]]:
+    """Rows of one run; of levels that are left out, a line."""
     run = read_run(entry.summary.folder)
     run.dataset(1)  # refuses runs without a recording
-    drives = [note.facts for note in run.notes if note.kind == "drive" and note.facts.get("voltage_peak_to_peak")]
-    frequency = drives[-1].get("frequency", "") if drives else run.facts.get("frequency", "")
     block, area = run.facts.get("block", ""), run.facts.get("nominal_area", "")
     told = (str(area), entry.summary.title, str(entry.summary.folder), "")
-    return [
-        [
-            *(entry.summary.folder.name, str(block), _cell(entry.normal_load), _cell(entry.sliding_speed)),
-            *(_cell(voltage), str(frequency if voltage else ""), *map(_cell, numbers), *told),
-        ]
-        for part in range(1, len(run.recordings) + 1)
-        for voltage, *numbers in _levels(run, part)
-    ]
+    rows = []
+    lubricated = list[str]()
+    for part in range(1, len(run.recordings) + 1):
+        for level in _levels(run, part, left_out, lubricated):
+            setting = (level.load, level.speed, level.voltage, level.frequency if level.voltage else None)
+            rows.append([entry.summary.folder.name, str(block), *map(_cell, (*setting, *level.friction)), *told])
+    if lubricated:
+        parts = "part " if len(lubricated) == 1 else "parts "
+        left_out.append(
+            f"{entry.summary.folder.name}: {parts}{', '.join(lubricated)} of the recording left out: lubricated, and"
+            " models of friction are of dry contacts"
+        )
+    return rows
 
 
-def _levels(run: Run, part: int) -> Iterator[Sequence[float | None]]:
-    """Voltage, friction and its uncertainty, reduction and its uncertainty, of each level in a part of a recording."""
+def _levels(run: Run, part: int, left_out: list[str], lubricated: list[str]) -> Iterator[_Level]:
+    """Friction at each dry setting of a part of a recording; of a part without friction a line, a lubricated one."""
     recording = run.dataset(part)
+    conditions = set_conditions(recording)
+    if not conditions:
+        yield from _levels_of_protocol(run, recording)
+        return
+    if "friction_force" not in recording:
+        left_out.append(f"{run.folder.name}: part {part} is left out: it has no channel friction_force")
+        return
+    if any(stretch.slides and stretch.lubricant for stretch in conditions):
+        lubricated.append(str(part))
+    for stretch in conditions:
+        if stretch.slides and not stretch.lubricant:
+            yield from _levels_of_stretch(run, recording, stretch)
+
+
+def _levels_of_stretch(run: Run, recording: "xr.Dataset", stretch: SetConditions) -> Iterator[_Level]:
+    """Friction at each voltage of a stretch at constant speed and load."""
+    piece = recording.isel(time=stretch.samples)
+    frequencies = {round(voltage, 9): frequency for _, voltage, frequency in stretch.levels}
+    turns = _rotation_speed(run, stretch)
+    known = {"load": _known(stretch.normal_load), "speed": _known(stretch.sliding_speed)}
+    if len(stretch.levels) > 1:
+        try:
+            steps = analyse_voltage_steps(piece, rotation_speed=turns or analyse_rotation_speed(piece))
+        except InvalidInput:
+            steps = ()
+        for step in steps:
+            friction = step.friction_force, step.friction_force_uncertainty
+            reduction = step.friction_reduction, step.friction_reduction_uncertainty
+            voltage = min(frequencies, key=lambda each: abs(each - step.voltage_peak_to_peak))
+            yield _Level(voltage=voltage, frequency=frequencies[voltage], friction=(*friction, *reduction), **known)
+        if steps:
+            return
+    for samples, voltage, frequency in stretch.levels:
+        friction = _mean_of(recording.isel(time=samples), turns)
+        if friction is not None:
+            yield _Level(voltage=voltage, frequency=frequency, friction=(*friction, None, None), **known)
+
+
+def _mean_of(level: "xr.Dataset", rotation_speed: float | None) -> tuple[float, float] | None:
+    """Mean friction force of a level and its standard uncertainty, settling and wobble removed; None of too few."""
+    time = channel_values(level, "time")
+    settled = level.isel(time=slice(int(np.searchsorted(time, time[0] + _SETTLING)), None))
+    if settled.sizes["time"] < _FEWEST:
+        return None
+    force = channel_values(settled, "friction_force")
+    span = float(time[-1] - time[0]) - _SETTLING
+    if rotation_speed is not None and rotation_speed * span > 1:
+        force = analyse_wobble(settled, rotation_speed=rotation_speed, harmonics=2).friction_force
+    mean = correlated_mean(force)
+    return mean.mean, mean.uncertainty
+
+
+def _rotation_speed(run: Run, stretch: SetConditions) -> float | None:
+    """Speed of the disc; None where the groove is not known. [1/s]"""
+    diameter = run.facts.get("groove_diameter")
+    known = isinstance(diameter, int | float) and diameter > 0 and stretch.sliding_speed > 0
+    return stretch.sliding_speed / (pi * float(diameter)) if known else None
+
+
+def _known(value: float) -> float | None:
+    """Value; None where it is NaN."""
+    return None if np.isnan(value) else value
+
+
+def _levels_of_protocol(run: Run, recording: "xr.Dataset") -> Iterator[_Level]:
+    """Friction at each voltage of a recording without set points, at the load and speed of its facts or protocol."""
+    entry = catalogue_entry(run.folder)
+    drives = [note.facts for note in run.notes if note.kind == "drive" and note.facts.get("voltage_peak_to_peak")]
+    stated = drives[-1].get("frequency") if drives else run.facts.get("frequency")
+    known = {
+        "frequency": float(stated) if isinstance(stated, int | float) else None,
+        "load": entry.normal_load,
+        "speed": entry.sliding_speed,
+    }
     if not {"voltage_peak_to_peak", "stack_voltage"} & set(recording.variables):
         mean = correlated_mean(channel_values(recording, "friction_force"))
-        yield (None if run.known.referenced else 0.0), mean.mean, mean.uncertainty, None, None
+        unvibrated = None if run.known.referenced else 0.0
+        yield _Level(voltage=unvibrated, friction=(mean.mean, mean.uncertainty, None, None), **known)
         return
     try:
         steps = analyse_voltage_steps(recording, rotation_speed=analyse_rotation_speed(recording))
     except InvalidInput:
-        yield from _separate_levels(recording)
+        for voltage, *friction in _separate_levels(recording):
+            yield _Level(voltage=voltage, friction=tuple(friction), **known)
         return
     for step in steps:
-        yield (
-            step.voltage_peak_to_peak,
-            step.friction_force,
-            step.friction_force_uncertainty,
-            step.friction_reduction,
-            step.friction_reduction_uncertainty,
-        )
+        friction = step.friction_force, step.friction_force_uncertainty
+        reduction = step.friction_reduction, step.friction_reduction_uncertainty
+        yield _Level(voltage=step.voltage_peak_to_peak, friction=(*friction, *reduction), **known)
 
 
 def _separate_levels(recording: "xr.Dataset") -> Iterator[Sequence[float | None]]:

@@ -1,3 +1,4 @@
+from .converted_part import drop_raw_blocks as drop_raw_blocks
 from .exports import EXPORT_FORMATS as EXPORT_FORMATS, export_run as export_run
 from .observation import Observation as Observation, RunObserver as RunObserver, run_to_watch as run_to_watch
 from .raw_blocks import (

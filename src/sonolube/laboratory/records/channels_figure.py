@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Final
 
 from sonolube.charts import Axis, Chart, Line, Panel, envelope
+from sonolube.laboratory.records.set_point_steps import SET_POINT_CHANNELS
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ _HEIGHT: Final = 1.4  # inch, of a channel
 
 
 def channels_chart(recording: "xr.Dataset") -> Chart:
-    """Chart of all channels of a recording, one below the other.
+    """Chart of the channels of a recording, one below the other; of set points only a voltage that was not measured.
 
     Parameters
     ----------
@@ -25,7 +26,7 @@ def channels_chart(recording: "xr.Dataset") -> Chart:
     Chart
     """
     panels = []
-    for name in map(str, recording.data_vars):
+    for name in (str(each) for each in recording.data_vars if each not in SET_POINT_CHANNELS):
         time, values = envelope(recording["time"].to_numpy(), recording[name].to_numpy())
         known = quantities().get(name)
         label = name.replace("_", " ") if known is None else known.meaning.split(",")[0]

@@ -6,16 +6,18 @@ from types import MappingProxyType
 from typing import Final
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.laboratory.records.documents import read_documents
-from sonolube.laboratory.records.recorded_part import RecordedPart, recorded_part
+from sonolube.laboratory.records.converted_part import converted_part
+from sonolube.laboratory.records.documents import numbered_parts, read_documents
+from sonolube.laboratory.records.recorded_part import recorded_part
 from sonolube.laboratory.records.recording_files import (
+    PartOfRecording,
     write_csv_recording,
     write_netcdf_recording,
     write_tdms_recording,
 )
-from sonolube.laboratory.records.run_folder import RunFacts, raw_parts, read_run_facts
+from sonolube.laboratory.records.run_folder import RunFacts, raw_parts, read_run_facts, recording_path
 
-_WRITERS: Final[Mapping[str, tuple[str, Callable[[RecordedPart, RunFacts, Path], Path]]]] = MappingProxyType(
+_WRITERS: Final[Mapping[str, tuple[str, Callable[[PartOfRecording, RunFacts, Path], Path]]]] = MappingProxyType(
     {
         "netcdf": (".nc", write_netcdf_recording),
         "tdms": (".tdms", write_tdms_recording),
@@ -27,7 +29,7 @@ EXPORT_FORMATS: Final = tuple(_WRITERS)
 
 
 def export_run(folder: Path, *, file_format: str, out: Path) -> list[Path]:
-    """Write the recording of a run to files, one a part, streamed from its raw blocks.
+    """Write the recording of a run to files, one a part, streamed from its raw blocks, else its netCDF.
 
     Parameters
     ----------
@@ -53,10 +55,16 @@ def export_run(folder: Path, *, file_format: str, out: Path) -> list[Path]:
         raise UnknownName.among(EXPORT_FORMATS, kind="format", name=file_format)
     ending, write = _WRITERS[file_format]
     known, documents = read_run_facts(folder), read_documents(folder)
-    parts = [(number, recorded_part(folder, number, documents)) for number in raw_parts(folder)]
-    filled = [(number, part) for number, part in parts if part.raw.samples]
+    blocks = raw_parts(folder)
+    parts: dict[int, PartOfRecording] = {
+        number: recorded_part(folder, number, documents, facts=known.facts) for number in blocks
+    }
+    for number in numbered_parts(documents):
+        if number not in blocks and recording_path(folder, number).is_file():
+            parts[number] = converted_part(recording_path(folder, number))
+    filled = [(number, parts[number]) for number in sorted(parts) if parts[number].samples]
     if not filled:
-        raise InvalidInput(f"{folder}: has no recording in raw blocks to export")
+        raise InvalidInput(f"{folder}: has no recording to export")
     name = folder.resolve().name
     return [
         write(part, known, out / (f"{name}{ending}" if number == 1 else f"{name}-{number}{ending}"))

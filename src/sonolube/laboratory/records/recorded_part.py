@@ -1,23 +1,24 @@
-"""Part of a recording without a pause: its raw blocks with the drive voltage as it was set, in long pieces."""
+"""Part of a recording without a pause: its raw blocks with the set points, in long pieces."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.laboratory.block import Block
-from sonolube.laboratory.records.documents import ReadDocuments, part_name
+from sonolube.laboratory.records.documents import ReadDocuments
 from sonolube.laboratory.records.raw_blocks import RawPart, read_raw_blocks, scan_raw
-from sonolube.laboratory.records.run_folder import raw_path
+from sonolube.laboratory.records.run_folder import Facts, raw_path
+from sonolube.laboratory.records.set_point_steps import SetPointSteps, set_point_steps
 
 Floats = NDArray[np.float64]
 
 _ROWS: Final = 1 << 17
 _VOLTAGE: Final = "voltage_peak_to_peak"
+_SET_VOLTAGE: Final = "voltage_peak_to_peak_set"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,24 +31,63 @@ class RecordedPart:
         Of the raw blocks.
     raw : RawPart
         What they hold.
-    voltages : tuple of (int, float)
-        Sample from which a drive voltage was set, and its peak-to-peak value; none where the drive was not used, or its
-        voltage is a channel, in V.
+    steps : SetPointSteps
+        Set points.
     """
 
     path: Path
     raw: RawPart
-    voltages: tuple[tuple[int, float], ...]
+    steps: SetPointSteps
+
+    @property
+    def samples(self) -> int:
+        """Samples of each channel."""
+        return self.raw.samples
+
+    @property
+    def missing(self) -> int:
+        """Samples that are missing in gaps."""
+        return self.raw.missing
+
+    @property
+    def sample_rate(self) -> float:
+        """Of each channel. [Hz]"""
+        return self.raw.sample_rate
+
+    @property
+    def begun(self) -> float:
+        """Begin in s since 1970."""
+        return self.raw.begun
+
+    @property
+    def set_points(self) -> tuple[str, ...]:
+        """Names of the variables that hold set points."""
+        return tuple(name for name in self.variables if name in self.steps.names)
+
+    @property
+    def lubricants(self) -> tuple[str, ...]:
+        """Names of the lubricants 1, 2, ..."""
+        return self.steps.lubricants
 
     @property
     def variables(self) -> Mapping[str, str]:
-        """Quantity of each variable by its name: that of the quantity, that of the channel where several share it."""
+        """Quantity of each variable by its name: that of the quantity, that of the channel where several share it.
+
+        Set points follow what was measured. The voltage that was set is `voltage_peak_to_peak` too where none was
+        measured.
+        """
         quantities = [channel.quantity for channel in self.raw.channels]
         names = {
             channel.quantity if quantities.count(channel.quantity) == 1 else channel.name: channel.quantity
             for channel in self.raw.channels
         }
-        return names | ({_VOLTAGE: _VOLTAGE} if self.voltages else {})
+        set_points = {name: name for name in self.steps.names if name not in names}
+        return names | ({_VOLTAGE: _VOLTAGE} if self._tells_voltage else {}) | set_points
+
+    @property
+    def _tells_voltage(self) -> bool:
+        """Whether the voltage that was set stands for one that was not measured."""
+        return self.steps.drives and all(channel.quantity != _VOLTAGE for channel in self.raw.channels)
 
     @property
     def caveats(self) -> list[str]:
@@ -60,7 +100,7 @@ class RecordedPart:
             found.append(f"{self.raw.missing} samples are missing in {gaps}, the first at {at:.6g} s")
         if self.raw.damaged:
             found.append(f"the raw blocks are damaged at {self.raw.damaged} places, whose samples are left out")
-        if self.voltages:
+        if self._tells_voltage:
             found.append("voltage_peak_to_peak is the voltage that was set, not measured")
         return found
 
@@ -82,13 +122,14 @@ class RecordedPart:
         numbers = np.concatenate([np.arange(block.first_sample, block.next_sample) for block in blocks])
         values = np.concatenate([block.values for block in blocks])
         columns = [np.ascontiguousarray(values[:, column]) for column in range(values.shape[1])]
-        if self.voltages:
-            samples, levels = zip(*self.voltages, strict=True)
-            columns.append(np.array(levels)[np.searchsorted(samples, numbers, side="right") - 1])
+        beside = list(self.variables)[len(columns) :]
+        columns += [self.steps.at(_SET_VOLTAGE if name == _VOLTAGE else name, numbers) for name in beside]
         return (numbers - self.raw.first_sample) / self.raw.sample_rate, columns
 
 
-def recorded_part(folder: Path, part: int, documents: ReadDocuments, *, raw: RawPart | None = None) -> RecordedPart:
+def recorded_part(
+    folder: Path, part: int, documents: ReadDocuments, *, facts: Facts, raw: RawPart | None = None
+) -> RecordedPart:
     """Part of the recording of a run.
 
     Parameters
@@ -97,6 +138,8 @@ def recorded_part(folder: Path, part: int, documents: ReadDocuments, *, raw: Raw
     part : int
         From 1.
     documents : ReadDocuments
+        Of the run.
+    facts : mapping of str to str, float, int or bool
         Of the run.
     raw : RawPart, optional
         Where the raw blocks were looked through already.
@@ -112,45 +155,5 @@ def recorded_part(folder: Path, part: int, documents: ReadDocuments, *, raw: Raw
     """
     path = raw_path(folder, part)
     found = scan_raw(path) if raw is None else raw
-    is_measured = any(channel.quantity == _VOLTAGE for channel in found.channels)
-    levels = () if is_measured else _set_voltages(documents, part, found.first_sample)
-    return RecordedPart(path=path, raw=found, voltages=levels)
-
-
-def _set_voltages(documents: ReadDocuments, part: int, first_sample: int) -> tuple[tuple[int, float], ...]:
-    """Voltages that were set from a sample on, those before the part at its first sample."""
-    level, is_used = 0.0, False
-    found: list[tuple[int, float]] = []
-    uid = ""
-    for name, document in documents.documents:
-        if name == "descriptor" and document.get("name") == part_name(part):
-            uid, found = str(document["uid"]), [(first_sample, level)]
-        elif name == "stream_datum" and uid and document.get("descriptor") == uid:
-            break  # the part has ended
-        elif name == "event" and (volts := _voltage_of(document)) is not None:
-            level, sample = volts, document["data"].get("sample")
-            is_used |= document["data"]["kind"] == "drive"
-            if found and isinstance(sample, int):
-                _set_from(found, max(sample, first_sample), level)
-    return tuple(found) if is_used else ()
-
-
-def _set_from(found: list[tuple[int, float]], sample: int, level: float) -> None:
-    """Set a level from a sample on; of several at one sample the last holds."""
-    if found and found[-1][0] >= sample:
-        found[-1] = (found[-1][0], level)
-    else:
-        found.append((sample, level))
-
-
-def _voltage_of(event: Mapping[str, Any]) -> float | None:
-    """Voltage from an event on; None where it does not change it."""
-    kind = event["data"]["kind"]
-    if kind == "pause":
-        return 0.0
-    if kind != "drive":
-        return None
-    try:
-        return float(json.loads(event["data"]["facts"])["voltage_peak_to_peak"])
-    except (ValueError, TypeError, KeyError, RecursionError):
-        return None
+    steps = set_point_steps(documents, part, first_sample=found.first_sample, facts=facts)
+    return RecordedPart(path=path, raw=found, steps=steps)

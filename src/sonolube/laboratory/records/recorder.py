@@ -22,6 +22,7 @@ from sonolube.laboratory.records.run_folder import (
     TRUTH,
     Facts,
     RunFacts,
+    keep_digests,
     make_run_folder,
     raw_parts,
     raw_path,
@@ -264,9 +265,10 @@ class RunRecorder:
         documents = read_documents(self.folder)
         try:
             for number in raw_parts(self.folder):
-                part = recorded_part(self.folder, number, documents)
+                part = recorded_part(self.folder, number, documents, facts=self._known.facts)
                 if part.raw.samples:
                     write_netcdf_recording(part, self._known, recording_path(self.folder, number))
+            self._known = keep_digests(self.folder, self._known, raw_parts(self.folder))
         except InvalidInput as failure:
             self._fail(failure)
             raise

@@ -2,30 +2,71 @@
 
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, Final, Protocol as Interface, Self
 
 import numpy as np
 
 from sonolube.files import unfinished_file
-from sonolube.laboratory.records.recorded_part import Floats, RecordedPart
+from sonolube.laboratory.records.recorded_part import Floats
 from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts
 from sonolube.vocabulary import quantity
 
+_PACKED: Final[Mapping[str, Any]] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+_ROWS: Final = 1 << 16  # of a chunk of set points
 _WAVES: Final = {"stack_voltage", "stack_current"}  # quantities of which samples are values of the wave itself
 _CSV_DIGITS: Final = "%.17g"  # what 64-bit floats hold
 
 
-def write_netcdf_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path:
+class PartOfRecording(Interface):
+    """Part of a recording, from raw blocks or from a file into which they were converted."""
+
+    @property
+    def samples(self) -> int:
+        """Samples of each channel."""
+
+    @property
+    def missing(self) -> int:
+        """Samples that are missing in gaps."""
+
+    @property
+    def sample_rate(self) -> float:
+        """Of each channel. [Hz]"""
+
+    @property
+    def begun(self) -> float:
+        """Begin in s since 1970."""
+
+    @property
+    def variables(self) -> Mapping[str, str]:
+        """Quantity of each variable by its name."""
+
+    @property
+    def set_points(self) -> tuple[str, ...]:
+        """Names of those that hold set points."""
+
+    @property
+    def lubricants(self) -> tuple[str, ...]:
+        """Names of the lubricants 1, 2, ..."""
+
+    @property
+    def caveats(self) -> list[str]:
+        """What speaks against the recording."""
+
+    def pieces(self) -> Iterator[tuple[Floats, list[Floats]]]:
+        """Yield the time since the first sample, in s, and the columns in the order of `variables`."""
+
+
+def write_netcdf_recording(part: PartOfRecording, known: RunFacts, path: Path) -> Path:
     """Write a part of a recording as netCDF, whole or not at all.
 
     Parameters
     ----------
-    part : RecordedPart
+    part : PartOfRecording
     known : RunFacts
         Title and facts, which become attributes.
     path : Path
@@ -46,7 +87,7 @@ def write_netcdf_recording(part: RecordedPart, known: RunFacts, path: Path) -> P
     return path
 
 
-def write_tdms_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path:
+def write_tdms_recording(part: PartOfRecording, known: RunFacts, path: Path) -> Path:
     """Write a part of a recording as TDMS, as `write_netcdf_recording`; with a channel `time` where samples lack."""
     from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
@@ -54,7 +95,7 @@ def write_tdms_recording(part: RecordedPart, known: RunFacts, path: Path) -> Pat
     root = RootObject(properties={"name": known.title, "DateTime": _start(part)})
     with unfinished_file(path) as file, TdmsWriter(file) as writer:
         for time, columns in part.pieces():
-            named = dict(zip(quantities, columns, strict=True)) | ({"time": time} if part.raw.missing else {})
+            named = dict(zip(quantities, columns, strict=True)) | ({"time": time} if part.missing else {})
             channels = [
                 ChannelObject("recording", name, values, properties=_waveform(part, quantities.get(name, "time")))
                 for name, values in named.items()
@@ -65,7 +106,7 @@ def write_tdms_recording(part: RecordedPart, known: RunFacts, path: Path) -> Pat
     return path
 
 
-def write_csv_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path:
+def write_csv_recording(part: PartOfRecording, known: RunFacts, path: Path) -> Path:
     """Write a part of a recording as CSV with the units in its first line, as `write_netcdf_recording`."""
     heads = ["time [s]", *(f"{name} [{quantity(of).unit or '1'}]" for name, of in part.variables.items())]
     with unfinished_file(path) as file:
@@ -81,7 +122,7 @@ def write_csv_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path
 class _NetCdfRecording:
     """Recording that is being written as netCDF."""
 
-    def __init__(self, part: RecordedPart, known: RunFacts, path: Path) -> None:
+    def __init__(self, part: PartOfRecording, known: RunFacts, path: Path) -> None:
         self._part, self._known, self._path, self._rows = part, known, path, 0
 
     def __enter__(self) -> Self:
@@ -90,12 +131,14 @@ class _NetCdfRecording:
         with ExitStack() as stack:
             self._unfinished = stack.enter_context(unfinished_file(self._path))
             self._file: Any = stack.enter_context(h5netcdf.File(self._unfinished, "w"))
-            self._file.dimensions = {"time": self._part.raw.samples}
+            self._file.dimensions = {"time": self._part.samples}
             self._file.attrs.update(_attributes(self._part, self._known))
             for name, of in {"time": "time", **self._part.variables}.items():
                 known = quantity(of)
-                variable = self._file.create_variable(name, ("time",), np.float64)
-                variable.attrs.update({"units": known.unit or "1", "long_name": known.meaning})
+                packed = _PACKED if name in self._part.set_points else {}
+                chunks = (max(1, min(_ROWS, self._part.samples)),) if packed else None
+                variable = self._file.create_variable(name, ("time",), np.float64, chunks=chunks, **packed)
+                variable.attrs.update({"units": known.unit or "1", "long_name": known.meaning, "quantity": of})
             self._open = stack.pop_all()
         return self
 
@@ -121,29 +164,31 @@ class _NetCdfRecording:
         self._unfinished.complete()
 
 
-def _attributes(part: RecordedPart, known: RunFacts) -> dict[str, str | float]:
+def _attributes(part: PartOfRecording, known: RunFacts) -> dict[str, str | float]:
     """Attributes of the file: origin, sample rate and caveats."""
     found: dict[str, str | float] = {
         "title": known.title,
         "source": f"sonolube {known.versions.get('sonolube', '')}".strip(),
-        "sample_rate": part.raw.sample_rate,
+        "sample_rate": part.sample_rate,
         "begun": _start(part).astype(datetime).strftime("%Y-%m-%d %H:%M:%S.%f"),
         "facts": json.dumps(dict(known.facts)),
     }
+    if part.lubricants:
+        found["lubricants"] = json.dumps(part.lubricants)
     caveats = [*part.caveats]
     if UNRESOLVED in known.facts and _WAVES & set(part.variables.values()):
         caveats.append(str(known.facts[UNRESOLVED]))
     return found | ({"caveats": "\n".join(caveats)} if caveats else {})
 
 
-def _waveform(part: RecordedPart, of: str) -> Mapping[str, Any]:
+def _waveform(part: PartOfRecording, of: str) -> Mapping[str, Any]:
     """Properties of a channel of TDMS."""
     common = {"unit_string": quantity(of).unit or "1"}
-    if part.raw.missing:
+    if part.missing:
         return common
-    return common | {"wf_start_time": _start(part), "wf_start_offset": 0.0, "wf_increment": 1 / part.raw.sample_rate}
+    return common | {"wf_start_time": _start(part), "wf_start_offset": 0.0, "wf_increment": 1 / part.sample_rate}
 
 
-def _start(part: RecordedPart) -> np.datetime64:
+def _start(part: PartOfRecording) -> np.datetime64:
     """Time of the first sample in UTC."""
-    return np.datetime64(datetime.fromtimestamp(part.raw.begun, UTC).replace(tzinfo=None), "us")
+    return np.datetime64(datetime.fromtimestamp(part.begun, UTC).replace(tzinfo=None), "us")

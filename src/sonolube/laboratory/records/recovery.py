@@ -18,11 +18,15 @@ from sonolube.laboratory.records.run_folder import (
     DOCUMENTS,
     PURPOSE,
     RESERVE,
+    RUN,
     RunFacts,
+    keep_digests,
     raw_parts,
     raw_path,
     read_run_facts,
+    rebuilt_run_facts,
     recording_path,
+    write_run_facts,
 )
 
 _COPIED: Final = 1 << 20  # bytes at a time
@@ -64,12 +68,14 @@ def recover_run(folder: Path) -> Recovery:
     InvalidInput
         If the run is still at work, the folder holds no run, or cannot be written.
     """
-    known = read_run_facts(folder)
+    done: list[str] = []
+    known = _known(folder, done)
     if known.referenced:
         return Recovery(summary=run_summary(folder), done=())
-    done: list[str] = []
     _wait_for_the_end(folder)
     with locked_folder(folder, purpose=PURPOSE):
+        if done:
+            write_run_facts(folder, known)
         documents = read_documents(folder)
         if not documents.is_whole:
             done.append(_set_aside(folder / DOCUMENTS, documents.whole_bytes))
@@ -81,6 +87,21 @@ def recover_run(folder: Path) -> Recovery:
         _write_missing(folder, known, parts, done)
         remove_file(folder / RESERVE)
     return Recovery(summary=run_summary(folder), done=tuple(done))
+
+
+def _known(folder: Path, done: list[str]) -> RunFacts:
+    """Facts of a run, put together from what else tells them where run.json is missing or damaged."""
+    try:
+        return read_run_facts(folder)
+    except InvalidInput:
+        starts = read_documents(folder).of("start")
+        if (folder / RUN).exists() and not starts:
+            raise
+        known = rebuilt_run_facts(folder, starts[0] if starts else None)
+    done.append(
+        f"{RUN} written from " + ("the first document" if starts else "the protocol and the name of the folder")
+    )
+    return known
 
 
 def _wait_for_the_end(folder: Path) -> None:
@@ -110,7 +131,7 @@ def _mended_parts(folder: Path, done: list[str]) -> dict[int, RawPart]:
 def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -> None:
     """Write the documents with which an interrupted run ends."""
     earlier = read_documents(folder)
-    log = DocumentLog(folder, earlier=earlier)
+    log = DocumentLog(folder, earlier=earlier if (folder / DOCUMENTS).exists() else None)
     try:
         if not earlier.of("start"):
             log.start(known)
@@ -132,8 +153,10 @@ def _write_missing(folder: Path, known: RunFacts, parts: dict[int, RawPart], don
     for number, raw in parts.items():
         path = recording_path(folder, number)
         if raw.samples and not path.is_file():
-            write_netcdf_recording(recorded_part(folder, number, documents, raw=raw), known, path)
+            part = recorded_part(folder, number, documents, facts=known.facts, raw=raw)
+            write_netcdf_recording(part, known, path)
             done.append(f"{path.name} written")
+    keep_digests(folder, known, parts)
 
 
 def _set_aside(path: Path, length: int) -> str:

@@ -14,10 +14,11 @@ from sonolube.laboratory.records.run_folder import (
     DOCUMENTS,
     LATEST,
     PROTOCOL,
-    RUN,
     UNRESOLVED,
     RunFacts,
     changed_files,
+    changed_recordings,
+    is_run_folder,
     raw_path,
     read_run_facts,
     recording_path,
@@ -133,6 +134,17 @@ class Run:
         paths = (recording_path(self.folder, part) for part in numbered_parts(self._documents))
         return tuple(path for path in paths if path.is_file())
 
+    @property
+    def part_channels(self) -> dict[Path, tuple[str, ...]]:
+        """Channels of each part of the recording, as the protocol names them, by its file."""
+        named = {str(each.get("name")): each for each in self._documents.of("descriptor")}
+        found = {}
+        for part in numbered_parts(self._documents):
+            path = recording_path(self.folder, part)
+            if path.is_file():
+                found[path] = tuple(map(str, named[part_name(part)]["data_keys"]))
+        return found
+
     def dataset(self, part: int | None = None) -> "xr.Dataset":
         """Recording in SI over `time`, its variables named by their quantities.
 
@@ -198,7 +210,7 @@ def read_run(folder: Path) -> Run:
 def run_folders(parent: Path) -> list[Path]:
     """Folders of runs in a folder, by name, which is by time."""
     try:
-        return sorted(path for path in parent.iterdir() if (path / RUN).is_file() or (path / DOCUMENTS).is_file())
+        return sorted(path for path in parent.iterdir() if is_run_folder(path))
     except OSError as failure:
         raise InvalidInput(f"{parent}: cannot be read: {failure.strerror}") from None
 
@@ -318,6 +330,7 @@ def note_of(event: Mapping[str, Any]) -> Note:
 def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: RunSummary) -> list[str]:
     """What speaks against the record of a run."""
     found = [f"{name} is missing or was changed since the run began" for name in changed_files(folder, known)]
+    found += [f"{name} was changed after the run wrote it" for name in changed_recordings(folder, known)]
     if UNRESOLVED in known.facts:
         found.append(str(known.facts[UNRESOLVED]))
     if summary.outcome == UNFINISHED:
@@ -334,6 +347,9 @@ def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: R
             for part in numbered_parts(documents)
             if raw_path(folder, part).is_file() and not recording_path(folder, part).is_file() and summary.samples
         ]
+    gone = (part for part in numbered_parts(documents) if not raw_path(folder, part).is_file())
+    missing = (recording_path(folder, part).name for part in gone)
+    found += [f"{name} is missing" for name in missing if name in known.recordings and not (folder / name).is_file()]
     jumps = sum(event["data"]["kind"] == "clock jump" for event in documents.of("event"))
     if jumps:
         found.append(f"the clock of the computer was set {jumps} times during the run; times are by sample counters")

@@ -3,8 +3,9 @@
 import hashlib
 import json
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
@@ -36,6 +37,7 @@ _FORMAT: Final = 1
 _LARGEST_NUMBER: Final = 1e300
 _RESERVED_BYTES: Final = 1 << 16
 _LONGEST_NAME: Final = 60
+_STAMPED: Final = re.compile(r"(\d{8}T\d{6}Z)-")
 _PLAIN_NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 _LARGEST_TEXT: Final = 1 << 24  # bytes of run.json
 
@@ -56,6 +58,8 @@ class RunFacts:
         SHA-256 of each file that the run was given, by name.
     referenced : tuple of str
         Recordings that lie elsewhere, of a run that was taken in.
+    recordings : mapping of str to str
+        SHA-256 of each part of the recording as it was written, by name.
     """
 
     title: str
@@ -64,6 +68,7 @@ class RunFacts:
     versions: Mapping[str, str]
     files: Mapping[str, str]
     referenced: tuple[str, ...] = ()
+    recordings: Mapping[str, str] = field(default_factory=dict)
 
 
 def raw_path(folder: Path, part: int) -> Path:
@@ -128,10 +133,60 @@ def make_run_folder(
     new_folder(folder, "raw")
     for name, text in texts.items():
         write_atomically(folder / name, text)
-    content = {"format": _FORMAT} | {name: getattr(known, name) for name in RunFacts.__slots__}
-    write_atomically(folder / RUN, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    write_run_facts(folder, known)
     write_atomically(folder / RESERVE, bytes(_RESERVED_BYTES))
     return folder, known
+
+
+def write_run_facts(folder: Path, known: RunFacts) -> None:
+    """Write run.json.
+
+    Parameters
+    ----------
+    folder : Path
+    known : RunFacts
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be written.
+    """
+    content = {"format": _FORMAT} | {name: getattr(known, name) for name in RunFacts.__slots__}
+    write_atomically(folder / RUN, json.dumps(content, indent=1, allow_nan=False, default=dict) + "\n")
+
+
+def keep_digests(folder: Path, known: RunFacts, parts: Iterable[int]) -> RunFacts:
+    """Keep the SHA-256 of parts of the recording that have none yet in run.json.
+
+    Parameters
+    ----------
+    folder : Path
+    known : RunFacts
+    parts : iterable of int
+
+    Returns
+    -------
+    RunFacts
+
+    Raises
+    ------
+    InvalidInput
+        If run.json cannot be written.
+    """
+    paths = (recording_path(folder, part) for part in parts)
+    found = {path.name: _digest_of(path) for path in paths if path.name not in known.recordings and path.is_file()}
+    if not found:
+        return known
+    kept = replace(known, recordings={**known.recordings, **found})
+    write_run_facts(folder, kept)
+    return kept
+
+
+def is_run_folder(path: Path) -> bool:
+    """Whether a folder is that of a run, also of one that was killed before run.json was written."""
+    if (path / RUN).is_file() or (path / DOCUMENTS).is_file():
+        return True
+    return _STAMPED.match(path.name) is not None and (path / "raw").is_dir()
 
 
 def read_run_facts(folder: Path) -> RunFacts:
@@ -165,11 +220,57 @@ def read_run_facts(folder: Path) -> RunFacts:
             versions={str(name): str(value) for name, value in content["versions"].items()},
             files={str(name): str(value) for name, value in content["files"].items()},
             referenced=tuple(printable(str(name)) for name in content.get("referenced", ())),
+            recordings={str(name): str(value) for name, value in content.get("recordings", {}).items()},
         )
     except OSError:
         raise InvalidInput(f"{folder}: holds no run: it has no file {RUN}") from None
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         raise InvalidInput(f"{path}: is damaged; restore it, or remove the folder") from None
+
+
+def rebuilt_run_facts(folder: Path, start: Mapping[str, Any] | None) -> RunFacts:
+    """What is known of a run whose run.json is missing or damaged, by its first document, else by its folder.
+
+    Parameters
+    ----------
+    folder : Path
+    start : mapping or None
+        The first document; None where none was written.
+
+    Returns
+    -------
+    RunFacts
+        With the SHA-256 of the files as they are now where no document tells them.
+
+    Raises
+    ------
+    InvalidInput
+        If the folder holds no run.
+    """
+    stamp = _STAMPED.match(folder.resolve().name)
+    if stamp is None or not is_run_folder(folder.resolve()):
+        raise InvalidInput(f"{folder}: holds no run: it has no file {RUN}")
+    told = start or {}
+    begun = datetime.strptime(f"{stamp[1]}+0000", "%Y%m%dT%H%M%SZ%z").timestamp()
+    try:
+        texts = (line.rsplit(" sha256:", 1) for line in told.get("files", ()))
+        files = {str(name): str(digest) for name, digest in texts}
+        facts = {printable(str(name)): _fact(value) for name, value in dict(told.get("facts", {})).items()}
+        versions = {str(name): str(value) for name, value in dict(told.get("versions", {})).items()}
+        begun = float(told.get("time", begun))
+    except (ValueError, TypeError, AttributeError):
+        raise InvalidInput(f"{folder / DOCUMENTS}: its first document is damaged; restore {RUN}") from None
+    present = {path.name: _digest_of(path) for path in sorted(folder.glob("*.toml"))}
+    title = str(told.get("title") or _title(folder) or folder.name)
+    return RunFacts(title=printable(title), begun=begun, facts=facts, versions=versions, files=files or present)
+
+
+def _title(folder: Path) -> str:
+    """Title of the protocol of a run; empty where it cannot be read."""
+    try:
+        return str(tomllib.loads((folder / PROTOCOL).read_text(encoding="utf-8")).get("title", ""))
+    except (OSError, ValueError):
+        return ""
 
 
 def _fact(value: object) -> Fact:
@@ -186,6 +287,12 @@ def _fact(value: object) -> Fact:
 def changed_files(folder: Path, known: RunFacts) -> list[str]:
     """Names of the files that a run was given and that are missing or not as they were."""
     return [name for name, digest in known.files.items() if _digest_of(folder / name) != digest]
+
+
+def changed_recordings(folder: Path, known: RunFacts) -> list[str]:
+    """Names of the parts of the recording that exist and are not as they were written."""
+    paths = {name: folder / Path(name).name for name in known.recordings}
+    return [name for name, path in paths.items() if path.is_file() and _digest_of(path) != known.recordings[name]]
 
 
 def sha256(content: bytes) -> str:

@@ -38,6 +38,9 @@ class Disturbances:
         Mass that swings on it; both together swing at the 100 Hz of the stick-slip in D 2.3.4. [kg]
     holder_damping_ratio : float
         Of that motion, likewise.
+    burst_duration : float
+        Mean duration of a burst of stick-slip, and of the pause after it, above half the speed from which sliding is
+        steady, in s; 0 where it goes on.
     friction_noise : float
         Standard deviation of slow fluctuations of friction, over its mean.
     noise_time : float
@@ -52,6 +55,12 @@ class Disturbances:
         Standard deviation over tests of the drift of the force gauge, in N/s: about 1 mN in a minute.
     hysteresis : float
         Half the width of the play of the force gauge, in N.
+    deflected_stiffness : float
+        Of the holder, or of a waveguide, at the displacement sensor, by the force along the sliding. [N/m]
+    deflection_play : float
+        Half the width of the play of that deflection. [m]
+    displacement_noise : float
+        Standard deviation of white noise of the displacement sensor. [m]
     magnets : int
         At the rim of the disc, each a pulse of the Hall probe; one in D 4.1.2.
     flux_noise : float
@@ -87,12 +96,16 @@ class Disturbances:
     holder_stiffness: float = _size(20e3, "N/m")
     holder_mass: float = _size(0.05, "kg")
     holder_damping_ratio: float = _size(0.01, "1")
+    burst_duration: float = _size(1.0, "s")
     friction_noise: float = _size(0.01, "1")
     noise_time: float = _size(0.02, "s")
     ringing: float = _size(0.005, "1")
     sensor_noise: float = _size(0.03, "N")
     drift_rate: float = _size(2e-5, "N/s")
     hysteresis: float = _size(2e-4, "N")
+    deflected_stiffness: float = _size(1e6, "N/m")
+    deflection_play: float = _size(5e-7, "m")
+    displacement_noise: float = _size(1e-7, "m")
     magnets: int = _size(1, "1")
     flux_noise: float = _size(0.02, "1")
     motor_time: float = _size(0.02, "s")
@@ -106,7 +119,7 @@ class Disturbances:
 
     def __post_init__(self) -> None:
         times = ("noise_time", "motor_time", "vibration_time", "thermocouple_time")
-        positive = (*times, "run_in_distance", "holder_stiffness", "holder_mass")
+        positive = (*times, "run_in_distance", "holder_stiffness", "holder_mass", "deflected_stiffness")
         require_positive(**{name: getattr(self, name) for name in positive})
         others = [name for name in DISTURBANCE_UNITS if name not in (*positive, "run_in_share")]
         require_non_negative(**{name: getattr(self, name) for name in others})
@@ -149,11 +162,14 @@ UNDISTURBED: Final = Disturbances(
     wobble_2=0.0,
     run_in_share=0.0,
     static_share=0.0,
+    burst_duration=0.0,
     friction_noise=0.0,
     ringing=0.0,
     sensor_noise=0.0,
     drift_rate=0.0,
     hysteresis=0.0,
+    deflection_play=0.0,
+    displacement_noise=0.0,
     flux_noise=0.0,
     temperature_noise=0.0,
     voltage_noise=0.0,

@@ -16,6 +16,7 @@ from sonolube.prediction.predictive import ratio_draws
 from sonolube.rig import Rig, simulate, steady_vibration
 
 _DRAWS: Final = 64  # of which one is taken
+_LEAST_RATIO: Final = 0.01  # no contact slides free of friction, whatever tail of the population is drawn
 _CLOSE: Final = 0.02  # of the rig's voltage, between two known ones of which a level is interpolated
 
 
@@ -71,11 +72,12 @@ class FrictionDraw:
         self.friction_coefficient = float(friction.value * np.exp(friction.spread * rng.standard_normal()))
         self._row = int(rng.integers(_DRAWS))
         self._known: dict[object, dict[float, FrictionLevel]] = defaultdict(dict)
-        self._wear_rate = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
         steady_vibration(rig)  # refuses a rig of which no wear under vibration is known
 
-    def at(self, setting: DriveSetting | None, sliding_speed: float) -> FrictionLevel:
-        """Level at a setting of the drive and a sliding speed.
+    def at(
+        self, setting: DriveSetting | None, sliding_speed: float, *, normal_load: float | None = None
+    ) -> FrictionLevel:
+        """Level at a setting of the drive, a sliding speed and a load.
 
         Parameters
         ----------
@@ -83,22 +85,25 @@ class FrictionDraw:
             None for off.
         sliding_speed : float
             [m/s]
+        normal_load : float or None
+            That of the rig by default. [N]
 
         Returns
         -------
         FrictionLevel
         """
-        if setting is None or not sliding_speed > 0:
+        load = self._rig.normal_load if normal_load is None else normal_load
+        if setting is None or not sliding_speed > 0 or not load:
             return FrictionLevel(
-                friction_force=self.friction_coefficient * self._rig.normal_load,
+                friction_force=self.friction_coefficient * load,
                 friction_ratio=1.0,
                 vibration_amplitude=0.0 if setting is None else float("nan"),
-                wear_rate=self._wear_rate,
+                wear_rate=self._unvibrated_wear(load),
             )
-        known = self._known[setting.frequency, setting.waveform, sliding_speed]
+        known = self._known[setting.frequency, setting.waveform, sliding_speed, load]
         voltage = setting.voltage_peak_to_peak
         if voltage not in known:
-            known[voltage] = self._between(known, voltage) or self._computed(setting, sliding_speed)
+            known[voltage] = self._between(known, voltage) or self._computed(setting, sliding_speed, load)
         return known[voltage]
 
     def _between(self, known: dict[float, FrictionLevel], voltage: float) -> FrictionLevel | None:
@@ -114,20 +119,24 @@ class FrictionDraw:
         ends = zip(astuple(known[low]), astuple(known[high]), strict=True)
         return FrictionLevel(*((1 - share) * one + share * other for one, other in ends))
 
-    def _computed(self, setting: DriveSetting, sliding_speed: float) -> FrictionLevel:
+    def _unvibrated_wear(self, load: float) -> float:
+        """Wear rate without vibration under a load. [m2]"""
+        return float(cube_wear_rate(self._rig.contact, normal_load=load)) if load else 0.0
+
+    def _computed(self, setting: DriveSetting, sliding_speed: float, load: float) -> FrictionLevel:
         """Level with vibration, by the models of the rig."""
-        without = self.friction_coefficient * self._rig.normal_load
-        found = simulate(self._set(setting, sliding_speed))
+        without = self.friction_coefficient * load
+        found = simulate(replace(self._set(setting, sliding_speed), normal_load=load))
         amplitude, worn = found.friction.vibration_amplitude, found.wear.wear_rate
         inputs = replace(self._inputs, frequency=setting.frequency)  # the others are those of the rig at any drive
         at = inputs.at(vibration_amplitude=amplitude, sliding_speed=sliding_speed)
         draws = ratio_draws(learned().friction, at, count=_DRAWS, seed=self._seed)
-        ratio = float(draws[self._row, 0])
+        ratio = max(float(draws[self._row, 0]), _LEAST_RATIO)
         return FrictionLevel(
             friction_force=ratio * without,
             friction_ratio=ratio,
             vibration_amplitude=amplitude,
-            wear_rate=float(worn) if np.isfinite(worn) else self._wear_rate,
+            wear_rate=float(worn) if np.isfinite(worn) else self._unvibrated_wear(load),
         )
 
     def _set(self, setting: DriveSetting, sliding_speed: float) -> Rig:

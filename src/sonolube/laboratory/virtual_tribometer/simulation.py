@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel, quantity_of
 from sonolube.laboratory.devices import DeviceError, DeviceLost, DriveSetting, SamplesLost
+from sonolube.laboratory.dry_run.record import PROMPT_DURATIONS
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.arm_resonance import arm_resonance
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
@@ -24,9 +26,10 @@ from sonolube.laboratory.virtual_tribometer.signals import (
     resonant,
     waveform,
 )
-from sonolube.laboratory.virtual_tribometer.stick_slip import StickSlip
+from sonolube.laboratory.virtual_tribometer.stick_slip import Bursts, StickSlip
 from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures, Thermocouple
 from sonolube.laboratory.virtual_tribometer.truth import TruthSetting, truth_dataset
+from sonolube.models.dynamics.structure import electrical_admittance
 from sonolube.rig import Rig
 from sonolube.rig.excitation import actuator_capacitance
 
@@ -39,7 +42,19 @@ VOLTAGE_MAXIMUM: Final = 200.0
 _PULSE: Final = 0.01  # T, height of the pulses of the Hall probe
 CHANNELS: Final = (
     *("friction_force", "normal_load", "voltage", "voltage_peak_to_peak", "current", "temperature", "gaussmeter"),
+    "displacement",
 )
+_NOISES: Final = (*CHANNELS[:7], "friction noise", "ringing", "displacement")
+STREAMS: Final = 13
+"""Streams of random numbers of a virtual rig."""
+_PHASES: Final = 9  # number of a stream, as those that follow; those of the noises are before them and after
+SIZES_STREAM: Final = 10
+"""Stream of the sizes of the disturbances."""
+_BURSTS: Final = 11
+_DISPLACEMENT: Final = 12
+_GAUGE_RANGE: Final = 60.0  # N, that the gauge has at least
+_PULL_LOOPS, _PULL_PERIOD = 5, 30.0  # loops of an operator who pulls at the pin, each further by a step; s
+_DISPLACEMENT_RANGE: Final = 1e-3  # m
 _STANDS: Final = 1e-9  # 1/s
 
 
@@ -54,7 +69,7 @@ class VirtualRig:
         Of this test.
     heating : HeatingAssumptions
     streams : sequence of numpy.random.SeedSequence
-        Of the noises, in the order of `CHANNELS`, and of the phases.
+        `STREAMS` of them.
     groove_diameter : float
         Of the circle under the pin. [m]
     real_time : bool
@@ -75,7 +90,11 @@ class VirtualRig:
         self._rig, self._friction, self._sizes = rig, friction, disturbances
         self._diameter, self._real_time, self._fault = groove_diameter, real_time, fault
         self._streams = streams
-        phases = np.random.default_rng(streams[-2])
+        phases = np.random.default_rng(streams[_PHASES])
+        self._bursts = Bursts(np.random.default_rng(streams[_BURSTS]), disturbances.burst_duration)
+        self._load, self._pull, self._pulled_from, self._zeroed = rig.normal_load, 0.0, 0.0, 0.0
+        self._lifted_at, self._untouched = 0.0, 0.0  # m, distance at the latest change of load, and without contact
+        self._bent = 0.0  # m, of the holder by its play
         self._wobble_phases = phases.uniform(0, 1, 2)
         self._drift = float(disturbances.drift_rate * phases.standard_normal())
         self._generator_phase = float(phases.uniform())
@@ -90,6 +109,7 @@ class VirtualRig:
         thermocouple = Thermocouple(disturbances.contact_share, disturbances.thermocouple_time)
         self._temperatures = Temperatures(rig, heating, thermocouple)
         self._capacitance = actuator_capacitance(rig)
+        self._admittances: dict[float, complex] = {}
         held = None if rig.structure is None else arm_resonance(rig.structure)
         self._arm = held or (disturbances.natural_frequency, disturbances.holder_damping_ratio)
         self._stick_slip = self._sticking(0.0)
@@ -121,8 +141,8 @@ class VirtualRig:
             "friction noise": correlated(time_constant=sizes.noise_time, sample_rate=sample_rate),
             "ringing": resonant(frequency=self._arm[0], damping_ratio=self._arm[1], sample_rate=sample_rate),
         }
-        kinds = (*CHANNELS, *feedback)
-        for kind, stream in zip(kinds, self._streams, strict=False):
+        streams = [*self._streams[: len(_NOISES) - 1], self._streams[_DISPLACEMENT]]
+        for kind, stream in zip(_NOISES, streams, strict=True):
             former = self._noises.get(kind)
             source = np.random.default_rng(stream) if former is None else former.generator
             self._noises[kind] = ColouredNoise(source, feedback.get(kind, (0.0, 0.0)))
@@ -156,15 +176,16 @@ class VirtualRig:
     @property
     def channels(self) -> Mapping[str, Channel]:
         """Channels of the acquisition."""
-        load = self._rig.normal_load
+        force = max(5 * self._rig.normal_load, _GAUGE_RANGE)
         ranges = {
-            "friction_force": (-5 * load, 5 * load),
-            "normal_load": (-5 * load, 5 * load),
+            "friction_force": (-force, force),
+            "normal_load": (-force, force),
             "voltage": (-2 * VOLTAGE_MAXIMUM, 2 * VOLTAGE_MAXIMUM),
             "voltage_peak_to_peak": (-1.0, 4 * VOLTAGE_MAXIMUM),
             "current": (-100.0, 100.0),
             "temperature": (173.0, 773.0),
             "gaussmeter": (-0.3, 0.3),
+            "displacement": (-_DISPLACEMENT_RANGE, _DISPLACEMENT_RANGE),
         }
         return {
             name: Channel(name=name, quantity=quantity_of(name), lowest=low, highest=high)
@@ -184,7 +205,24 @@ class VirtualRig:
         """Work out the friction at a setting of drive and motor, which takes seconds for some rigs."""
         import scipy.signal  # noqa: F401  for which the first block would wait
 
-        self._friction.at(setting, rotation_speed * pi * self._diameter)
+        self._friction.at(setting, rotation_speed * pi * self._diameter, normal_load=self._load)
+
+    def attend(self, prompt: Prompt) -> None:
+        """Let the time of a prompt pass: the rig cools, the gauge is set to zero, load and pull change as it says."""
+        self._volume_until_now()
+        self._time += PROMPT_DURATIONS[prompt.task]
+        if prompt.normal_load is not None:
+            self._hang(prompt.normal_load)
+        self._pull, self._pulled_from = prompt.applied_force or 0.0, self._time
+        self._zeroed = self._time
+        self._settle()
+
+    def _hang(self, load: float) -> None:
+        """Take another load; while it is 0 the track does not run in."""
+        turned = float(self._distance(np.asarray(self._time)))
+        if self._load == 0:
+            self._untouched += turned - self._lifted_at
+        self._load, self._lifted_at = load, turned
 
     def drive(self, setting: DriveSetting | None) -> None:
         """Set the drive, None for off."""
@@ -195,18 +233,21 @@ class VirtualRig:
         """Take the friction of the present setting."""
         speed = self._turning.target * pi * self._diameter
         self._volume_until_now()
-        self._level = self._friction.at(self._setting, speed)
+        self._level = self._friction.at(self._setting, speed, normal_load=self._load)
         self._ratio = self._ratio.towards(self._level.friction_ratio, time=self._time)
         self._stick_slip = self._sticking(speed)
         flash = self._temperatures.set(
             self._time, setting=self._setting, friction_force=self._level.friction_force, sliding_speed=speed
         )
-        self._settings.append(TruthSetting(self._time, speed, self._setting, self._level, flash))
+        sticking, bursts = self._stick_slip, self._stick_slip.comes_in_bursts and self._sizes.burst_duration > 0
+        self._settings.append(
+            TruthSetting(self._time, speed, self._setting, self._level, flash, self._load, sticking, bursts)
+        )
 
     def _sticking(self, sliding_speed: float) -> StickSlip:
         """Stick-slip without vibration at a speed."""
         sizes = self._sizes
-        mean = self._friction.friction_coefficient * self._rig.normal_load
+        mean = self._friction.friction_coefficient * self._load
         return StickSlip(
             excess_force=sizes.static_share * mean,
             stiffness=sizes.holder_stiffness,
@@ -239,9 +280,7 @@ class VirtualRig:
         wobble, sizes = self._wobble(time), self._sizes
         of_name = {
             "friction_force": lambda: self._friction_force(time, wobble),
-            "normal_load": lambda: (
-                self._rig.normal_load * wobble + self._white("normal_load", sizes.sensor_noise, time)
-            ),
+            "normal_load": lambda: self._load * wobble + self._white("normal_load", sizes.sensor_noise, time),
             "voltage": lambda: self._voltage(time),
             "voltage_peak_to_peak": lambda: self._monitor(time),
             "current": lambda: self._current(time),
@@ -249,6 +288,7 @@ class VirtualRig:
                 self._temperatures.reading(time) + self._white("temperature", sizes.temperature_noise, time)
             ),
             "gaussmeter": lambda: self._flux(time),
+            "displacement": lambda: self._displacement(time, wobble),
         }
         return np.stack([of_name[name]() for name in self._names], axis=1)
 
@@ -268,22 +308,45 @@ class VirtualRig:
     def _friction_force(self, time: Floats, wobble: Floats) -> Floats:
         """Reading of the force gauge."""
         sizes = self._sizes
-        mean = self._friction.friction_coefficient * self._rig.normal_load
+        mean = self._friction.friction_coefficient * self._load
         distance = self._distance(time)
         ratio = self._ratio.at(time)
-        level = mean * wobble * ratio * (1 + sizes.run_in_share * np.exp(-distance / sizes.run_in_distance))
+        run_in = np.exp(-(distance - self._untouched) / sizes.run_in_distance)
+        level = mean * wobble * ratio * (1 + sizes.run_in_share * run_in)
         noise = sizes.friction_noise * self._noises["friction noise"].next(time.size)
         force = level * (1 + noise + sizes.ringing * self._noises["ringing"].next(time.size))
         if self._setting is None and self._stick_slip.occurs:
-            force += self._stick_slip.force(time - self._turning.start)
+            slips = self._stick_slip.force(time - self._turning.start)
+            force += np.where(self._bursts.are_on(time), slips, 0.0) if self._stick_slip.comes_in_bursts else slips
         turning = self._turning.at(time)
         drawn = sizes.holder_stiffness * (distance - self._began_to_slide)  # while the pin still sticks
         force = np.where(drawn < (1 + sizes.static_share) * level, drawn, force) * (turning / (turning + _STANDS))
-        reading = force + self._drift * time + self._white("friction_force", sizes.sensor_noise, time)
+        force = force + self._pulling(time)
+        reading = force + self._drift * (time - self._zeroed) + self._white("friction_force", sizes.sensor_noise, time)
         if sizes.hysteresis > 0:
             reading = play(reading, sizes.hysteresis, self._gauge)
             self._gauge = float(reading[-1])
         return np.asarray(reading)
+
+    def _pulling(self, time: Floats) -> Floats:
+        """Force with which an operator pulls at the pin: loops, each further than the one before. [N]"""
+        if not self._pull:
+            return np.zeros_like(time)
+        loop, within = np.divmod((time - self._pulled_from) / _PULL_PERIOD, 1.0)
+        share = np.where(loop < _PULL_LOOPS, (loop + 1) / _PULL_LOOPS, 0.0)
+        return np.asarray(self._pull * share * (1 - np.abs(2 * within - 1)))
+
+    def _displacement(self, time: Floats, wobble: Floats) -> Floats:
+        """Deflection of the holder by the force along the sliding, with play. [m]"""
+        sizes = self._sizes
+        ratio = self._ratio.at(time)
+        turning = self._turning.at(time)
+        friction = self._friction.friction_coefficient * self._load * wobble * ratio * turning / (turning + _STANDS)
+        bent = (friction + self._pulling(time)) / sizes.deflected_stiffness
+        if sizes.deflection_play > 0:
+            bent = play(bent, sizes.deflection_play, self._bent)
+            self._bent = float(bent[-1])
+        return np.asarray(bent + self._white("displacement", sizes.displacement_noise, time))
 
     def _phase(self, time: Floats, setting: DriveSetting) -> Floats:
         """Phase of the generator, whose clock is not that of the acquisition, in periods."""
@@ -305,15 +368,29 @@ class VirtualRig:
         return voltage + self._sizes.voltage_noise * max(voltage, 1.0) * self._white("voltage_peak_to_peak", 1.0, time)
 
     def _current(self, time: Floats) -> Floats:
-        """Current into the capacitance of the actuator, without that of its motion."""
+        """Current into the actuator: by the admittance of its structure for a sine, else into its capacitance."""
         noise = self._white("current", self._sizes.current_noise, time)
         setting, capacitance = self._setting, self._capacitance
         if setting is None or capacitance is None:
             return noise
+        admittance = self._admittance(setting.frequency)
+        if admittance is not None and setting.waveform == "sine":
+            lead = float(np.angle(admittance)) / (2 * pi)
+            wave = waveform(periods=self._phase(time, setting) + lead, shape="sine")
+            return np.asarray(noise + abs(admittance) * setting.voltage_peak_to_peak / 2 * wave)
         step = 1 / (400 * setting.frequency)
         phases = (self._phase(time + shift, setting) for shift in (-step / 2, step / 2))
         before, after = (waveform(periods=phase, shape=setting.waveform) for phase in phases)
         return noise + capacitance * setting.voltage_peak_to_peak / 2 * (after - before) / step
+
+    def _admittance(self, frequency: float) -> complex | None:
+        """Admittance of the actuator in its structure; None where the rig has no stack in one. [S]"""
+        if self._rig.stack is None or self._rig.structure is None:
+            return None
+        if frequency not in self._admittances:
+            found = electrical_admittance(self._rig.structure, frequency=np.array([frequency]))
+            self._admittances[frequency] = complex(found[0])
+        return self._admittances[frequency]
 
     def _flux(self, time: Floats) -> Floats:
         """Reading of the Hall probe."""

@@ -1,6 +1,7 @@
 """Stick-slip of a mass on a spring that is drawn over a surface whose friction at rest is above that of sliding."""
 
-from dataclasses import dataclass
+from bisect import bisect_right
+from dataclasses import dataclass, field
 from math import atan, expm1, pi, sqrt
 
 import numpy as np
@@ -69,6 +70,19 @@ class StickSlip:
         return self.slip_time + 2 * self.excess_force / (self.stiffness * self.sliding_speed)
 
     @property
+    def comes_in_bursts(self) -> bool:
+        """Whether a disturbance of a swing may end it: above half the highest speed."""
+        return self.occurs and self.sliding_speed > self.highest_speed / 2
+
+    @property
+    def fall(self) -> float:
+        """Fall of the force in a slip; 0 where sliding is steady. [N]"""
+        if not self.occurs:
+            return 0.0
+        overshoot = self.stiffness * self.sliding_speed / self._frequency
+        return 2 * sqrt(self.excess_force**2 + overshoot**2)
+
+    @property
     def _frequency(self) -> float:
         return sqrt(self.stiffness / self.mass)
 
@@ -91,3 +105,40 @@ class StickSlip:
         angle = self._frequency * since
         slip = self.excess_force * np.cos(angle) + rate / self._frequency * np.sin(angle)
         return np.where(since < slipped, slip, rate * (since - slipped) - self.excess_force)
+
+
+@dataclass(slots=True)
+class Bursts:
+    """Bursts and pauses in turn, of durations that are drawn from an exponential distribution.
+
+    Parameters
+    ----------
+    generator : numpy.random.Generator
+    mean : float
+        Of a burst and of a pause, in s; 0 for one burst without end.
+    """
+
+    generator: np.random.Generator
+    mean: float
+    _ends: list[float] = field(default_factory=list)
+
+    def are_on(self, time: Floats) -> np.ndarray:
+        """Whether there is a burst at times, the same whatever is asked before.
+
+        Parameters
+        ----------
+        time : ndarray
+            Ascending, from 0. [s]
+
+        Returns
+        -------
+        ndarray of bool
+        """
+        if self.mean == 0 or not time.size:
+            return np.ones(time.shape, bool)
+        while not self._ends or self._ends[-1] <= time[-1]:
+            last = self._ends[-1] if self._ends else 0.0
+            self._ends.append(last + float(self.generator.exponential(self.mean)))
+        first = bisect_right(self._ends, float(time[0]))
+        ended = first + np.searchsorted(self._ends[first:], time, side="right")
+        return np.asarray(ended % 2 == 0)

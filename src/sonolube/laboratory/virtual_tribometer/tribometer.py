@@ -1,7 +1,6 @@
 """Virtual tribometer: acquisition, drive source and motor that share one clock and one virtual rig."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -12,7 +11,13 @@ from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
 from sonolube.laboratory.virtual_tribometer.faults import Fault
 from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
-from sonolube.laboratory.virtual_tribometer.simulation import CHANNELS, VOLTAGE_MAXIMUM, VirtualRig
+from sonolube.laboratory.virtual_tribometer.simulation import (
+    CHANNELS,
+    SIZES_STREAM,
+    STREAMS,
+    VOLTAGE_MAXIMUM,
+    VirtualRig,
+)
 from sonolube.rig import Rig
 from sonolube.units import format_si
 
@@ -64,17 +69,12 @@ def virtual_tribometer(
     InvalidInput
         If the rig does not slide, does not vibrate or has no drive.
     """
-    streams = np.random.SeedSequence(seed).spawn(len(CHANNELS) + 4)
-    drawn = (disturbances or Disturbances()).drawn(np.random.default_rng(streams[-1]))
+    streams = np.random.SeedSequence(seed).spawn(STREAMS)
+    drawn = (disturbances or Disturbances()).drawn(np.random.default_rng(streams[SIZES_STREAM]))
     assumed = heating or HeatingAssumptions()
     friction = FrictionDraw(rig, seed=seed)
     virtual = VirtualRig(rig, friction, drawn, assumed, streams, groove_diameter, real_time, fault)
-    described = {
-        "device": "virtual tribometer",
-        "rig": rig.title,
-        "seed": str(seed),
-        "disturbances": str(asdict(drawn)),
-    }
+    described = {"device": "virtual tribometer", "rig": rig.title, "seed": str(seed)}
     return VirtualTribometer(virtual, described, groove_diameter)
 
 
@@ -91,6 +91,7 @@ class VirtualTribometer:
             groove_diameter=groove_diameter,
             simulated=True,
             prepare=virtual.prepare,
+            attend=virtual.attend,
         )
 
     def truth(self) -> "xr.Dataset":

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.virtual_tribometer.disturbances import DISTURBANCE_UNITS, Disturbances
 from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionLevel
+from sonolube.laboratory.virtual_tribometer.stick_slip import StickSlip
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,6 +28,12 @@ class TruthSetting:
     level : FrictionLevel
     flash_temperature_rise : float
         Mean of the contact, steady, in K; NaN where materials are unknown.
+    normal_load : float
+        [N]
+    stick_slip : StickSlip
+        Of sliding without vibration at this speed and load.
+    has_bursts : bool
+        Whether it comes in bursts.
     """
 
     start_time: float
@@ -34,6 +41,14 @@ class TruthSetting:
     drive: DriveSetting | None
     level: FrictionLevel
     flash_temperature_rise: float
+    normal_load: float
+    stick_slip: StickSlip
+    has_bursts: bool
+
+    @property
+    def sticks(self) -> bool:
+        """Whether there is stick-slip."""
+        return self.drive is None and self.stick_slip.occurs
 
 
 def truth_dataset(
@@ -68,6 +83,10 @@ def truth_dataset(
         "friction_ratio": ([each.level.friction_ratio for each in settings], "1"),
         "wear_rate": ([each.level.wear_rate for each in settings], "m2"),
         "flash_temperature_rise": ([each.flash_temperature_rise for each in settings], "K"),
+        "normal_load": ([each.normal_load for each in settings], "N"),
+        "stick_slip_frequency": ([1 / each.stick_slip.period if each.sticks else 0.0 for each in settings], "Hz"),
+        "stick_slip_fall": ([each.stick_slip.fall if each.sticks else 0.0 for each in settings], "N"),
+        "stick_slip_bursts": ([float(each.sticks and each.has_bursts) for each in settings], "1"),
     }
     numbers = {**single, **{name: (getattr(sizes, name), unit) for name, unit in DISTURBANCE_UNITS.items()}}
     return xr.Dataset(

@@ -19,6 +19,7 @@ from sonolube.measurement.recordings.channel_choice import (
 )
 from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
+from sonolube.measurement.recordings.missing_samples import missing_sample_caveat
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
 from sonolube.measurement.recordings.written_units import convert_to_si, si_conversion
@@ -85,12 +86,15 @@ def recording_dataset(
 def _damaged(
     variables: Mapping[str, tuple[str, Floats, dict[str, str | float]]], axis: Floats, quantity: str
 ) -> list[str]:
-    """Return the caveats on damaged samples of all channels."""
+    """Return the caveats on damaged and missing samples of all channels."""
     label = f"{quantity} [{unit_of(quantity) or '1'}]"
     return [
         caveat
         for name, (_, values, attributes) in variables.items()
-        for caveat in damaged_sample_caveats(name, values, unit=str(attributes["units"]), axis=axis, axis_label=label)
+        for caveat in (
+            *damaged_sample_caveats(name, values, unit=str(attributes["units"]), axis=axis, axis_label=label),
+            *missing_sample_caveat(name, values, axis=axis, axis_label=label),
+        )
     ]
 
 

@@ -17,6 +17,7 @@ from sonolube.measurement.recordings.formats import StreamedRecordingFormat, rec
 from sonolube.measurement.recordings.instrument_mappings import recognised_mapping
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
 from sonolube.measurement.recordings.raw_table import RawTable, recorded_warnings
+from sonolube.measurement.recordings.recorded_digest import change_since_recorded
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,8 +56,9 @@ def read_recording(path: Path, *, mapping: RecordingMapping | Path | None = None
     columns = _mapping(mapping, path)
     with recorded_warnings() as complaints:
         table = file_format.read(path, mapping=columns)
-    table = replace(table, caveats=(*table.caveats, *complaints))
-    return recording_dataset(table, path=path, mapping=columns, digest=_sha256(path))
+    digest = _sha256(path)
+    table = replace(table, caveats=(*change_since_recorded(path, digest), *table.caveats, *complaints))
+    return recording_dataset(table, path=path, mapping=columns, digest=digest)
 
 
 def recording_blocks(

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import calibration_figures as figures, sheet
 from sonolube.report.measured.friction import recording_source
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,7 +54,7 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> sheet.She
     Parameters
     ----------
     path : Path
-        A recording with `displacement` and `applied_force`.
+        A recording with `displacement` and `applied_force`, else `friction_force`.
     settings : CalibrationSettings
 
     Returns
@@ -63,7 +67,7 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> sheet.She
         If the file cannot be read or its displacement does not vary.
     """
     recording = read_recording(path, mapping=settings.mapping)
-    x, force = channel_values(recording, "displacement"), channel_values(recording, "applied_force")
+    x, force = channel_values(recording, "displacement"), _applied_force(recording)
     hysteresis = fit_preisach(displacement=x, applied_force=force, levels=settings.levels)
     span, deviation, energy = float(np.ptp(force)), hysteresis.force_deviation, major_loop_dissipation(hysteresis)
     values = (
@@ -78,13 +82,19 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> sheet.She
     return sheet.joined([loops, branches], title=path.name, source=recording_source(recording))
 
 
+def _applied_force(recording: "xr.Dataset") -> Floats:
+    """Force of a calibration: that of the load cell which else measures friction, where no other was recorded."""
+    is_pulled = "applied_force" not in recording and "friction_force" in recording
+    return channel_values(recording, "friction_force" if is_pulled else "applied_force")
+
+
 def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> PreisachCalibration:
     """Preisach model of a force gauge, fitted to recorded loops.
 
     Parameters
     ----------
     path : Path
-        A recording with `displacement` and `applied_force`.
+        A recording with `displacement` and `applied_force`, else `friction_force`.
     settings : CalibrationSettings
 
     Returns
@@ -99,7 +109,7 @@ def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> Preis
     recording = read_recording(path, mapping=settings.mapping)
     return fit_preisach(
         displacement=channel_values(recording, "displacement"),
-        applied_force=channel_values(recording, "applied_force"),
+        applied_force=_applied_force(recording),
         levels=settings.levels,
     )
 

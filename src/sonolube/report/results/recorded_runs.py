@@ -69,17 +69,21 @@ def run_object(run: Run) -> dict[str, Any]:
 def found_row(entry: CatalogueEntry) -> list[str]:
     """Row of a run: folder, outcome, duration, materials, load, speed and tags."""
     summary = entry.summary
-    load, speed = entry.normal_load, entry.sliding_speed
     return [
         summary.folder.name,
         summary.outcome,
         format_si(summary.duration, "s") if summary.samples else "-",
         entry.pin_material or "-",
         entry.disc_material or "-",
-        "-" if load is None else format_si(load, "N"),
-        "-" if speed is None else format_si(speed, "m/s"),
+        _range(entry.normal_loads, "N"),
+        _range(entry.sliding_speeds, "m/s"),
         ", ".join(entry.tags) or "-",
     ]
+
+
+def _range(values: Sequence[float], unit: str) -> str:
+    """Value, or the lowest and highest of several, as text."""
+    return " to ".join(format_si(value, unit) for value in sorted({*values[:1], *values[-1:]})) or "-"
 
 
 def found_object(entry: CatalogueEntry) -> dict[str, Any]:
@@ -87,7 +91,8 @@ def found_object(entry: CatalogueEntry) -> dict[str, Any]:
     content = asdict(entry)
     summary: dict[str, Any] = content.pop("summary")
     content.pop("text")
-    return summary | {"folder": str(entry.summary.folder), "begun": entry.summary.begun_text} | content
+    single = {"normal_load": entry.normal_load, "sliding_speed": entry.sliding_speed}
+    return summary | {"folder": str(entry.summary.folder), "begun": entry.summary.begun_text} | content | single
 
 
 def found_runs_dataset(entries: Sequence[CatalogueEntry]) -> "xr.Dataset":

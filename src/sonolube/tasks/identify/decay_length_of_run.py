@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
+
 from sonolube.errors import InvalidInput
 from sonolube.identification import (
     DecayLengthDecision,
@@ -16,8 +18,10 @@ from sonolube.identification import (
     switch_table,
 )
 from sonolube.input_files import open_input
+from sonolube.laboratory.records import read_run
 from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.measured_runs import read_runs
+from sonolube.measurement.recordings.joined_recording import join_recordings
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
@@ -42,8 +46,8 @@ _CAPTION = (
     " hypothesis; the zero with its smoothed course."
 )
 _FILE = Parameter(
-    help="Table of the switches of one run (CSV), or its recording with friction_force, voltage_peak_to_peak,"
-    " normal_load, stack_current and shifts.",
+    help="Table of the switches of one run (CSV), the folder of a run of decay_length_run, or a recording with"
+    " friction_force, voltage_peak_to_peak, normal_load, stack_current and shifts.",
     kind="FILE",
     is_file=True,
 )
@@ -96,7 +100,13 @@ def decay_length(
     )
     path, columns = file_path(file), mapping_of(mapping)
     with stage("weighing"):
-        if _is_table(path, columns):
+        if path.is_dir():
+            table = recorded_switches(
+                _recording_of_run(path),
+                sliding_speed=conditions.sliding_speed,
+                rotation_speed=in_si("rotation_speed", rotation_speed),
+            )
+        elif _is_table(path, columns):
             refuse_unused("rotation_speed", because="for a table of switches; it is for recordings")
             table = switch_table(read_runs(path, mapping=columns))
         else:
@@ -108,6 +118,31 @@ def decay_length(
         decision = decide_decay_length(table, conditions, seed=seed)
     name = f"{file_stem(file)}-decay-length"
     return DecayLengthAnswer(table=table, conditions=conditions, decision=decision, name=name)
+
+
+def _recording_of_run(folder: Path) -> "xr.Dataset":
+    """Parts of a run that recorded friction and load, one after the other without the gaps between them.
+
+    Raises
+    ------
+    InvalidInput
+        If the folder holds no run, or no such part.
+    """
+    run = read_run(folder)
+    parts = [run.dataset(number) for number in range(1, len(run.recordings) + 1)]
+    chosen = [part for part in parts if "friction_force" in part and "normal_load" in part]
+    if not chosen:
+        raise InvalidInput(f"{folder}: no part of its recording has the channels friction_force and normal_load")
+    if not any("voltage_peak_to_peak" in part for part in chosen):
+        raise InvalidInput(f"{folder}: its vibration is never switched on; run the protocol decay_length_run")
+    undriven = [
+        part if "voltage_peak_to_peak" in part else part.assign(voltage_peak_to_peak=0 * part["normal_load_set"])
+        for part in chosen
+    ]
+    for part in undriven:
+        part["voltage_peak_to_peak"].attrs["units"] = "V"
+    joined = join_recordings(undriven)
+    return joined.isel(time=np.isfinite(joined["normal_load"].to_numpy()))
 
 
 @answer

@@ -1,22 +1,25 @@
 """Tasks `lab run` and `lab virtual`: a protocol on a rig or a virtual one, recorded; or gone through dry."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.facts.protocol import protocol_by_name_or_file
-from sonolube.laboratory.drive_sampling import drive_sampling
+from sonolube.facts.protocol import protocol_at, protocol_by_name_or_file
 from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import EXPORT_FORMATS, export_run
 from sonolube.laboratory.run_plan import RunPlan
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.lab.run_answer import DryRunAnswer, RunAnswer
-from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
+from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags, facts_of
 from sonolube.tasks.lab.run_record import ControlDoor, OperatorDoor, device_file, run_and_record
 from sonolube.tasks.parameters import OptionalRigSource, Parameter, RigFile, Stop, Watch, optional_rig, rig_of
 from sonolube.tasks.task import refuse_unused, shown, task
+
+_OWN_TEST: Final = "map_test"  # of a virtual rig for which no protocol is named
 
 
 @task
@@ -33,6 +36,14 @@ def run(
     dry_run: Annotated[bool, Parameter(help="Tell what will happen, and touch nothing.")] = False,
     yes: Annotated[bool, Parameter(help="Take the prompts to the operator as done.")] = False,
     tag: Tags = (),
+    fact: Annotated[
+        Mapping[str, str | float] | None,
+        Parameter(
+            help="For the record, such as operator=Ann; specimen=7; humidity=45 %; calibrated=2026-03-01.",
+            kind="NAME=VALUE",
+            is_mapping=True,
+        ),
+    ] = None,
     out: AllRuns = RUNS,
     operator: OperatorDoor = None,
     control: ControlDoor = None,
@@ -46,19 +57,12 @@ def run(
     path, known = str(file_path(protocol)), optional_rig(rig)
     read = protocol_by_name_or_file(path)
     if dry_run:
-        unused = "seed", "real_time", "yes", "tag", "out"
+        unused = "seed", "real_time", "yes", "tag", "fact", "out"
         refuse_unused(*unused, because=f"with {shown('dry_run')}, which runs nothing")
         return DryRunAnswer(protocol=read, found=dry_runs.dry_run(read, rig=known))
     file = device_file(device_map)
-    plan = RunPlan(
-        protocol=read,
-        name=Path(path).stem,
-        rig=known,
-        device_file=file,
-        seed=seed,
-        tags=tag,
-        drive=drive_sampling(read),
-    )
+    facts = facts_of(fact or {})
+    plan = RunPlan(protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, tags=tag, facts=facts)
     simulated = _virtual_rig(plan, real_time=real_time) if file is None else None
     return run_and_record(
         plan,
@@ -74,7 +78,10 @@ def run(
 def virtual(
     rig: RigFile,
     *,
-    protocol: Annotated[InputFile, Parameter(help="Such as study_1, or a TOML file.", kind="PROTOCOL")] = "map_test",
+    protocol: Annotated[
+        InputFile | None,
+        Parameter(help="Such as study_1, or a TOML file; map_test at load and speed of the rig.", kind="PROTOCOL"),
+    ] = None,
     seed: Annotated[int, Parameter(help="Of all that is drawn: another specimen, other noise.", lowest=0)] = 0,
     file_format: Annotated[
         Literal["netcdf", "tdms", "csv"], Parameter(help="Of the recording, beside netCDF.", option="--format")
@@ -89,9 +96,12 @@ def virtual(
     """
     if file_format not in EXPORT_FORMATS:
         raise UnknownName.among(EXPORT_FORMATS, kind="format", name=file_format)
-    path = str(file_path(protocol))
+    known = rig_of(rig)
+    path = _OWN_TEST if protocol is None else str(file_path(protocol))
     read = protocol_by_name_or_file(path)
-    plan = RunPlan(protocol=read, name=Path(path).stem, rig=rig_of(rig), seed=seed, drive=drive_sampling(read))
+    if protocol is None:
+        read = protocol_at(read, normal_load=known.normal_load, sliding_speed=known.sliding_speed)
+    plan = RunPlan(protocol=read, name=Path(path).stem, rig=known, seed=seed)
     simulated = _virtual_rig(plan)
     found = run_and_record(plan, simulated.devices, out=Path(out), virtual=simulated)
     if file_format != "netcdf":
@@ -109,5 +119,7 @@ def _virtual_rig(plan: RunPlan, *, real_time: bool = False) -> VirtualTribometer
     """
     if plan.rig is None:
         raise InvalidInput(f"{shown('device_map')} virtual needs {shown('rig')}, whose friction it takes")
-    diameter = plan.protocol.metadata.groove_diameter or GROOVE_DIAMETER
-    return virtual_tribometer(plan.rig, seed=plan.seed, real_time=real_time, groove_diameter=diameter)
+    metadata = plan.protocol.metadata
+    rig = plan.rig if metadata.normal_load is None else replace(plan.rig, normal_load=metadata.normal_load)
+    diameter = metadata.groove_diameter or GROOVE_DIAMETER
+    return virtual_tribometer(rig, seed=plan.seed, real_time=real_time, groove_diameter=diameter)

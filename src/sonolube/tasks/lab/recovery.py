@@ -1,11 +1,12 @@
 """Task `lab recover`: records of killed runs completed."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.laboratory.records import Recovery, recover_run, run_folders
+from sonolube.laboratory.records import Recovery, drop_raw_blocks, recover_run, run_folders
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block
 from sonolube.tasks.parameters import Parameter
@@ -58,6 +59,10 @@ class RecoveredRuns(Answer):
 @task
 def recover(
     folder: Annotated[str | Path, Parameter(help="A run, or a folder of runs.", kind="DIR", is_output=True)],
+    *,
+    drop_blocks: Annotated[
+        bool, Parameter(help="Remove raw blocks whose every sample was found in the recording.")
+    ] = False,
 ) -> RecoveredRuns:
     """Complete the records of runs whose program was killed; what was damaged is kept aside.
 
@@ -66,7 +71,9 @@ def recover(
     recovered, refused = {}, {}
     for each in run_folders(Path(folder)) or [Path(folder)]:  # a run itself, or refused as none
         try:
-            recovered[each] = recover_run(each)
+            found = recover_run(each)
+            dropped = drop_raw_blocks(each) if drop_blocks else ()
+            recovered[each] = replace(found, done=(*found.done, *dropped))
         except SonolubeError as failure:
             refused[str(each)] = str(failure)
     if not recovered:

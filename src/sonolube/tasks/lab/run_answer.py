@@ -1,7 +1,6 @@
 """Answers of runs of protocols: how a run ended and where its record is, or what a dry run says of it."""
 
 from collections.abc import Mapping, Sequence
-from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from sonolube.facts.protocol import Protocol
@@ -12,6 +11,7 @@ from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.blocks import Block, Rows, Table
+from sonolube.tasks.lab.next_step import next_command
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 SIMULATED = "friction is drawn from the prediction of the rig: no measurement"
 """Caveat of runs on a virtual tribometer."""
 
+_SAME_LOAD = 1e-6  # relative
 _MAX_SAMPLES = 10_000_000  # of a recording whose mean is computed
 
 
@@ -53,8 +54,7 @@ class RunAnswer(Answer):
             *(() if mean is None else (("mean friction", format_si(mean, "N", digits=3)),)),
             ("record", str(summary.folder)),
         ]
-        names = [quote(str(path)) for path in self.run.recordings]
-        after = [f"  next: sonolube measure friction {' '.join(names)}"] if names else []
+        after = [f"  next: {next_command(self.run)}"] if self.run.recordings else []
         return [summary.title + (" (virtual)" if self.simulated else ""), Rows(rows), *after]
 
     def object(self) -> dict[str, Any]:
@@ -76,7 +76,19 @@ class RunAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """What speaks against the record."""
-        return (*self.run.caveats, SIMULATED) if self.simulated else self.run.caveats
+        return (*self.run.caveats, *self._differences(), SIMULATED) if self.simulated else self.run.caveats
+
+    def _differences(self) -> list[str]:
+        """What the virtual rig does not do as the protocol says, and in what the protocol overrules the rig file."""
+        found = []
+        load, own = self.run.facts.get("normal_load"), None if self.rig is None else self.rig.normal_load
+        if isinstance(load, float) and own is not None and abs(load - own) > _SAME_LOAD * own:
+            set_load, of_rig = format_si(load, "N"), format_si(own, "N")
+            found.append(f"the protocol sets {set_load}, and the rig file {of_rig}: the test is at {set_load}")
+        applied = {str(note.facts["lubricant"]): 0 for note in self.run.notes if note.facts.get("lubricant")}
+        if applied:
+            found.append(f"the virtual rig knows no lubricant: with {', '.join(applied)} its friction is that without")
+        return found
 
     def assumptions(self) -> Mapping[str, str]:
         """Assumptions of the rig file, where the friction is that of the rig."""

@@ -1,10 +1,12 @@
 """Arguments that tasks of the laboratory share: the folder of a run, the folder of all runs, protocol and tags."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
+from sonolube.errors import InvalidInput
 from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.task import shown
 
 RUNS = "runs"
 """Folder of all runs, where none is given."""
@@ -17,3 +19,22 @@ Tags = Annotated[Sequence[str], Parameter(help="For the catalogue; may come agai
 Seed = Annotated[int, Parameter(help="Of a virtual tribometer.", lowest=0)]
 RealTime = Annotated[bool, Parameter(help="Let a virtual test take its time.")]
 Device = Annotated[str | Path, Parameter(help="What to run on.", kind="virtual|MAP.toml", option="--device")]
+
+
+def facts_of(given: Mapping[str, str | float]) -> dict[str, str | float]:
+    """Facts with numbers in SI as numbers.
+
+    Raises
+    ------
+    InvalidInput
+        If a name is none.
+    """
+    facts: dict[str, str | float] = {}
+    for name, value in given.items():
+        if not name.isidentifier():
+            raise InvalidInput(f"{shown('fact')} {name}={value} must be NAME=VALUE, such as normal_load=5")
+        try:
+            facts[name] = float(value)
+        except ValueError:
+            facts[name] = str(value)
+    return facts

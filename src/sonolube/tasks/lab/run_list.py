@@ -4,12 +4,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from sonolube.errors import InvalidInput
 from sonolube.laboratory.catalogue import FoundRuns, query_from, query_runs, take_in
 from sonolube.report.results import recorded_runs as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Table
-from sonolube.tasks.lab.run_folders import RUNS
+from sonolube.tasks.lab.run_folders import RUNS, facts_of
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import refuse_unused, shown, task
 
@@ -79,7 +78,7 @@ def runs(
     place = Path(folder)
     if not add:
         refuse_unused("fact", because=f"without {shown('add')}, whose recordings it describes")
-    facts = _facts(fact or {})
+    facts = facts_of(fact or {})
     for source in add:
         take_in(place, Path(source), facts=facts)
     one = {"load": load, "speed": speed, "since": since, "until": until, "outcome": outcome}
@@ -87,16 +86,3 @@ def runs(
     given: dict[str, Sequence[str]] = {key: [value] for key, value in one.items() if value is not None}
     given |= {key: list(values) for key, values in several.items() if values}
     return FoundRunsAnswer(place=place, found=query_runs(place, query_from(given)))
-
-
-def _facts(given: Mapping[str, str | float]) -> dict[str, str | float]:
-    """Facts with numbers in SI as numbers."""
-    facts: dict[str, str | float] = {}
-    for name, value in given.items():
-        if not name.isidentifier():
-            raise InvalidInput(f"{shown('fact')} {name}={value} must be NAME=VALUE, such as normal_load=5")
-        try:
-            facts[name] = float(value)
-        except ValueError:
-            facts[name] = str(value)
-    return facts

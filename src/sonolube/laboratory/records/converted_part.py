@@ -1,0 +1,168 @@
+"""Raw blocks that were converted: removed once the recording holds every sample, and read back from it."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from sonolube.errors import InvalidInput
+from sonolube.files import locked_folder, remove_file
+from sonolube.laboratory.records.documents import read_documents
+from sonolube.laboratory.records.recorded_part import Floats, RecordedPart, recorded_part
+from sonolube.laboratory.records.run_folder import (
+    PURPOSE,
+    RunFacts,
+    changed_recordings,
+    raw_parts,
+    raw_path,
+    read_run_facts,
+    recording_path,
+)
+from sonolube.laboratory.records.set_point_steps import SET_POINT_CHANNELS
+
+_ROWS: Final = 1 << 17
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConvertedPart:
+    """Part of a recording whose raw blocks were removed, read from its netCDF file.
+
+    Parameters
+    ----------
+    path : Path
+        Of the netCDF file.
+    samples, missing : int
+        Of each channel.
+    sample_rate : float
+        [Hz]
+    begun : float
+        In s since 1970.
+    variables : mapping of str to str
+        Quantity of each variable by its name.
+    set_points : tuple of str
+        Names of those that hold set points.
+    lubricants : tuple of str
+    caveats : list of str
+    """
+
+    path: Path
+    samples: int
+    missing: int
+    sample_rate: float
+    begun: float
+    variables: Mapping[str, str]
+    set_points: tuple[str, ...]
+    lubricants: tuple[str, ...]
+    caveats: list[str]
+
+    def pieces(self) -> Iterator[tuple[Floats, list[Floats]]]:
+        """Yield time and columns, as `RecordedPart.pieces`."""
+        import h5netcdf
+
+        with h5netcdf.File(self.path, "r") as file:
+            for first in range(0, self.samples, _ROWS):
+                rows = slice(first, first + _ROWS)
+                yield file["time"][rows], [file[name][rows] for name in self.variables]
+
+
+def converted_part(path: Path) -> ConvertedPart:
+    """Part of a recording by its netCDF file.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    ConvertedPart
+
+    Raises
+    ------
+    InvalidInput
+        If the file is no recording of a run.
+    """
+    import h5netcdf
+
+    try:
+        with h5netcdf.File(path, "r") as file:
+            attributes: dict[str, Any] = dict(file.attrs)
+            time = file["time"]
+            rate, samples = float(attributes["sample_rate"]), int(time.shape[0])
+            spanned = round(float(time[-1]) * rate) + 1 if samples else 0
+            quantities = {name: str(variable.attrs.get("quantity", name)) for name, variable in file.variables.items()}
+    except (OSError, KeyError, ValueError) as failure:
+        raise InvalidInput(f"{path}: is no recording of a run: {failure}") from None
+    quantities.pop("time")
+    begun = datetime.strptime(str(attributes["begun"]), "%Y-%m-%d %H:%M:%S.%f").replace(tzinfo=UTC)
+    return ConvertedPart(
+        path=path,
+        samples=samples,
+        missing=spanned - samples,
+        sample_rate=rate,
+        begun=begun.timestamp(),
+        variables=quantities,
+        set_points=tuple(name for name in quantities if name in SET_POINT_CHANNELS),
+        lubricants=tuple(json.loads(str(attributes.get("lubricants", "[]")))),
+        caveats=str(attributes.get("caveats", "")).splitlines(),
+    )
+
+
+def drop_raw_blocks(folder: Path) -> tuple[str, ...]:
+    """Remove the raw blocks of a run that has ended, each part once its recording was found to hold every sample.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Returns
+    -------
+    tuple of str
+        What was removed, a line a part.
+
+    Raises
+    ------
+    InvalidInput
+        If the run is at work or was not recovered, or a recording is missing, was changed or differs from its blocks.
+    """
+    known, documents = read_run_facts(folder), read_documents(folder)
+    with locked_folder(folder, purpose=PURPOSE):
+        if not documents.of("stop"):
+            raise InvalidInput(f"{folder}: has not ended in order; run sonolube lab recover first")
+        parts = {number: recorded_part(folder, number, documents, facts=known.facts) for number in raw_parts(folder)}
+        for number, part in parts.items():
+            _require_converted(folder, number, part, known)
+        done = []
+        for number in parts:
+            size = raw_path(folder, number).stat().st_size
+            remove_file(raw_path(folder, number))
+            done.append(f"{raw_path(folder, number).name} removed, {size / 1e6:.3g} MB")
+    return tuple(done)
+
+
+def _require_converted(folder: Path, number: int, part: RecordedPart, known: RunFacts) -> None:
+    """Raise unless the recording of a part holds every sample of its raw blocks, bit for bit, and none is damaged."""
+    path = recording_path(folder, number)
+    if not part.samples:
+        return
+    if not path.is_file() or path.name not in known.recordings:
+        raise InvalidInput(f"{folder}: {path.name} is missing or has no SHA-256; run sonolube lab recover first")
+    if path.name in changed_recordings(folder, known):
+        raise InvalidInput(f"{path}: was changed after the run wrote it; its raw blocks are kept")
+    if part.raw.damaged:
+        raise InvalidInput(f"{part.path}: is damaged at {part.raw.damaged} places, and is kept")
+    import h5netcdf
+
+    first = 0
+    with h5netcdf.File(path, "r") as file:
+        for time, columns in part.pieces():
+            rows = slice(first, first + time.size)
+            for name, values in zip(("time", *part.variables), (time, *columns), strict=True):
+                if name not in file.variables or not np.array_equal(file[name][rows], values, equal_nan=True):
+                    raise InvalidInput(f"{path}: {name} differs from the raw blocks, which are kept")
+            first = rows.stop
+        if file["time"].shape[0] != first:
+            raise InvalidInput(f"{path}: has other samples than the raw blocks, which are kept")

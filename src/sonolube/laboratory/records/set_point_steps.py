@@ -1,0 +1,175 @@
+"""Set points of a part of a recording, as a table of steps that is read from the notes of a run."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.laboratory.records.documents import ReadDocuments, part_name
+from sonolube.laboratory.records.run_folder import Facts
+
+SET_POINT_CHANNELS: Final = (
+    *("sliding_speed_set", "motor_on", "voltage_peak_to_peak_set", "frequency_set"),
+    *("normal_load_set", "lubricant_set", "recording_part"),
+)
+"""Channels of a recording that hold set points, by their names in the vocabulary."""
+
+_MOTOR: Final = ("sliding_speed_set", "motor_on")
+_DRIVE: Final = ("voltage_peak_to_peak_set", "frequency_set")
+_NUMBER: Final = (int, float)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SetPointSteps:
+    """Set points of a part of a recording.
+
+    Parameters
+    ----------
+    samples : tuple of int
+        By the counter of the hardware, ascending: from each on the set points of its row hold.
+    rows : tuple of mapping of str to float
+        Value of each channel, in SI, NaN where it is not known; the same channels in every row.
+    lubricants : tuple of str
+        Names of the lubricants 1, 2, ...
+    drives : bool
+        Whether the drive was used in the run before the end of the part.
+    """
+
+    samples: tuple[int, ...]
+    rows: tuple[Mapping[str, float], ...]
+    lubricants: tuple[str, ...]
+    drives: bool
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Channels of which any value is known."""
+        return tuple(name for name in SET_POINT_CHANNELS if any(row[name] == row[name] for row in self.rows))
+
+    def at(self, name: str, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Values of a channel at samples by their numbers."""
+        values = np.array([row[name] for row in self.rows])
+        return values[np.maximum(np.searchsorted(self.samples, numbers, side="right") - 1, 0)]
+
+
+def set_point_steps(documents: ReadDocuments, part: int, *, first_sample: int, facts: Facts) -> SetPointSteps:
+    """Set points of a part of a recording, those before it at its first sample.
+
+    Parameters
+    ----------
+    documents : ReadDocuments
+        Of the run.
+    part : int
+        From 1.
+    first_sample : int
+    facts : mapping of str to str, float, int or bool
+        Of the run, of which normal_load, in N, is the load until a note tells another.
+
+    Returns
+    -------
+    SetPointSteps
+    """
+    found = _Steps(first_sample, facts)
+    uid = ""
+    for name, document in documents.documents:
+        if name == "descriptor" and document.get("name") == part_name(part):
+            uid = str(document["uid"])
+            found.begin()
+        elif name == "stream_datum" and uid and document.get("descriptor") == uid:
+            break  # the part has ended
+        elif name == "event":
+            found.take(document["data"])
+    return found.steps(part)
+
+
+class _Steps:
+    """Steps while the notes of a run are followed."""
+
+    def __init__(self, first_sample: int, facts: Facts) -> None:
+        load = facts.get("normal_load")
+        known = float(load) if isinstance(load, _NUMBER) and not isinstance(load, bool) else float("nan")
+        self._state = dict.fromkeys(SET_POINT_CHANNELS, 0.0)
+        self._state |= dict.fromkeys((*_MOTOR, *_DRIVE), float("nan"))
+        self._state["normal_load_set"] = known
+        self._first, self._lubricants = first_sample, list[str]()
+        self._samples, self._rows = list[int](), list[dict[str, float]]()
+        self._drives = False
+
+    def begin(self) -> None:
+        """Begin the part."""
+        self._samples, self._rows = [self._first], [dict(self._state)]
+
+    def take(self, data: Mapping[str, Any]) -> None:
+        """Take a note."""
+        changes = self._changes(str(data["kind"]), data)
+        self._state |= changes
+        sample = data.get("sample")
+        if not changes or not self._samples or not isinstance(sample, int):
+            return
+        if self._samples[-1] >= max(sample, self._first):  # of several at one sample the last holds
+            self._rows[-1] = dict(self._state)
+        else:
+            self._samples.append(sample)
+            self._rows.append(dict(self._state))
+
+    def steps(self, part: int) -> SetPointSteps:
+        """Steps of the part."""
+        if not self._samples:
+            self.begin()
+        rows = tuple(row | {"recording_part": float(part)} for row in self._rows)
+        if self._drives:  # before its first note the drive was off
+            rows = tuple(row | {name: 0.0 for name in _DRIVE if row[name] != row[name]} for row in rows)
+        return SetPointSteps(
+            samples=tuple(self._samples), rows=rows, lubricants=tuple(self._lubricants), drives=self._drives
+        )
+
+    def _changes(self, kind: str, data: Mapping[str, Any]) -> dict[str, float]:
+        """Set points that a note changes."""
+        if kind == "prepared":  # devices were connected, motor and drive off
+            return dict.fromkeys((*_MOTOR, *_DRIVE), 0.0)
+        if kind == "pause":
+            return {name: 0.0 for name in (*_MOTOR, *_DRIVE) if self._state[name] == self._state[name]}
+        if kind not in ("drive", "motor", "conditions"):
+            return {}
+        try:
+            facts = json.loads(data["facts"])
+        except (ValueError, RecursionError):
+            return {}
+        return self._told(kind, facts) if isinstance(facts, dict) else {}
+
+    def _told(self, kind: str, facts: Mapping[str, Any]) -> dict[str, float]:
+        """Set points by the facts of a note."""
+        if kind == "drive":
+            volts = _number(facts, "voltage_peak_to_peak")
+            if volts is None:
+                return {}
+            self._drives = True
+            frequency = _number(facts, "frequency") or 0.0
+            return {"voltage_peak_to_peak_set": volts, "frequency_set": frequency if volts else 0.0}
+        if kind == "motor":
+            turns, speed = _number(facts, "rotation_speed"), _number(facts, "sliding_speed")
+            on = turns if turns is not None else speed
+            known = {} if on is None else {"motor_on": float(on > 0)}
+            slides = speed if speed is not None else 0.0 if on == 0 else float("nan")
+            return known | {"sliding_speed_set": slides}
+        load = _number(facts, "normal_load")
+        changes = {} if load is None else {"normal_load_set": load}
+        if isinstance(name := facts.get("lubricant"), str):
+            changes["lubricant_set"] = self._number_of(name)
+        return changes
+
+    def _number_of(self, lubricant: str) -> float:
+        """Number of a lubricant."""
+        if not lubricant:
+            return 0.0
+        if lubricant not in self._lubricants:
+            self._lubricants.append(lubricant)
+        return 1.0 + self._lubricants.index(lubricant)
+
+
+def _number(facts: Mapping[str, Any], name: str) -> float | None:
+    """Number among facts; None where there is none."""
+    value = facts.get(name)
+    return float(value) if isinstance(value, _NUMBER) and not isinstance(value, bool) else None

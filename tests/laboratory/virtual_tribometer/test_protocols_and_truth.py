@@ -1,0 +1,153 @@
+"""Shipped protocols from a virtual rig to the catalogue: levels, speeds, loads and stick-slip against the truth."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from sonolube.facts.protocol import (
+    Acquire,
+    Protocol,
+    Repeat,
+    Wait,
+    protocol_at,
+    protocol_by_name_or_file,
+    protocol_text,
+)
+from sonolube.facts.protocol.steps import Step
+from sonolube.laboratory.catalogue import catalogued_runs
+from sonolube.laboratory.records import read_run
+from sonolube.measurement.friction_analysis import analyse_stick_slip
+from sonolube.tasks import lab
+
+RIG = Path(__file__).parents[3] / "examples" / "rigs" / "power_map.toml"
+LONGEST = 60.0  # s, of a recording of the long protocols
+SETTLING = 0.5  # s
+SPECIMENS = {"study_2": 3}  # at one load, speed and voltage; one elsewhere
+STEPPED = ("map_test", "temperature_test")  # whose run-in the steps of the voltage correct
+SHORT = ("map_test", "temperature_test", "lubrication_comparison")
+LONG = ("study_1", "study_2", "appendix_a")
+SETTINGS = {  # loads in N, speeds in mm/s, voltages: D Tables 2.2, 2.6, 4.2, 4.3, 4.4 and A 3.1
+    "map_test": ({5.0}, {65.5}, {5.1, 10.3, 15.5, 20.7, 25.9}),
+    "temperature_test": ({3.0}, {220.0}, {5.1, 10.3, 15.5, 20.7, 25.9}),
+    "lubrication_comparison": ({3.0, 6.0, 9.0}, {float(speed) for speed in range(60, 141, 10)}, {25.9}),
+    "study_1": ({3.0}, {20.3, 40.6, 87.0}, {28.0}),
+    "study_2": ({3.0}, {20.9}, {28.0}),
+    "appendix_a": ({3.0}, {20.3, 40.5, 87.5}, {28.0}),
+}
+
+
+def shortened(steps: tuple[Step, ...]) -> tuple[Step, ...]:
+    """Steps whose recordings and waits last a minute at most."""
+    found = []
+    for step in steps:
+        if isinstance(step, Acquire | Wait):
+            found.append(step.model_copy(update={"duration": min(step.duration, LONGEST)}))
+        elif isinstance(step, Repeat):
+            found.append(step.model_copy(update={"steps": shortened(step.steps)}))
+        else:
+            found.append(step)
+    return tuple(found)
+
+
+def protocol_of(name: str) -> Protocol:
+    protocol = protocol_by_name_or_file(name)
+    return protocol.model_copy(update={"steps": shortened(protocol.steps)}) if name in LONG else protocol
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Folder of a run of a protocol by its name and a seed, each made once."""
+
+    @cache
+    def make(name: str, seed: int) -> Path:
+        parent = tmp_path_factory.mktemp(f"{name}-{seed}")
+        (parent / "protocol.toml").write_text(protocol_text(protocol_of(name)))
+        found = lab.virtual(RIG, protocol=parent / "protocol.toml", seed=seed, out=parent / "runs")
+        assert not found.is_failure, found.run.summary.reason
+        return found.run.folder
+
+    return make
+
+
+def true_reductions(truth: xr.Dataset, one: xr.Dataset, *, name: str) -> np.ndarray:
+    """Reduction at a load, speed and voltage by the levels of the truth, of each specimen."""
+    forces = truth["friction_force"].to_numpy() * (1.0 if name in STEPPED else _run_in(truth))
+    load, speed = float(one["normal_load"]), float(one["sliding_speed"])
+    volts, lasts = truth["voltage_peak_to_peak"].to_numpy(), np.append(np.diff(truth["start_time"]), 0)
+    same = np.isclose(truth["normal_load"], load) & np.isclose(truth["sliding_speed"], speed, rtol=5e-3) & (lasts > 2)
+    vibrating = same & np.isclose(volts, float(one["voltage_peak_to_peak"]))
+    count = SPECIMENS.get(name, 1)
+    return np.asarray(1 - forces[vibrating][:count] / np.mean(forces[same & (volts == 0)][:count]))
+
+
+def _run_in(truth: xr.Dataset) -> np.ndarray:
+    """Mean over each setting, its settling excepted, of friction over that of the worn-in track."""
+    start = truth["start_time"].to_numpy()
+    speed = truth["sliding_speed"].to_numpy() * (truth["normal_load"].to_numpy() > 0)
+    lasts = np.append(np.diff(start), 1.0)
+    slid = np.concatenate([[0.0], np.cumsum(speed * lasts)[:-1]])
+    share, length = float(truth["run_in_share"]), float(truth["run_in_distance"])
+    first, last = slid + speed * SETTLING, slid + speed * np.maximum(lasts, 2 * SETTLING)
+    mean = length * (np.exp(-first / length) - np.exp(-last / length)) / np.maximum(last - first, 1e-12)
+    return np.asarray(1 + share * np.where(speed > 0, mean, np.exp(-slid / length)))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("name", [*SHORT, *LONG])
+def test_levels_speeds_and_loads_are_those_of_the_truth(made: Any, name: str, seed: int) -> None:
+    folder = made(name, seed)
+    runs = catalogued_runs(f"catalogue:in={folder.parent}")
+    loads, speeds, voltages = SETTINGS[name]
+    found_speeds = sorted({round(1e3 * float(speed), 1) for speed in runs["sliding_speed"]})
+    assert {round(float(load), 6) for load in runs["normal_load"]} == loads
+    assert found_speeds == pytest.approx(sorted(speeds), rel=5e-3)
+    assert {round(float(volts), 3) for volts in runs["voltage_peak_to_peak"]} == voltages
+    truth = xr.load_dataset(folder / "truth" / "truth.nc", engine="h5netcdf")
+    for row in range(runs.sizes["run"]):
+        one = runs.isel(run=row)
+        expected = true_reductions(truth, one, name=name)
+        reduction, uncertainty = float(one["friction_reduction"]), float(one["friction_reduction_uncertainty"])
+        assert np.min(np.abs(expected - reduction)) < 4 * uncertainty
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_stick_slip_is_seen_only_where_the_truth_has_it(made: Any, seed: int) -> None:
+    folder = made("study_1", seed)
+    truth = xr.load_dataset(folder / "truth" / "truth.nc", engine="h5netcdf")
+    run = read_run(folder)
+    judged = 0
+    for part in range(1, len(run.recordings) + 1):
+        recording = run.dataset(part)
+        speed, volts = float(recording["sliding_speed_set"][-1]), float(recording["voltage_peak_to_peak_set"][-1])
+        same = np.isclose(truth["sliding_speed"], speed) & np.isclose(truth["voltage_peak_to_peak"], volts)
+        frequency = float(truth["stick_slip_frequency"].to_numpy()[same & (truth["normal_load"].to_numpy() > 0)][-1])
+        if frequency == 0 or 6 * frequency < float(recording.attrs["sample_rate"]):
+            settled = recording.isel(time=recording["time"].to_numpy() > SETTLING)
+            assert analyse_stick_slip(settled).detected == (frequency > 0)
+            judged += 1
+    assert judged >= 5  # 100 Hz cannot be seen at 400 Hz
+
+
+@pytest.mark.parametrize("speed", [3e-3, 6e-3])
+def test_stick_slip_at_low_speed_has_the_frequency_and_fall_of_the_truth(tmp_path: Path, speed: float) -> None:
+    protocol = protocol_at(protocol_by_name_or_file("map_test"), normal_load=5.0, sliding_speed=speed)
+    steps = [
+        step.model_copy(update={"sample_rate": 4000.0}) if isinstance(step, Acquire) else step
+        for step in protocol.steps
+    ]
+    (tmp_path / "slow.toml").write_text(protocol_text(protocol.model_copy(update={"steps": tuple(steps)})))
+    folder = lab.virtual(RIG, protocol=tmp_path / "slow.toml", seed=4, out=tmp_path / "runs").run.folder
+    truth = xr.load_dataset(folder / "truth" / "truth.nc", engine="h5netcdf")
+    sticks = truth["stick_slip_frequency"].to_numpy() > 0
+    recording = read_run(folder).dataset()
+    time = recording["time"].to_numpy()
+    found = analyse_stick_slip(recording.isel(time=(time > 2) & (time < 12)))
+    assert found.detected
+    assert found.stick_slip_frequency == pytest.approx(
+        float(truth["stick_slip_frequency"].to_numpy()[sticks][0]), rel=0.02
+    )
+    assert found.stick_slip_amplitude == pytest.approx(float(truth["stick_slip_fall"].to_numpy()[sticks][0]), rel=0.15)
