@@ -73,7 +73,7 @@ class Acquisition(Protocol):
         Raises
         ------
         DeviceLost
-            If they do not come within twice their time and two seconds.
+            If they do not come within twice their time and a second.
         SamplesLost
             If the hardware has dropped samples.
         """
@@ -86,7 +86,13 @@ class Acquisition(Protocol):
 
 
 class DriveSource(Protocol):
-    """Function generator with amplifier, or an amplifier with an input of its own."""
+    """Function generator with amplifier, or an amplifier with an input of its own.
+
+    Notes
+    -----
+    Drive sources and motors may have a method `halt`, which switches the output off from another thread while a call
+    to them hangs. Without it `off` is called there.
+    """
 
     name: str
     voltage_maximum: float
@@ -125,6 +131,39 @@ class Motor(Protocol):
         """Release the hardware with the motor at rest; harmless where that was done before."""
 
 
+class OutputGuard(Protocol):
+    """Watchdog or enable line: hardware that takes the outputs off where the program does not answer.
+
+    Notes
+    -----
+    A run enables the outputs before the first is set, renews the permission with every block, and disables them after
+    the last was switched off, or where it is late.
+    """
+
+    name: str
+
+    def connect(self) -> None:
+        """Open the connection with the outputs disabled."""
+
+    def enable(self) -> None:
+        """Allow the outputs, and begin to wait for renewals."""
+
+    def renew(self) -> None:
+        """Begin to wait anew.
+
+        Raises
+        ------
+        DeviceError
+            If the permission has run out meanwhile.
+        """
+
+    def disable(self) -> None:
+        """Take the outputs off; safe to call at any time, from any thread."""
+
+    def close(self) -> None:
+        """Release the hardware with the outputs disabled; harmless where that was done before."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Devices:
     """Devices of one rig.
@@ -145,6 +184,8 @@ class Devices:
         for every set point before anything is connected; None where no set point takes the devices time.
     resources : tuple of str
         Canonical names of the hardware (device, address, port), which one run of a user has at a time.
+    guard : OutputGuard or None
+        Watchdog or enable line of the rig.
     attend : callable or None
         Takes a prompt after it was confirmed: of simulated devices the time passes, and load and lubricant change.
     """
@@ -157,6 +198,7 @@ class Devices:
     simulated: bool = False
     prepare: Callable[[DriveSetting | None, float], None] | None = None
     resources: tuple[str, ...] = ()
+    guard: OutputGuard | None = None
     attend: Callable[[Prompt], None] | None = None
 
 

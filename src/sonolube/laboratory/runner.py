@@ -19,6 +19,7 @@ from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.sampling import BLOCK_DURATION, Recorder, Sampling
 from sonolube.laboratory.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
 from sonolube.laboratory.states import Event, RunState, State, after
+from sonolube.laboratory.supervision import Supervisor
 from sonolube.units import format_si
 from sonolube.vocabulary import unit_of
 
@@ -125,7 +126,7 @@ def run_protocol(
     require_possible(protocol, devices)
     control = control or RunControl()
     run = _Run(protocol, devices, recorder, operator, control)
-    with undone_at_signal(run.switch_off), asked_by_signal(control.stop):
+    with undone_at_signal(run.halt), asked_by_signal(control.stop):
         return run.complete(advance)
 
 
@@ -135,13 +136,14 @@ class _Run:
     def __init__(
         self, protocol: Protocol, devices: Devices, recorder: Recorder, operator: Operator, control: RunControl
     ) -> None:
-        self._protocol, self._devices, self._recorder = protocol, devices, recorder
+        self._supervisor = Supervisor(devices)
+        self._protocol, self._devices, self._recorder = protocol, self._supervisor.devices, recorder
         self._operator, self._control = operator, control
         self._points = flattened(protocol)
         self._point = self._points[0]
         self._diameter = groove_diameter(protocol, devices)
         locks = interlocks_for(protocol.limits, devices.acquisition.channels, drive_sampling(protocol))
-        self._sampling = Sampling(devices.acquisition, recorder, locks)
+        self._sampling = Sampling(self._devices.acquisition, recorder, locks)
         self._present, self._is_connected = RunState(), False
         self._drive: DriveSetting | None = None
         self._turns = 0.0
@@ -149,7 +151,7 @@ class _Run:
 
     def complete(self, advance: Advance | None) -> RunResult:
         """Follow the protocol to its end, whatever that is."""
-        with ExitStack() as held:
+        with self._supervisor.at_work(), ExitStack() as held:
             try:
                 self._happens(Event.START)
                 held.enter_context(reserved(self._devices.resources))
@@ -173,6 +175,11 @@ class _Run:
         failures = switch_outputs_off(self._devices) if self._is_connected else []
         self._drive, self._turns = None, 0.0
         return failures
+
+    def halt(self) -> None:
+        """Switch drive and motor off at once, whatever the run waits for; never raises."""
+        if self._is_connected:
+            self._supervisor.halt()
 
     def _prepare(self, advance: Advance | None) -> None:
         """Let the devices work out the set points that take them time, before anything is on."""

@@ -26,6 +26,7 @@ from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.runner import Advance, RunControl
 from sonolube.laboratory.sampling import Recorder
 from sonolube.laboratory.states import Event, RunState, State, after
+from sonolube.laboratory.supervision import Supervisor
 from sonolube.units import format_si
 
 _FRICTION: Final = "friction_force"
@@ -72,7 +73,7 @@ def hold_friction(
     require_holdable(hold, devices)
     control = control or RunControl()
     loop = _Loop(hold, devices, recorder, control)
-    with undone_at_signal(loop.switch_off), asked_by_signal(control.stop):
+    with undone_at_signal(loop.halt), asked_by_signal(control.stop):
         return loop.complete(advance)
 
 
@@ -80,7 +81,8 @@ class _Loop:
     """One loop on devices."""
 
     def __init__(self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
-        self._hold, self._devices, self._recorder, self._control = hold, devices, recorder, control
+        self._supervisor = Supervisor(devices)
+        self._hold, self._devices, self._recorder, self._control = hold, self._supervisor.devices, recorder, control
         channels = devices.acquisition.channels
         self._locks = interlocks_for(hold.limits, channels, hold.drive_sampling)
         self._names = list(recorded_channels(hold, channels))
@@ -92,7 +94,7 @@ class _Loop:
 
     def complete(self, advance: Advance | None) -> HeldFriction:
         """Run the loop to its end, whatever that is."""
-        with ExitStack() as held:
+        with self._supervisor.at_work(), ExitStack() as held:
             try:
                 self._happens(Event.START)
                 held.enter_context(reserved(self._devices.resources))
@@ -111,9 +113,10 @@ class _Loop:
                 self._close()
         return self._result()
 
-    def switch_off(self) -> list[str]:
-        """Switch drive and motor off where they were connected, and return what failed; never raises."""
-        return switch_outputs_off(self._devices) if self._is_connected else []
+    def halt(self) -> None:
+        """Switch drive and motor off at once, whatever the loop waits for; never raises."""
+        if self._is_connected:
+            self._supervisor.halt()
 
     def _happens(self, event: Event, reason: str = "") -> None:
         """Take an event into the state of the loop, and note it."""
@@ -229,7 +232,8 @@ class _Loop:
 
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
-        failures, devices = self.switch_off(), self._devices
+        devices = self._devices
+        failures = switch_outputs_off(devices) if self._is_connected else []
         before = self._end_recording, devices.acquisition.stop
         for reason in release_devices(devices, *before) if self._is_connected else []:
             self._happens(Event.DEVICE_ERROR, reason)

@@ -25,7 +25,7 @@ WIRINGS: Final = MappingProxyType(
 """Ways to wire an input, and what NI-DAQmx calls them."""
 
 _LEAST_BUFFER: Final = 1000  # samples
-_GRACE: Final = 2.0  # s, beyond twice the time of the samples
+_GRACE: Final = 1.0  # s, beyond twice the time of the samples
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

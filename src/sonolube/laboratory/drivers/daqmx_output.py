@@ -70,9 +70,23 @@ class DaqmxOutput:
     def hold(self, voltage: float) -> None:
         """Give a steady voltage. [V]"""
         self._release()
-        with daqmx_errors(self.name), self._library.Task() as task:
-            self._add_channel(task)
-            task.write(voltage, auto_start=True)
+        try:
+            with daqmx_errors(self.name):
+                self._task = task = self._library.Task()
+                self._add_channel(task)
+                task.write(voltage, auto_start=True)
+        finally:
+            self._release()
+
+    def halt(self) -> None:
+        """Give 0 V from another thread: a call that hangs is aborted first."""
+        task = self._task
+        if self._library is None:
+            return
+        if task is not None:
+            with suppress(DeviceError), daqmx_errors(self.name):
+                task.control(self._library.constants.TaskMode.TASK_ABORT)
+        self.hold(0.0)
 
     def repeat(self, setting: DriveSetting, *, amplitude: float, offset: float, sample_rate: float) -> None:
         """Give a waveform over and over; amplitude peak to peak and offset in V, rate of the output in Hz."""
@@ -148,6 +162,10 @@ class DaqmxDrive:
         if self._output.is_open:
             self._output.hold(0.0)
 
+    def halt(self) -> None:
+        """Set the output to 0 V while a call hangs."""
+        self._output.halt()
+
     def close(self) -> None:
         """Set the output to 0 V and release the device."""
         with suppress(DeviceError):
@@ -190,6 +208,10 @@ class DaqmxMotor:
         """Set the output to 0 V."""
         if self._output.is_open:
             self._output.hold(0.0)
+
+    def halt(self) -> None:
+        """Set the output to 0 V while a call hangs."""
+        self._output.halt()
 
     def close(self) -> None:
         """Set the output to 0 V and release the device."""

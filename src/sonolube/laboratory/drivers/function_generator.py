@@ -72,18 +72,22 @@ class FunctionGenerator:
         """Switch the output off, over a new connection where the present one is lost, and wait for the confirmation."""
         self._switch.off()
 
+    def halt(self) -> None:
+        """Switch the output off over a further connection while a call hangs."""
+        self._switch.halt()
+
     def close(self) -> None:
         """Switch the output off and close the connection."""
         self._switch.close()
 
-    def _switch_off(self) -> None:
+    def _switch_off(self, line: VisaConnection) -> None:
         """Switch the output off and have that confirmed."""
         self._set.pop("output", None)
-        self._line.ask_for(f"{self._output} OFF;:{self._output}?", "0", "OFF")
+        line.ask_for(f"{self._output} OFF;:{self._output}?", "0", "OFF")
 
     def _set_up(self) -> None:
         """Switch the output off, and set load, unit, smallest signal, limits and no modulation."""
-        self._switch_off()
+        self._switch_off(self._line)
         self._line.write("*CLS")
         identity = self._line.ask("*IDN?")
         maker_and_model = identity.split(",")

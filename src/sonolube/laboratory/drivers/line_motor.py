@@ -98,20 +98,24 @@ class LineMotor:
         """Stop, over a new connection where the present one is lost, and wait for the answer."""
         self._switch.off()
 
+    def halt(self) -> None:
+        """Stop over a further connection while a call hangs; not every system opens a serial port twice."""
+        self._switch.halt()
+
     def close(self) -> None:
         """Stop and close the connection."""
         self._switch.close()
 
     def _set_up(self) -> None:
         """Stop the motor, and send what the controller needs first."""
-        self._stop()
+        self._stop(self._line)
         for exchange in self._protocol.at_connect:
             self._exchange(exchange.command, exchange.answer)
-        self._stop()
+        self._stop(self._line)
 
-    def _stop(self) -> None:
+    def _stop(self, line: VisaConnection) -> None:
         """Stop and have that confirmed."""
-        self._line.ask_for(self._protocol.stop.command, self._protocol.stop.answer)
+        line.ask_for(self._protocol.stop.command, self._protocol.stop.answer)
 
     def _exchange(self, command: str, expected: str) -> None:
         """Send a command whose answer must be the expected one."""

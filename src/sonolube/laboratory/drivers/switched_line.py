@@ -16,10 +16,12 @@ class SwitchedLine:
     set_up : callable
         Switches the output off, and sends what the instrument needs before it is set.
     switch_off : callable
-        Switches the output off and has that confirmed.
+        Switches the output off over a connection and has that confirmed.
     """
 
-    def __init__(self, line: VisaConnection, *, set_up: Callable[[], None], switch_off: Callable[[], None]) -> None:
+    def __init__(
+        self, line: VisaConnection, *, set_up: Callable[[], None], switch_off: Callable[[VisaConnection], None]
+    ) -> None:
         self._line, self._set_up, self._switch_off = line, set_up, switch_off
         self._is_connected = False
         self._is_set_up = False  # False also where the instrument may have lost what it was told
@@ -67,13 +69,24 @@ class SwitchedLine:
             return
         if not self._is_lost:
             try:
-                self._switch_off()
+                self._switch_off(self._line)
                 return
             except DeviceError:
                 self._is_set_up, self._is_lost = False, True
         self._line.open()
-        self._switch_off()
+        self._switch_off(self._line)
         self._is_lost = False
+
+    def halt(self) -> None:
+        """Switch the output off over a further connection, whatever the present one waits for."""
+        if not self._is_connected:
+            return
+        line = self._line.another()
+        line.open()
+        try:
+            self._switch_off(line)
+        finally:
+            line.close()
 
     def close(self) -> None:
         """Switch the output off and close the connection."""

@@ -45,6 +45,16 @@ class VisaConnection:
         """Whether the connection was opened and not closed."""
         return self._line is not None
 
+    def another(self) -> "VisaConnection":
+        """Return a further connection to the same instrument, which waits for no call of this one."""
+        return VisaConnection(
+            name=self.name,
+            resource=self._resource,
+            library=self._library,
+            termination=self._termination,
+            baud_rate=self._baud_rate,
+        )
+
     def open(self) -> None:
         """Open the connection, anew where it is open.
 

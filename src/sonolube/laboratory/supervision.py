@@ -1,0 +1,373 @@
+"""Supervision of devices by a clock of its own: motor and drive are switched off where a run is late.
+
+Calls to devices are made by a thread of theirs, so that a run ends although a call does not return. A second thread
+looks at the clock: where no block was read in time, or a call lasts too long, it switches the outputs off by calls that
+wait for no other, and the run then ends with that reason. What hangs stays behind in its thread.
+"""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import inf
+from queue import SimpleQueue
+from threading import Condition, Thread
+from typing import Any, Final
+
+from sonolube.laboratory.block import Block
+from sonolube.laboratory.devices import Acquisition, DeviceError, Devices, DriveSetting, DriveSource, Motor
+from sonolube.units import format_si
+
+LATE: Final = 2.0
+"""Time by which a block may be late before motor and drive are switched off. [s]"""
+
+CLOCK_ERROR: Final = 2e-4
+"""Difference of the clocks of device and computer that counts as no delay, over the time since the start. []"""
+
+_LOOK: Final = 0.1  # s, between two looks at the clock
+_SWITCHING: Final = 10.0  # s, for a device that switches off, stops or closes
+_CONNECTING: Final = 60.0  # s
+_PACE: Final = 0.05  # s, time of a block before the first one was read
+
+
+class Late(DeviceError):
+    """A block or a call that has not come in time; motor and drive were switched off."""
+
+
+@dataclass(slots=True)
+class _Call:
+    """A call to a device, and its answers: a value and None, or an error."""
+
+    function: Callable[[], Any]
+    answers: "SimpleQueue[tuple[Any, BaseException | None]]" = field(default_factory=SimpleQueue)
+
+    def make(self) -> None:
+        """Make the call and keep its answer."""
+        try:
+            self.answers.put((self.function(), None))
+        except BaseException as failure:  # whatever a driver raises belongs to who has asked
+            self.answers.put((None, failure))
+
+    def answer(self) -> Any:
+        """Answer of the call; raises what it has raised."""
+        value, failure = self.answers.get()
+        if failure is not None:
+            raise failure
+        return value
+
+
+class Supervisor:
+    """Clock over the devices of one run.
+
+    Parameters
+    ----------
+    devices : Devices
+        Simulated ones, which switch nothing, are used as they are.
+    """
+
+    def __init__(self, devices: Devices) -> None:
+        self._hardware, self._guard = devices, devices.guard
+        self.devices = devices
+        if not devices.simulated:
+            self.devices = replace(
+                devices,
+                acquisition=_SupervisedAcquisition(devices.acquisition, self),
+                drive=_SupervisedDrive(devices.drive, self),
+                motor=_SupervisedMotor(devices.motor, self),
+                guard=None,
+            )
+        self._changed = Condition()
+        self._calls: SimpleQueue[_Call | None] = SimpleQueue()
+        self._waiting: _Call | None = None
+        self._deadline, self._expected = inf, ""
+        self._on: set[object] = set()
+        self._has_ended = False
+        self._not_off: list[str] = []
+        self.pace = _PACE
+        self.reason = ""
+
+    @contextmanager
+    def at_work(self) -> Iterator[None]:
+        """Watch the clock inside a `with` block."""
+        if self._hardware.simulated:
+            yield
+            return
+        for work in (self._make_calls, self._watch):
+            Thread(target=work, daemon=True, name="sonolube devices").start()
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._has_ended = True
+                self._changed.notify_all()
+            self._calls.put(None)
+
+    def call(self, what: str, function: Callable[[], Any], *, limit: float, otherwise: str = "") -> Any:
+        """Answer of a call to a device.
+
+        Parameters
+        ----------
+        what : str
+            Device and call in words.
+        function : callable
+        limit : float
+            Time that it may last, in s.
+        otherwise : str
+            What is the case where it lasts longer; that it did not return by default.
+
+        Returns
+        -------
+        object
+
+        Raises
+        ------
+        Late
+            If it has not returned in time, or the run was late before.
+        """
+        call = _Call(function)
+        missed = otherwise or f"{what} did not return within {format_si(limit, 's', digits=3)}"
+        with self._changed:
+            if self.reason:
+                raise Late(self.reason)
+            self._waiting = call
+            latest = self._expect(limit, missed)
+        self._calls.put(call)
+        try:
+            value = call.answer()
+        finally:
+            with self._changed:
+                self._waiting = None
+                rest = self.pace + LATE
+                self._expect(
+                    rest if self._on else inf, f"the program read no block for {format_si(rest, 's', digits=3)}"
+                )
+        if time.monotonic() > latest:
+            self._end_late(missed)
+            raise Late(self.reason)
+        return value
+
+    def release(self, what: str, function: Callable[[], Any]) -> None:
+        """Call what switches off or releases, in a thread of its own where the run was late.
+
+        Parameters
+        ----------
+        what : str
+        function : callable
+
+        Raises
+        ------
+        DeviceError
+            If it does not return.
+        """
+        if not self.reason:
+            self.call(what, function, limit=_SWITCHING)
+            return
+        failures = _all_within(_SWITCHING, [(what, function)])
+        if failures:
+            raise DeviceError("; ".join(failures))
+
+    def turns_on(self, output: object) -> None:
+        """Take a device for on, and let the guard enable the outputs."""
+        if self._guard is not None and not self._on:
+            self.call(f"{self._guard.name}: enable", self._guard.enable, limit=self.pace + LATE)
+        self._on.add(output)
+
+    def is_off(self, output: object) -> None:
+        """Take a device for off; where all are, nothing is expected and the guard disables the outputs."""
+        was_on = bool(self._on)
+        self._on.discard(output)
+        if self._on or self.reason:
+            return
+        with self._changed:
+            self._expect(inf, "")
+        if self._guard is not None and was_on:
+            self.release(f"{self._guard.name}: disable", self._guard.disable)
+
+    def renew(self) -> None:
+        """Tell the guard that the run is alive."""
+        if self._guard is not None and self._on:
+            self.call(f"{self._guard.name}: renew", self._guard.renew, limit=self.pace + LATE)
+
+    def connect_guard(self) -> None:
+        """Connect the guard, with the outputs disabled."""
+        if self._guard is not None:
+            self.call(f"{self._guard.name}: connect", self._guard.connect, limit=_CONNECTING)
+
+    def close_guard(self) -> None:
+        """Disable the outputs and release the guard."""
+        if self._guard is not None:
+            self.release(f"{self._guard.name}: close", self._guard.close)
+
+    @property
+    def has_halted(self) -> bool:
+        """Whether the outputs were switched off because the run was late, and have confirmed it."""
+        return bool(self.reason) and not self._not_off
+
+    def halt(self) -> list[str]:
+        """Switch the outputs off by calls that wait for no other; returns what failed, and never raises.
+
+        Returns
+        -------
+        list of str
+        """
+        outputs = (self._hardware.drive, self._hardware.motor)
+        first = [] if self._guard is None else [(f"{self._guard.name}: disable", self._guard.disable)]
+        calls = [(f"{each.name}: off", getattr(each, "halt", each.off)) for each in outputs]
+        return _all_within(_SWITCHING, [*first, *calls])
+
+    def _expect(self, within: float, otherwise: str) -> float:
+        """Expect a sign of life within a time, and return when that ends; the lock is held."""
+        self._deadline, self._expected = time.monotonic() + within, otherwise
+        return self._deadline
+
+    def _make_calls(self) -> None:
+        """Thread of the devices: make calls in the order in which they were asked for."""
+        while (call := self._calls.get()) is not None:
+            call.make()
+
+    def _watch(self) -> None:
+        """Thread of the clock: wait until a sign of life is overdue."""
+        with self._changed:
+            while not self._has_ended:
+                if time.monotonic() > self._deadline:
+                    break
+                self._changed.wait(_LOOK)
+            else:
+                return
+        self._end_late(self._expected)
+
+    def _end_late(self, missed: str) -> None:
+        """Switch off because a sign of life has not come, and wake who waits for an answer."""
+        with self._changed:
+            if self.reason or self._has_ended:
+                return
+            self.reason = f"{missed}; the supervisor has switched motor and drive off"
+        self._not_off = self.halt()
+        with self._changed:
+            if self._waiting is not None:
+                self._waiting.answers.put((None, Late(self.reason)))
+
+
+class _Supervised:
+    """A device whose calls are supervised."""
+
+    def __init__(self, device: Any, supervisor: Supervisor) -> None:
+        self._device, self._supervisor = device, supervisor
+        self.name: str = device.name
+
+    def connect(self) -> None:
+        """Connect the device."""
+        self._supervisor.call(f"{self.name}: connect", self._device.connect, limit=_CONNECTING)
+
+    def close(self) -> None:
+        """Release the device."""
+        self._supervisor.release(f"{self.name}: close", self._device.close)
+
+
+class _SupervisedAcquisition(_Supervised):
+    """Analogue inputs whose blocks must come in time."""
+
+    def __init__(self, device: Acquisition, supervisor: Supervisor) -> None:
+        super().__init__(device, supervisor)
+        self.channels = device.channels
+        self._rate, self._began, self._samples = 0.0, 0.0, 0
+
+    def connect(self) -> None:
+        """Connect the inputs, then the guard, before any output."""
+        super().connect()
+        self._supervisor.connect_guard()
+
+    def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
+        """Start to sample."""
+        start = partial(self._device.start, channels, sample_rate=sample_rate)
+        self._rate = float(self._supervisor.call(f"{self.name}: start", start, limit=_SWITCHING))
+        self._began, self._samples = time.monotonic(), 0
+        return self._rate
+
+    def read(self, samples: int) -> Block:
+        """Next samples, late by two seconds at most since the start."""
+        lasts = samples / self._rate if self._rate else 0.0
+        self._samples += samples
+        self._supervisor.pace = lasts
+        now = time.monotonic()
+        due = self._began + self._samples / self._rate - now if self._rate else 0.0
+        allowed = LATE + CLOCK_ERROR * (now - self._began)
+        block: Block = self._supervisor.call(
+            f"{self.name}: read",
+            partial(self._device.read, samples),
+            limit=min(due, lasts) + allowed,
+            otherwise=f"{self.name}: a block is late by more than {format_si(LATE, 's')}",
+        )
+        self._supervisor.renew()
+        return block
+
+    def stop(self) -> None:
+        """Stop to sample."""
+        self._supervisor.release(f"{self.name}: stop", self._device.stop)
+
+    def close(self) -> None:
+        """Release the inputs, and the guard after all outputs."""
+        with suppress(DeviceError):
+            self._supervisor.close_guard()
+        super().close()
+
+
+class _SupervisedOutput(_Supervised):
+    """Output that is set in time, and off."""
+
+    def off(self) -> None:
+        """Switch the output off, unless the supervisor has done that."""
+        if not self._supervisor.has_halted:
+            self._supervisor.release(f"{self.name}: off", self._device.off)
+        self._supervisor.is_off(self)
+
+    def _set(self, what: str, function: Callable[[], None]) -> None:
+        """Set the output."""
+        self._supervisor.turns_on(self)
+        self._supervisor.call(f"{self.name}: {what}", function, limit=self._supervisor.pace + LATE)
+
+
+class _SupervisedDrive(_SupervisedOutput):
+    """Source of the drive voltage."""
+
+    def __init__(self, device: DriveSource, supervisor: Supervisor) -> None:
+        super().__init__(device, supervisor)
+        self.voltage_maximum = device.voltage_maximum
+
+    def drive(self, setting: DriveSetting) -> None:
+        """Set the output."""
+        self._set("drive", partial(self._device.drive, setting))
+
+
+class _SupervisedMotor(_SupervisedOutput):
+    """Motor of the disc."""
+
+    def __init__(self, device: Motor, supervisor: Supervisor) -> None:
+        super().__init__(device, supervisor)
+        self.rotation_speed_maximum = device.rotation_speed_maximum
+
+    def turn(self, rotation_speed: float) -> None:
+        """Set the speed of the disc."""
+        self._set("turn", partial(self._device.turn, rotation_speed))
+        if rotation_speed == 0:
+            self._supervisor.is_off(self)
+
+
+def _all_within(limit: float, calls: Sequence[tuple[str, Callable[[], Any]]]) -> list[str]:
+    """Make calls at the same time, each in a thread of its own, and return those that failed or did not return."""
+    made = [(what, _Call(function)) for what, function in calls]
+    threads = [Thread(target=call.make, daemon=True, name="sonolube off") for _, call in made]
+    for thread in threads:
+        thread.start()
+    latest = time.monotonic() + limit
+    failures = []
+    for thread, (what, call) in zip(threads, made, strict=True):
+        thread.join(max(latest - time.monotonic(), 0.0))
+        if thread.is_alive():
+            failures.append(f"{what} did not return within {format_si(limit, 's')}")
+            continue
+        failure = call.answers.get()[1]
+        if failure is not None:
+            failures.append(f"{what}: {failure}")
+    return failures
