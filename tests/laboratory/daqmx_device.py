@@ -13,7 +13,16 @@ from typing import Any
 import nidaqmx.utils
 import numpy as np
 from nidaqmx._base_interpreter import BaseInterpreter
-from nidaqmx.constants import AcquisitionType, ChannelType, FillMode, OverwriteMode
+from nidaqmx.constants import (
+    AcquisitionType,
+    ChannelType,
+    FillMode,
+    Level,
+    OverwriteMode,
+    TaskMode,
+    WatchdogAOExpirState,
+    WDTTaskAction,
+)
 from nidaqmx.errors import DaqError
 from numpy.typing import NDArray
 from pytest import MonkeyPatch
@@ -27,6 +36,8 @@ CHANNEL_TYPE = 0x187F
 OVERWRITE = 0x1211
 INPUT_BUFFER = 0x186C
 DEVICE_NAMES = 0x193B
+BOOLEANS_PER_CHANNEL = 0x217F
+EXPIRED = 0x21A8
 VERSION = {0x1272: 25, 0x1923: 0, 0x2F22: 0}
 
 
@@ -44,6 +55,11 @@ class Task:
     written: NDArray[np.float64] | None = None
     is_running: bool = False
     position: int = 0
+    line: str = ""
+    timeout: float = 0.0  # of a watchdog
+    safe_voltages: dict[str, float] = field(default_factory=dict)
+    safe_lines: dict[str, int] = field(default_factory=dict)
+    is_expired: bool = False
 
 
 class DaqmxDevice:
@@ -61,6 +77,8 @@ class DaqmxDevice:
         self.voltage: Callable[[str, NDArray[np.int64]], NDArray[np.float64]] = lambda _, n: np.zeros(len(n))
         self.outputs: dict[str, NDArray[np.float64]] = {}
         self.output_rates: dict[str, float] = {}
+        self.lines: dict[str, bool] = {}
+        self.hangs: Callable[[str], None] = lambda call: None  # called first by every call
         self.last: Task | None = None
         self._handles = 0
 
@@ -72,6 +90,7 @@ class DaqmxDevice:
     def call(self, name: str) -> None:
         """Count a call, and fail where that is wanted."""
         self.calls[name] += 1
+        self.hangs(name)
         code = self.errors.get(name, 0)
         if self.unplugged and name not in ("clear_task", "create_task"):
             code = self.unplugged
@@ -99,10 +118,16 @@ class DaqmxDevice:
 
     def get_task_attribute_string(self, task: int, attribute: int) -> str:
         here = self.tasks[task]
-        return ", ".join([*here.inputs, here.output]).strip(", ") if attribute == CHANNEL_NAMES else f"task {task}"
+        return (
+            ", ".join([*here.inputs, here.output, here.line]).strip(", ")
+            if attribute == CHANNEL_NAMES
+            else f"task {task}"
+        )
 
     def get_chan_attribute_int32(self, task: int, channel: str, attribute: int) -> int:
         assert attribute == CHANNEL_TYPE
+        if self.tasks[task].line:
+            return int(ChannelType.DIGITAL_OUTPUT.value)
         return int((ChannelType.ANALOG_OUTPUT if self.tasks[task].output else ChannelType.ANALOG_INPUT).value)
 
     def create_ai_voltage_chan(
@@ -214,6 +239,75 @@ class DaqmxDevice:
             assert here.buffer == len(volts)
             here.written = volts
         return len(volts)
+
+    def task_control(self, task: int, action: int) -> None:
+        self.call("task_control")
+        assert action == TaskMode.TASK_ABORT.value
+        self.tasks[task].is_running = False
+
+    def create_do_chan(self, task: int, lines: str, name_to_assign_to_lines: str, line_grouping: int) -> None:
+        self.call("create_do_chan")
+        self.tasks[task].line = lines
+
+    def get_write_attribute_uint32(self, task: int, attribute: int) -> int:
+        assert attribute == BOOLEANS_PER_CHANNEL
+        return 1
+
+    def write_digital_lines(
+        self,
+        task: int,
+        num_samps_per_chan: int,
+        auto_start: bool,
+        timeout: float,
+        data_layout: int,
+        write_array: NDArray[np.bool_],
+    ) -> int:
+        self.call("write_digital_lines")
+        assert auto_start
+        self.lines[self.tasks[task].line] = bool(np.ravel(write_array)[0])
+        return 1
+
+    def create_watchdog_timer_task_ex(self, device_name: str, session_name: str, timeout: float) -> tuple[int, bool]:
+        self.call("create_watchdog_timer_task_ex")
+        assert device_name == self.names
+        self._handles += 1
+        self.tasks[self._handles] = Task(timeout=timeout)
+        return self._handles, True
+
+    def cfg_watchdog_ao_expir_states(
+        self,
+        task: int,
+        channel_names: str,
+        expir_state_array: NDArray[np.float64],
+        output_type_array: NDArray[np.int32],
+    ) -> None:
+        self.call("cfg_watchdog_ao_expir_states")
+        assert set(output_type_array) == {WatchdogAOExpirState.VOLTAGE.value}
+        names = nidaqmx.utils.unflatten_channel_string(channel_names)
+        self.tasks[task].safe_voltages = dict(zip(names, map(float, expir_state_array), strict=True))
+
+    def cfg_watchdog_do_expir_states(self, task: int, channel_names: str, expir_state_array: NDArray[np.int32]) -> None:
+        self.call("cfg_watchdog_do_expir_states")
+        self.tasks[task].safe_lines = {channel_names: int(expir_state_array[0])}
+
+    def control_watchdog_task(self, task: int, action: int) -> None:
+        self.call(f"watchdog {WDTTaskAction(action).name}")
+        assert self.tasks[task].is_running
+        if action == WDTTaskAction.CLEAR_EXPIRATION.value:
+            self.tasks[task].is_expired = False
+
+    def get_watchdog_attribute_bool(self, task: int, lines: str, attribute: int) -> bool:
+        assert attribute == EXPIRED
+        assert self.tasks[task].is_running
+        return self.tasks[task].is_expired
+
+    def let_watchdog_expire(self) -> None:
+        """Let the time of the running watchdog pass."""
+        for here in list(self.tasks.values()):
+            if here.timeout and here.is_running:
+                here.is_expired = True
+                self.outputs |= {name: np.array([volts]) for name, volts in here.safe_voltages.items()}
+                self.lines |= {name: state != Level.LOW.value for name, state in here.safe_lines.items()}
 
     def is_off(self, terminal: str) -> bool:
         """Whether an output gives a steady 0 V."""

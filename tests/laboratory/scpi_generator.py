@@ -178,7 +178,7 @@ def _short(keyword: str) -> str:
 
 
 class LineServer:
-    """Serves lines of text on a loopback socket to one client after the other, until it is closed."""
+    """Serves lines of text on a loopback socket to its clients, each in a thread of its own, until it is closed."""
 
     def __init__(self, answer: Callable[[str], str | None], *, termination: str = "\n") -> None:
         self._answer, self._end = answer, termination.encode()
@@ -216,13 +216,18 @@ class LineServer:
     def _serve(self) -> None:
         while not self._is_closing.is_set():
             try:
-                self._client, _ = self._socket.accept()
+                client, _ = self._socket.accept()
             except TimeoutError:
                 continue
-            with self._client as client:
-                client.settimeout(0.05)
-                if not self.is_refusing:
-                    self._talk(client)
+            self._client = client
+            threading.Thread(target=self._attend, args=[client], daemon=True).start()
+
+    def _attend(self, client: socket.socket) -> None:
+        with client:
+            client.settimeout(0.05)
+            if not self.is_refusing:
+                self._talk(client)
+        if self._client is client:
             self._client = None
 
     def _talk(self, client: socket.socket) -> None:

@@ -12,6 +12,7 @@ from sonolube.laboratory.drive_sampling import DriveSampling, drive_sampling, re
 from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
 from sonolube.laboratory.set_points import groove_diameter
+from sonolube.laboratory.supervision import LATE
 from sonolube.rig import Rig
 
 _STATED: Final = ("specimen", "operator", "humidity", "calibrated", "block", "run")  # of the metadata of a protocol
@@ -110,6 +111,8 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
         "simulated": devices.simulated,
         **{f"device_{name.replace(' ', '_')}": text for name, text in devices.description.items()},
     }
+    if not devices.simulated:
+        facts["late_maximum"] = LATE
     if unresolved := plan.unresolved(devices):
         facts[UNRESOLVED] = unresolved
     facts["groove_diameter"] = groove_diameter(plan.protocol, devices)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import pairwise
+from threading import Event, Thread
 
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
@@ -158,6 +159,39 @@ def test_a_generator_that_keeps_silent_is_lost_in_the_time_that_is_given_to_it(b
             device.drive(SETTING)
         with raises(DeviceLost, match="does not answer"):
             device.off()
+
+
+def test_the_output_is_switched_off_over_another_connection_while_a_call_hangs(bench: Bench) -> None:
+    generator, _, device = bench
+    device.connect()
+    device.drive(SETTING)
+    hangs, release = Event(), Event()
+    answer = generator._answer
+
+    def hang(command: str) -> str | None:
+        if command.startswith("SOUR1:FREQ"):
+            hangs.set()
+            assert release.wait()
+        return answer(command)
+
+    generator._answer = hang  # type: ignore[method-assign]
+    other = DriveSetting(voltage_peak_to_peak=28.0, frequency=23e3)
+
+    def goes_on() -> None:
+        with raises(DeviceError, match="was switched off while a call hung"):
+            device.drive(other)
+
+    thread = Thread(target=goes_on, daemon=True)
+    thread.start()
+    assert hangs.wait()
+    device.halt()
+    assert not generator.is_on
+    assert thread.is_alive()
+    release.set()
+    thread.join()
+    assert not generator.is_on  # although the call went on
+    device.off()
+    assert not generator.is_on
 
 
 def test_another_instrument_is_refused_by_its_name(bench: Bench) -> None:

@@ -1,4 +1,5 @@
 from .daqmx_acquisition import AnalogueInput as AnalogueInput, DaqmxAcquisition as DaqmxAcquisition
+from .daqmx_guard import DaqmxGuard as DaqmxGuard
 from .daqmx_output import DaqmxDrive as DaqmxDrive, DaqmxMotor as DaqmxMotor
 from .device_map import (
     DeviceMap as DeviceMap,

@@ -41,6 +41,8 @@ def daqmx_library() -> Any:
         import nidaqmx.constants
         import nidaqmx.stream_readers
         import nidaqmx.system
+        import nidaqmx.system.watchdog
+        import nidaqmx.types
     except ImportError:
         raise missing_package("daqmx") from None
     return nidaqmx

@@ -48,6 +48,7 @@ class DaqmxOutput:
         self._terminal, self._range = terminal, voltage_range
         self._library: Any = None
         self._task: Any = None
+        self._is_halted = False
 
     @property
     def is_open(self) -> bool:
@@ -70,22 +71,24 @@ class DaqmxOutput:
     def hold(self, voltage: float) -> None:
         """Give a steady voltage. [V]"""
         self._release()
-        try:
-            with daqmx_errors(self.name):
-                self._task = task = self._library.Task()
+        with daqmx_errors(self.name), self._library.Task() as task:
+            self._task = task
+            try:
                 self._add_channel(task)
                 task.write(voltage, auto_start=True)
-        finally:
-            self._release()
+            finally:
+                if self._task is task:
+                    self._task = None
 
     def halt(self) -> None:
-        """Give 0 V from another thread: a call that hangs is aborted first."""
-        task = self._task
+        """Give 0 V from another thread: a call that hangs is aborted first, and starts nothing where it goes on."""
+        task, self._task, self._is_halted = self._task, None, True
         if self._library is None:
             return
         if task is not None:
             with suppress(DeviceError), daqmx_errors(self.name):
                 task.control(self._library.constants.TaskMode.TASK_ABORT)
+                task.close()
         self.hold(0.0)
 
     def repeat(self, setting: DriveSetting, *, amplitude: float, offset: float, sample_rate: float) -> None:
@@ -101,6 +104,8 @@ class DaqmxOutput:
             volts = offset + amplitude / 2 * waveform_samples(setting.waveform, periods=periods, samples=samples)
             task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=samples)
             task.write(volts, auto_start=False)
+            if self._is_halted:
+                raise DeviceError(f"{self.name}: was switched off while a call hung")
             task.start()
 
     def close(self) -> None:

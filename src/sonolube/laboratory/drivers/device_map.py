@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.laboratory.devices import Devices, DriveSource, Motor
 from sonolube.laboratory.drivers.daqmx_acquisition import AnalogueInput, DaqmxAcquisition
+from sonolube.laboratory.drivers.daqmx_guard import DaqmxGuard
 from sonolube.laboratory.drivers.daqmx_output import SAMPLES_PER_PERIOD, DaqmxDrive, DaqmxMotor
 from sonolube.laboratory.drivers.entries import (
     TERMINATIONS,
@@ -54,8 +55,9 @@ class DeviceMap:
     @property
     def extras(self) -> tuple[str, ...]:
         """Optional parts of the installation that it needs, as in `EXTRAS`."""
-        drivers = (self.entries.acquisition.driver, self.entries.drive.driver, self.entries.motor.driver)
-        return tuple(sorted({_EXTRA_OF[driver] for driver in drivers}))
+        entries = self.entries
+        parts = (entries.acquisition, entries.drive, entries.motor, entries.guard)
+        return tuple(sorted({_EXTRA_OF[part.driver] for part in parts if part is not None}))
 
     @property
     def frequency_maximum(self) -> float:
@@ -76,6 +78,7 @@ class DeviceMap:
             description=MappingProxyType(self._description()),
             groove_diameter=self.entries.motor.groove_diameter,
             resources=self._resources(),
+            guard=self._guard(),
         )
 
     def _acquisition(self) -> DaqmxAcquisition:
@@ -135,6 +138,22 @@ class DeviceMap:
             frequency_maximum=highest,
         )
 
+    def _described_guard(self) -> str:
+        """Watchdog and enable line in words; empty without."""
+        entry = self.entries.guard
+        if entry is None:
+            return ""
+        timeout, line = entry.watchdog_timeout, entry.enable_line
+        watchdog = "" if timeout is None else f"watchdog of {format_si(timeout, 's')}"
+        return "; ".join(filter(None, (watchdog, line and f"enable line {line}")))
+
+    def _guard(self) -> DaqmxGuard | None:
+        """Watchdog and enable line."""
+        entry = self.entries.guard
+        if entry is None:
+            return None
+        return DaqmxGuard(outputs=self.entries.guarded_outputs, timeout=entry.watchdog_timeout, line=entry.enable_line)
+
     def _resources(self) -> tuple[str, ...]:
         """Canonical names of the hardware."""
         drive, motor = self.entries.drive, self.entries.motor
@@ -143,6 +162,8 @@ class DeviceMap:
             visa_resource(drive.resource) if isinstance(drive, GeneratorEntry) else daqmx_resource(drive.output),
             visa_resource(motor.resource) if isinstance(motor, LineMotorEntry) else daqmx_resource(motor.output),
         ]
+        if self.entries.guard is not None and self.entries.guard.enable_line is not None:
+            named.append(daqmx_resource(self.entries.guard.enable_line))
         return tuple(dict.fromkeys(named))
 
     def _description(self) -> dict[str, str]:
@@ -165,6 +186,7 @@ class DeviceMap:
             "amplifier": drive.amplifier,
             "motor": f"{motor.driver} {where}, at most {format_si(motor.rotation_speed_maximum, '1/s')}",
             "motor hardware": motor.description,
+            "guard": self._described_guard(),
         }
         return {key: text for key, text in told.items() if text}
 

@@ -292,6 +292,30 @@ class DaqmxMotorEntry(_MotorEntry):
         return voltage_at_maximum
 
 
+class GuardEntry(Table):
+    """Hardware that takes the outputs off where the program does not answer: a watchdog, an enable line, or both.
+
+    Parameters
+    ----------
+    driver : str
+    watchdog_timeout : float or None
+        Time without a block after which the device sets its analogue outputs to 0 V and the line low; None without a
+        watchdog. [s]
+    enable_line : str or None
+        Digital line that is high while outputs are enabled, such as Dev1/port0/line0.
+    """
+
+    driver: Literal["daqmx"]
+    watchdog_timeout: Annotated[float, SiText("s", 0.2, 60.0)] | None = None
+    enable_line: Annotated[str, Field(pattern=r"^[\w-]+/port\d+/line\d+$")] | None = None
+
+    @model_validator(mode="after")
+    def _require_one(self) -> Self:
+        if self.watchdog_timeout is None and self.enable_line is None:
+            raise ValueError("needs watchdog_timeout, enable_line or both")
+        return self
+
+
 class MapEntries(Table):
     """Whole device map.
 
@@ -301,16 +325,35 @@ class MapEntries(Table):
     acquisition : AcquisitionEntry
     drive : GeneratorEntry or DaqmxDriveEntry
     motor : LineMotorEntry or DaqmxMotorEntry
+    guard : GuardEntry or None
     """
 
     title: Annotated[str, Field(min_length=1, max_length=_TEXT)]
     acquisition: AcquisitionEntry
     drive: Annotated[GeneratorEntry | DaqmxDriveEntry, Field(discriminator="driver")]
     motor: Annotated[LineMotorEntry | DaqmxMotorEntry, Field(discriminator="driver")]
+    guard: GuardEntry | None = None
 
     @model_validator(mode="after")
     def _require_different_outputs(self) -> Self:
         drive, motor = self.drive, self.motor
         if isinstance(drive, DaqmxDriveEntry) and isinstance(motor, DaqmxMotorEntry) and drive.output == motor.output:
             raise ValueError(f"drive and motor both have the output {drive.output}")
+        return self
+
+    @property
+    def guarded_outputs(self) -> tuple[str, ...]:
+        """Analogue outputs of drive and motor that are on the device of the guard."""
+        if self.guard is None:
+            return ()
+        outputs = [
+            each.output for each in (self.drive, self.motor) if isinstance(each, DaqmxDriveEntry | DaqmxMotorEntry)
+        ]
+        line = self.guard.enable_line or (outputs[0] if outputs else "")
+        return tuple(each for each in outputs if each.partition("/")[0].lower() == line.partition("/")[0].lower())
+
+    @model_validator(mode="after")
+    def _require_guarded(self) -> Self:
+        if self.guard is not None and self.guard.enable_line is None and not self.guarded_outputs:
+            raise ValueError("guard: a watchdog alone guards analogue outputs of drive or motor; give enable_line")
         return self

@@ -98,7 +98,8 @@ def first_block(devices: Devices, *, sample_rate: float) -> Block:
         If a device is missing, does not answer or is in use by a run; the others are off and released then.
     """
     with reserved(devices.resources), ExitStack() as after:
-        for device in (devices.acquisition, devices.drive, devices.motor):
+        guarded = () if devices.guard is None else (devices.guard,)
+        for device in (devices.acquisition, *guarded, devices.drive, devices.motor):
             after.callback(device.close)
             device.connect()
         devices.drive.off()

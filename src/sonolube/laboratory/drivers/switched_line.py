@@ -26,6 +26,7 @@ class SwitchedLine:
         self._is_connected = False
         self._is_set_up = False  # False also where the instrument may have lost what it was told
         self._is_lost = False
+        self._is_halted = False
 
     def connect(self) -> None:
         """Open the connection, and set the instrument up with its output off."""
@@ -67,6 +68,9 @@ class SwitchedLine:
         """Switch the output off, over a new connection where the present one is lost, and wait for the confirmation."""
         if not self._is_connected:
             return
+        if self._is_halted:
+            self.halt()
+            return
         if not self._is_lost:
             try:
                 self._switch_off(self._line)
@@ -78,9 +82,11 @@ class SwitchedLine:
         self._is_lost = False
 
     def halt(self) -> None:
-        """Switch the output off over a further connection, whatever the present one waits for."""
+        """Switch the output off over a further connection, whatever the present one waits for, which ends with that."""
         if not self._is_connected:
             return
+        self._is_halted = True
+        self._line.bar()
         line = self._line.another()
         line.open()
         try:

@@ -39,11 +39,16 @@ class VisaConnection:
         self._resource, self._library = resource, library
         self._termination, self._baud_rate = termination, baud_rate
         self._line: Any = None
+        self._is_barred = False
 
     @property
     def is_open(self) -> bool:
         """Whether the connection was opened and not closed."""
         return self._line is not None
+
+    def bar(self) -> None:
+        """Send nothing more: a call that hangs must not go on where the output was switched off meanwhile."""
+        self._is_barred = True
 
     def another(self) -> "VisaConnection":
         """Return a further connection to the same instrument, which waits for no call of this one."""
@@ -130,6 +135,8 @@ class VisaConnection:
 
     def _tried(self, act: Callable[[Any], _Result]) -> _Result:
         """Result of a call of VISA, whose errors become those of devices."""
+        if self._is_barred:
+            raise DeviceError(f"{self.name}: was switched off while a call hung")
         if self._line is None:
             raise DeviceError(f"{self.name}: connect it first")
         import pyvisa

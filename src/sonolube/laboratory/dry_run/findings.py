@@ -14,6 +14,9 @@ from sonolube.units import format_si
 STATIC_FRICTION_FACTOR = 1.35
 """Static over intrinsic sliding friction: 1.2 N before 0.89 N, D 4.1.2. []"""
 
+SAFETY = "software is no safety function: a rig needs an emergency stop of its own, in reach of who runs it"
+"""What every run on devices needs."""
+
 _TOLERANCE = 1 + 1e-9
 _LARGE = 1e9  # bytes, of which the operator is told
 
@@ -111,6 +114,7 @@ def _beyond(found: DryRun, quantity: Callable[[PlannedPoint], float], most: floa
 
 def _caveats(found: DryRun) -> Iterator[str]:
     """What else to know, without what the rig said."""
+    yield SAFETY
     limits = found.protocol.limits
     if limits.friction_force_maximum is not None:
         force = max((point.friction_force or 0.0 for point in found.points), default=0.0)

@@ -14,6 +14,7 @@ from sonolube.laboratory.dry_run.amplifier_load import OFF, DriveLoad, drive_loa
 from sonolube.laboratory.dry_run.findings import caveats_of, refusals_of
 from sonolube.laboratory.dry_run.heating import HeatedInterval, Heating, HeatingAssumptions, RubbedBodies, heating_over
 from sonolube.laboratory.dry_run.record import PROMPT_DURATIONS, DryRun, PlannedPoint, PlannedRecording
+from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
 from sonolube.rig.excitation import actuator_capacitance
 from sonolube.units import format_si
@@ -258,7 +259,8 @@ def _assumptions(
     assumed: HeatingAssumptions, rig: Rig | None, prompts: Sequence[Prompt], times: Mapping[str, float]
 ) -> dict[str, str]:
     """What is assumed, by what it concerns."""
-    found = {}
+    late = format_si(LATE, "s")
+    found = {"supervisor": f"on devices, motor and drive are switched off where a block is late by more than {late}"}
     if prompts:
         tasks = dict.fromkeys(prompt.task for prompt in prompts)
         found["prompts"] = ", ".join(f"{task} {times[task] / 60:g} min" for task in tasks)

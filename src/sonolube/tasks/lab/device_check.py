@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory.drivers import DeviceMap, first_block, missing_parts, read_device_map, unfulfilled
+from sonolube.laboratory.dry_run.findings import SAFETY
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, file_path
@@ -68,8 +69,11 @@ class CheckedDevices(Answer):
         }
 
     def caveats(self) -> Sequence[str]:
-        """That no driver has met hardware."""
-        return ("the drivers were tested on stand-ins, never on hardware: keep a hand on the switch in the first run",)
+        """That no driver has met hardware, and what software cannot do."""
+        return (
+            "the drivers were tested on stand-ins, never on hardware: keep a hand on the switch in the first run",
+            SAFETY,
+        )
 
     def dataset(self) -> "xr.Dataset":
         """Return the readings, a variable each."""
