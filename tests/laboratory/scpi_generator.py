@@ -31,10 +31,13 @@ KEYWORDS = {  # long forms by the short ones
     "AM": "AM",
     "FM": "FM",
     "PM": "PM",
+    "BPSK": "BPSK",
+    "PWM": "PWM",
+    "SUM": "SUM",
 }
 FUNCTIONS = {"SIN": 30e6, "SQU": 30e6, "TRI": 200e3, "RAMP": 200e3}  # highest frequency in Hz
 INTO_50_OHM = 0.5
-MODULATIONS = ("AM", "FM", "PM", "FSK", "SWE", "BURS")
+MODULATIONS = ("AM", "FM", "PM", "FSK", "BPSK", "PWM", "SUM", "SWE", "BURS")
 
 
 @dataclass
@@ -114,7 +117,11 @@ class Generator:
             ("FUNC", "SQU", "DCYC"): lambda text: None,
         }
         if path[-1:] == ("STAT",) and path[0] in MODULATIONS:
-            self.modulations[path[0]] = value == "ON"
+            if value not in ("ON", "OFF", "1", "0"):
+                self.errors.append('-224,"Illegal parameter value"')
+            elif value in ("ON", "1") and any(on for name, on in self.modulations.items() if name != path[0]):
+                self.errors.append('-221,"Settings conflict; other modulation turned off"')
+            self.modulations[path[0]] = value in ("ON", "1")
             return True
         if path not in setters:
             return False

@@ -179,6 +179,24 @@ def test_an_operator_who_does_not_confirm_ends_the_run_before_anything_moves() -
     assert not any(call.startswith(("turn", "drive")) for call in rig.calls)
 
 
+@pytest.mark.parametrize(
+    ("asked", "reason"), [("interrupted", "interrupted by the operator"), ("terminated", "terminated")]
+)
+@pytest.mark.parametrize("answer", [True, False])
+def test_an_end_that_was_asked_for_in_a_prompt_is_the_reason_whatever_the_answer(
+    answer: bool, asked: str, reason: str
+) -> None:
+    rig, control = SimulatedRig(), RunControl()
+
+    def operator(prompt: Prompt) -> bool:
+        control.stop(asked)
+        return answer
+
+    result = run_protocol(protocol(), rig.devices(), MemoryRecord(), operator=operator, control=control)
+    assert (result.outcome, result.reason) == ("stopped", f"{reason}, while asked: Wipe pin and plate.")
+    assert not any(call.startswith(("turn", "drive")) for call in rig.calls)
+
+
 def test_motor_and_drive_are_off_while_the_operator_works_and_the_recording_goes_on_in_a_second_part() -> None:
     steps: list[Mapping[str, object]] = [
         {"kind": "acquire", "channels": ["friction_force"], "sample_rate": "1 kHz", "duration": "2 s"},
@@ -242,6 +260,55 @@ def test_a_check_stops_notes_or_waits(otherwise: str, outcome: str) -> None:
         assert sum(record.samples()) >= 1000
     else:
         assert "check of temperature: 300 K, wanted any to 295 K" in result.reason
+
+
+SPEED_CHECK = [
+    {"kind": "motor_speed", "rotation_speed": "1 Hz"},
+    {"kind": "check", "quantity": "sliding_speed", "lowest": "80 mm/s", "highest": "90 mm/s"},  # 88 mm/s at 28 mm
+]
+
+
+class Tachometer(SimulatedRig):
+    """Rig that measures the speed of its disc, which comes up to a share of what was set within some blocks."""
+
+    share, blocks = 1.0, 0
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        return {**super().channels, "rotation_speed": Channel(name="rotation_speed", quantity="rotation_speed")}
+
+    def read(self, samples: int) -> Block:
+        self.blocks += self.turns > 0
+        self.values = {"rotation_speed": self.turns * self.share * min(self.blocks / 20, 1.0)}
+        return super().read(samples)
+
+
+def test_a_check_of_a_speed_looks_at_the_measured_one_once_it_has_settled() -> None:
+    result, _, record = run(protocol(*SPEED_CHECK), Tachometer())
+    assert result.outcome == "completed"
+    (checked,) = [facts for kind, facts in record.notes if kind == "check"]
+    assert 0.08 <= checked["value"] <= 0.09  # type: ignore[operator]
+    assert "basis" not in checked
+
+
+def test_a_disc_that_does_not_turn_as_it_is_set_fails_the_check() -> None:
+    rig = Tachometer()
+    rig.share = 0.5
+    result, _, _ = run(protocol(*SPEED_CHECK), rig)
+    assert result.outcome == "stopped"
+    assert result.reason == "check of sliding_speed: 44 mm/s, wanted 80 mm/s to 90 mm/s"
+    assert rig.blocks == pytest.approx(5.0 / 0.05, abs=2)  # it had five seconds
+
+
+def test_a_check_of_a_speed_that_nothing_measures_says_so() -> None:
+    _, _, record = run(protocol(*SPEED_CHECK))
+    (checked,) = [facts for kind, facts in record.notes if kind == "check"]
+    assert checked["basis"] == "as it is set: no channel rotation_speed measures it"
+    too_fast = {"kind": "check", "quantity": "rotation_speed", "highest": "0.5 Hz"}
+    result, _, _ = run(protocol(SPEED_CHECK[0], too_fast))
+    assert result.reason.startswith(
+        "check of rotation_speed: 1 1/s (as it is set: no channel rotation_speed measures it)"
+    )
 
 
 def test_what_devices_cannot_do_is_refused_before_they_are_connected() -> None:

@@ -12,7 +12,8 @@ from .devices import (
     switch_outputs_off as switch_outputs_off,
 )
 from .interlocks import Interlock as Interlock, Trip as Trip, first_trip as first_trip, interlocks_for as interlocks_for
-from .runner import RunControl as RunControl, RunResult as RunResult, run_protocol as run_protocol
+from .run_control import RunControl as RunControl
+from .runner import RunResult as RunResult, run_protocol as run_protocol
 from .sampling import BLOCK_DURATION as BLOCK_DURATION, Recorder as Recorder, Sampling as Sampling
 from .set_points import impossibilities as impossibilities, require_possible as require_possible
 from .states import (

@@ -21,6 +21,7 @@ CHANNEL_QUANTITIES: Final[Mapping[str, str]] = MappingProxyType(
         "current_peak": "stack_current_peak",
         "current_rms": "stack_current_rms",
         "temperature": "temperature",
+        "rotation_speed": "rotation_speed",
         "gaussmeter": "magnetic_flux_density",
         "displacement": "displacement",
     }

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
 from threading import Event as Signal
@@ -11,17 +11,19 @@ from typing import Final
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.interruption import asked_by_signal, undone_at_signal
+from sonolube.laboratory.checked_quantity import SETTLING, SPEED_CHANNEL, SPEEDS, CheckedValue, speed_checks, speed_of
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, connect_devices, switch_outputs_off
 from sonolube.laboratory.drive_sampling import drive_sampling, idle_rate
 from sonolube.laboratory.ending import RunEnded, ending, release_devices
 from sonolube.laboratory.interlocks import Trip, interlocks_for, set_point_trip
 from sonolube.laboratory.reservation import reserved
+from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.sampling import BLOCK_DURATION, Recorder, Sampling
 from sonolube.laboratory.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
+from sonolube.laboratory.standing_rig import StandingRig
 from sonolube.laboratory.states import Event, RunState, State, after
 from sonolube.laboratory.supervision import Supervisor
 from sonolube.units import format_si
-from sonolube.vocabulary import unit_of
 
 _POLL: Final = 0.1  # s, between two looks at requests while a run is paused
 
@@ -30,37 +32,6 @@ Operator = Callable[[Prompt], bool]
 
 Advance = Callable[[str, int, int], None]
 """Takes what happens now, the time done and the whole time, in ms."""
-
-
-@dataclass(slots=True)
-class RunControl:
-    """Requests to a running protocol, from other threads and from signals.
-
-    Parameters
-    ----------
-    stop_reason : str
-        Why the run is to end; empty while it is not.
-    """
-
-    stop_reason: str = ""
-    _pause: Signal = field(default_factory=Signal)
-
-    def stop(self, reason: str) -> None:
-        """End the run after the present block."""
-        self.stop_reason = self.stop_reason or reason
-
-    def pause(self) -> None:
-        """Switch motor and drive off after the present block, and let the clock stand."""
-        self._pause.set()
-
-    def resume(self) -> None:
-        """Go on after a pause."""
-        self._pause.clear()
-
-    @property
-    def is_paused(self) -> bool:
-        """Whether a pause is wanted."""
-        return self._pause.is_set()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -143,7 +114,10 @@ class _Run:
         self._point = self._points[0]
         self._diameter = groove_diameter(protocol, devices)
         locks = interlocks_for(protocol.limits, devices.acquisition.channels, drive_sampling(protocol))
-        self._sampling = Sampling(self._devices.acquisition, recorder, locks)
+        rate = idle_rate(self._points)
+        self._standing = StandingRig(self._devices, locks, protocol.limits, sample_rate=rate)
+        measured = [SPEED_CHANNEL] if speed_checks(protocol) else []
+        self._sampling = Sampling(self._devices.acquisition, recorder, locks, also=measured)
         self._present, self._is_connected = RunState(), False
         self._drive: DriveSetting | None = None
         self._turns = 0.0
@@ -279,7 +253,16 @@ class _Run:
     def _ask(self, prompt: Prompt) -> None:
         """Ask the operator with motor and drive off, while the clock stands."""
         self._pause(f"{prompt.task}: {prompt.text}")
-        if not self._operator(prompt):
+        with self._standing.watched(self._control):
+            is_confirmed = self._operator(prompt)
+        if self._control.stop_reason:
+            asked = (
+                "interrupted by the operator"
+                if self._control.stop_reason == "interrupted"
+                else self._control.stop_reason
+            )
+            raise RunEnded(Event.STOP, f"{asked}, while asked: {prompt.text}")
+        if not is_confirmed:
             raise RunEnded(Event.STOP, f"the operator did not confirm: {prompt.text}")
         if self._devices.attend is not None:
             self._devices.attend(prompt)
@@ -297,8 +280,9 @@ class _Run:
         """Hold the run while a pause is wanted."""
         self._pause("on request")
         wait = Signal()
-        while self._control.is_paused and not self._control.stop_reason:
-            wait.wait(_POLL)
+        with self._standing.watched(self._control):
+            while self._control.is_paused and not self._control.stop_reason:
+                wait.wait(_POLL)
         self._end_if_asked()
         self._happens(Event.RESUME)
         self._sample_again()
@@ -337,31 +321,32 @@ class _Run:
 
     def _check(self, check: Check) -> None:
         """Look at a quantity until it lies within its bounds, or do what the step says otherwise."""
-        low, high = check.bounds
-        waited = 0.0
+        waited, longest = 0.0, self._protocol.limits.duration_maximum
         while True:
-            value = self._value_of(check.quantity)
-            if value is not None and low <= value <= high:
-                self._note("check", quantity=check.quantity, value=value)
+            found = self._checked(check)
+            if found.holds:
+                self._note("check", **found.facts)
                 return
-            reason = _missed(check, value)
-            if check.otherwise == "note":
-                self._note("check", reason=reason)
+            is_settling = check.quantity in SPEEDS and not found.is_set and waited < SETTLING
+            if not is_settling and check.otherwise == "note":
+                self._note("check", reason=found.reason)
                 return
-            if check.otherwise == "stop" or value is None or waited > self._protocol.limits.duration_maximum:
-                raise RunEnded(Event.STOP, reason)
+            may_wait = found.value is not None and (is_settling or (check.otherwise == "wait" and waited <= longest))
+            if not may_wait:
+                raise RunEnded(Event.STOP, found.reason)
             self._obey_requests()
             waited += BLOCK_DURATION
 
-    def _value_of(self, quantity: str) -> float | None:
-        """Value of a checked quantity: a speed as it is set, else as measured; None where nothing tells it."""
-        if quantity == "rotation_speed":
-            return self._turns
-        if quantity == "sliding_speed":
-            return self._turns * pi * self._diameter
-        value, trip = self._sampling.measure(quantity)
+    def _checked(self, check: Check) -> CheckedValue:
+        """Value of a checked quantity, as measured; of a speed that nothing measures, as it is set."""
+        is_speed, measures_speed = check.quantity in SPEEDS, SPEED_CHANNEL in self._devices.acquisition.channels
+        if is_speed and not measures_speed:
+            return speed_of(check, turns=self._turns, groove_diameter=self._diameter, is_set=True)
+        value, trip = self._sampling.measure(SPEED_CHANNEL if is_speed else check.quantity)
         self._end_at(trip)
-        return value
+        if is_speed and value is not None:
+            return speed_of(check, turns=value, groove_diameter=self._diameter, is_set=False)
+        return CheckedValue(check=check, value=value)
 
     def _doing(self) -> str:
         """What happens now, with friction and temperature where they are measured."""
@@ -382,11 +367,3 @@ class _Run:
         present = self._present
         self._recorder.finish(present.outcome, reason=present.reason)
         return RunResult(state=present.state, outcome=present.outcome, reason=present.reason)
-
-
-def _missed(check: Check, value: float | None) -> str:
-    """Why a check does not hold."""
-    bounds = f"{check.lowest or 'any'} to {check.highest or 'any'}"
-    if value is None:
-        return f"check of {check.quantity}: no channel measures it; wanted {bounds}"
-    return f"check of {check.quantity}: {format_si(value, unit_of(check.quantity))}, wanted {bounds}"

@@ -40,10 +40,16 @@ class Sampling:
     acquisition : Acquisition
     recorder : Recorder
     locks : sequence of Interlock
+    also : sequence of str
+        Channels that are sampled with them where the acquisition has them.
     """
 
-    def __init__(self, acquisition: Acquisition, recorder: Recorder, locks: Sequence[Interlock]) -> None:
+    def __init__(
+        self, acquisition: Acquisition, recorder: Recorder, locks: Sequence[Interlock], *, also: Sequence[str] = ()
+    ) -> None:
         self._acquisition, self._recorder, self._locks = acquisition, recorder, locks
+        self._watched = [lock.channel.name for lock in locks]
+        self._watched += [name for name in also if name in acquisition.channels and name not in self._watched]
         self._names: list[str] = []
         self._recorded = 0  # of them, the first ones
         self._origin = 0.0  # time of the protocol at sample 0
@@ -72,7 +78,7 @@ class Sampling:
         sample_rate : float
             [Hz]
         """
-        watched = [lock.channel.name for lock in self._locks if lock.channel.name not in channels]
+        watched = [name for name in self._watched if name not in channels]
         self._names = [*channels, *watched] or [next(iter(self._acquisition.channels))]
         self._recorded = len(channels)
         self.rate = self._acquisition.start(self._names, sample_rate=sample_rate)

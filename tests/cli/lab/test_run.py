@@ -53,6 +53,35 @@ def test_a_plan_is_run_measured_and_fitted(sonolube: Program, rigs: Path, tmp_pa
     assert sonolube("measure", "friction", *ran["recordings"], "--json").code == 0
 
 
+def test_a_test_that_a_dry_run_finds_impossible_is_refused_unless_it_is_to_be_run_anyway(
+    sonolube: Program, rigs: Path, tmp_path: Path
+) -> None:
+    protocol = tmp_path / "hot.toml"
+    protocol.write_text(SHORT.replace('"2 s"', '"2 s"\nfriction_force_maximum = "1 mN"'))
+    words = ("lab", "run", protocol, "--rig", rigs / "power_map.toml", "--out", tmp_path / "runs")
+    refusal = sonolube(*words).refusal
+    assert "impossible by a dry run: step 2: reaches " in refusal
+    assert "limits.friction_force_maximum of 1 mN ends the test; --anyway runs it all the same" in refusal
+    assert not (tmp_path / "runs").exists()
+    ran = sonolube(*words, "--anyway", "--json")
+    assert ran.answer["outcome"] == "stopped"
+    assert "its limit is 1 mN" in ran.answer["reason"]
+
+
+@pytest.mark.parametrize(("typed", "why"), [("", "the input has ended"), ("n\n", "the operator did not confirm")])
+def test_the_reason_of_an_end_in_a_prompt_is_the_true_one(
+    typed: str, why: str, sonolube: Program, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rig_stand_ins, "voltages", lambda terminal, numbers: 0.02 + 0 * numbers)
+    monkeypatch.setattr(questions, "is_terminal", lambda: True)
+    (tmp_path / "asking.toml").write_text(SHORT + ASKED)
+    (tmp_path / "typed").write_text(typed)
+    words = ("lab", "run", tmp_path / "asking.toml", "--device", tmp_path / "devices.toml", "--out", tmp_path / "runs")
+    with analogue_rig(tmp_path), (tmp_path / "typed").open() as keyboard:
+        monkeypatch.setattr("sys.stdin", keyboard)
+        assert sonolube(*words, "--json").answer["reason"].startswith(why)
+
+
 def test_a_second_run_has_a_folder_of_its_own(sonolube: Program, rigs: Path, tmp_path: Path) -> None:
     protocol = tmp_path / "short.toml"
     protocol.write_text(SHORT)
@@ -113,7 +142,7 @@ def test_a_signal_ends_a_run_in_order(number: signal.Signals, rigs: Path, tmp_pa
 def test_a_person_at_the_terminal_confirms_prompts(
     typed: str, outcome: str, sonolube: Program, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rig_stand_ins, "voltages", lambda terminal, numbers: 0.2 + 0 * numbers)  # V at every input
+    monkeypatch.setattr(rig_stand_ins, "voltages", lambda terminal, numbers: 0.02 + 0 * numbers)  # V at every input
     monkeypatch.setattr(questions, "is_terminal", lambda: True)
     (tmp_path / "asking.toml").write_text(SHORT + ASKED)
     (tmp_path / "typed").write_text(typed)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 from pytest import MonkeyPatch, approx, raises
 from tests.laboratory.patience import be_patient, expect_nothing_on_open_line, silence
-from tests.laboratory.scpi_generator import Generator, LineServer
+from tests.laboratory.scpi_generator import MODULATIONS, Generator, LineServer
 
 from sonolube.errors import MissingPackage
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting
@@ -59,6 +59,18 @@ def test_after_connecting_the_load_is_high_nothing_is_modulated_and_the_limits_a
     assert generator.are_limits_on
     assert generator.limits == (-7.5, 7.5)
     assert generator.heard[0].startswith("OUTP1 OFF")
+
+
+@pytest.mark.parametrize("modulation", MODULATIONS)
+def test_a_modulation_that_the_last_user_left_is_off_before_the_output_is_on(modulation: str, bench: Bench) -> None:
+    generator, _, device = bench
+    generator.modulations = {modulation: True}
+    device.connect()
+    device.drive(SETTING)
+    lines = [line.partition(";")[0] for line in generator.heard]
+    assert lines.index(f"SOUR1:{modulation}:STAT OFF") < lines.index("OUTP1 ON")
+    assert not generator.modulations[modulation]
+    assert generator.errors == []
 
 
 def test_the_output_is_switched_on_last(bench: Bench) -> None:

@@ -79,8 +79,8 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture(autouse=True)
 def quiet_inputs(monkeypatch: MonkeyPatch) -> None:
-    """0.2 V at every input, within all limits."""
-    monkeypatch.setattr(rig_stand_ins, "voltages", lambda terminal, numbers: 0.2 + 0 * numbers)
+    """20 mV at every input, within all limits."""
+    monkeypatch.setattr(rig_stand_ins, "voltages", lambda terminal, numbers: 0.02 + 0 * numbers)
 
 
 def the_run(folder: Path) -> Run:
@@ -111,7 +111,7 @@ def test_a_prompt_is_answered_by_a_function_with_motor_and_drive_off(
     assert answer.object()["outcome"] == "completed"
     assert not answer.is_failure
     assert answer.dataset().sizes["time"] == answer.object()["samples"]
-    assert any(what.startswith("running: step 4, wait, 7") and "mN" in what for what in seen), seen
+    assert any(what.startswith("running: step 4, wait, 6") and "mN" in what for what in seen), seen
 
 
 def test_a_prompt_that_nobody_answers_is_refused_before_anything_is_connected(

@@ -103,5 +103,7 @@ class Operator:
         while not self.control.stop_reason:
             if select.select([sys.stdin], [], [], _POLL)[0]:
                 answer = sys.stdin.readline()
+                if not answer:
+                    self.control.stop("the input has ended")
                 return bool(answer) and answer.strip().lower() in ("", "y", "yes")
         return False

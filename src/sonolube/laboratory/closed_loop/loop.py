@@ -23,7 +23,8 @@ from sonolube.laboratory.devices import (
 from sonolube.laboratory.ending import RunEnded, ending, release_devices
 from sonolube.laboratory.interlocks import first_trip, interlocks_for, set_point_trip
 from sonolube.laboratory.reservation import reserved
-from sonolube.laboratory.runner import Advance, RunControl
+from sonolube.laboratory.run_control import RunControl
+from sonolube.laboratory.runner import Advance
 from sonolube.laboratory.sampling import Recorder
 from sonolube.laboratory.states import Event, RunState, State, after
 from sonolube.laboratory.supervision import Supervisor

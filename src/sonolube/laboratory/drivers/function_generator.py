@@ -23,7 +23,7 @@ _FUNCTIONS: Final[Mapping[str, str]] = MappingProxyType(
     {"sine": "SIN", "square": "SQU", "triangle": "TRI", "sawtooth": "RAMP"}
 )
 _RAMPS: Final = ("triangle", "sawtooth")
-_MODULATIONS: Final = ("AM", "FM", "PM", "FSK", "SWE", "BURS")
+_MODULATIONS: Final = ("AM", "FM", "PM", "FSK", "BPSK", "PWM", "SUM", "SWE", "BURS")
 _ERRORS: Final = "SYST:ERR?"
 _MOST_ERRORS: Final = 20  # that the queue of these generators holds
 _KNOWN: Final = ("335", "336")  # beginnings of models

@@ -7,6 +7,7 @@ import numpy as np
 
 from sonolube.design.control import Amplifier
 from sonolube.facts.protocol import Check, step_at
+from sonolube.laboratory.checked_quantity import SPEED_CHANNEL, speed_checks
 from sonolube.laboratory.drive_sampling import drive_sampling, recorded_channels
 from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint
 from sonolube.units import format_si
@@ -134,6 +135,9 @@ def _caveats(found: DryRun) -> Iterator[str]:
     unresolved = "" if sampling is None else sampling.caveat(recorded_channels(found.protocol))
     if unresolved:
         yield unresolved
+    speeds = speed_checks(found.protocol)
+    if speeds:
+        yield f"step {', '.join(speeds)}: checks the speed that is set, unless a channel {SPEED_CHANNEL} measures it"
     waiting = [
         point.setting.step
         for point in found.points

@@ -7,11 +7,12 @@ from typing import Annotated, Final, Literal
 
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.facts.protocol import protocol_at, protocol_by_name_or_file
+from sonolube.facts.protocol import Protocol, protocol_at, protocol_by_name_or_file
 from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import EXPORT_FORMATS, export_run
 from sonolube.laboratory.run_plan import RunPlan
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
+from sonolube.rig import Rig
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.lab.run_answer import DryRunAnswer, RunAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags, facts_of
@@ -34,6 +35,7 @@ def run(
     seed: Seed = 0,
     real_time: RealTime = False,
     dry_run: Annotated[bool, Parameter(help="Tell what will happen, and touch nothing.")] = False,
+    anyway: Annotated[bool, Parameter(help="Run although a dry run says that it is impossible.")] = False,
     yes: Annotated[bool, Parameter(help="Take the prompts to the operator as done.")] = False,
     tag: Tags = (),
     fact: Annotated[
@@ -57,9 +59,11 @@ def run(
     path, known = str(file_path(protocol)), optional_rig(rig)
     read = protocol_by_name_or_file(path)
     if dry_run:
-        unused = "seed", "real_time", "yes", "tag", "fact", "out"
+        unused = "seed", "real_time", "anyway", "yes", "tag", "fact", "out"
         refuse_unused(*unused, because=f"with {shown('dry_run')}, which runs nothing")
         return DryRunAnswer(protocol=read, found=dry_runs.dry_run(read, rig=known))
+    if not anyway:
+        _require_possible_dry(read, known)
     file = device_file(device_map)
     facts = facts_of(fact or {})
     plan = RunPlan(protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, tags=tag, facts=facts)
@@ -107,6 +111,14 @@ def virtual(
     if file_format != "netcdf":
         export_run(found.run.folder, file_format=file_format, out=found.run.folder)
     return found
+
+
+def _require_possible_dry(protocol: Protocol, rig: Rig | None) -> None:
+    """Raise where a dry run says that a test is impossible or would be ended by a limit."""
+    refusals = dry_runs.dry_run(protocol, rig=rig).refusals
+    if refusals:
+        more = f" (and {len(refusals) - 1} more by {shown('dry_run')})" if len(refusals) > 1 else ""
+        raise InvalidInput(f"impossible by a dry run: {refusals[0]}{more}; {shown('anyway')} runs it all the same")
 
 
 def _virtual_rig(plan: RunPlan, *, real_time: bool = False) -> VirtualTribometer:

@@ -1,0 +1,117 @@
+"""Standing rig: while an operator works at it, its temperature is watched, and that motor and drive are off."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from threading import Event as Signal, Thread
+from typing import Final
+
+from sonolube.errors import SonolubeError
+from sonolube.facts.protocol import Limits
+from sonolube.laboratory.devices import Devices
+from sonolube.laboratory.drive_sampling import IDLE_RATE
+from sonolube.laboratory.ending import RunEnded
+from sonolube.laboratory.interlocks import Interlock, Trip, first_trip
+from sonolube.laboratory.run_control import RunControl
+from sonolube.laboratory.states import Event
+from sonolube.units import format_si
+
+_BLOCK: Final = 0.05  # s
+_OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
+_OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
+_STILL_SHARE: Final = 0.01  # of the speed of the motor, below which the disc counts as at rest
+_SETTLING: Final = {"drive": 1.0, "motor": 10.0}  # s, in which amplifier and disc come to rest
+
+
+class StandingRig:
+    """Watch over devices whose motor and drive were switched off.
+
+    Parameters
+    ----------
+    devices : Devices
+        Simulated ones are not watched.
+    locks : sequence of Interlock
+        Of the protocol; those of the temperature hold here too.
+    limits : Limits
+    sample_rate : float
+        Highest that the protocol uses. [Hz]
+    """
+
+    def __init__(self, devices: Devices, locks: Sequence[Interlock], limits: Limits, *, sample_rate: float) -> None:
+        self._acquisition = devices.acquisition
+        channels = {} if devices.simulated else devices.acquisition.channels
+        volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
+        turns = _STILL_SHARE * devices.motor.rotation_speed_maximum
+        at_rest = {
+            "voltage": ("drive", volts),
+            "voltage_peak_to_peak": ("drive", 2 * volts),
+            "rotation_speed": ("motor", turns),
+        }
+        self._off = [
+            (what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels
+        ]
+        self._always = [lock for lock in locks if lock.channel.name == "temperature" and lock.channel.name in channels]
+        self._names = [lock.channel.name for lock in (*self._always, *(lock for _, lock in self._off))]
+        self._wanted_rate, self._rate, self._time = min(sample_rate, IDLE_RATE), 0.0, 0.0
+        self._failure: SonolubeError | None = None
+
+    @contextmanager
+    def watched(self, control: RunControl) -> Iterator[None]:
+        """Watch inside a `with` block, by a thread, from when outputs were switched off.
+
+        Parameters
+        ----------
+        control : RunControl
+            Asked to end the run where something is wrong.
+
+        Raises
+        ------
+        RunEnded
+            At the end of the block, if a temperature is beyond its limit, or an output is on.
+        DeviceError
+            At the end of the block, if the inputs have failed.
+        """
+        if not self._names:
+            yield
+            return
+        self._rate, self._time = self._acquisition.start(self._names, sample_rate=self._wanted_rate), 0.0
+        ended = Signal()
+        thread = Thread(target=self._look_on, args=(ended, control), daemon=True, name="sonolube standing rig")
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
+            self._acquisition.stop()
+        if self._failure is not None:
+            raise self._failure
+
+    def _look_on(self, ended: Signal, control: RunControl) -> None:
+        """Read block after block until the end, or until something is wrong."""
+        try:
+            while not ended.is_set():
+                trip = self._look()
+                if trip is not None:
+                    raise RunEnded(Event.TRIP, trip)
+        except SonolubeError as failure:
+            self._failure = failure
+            control.stop(str(failure))
+
+    def _look(self) -> str | None:
+        """Read a block, and return what is wrong."""
+        block = self._acquisition.read(max(1, round(_BLOCK * self._rate)))
+        self._time += block.samples / self._rate
+        trip = first_trip(block, self._names, self._always)
+        if trip is not None:
+            return trip.reason
+        for what, lock in self._off:
+            trip = first_trip(block, self._names, [lock])
+            if trip is not None and self._time > _SETTLING[what]:
+                return _still_on(what, lock, trip)
+        return None
+
+
+def _still_on(what: str, lock: Interlock, trip: Trip) -> str:
+    """Why an output that was switched off counts as on."""
+    most = format_si(lock.limit, lock.channel.unit)
+    return f"the {what} was switched off, but {trip.reason.partition(';')[0]} (off is up to {most}): cut the power"
