@@ -8,10 +8,12 @@ import random
 import re
 import shlex
 from html.parser import HTMLParser
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
+from nbclient import NotebookClient
 from playwright.sync_api import Page, expect
 from tests.browser.pages import RIGS, SPEED, VOLTS, enter, numbers, saved, show
 from tests.browser.workbench import Served
@@ -31,6 +33,7 @@ PREDICTED = (
     *("tribometer", "tribometer_uncertain", "power_map", "coated_plate", "coated_temperature", "collar"),
     *("flextensional", "poisson_al_steel", "welder_flat", "welder_round"),
 )
+NOTEBOOK: Any = import_module("nbformat")  # which has no types
 CHANGED, DRAWN = "tribometer", 20
 
 pytestmark = [
@@ -167,12 +170,9 @@ def test_the_rig_taken_away_gives_the_numbers(changed: Page, folder: Path, comma
 
 
 def test_the_notebook_taken_away_gives_the_numbers(changed: Page, folder: Path) -> None:
-    from nbclient import NotebookClient
-    from nbformat import reads, v4, validate  # type: ignore[import-untyped]
-
-    notebook = reads(saved(changed, "notebook"), as_version=4)
-    validate(notebook)
-    notebook.cells.append(v4.new_code_cell("print(answer.to_json())"))
+    notebook = NOTEBOOK.reads(saved(changed, "notebook"), as_version=4)
+    NOTEBOOK.validate(notebook)
+    notebook.cells.append(NOTEBOOK.v4.new_code_cell("print(answer.to_json())"))
     NotebookClient(notebook, timeout=None, kernel_name="python3", resources={"metadata": {"path": folder}}).execute()
     printed = "".join(each.text for each in notebook.cells[-1].outputs if each.output_type == "stream")
     expect_numbers(numbers(changed), json.loads(printed[printed.index("{") :]))

@@ -1,6 +1,7 @@
 """Variables of a repeat: the steps written out by hand, conditions of prompts, and what is refused."""
 
 import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -111,3 +112,15 @@ def test_a_recording_may_begin_as_another_ends_whatever_the_rounding_of_their_ti
     wait = '[[steps]]\nkind = "wait"\nduration = "{0} s"\n'
     part = (step + wait).format("0.1") * 3 + (step + wait).format("76.925") + (step + wait).format("1.05")
     assert flattened(protocol_of(part * 5))[-1].time == pytest.approx(5 * (0.3 + 76.925 + 1.05))
+
+
+def test_the_protocol_of_the_page_on_writing_one_has_its_settings() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "protocols.md").read_text(encoding="utf-8")
+    protocol = protocol_from(tomllib.loads(page.split("```toml\n")[1].split("```")[0]))
+    settings = {
+        (point.normal_load, point.sliding_speed, point.voltage_peak_to_peak)
+        for point in flattened(protocol)
+        if point.kind == "wait" and point.sliding_speed
+    }
+    assert len(settings) == 2 * 3 * 4
+    assert protocol.metadata.operator == "Ann"

@@ -12,17 +12,16 @@ from hypothesis import given, settings, strategies as st
 from sonolube.charts import draw_chart
 from sonolube.design.control import Amplifier
 from sonolube.errors import InvalidInput
-from sonolube.facts.protocol import Protocol, SetPoint, protocol_by_name_or_file, protocol_from, protocol_names
-from sonolube.figure import publication_style, render_figure
-from sonolube.laboratory.dry_run import (
+from sonolube.facts.protocol import (
     PROMPT_DURATIONS,
-    DryRun,
-    HeatingAssumptions,
-    drive_load,
-    dry_run,
-    dry_run_chart,
-    dry_run_lines,
+    Protocol,
+    SetPoint,
+    protocol_by_name_or_file,
+    protocol_from,
+    protocol_names,
 )
+from sonolube.figure import publication_style, render_figure
+from sonolube.laboratory.dry_run import DryRun, HeatingAssumptions, drive_load, dry_run, dry_run_chart, dry_run_lines
 from sonolube.rig import Rig, read_rig
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"

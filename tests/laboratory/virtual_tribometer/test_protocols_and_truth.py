@@ -1,5 +1,6 @@
 """Shipped protocols from a virtual rig to the catalogue: levels, speeds, loads and stick-slip against the truth."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -18,10 +19,18 @@ from sonolube.facts.protocol import (
     protocol_text,
 )
 from sonolube.facts.protocol.steps import Step
+from sonolube.laboratory import DriveSetting
 from sonolube.laboratory.catalogue import catalogued_runs
 from sonolube.laboratory.records import read_run
+from sonolube.laboratory.virtual_tribometer import FrictionDraw
+from sonolube.laboratory.virtual_tribometer.disturbances import DISTURBANCE_UNITS
 from sonolube.measurement.friction_analysis import analyse_stick_slip
+from sonolube.measurement.swept_impedance import swept_impedance
+from sonolube.models.dynamics.structure import electrical_admittance
+from sonolube.rig import read_rig
 from sonolube.tasks import lab
+from sonolube.tasks.lab.run_answer import RunAnswer
+from sonolube.tasks.measure.gauge_calibration import calibration
 
 RIG = Path(__file__).parents[3] / "examples" / "rigs" / "power_map.toml"
 LONGEST = 60.0  # s, of a recording of the long protocols
@@ -151,3 +160,52 @@ def test_stick_slip_at_low_speed_has_the_frequency_and_fall_of_the_truth(tmp_pat
         float(truth["stick_slip_frequency"].to_numpy()[sticks][0]), rel=0.02
     )
     assert found.stick_slip_amplitude == pytest.approx(float(truth["stick_slip_fall"].to_numpy()[sticks][0]), rel=0.15)
+
+
+def next_of(answer: RunAnswer) -> list[str]:
+    """Words of the command that a run names as the next one."""
+    (line,) = (str(block) for block in answer.blocks() if str(block).lstrip().startswith("next:"))
+    return line.split()[1:]
+
+
+def test_the_resonance_sweep_leads_to_the_resonance_of_the_structure(tmp_path: Path) -> None:
+    answer = lab.virtual(RIG, protocol="resonance_sweep", out=tmp_path)
+    assert next_of(answer) == ["sonolube", "measure", "impedance", str(answer.run.folder)]
+    found = swept_impedance(answer.run.recordings[0])
+    assert found is not None
+    structure = read_rig(RIG).structure
+    assert structure is not None
+    expected = 1 / electrical_admittance(structure, frequency=found.frequency)
+    assert np.max(np.abs(found.impedance / expected - 1)) < 2e-3
+
+
+def test_the_waveguide_calibration_leads_to_the_stiffness_of_the_truth(tmp_path: Path) -> None:
+    answer = lab.virtual(RIG, protocol="waveguide_calibration", out=tmp_path)
+    loops, test = answer.run.recordings
+    assert next_of(answer) == ["sonolube", "measure", "calibration", str(loops), "--apply", str(test)]
+    truth = xr.load_dataset(answer.run.folder / "truth" / "truth.nc", engine="h5netcdf")
+    stiffness = next(
+        value.value for value in calibration(loops, apply=[test]).sheets[0].values if "stiffness" in value.name
+    )
+    assert stiffness == pytest.approx(float(truth["deflected_stiffness"]), rel=0.01)
+
+
+def test_lubricant_and_load_of_prompts_change_the_virtual_rig_or_it_says_that_they_do_not(made: Any) -> None:
+    truth = xr.load_dataset(made("lubrication_comparison", 1) / "truth" / "truth.nc", engine="h5netcdf")
+    off = truth["voltage_peak_to_peak"].to_numpy() == 0
+    coefficient = truth["friction_force"].to_numpy()[off] / truth["normal_load"].to_numpy()[off]
+    assert coefficient == pytest.approx(float(truth["friction_coefficient"]))
+    assert set(truth["normal_load"].to_numpy()) >= {3.0, 6.0, 9.0}
+    assert float(truth["start_time"][-1]) > 12 * 46 + 12 * 60  # a prompt of a load takes a minute
+
+
+def test_no_virtual_rig_slides_free_of_friction() -> None:
+    rig = replace(read_rig(RIG), sliding_speed=0.005)
+    drive = DriveSetting(voltage_peak_to_peak=60.0, voltage_offset=30.0, frequency=22e3)
+    ratios = [FrictionDraw(rig, seed=seed).at(drive, 0.002).friction_ratio for seed in range(40)]
+    assert min(ratios) >= 0.01
+
+
+def test_what_was_drawn_stands_in_the_truth_only(made: Any) -> None:
+    facts = (made("map_test", 1) / "run.json").read_text()
+    assert not [name for name in DISTURBANCE_UNITS if name in facts]

@@ -23,4 +23,10 @@ from .text import (
     protocol_text as protocol_text,
     read_protocol as read_protocol,
 )
-from .time_line import SetPoint as SetPoint, duration as duration, flattened as flattened, step_at as step_at
+from .time_line import (
+    PROMPT_DURATIONS as PROMPT_DURATIONS,
+    SetPoint as SetPoint,
+    duration as duration,
+    flattened as flattened,
+    step_at as step_at,
+)

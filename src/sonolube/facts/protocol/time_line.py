@@ -1,7 +1,8 @@
 """Time line of a protocol: set points of motor, drive and recording over time."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
@@ -11,6 +12,11 @@ from sonolube.units import format_si
 
 MOST_SET_POINTS: Final = 10_000
 """Number of set points of a protocol, repeats included."""
+
+PROMPT_DURATIONS: Final[Mapping[str, float]] = MappingProxyType(
+    {"cleaning": 300.0, "mounting": 600.0, "load": 60.0, "profilometry": 900.0, "other": 60.0}
+)
+"""Time that an operator is taken to need, by the task of a prompt. [s]"""
 
 _ROUNDING: Final = 1e-9  # relative
 _DEEPEST: Final = 8  # repeats within each other

@@ -132,6 +132,9 @@ def _levels(run: Run, part: int, left_out: list[str], lubricated: list[str]) -> 
     recording = run.dataset(part)
     conditions = set_conditions(recording)
     if not conditions:
+        entry = catalogue_entry(run.folder)
+        if part == 1 and (len(entry.sliding_speeds) > 1 or len(entry.normal_loads) > 1):
+            left_out.append(f"{run.folder.name}: has no set points, so that load or speed of its rows is not known")
         yield from _levels_of_protocol(run, recording)
         return
     if "friction_force" not in recording:
@@ -163,9 +166,9 @@ def _levels_of_stretch(run: Run, recording: "xr.Dataset", stretch: SetConditions
         if steps:
             return
     for samples, voltage, frequency in stretch.levels:
-        friction = _mean_of(recording.isel(time=samples), turns)
-        if friction is not None:
-            yield _Level(voltage=voltage, frequency=frequency, friction=(*friction, None, None), **known)
+        mean = _mean_of(recording.isel(time=samples), turns)
+        if mean is not None:
+            yield _Level(voltage=voltage, frequency=frequency, friction=(*mean, None, None), **known)
 
 
 def _mean_of(level: "xr.Dataset", rotation_speed: float | None) -> tuple[float, float] | None:
@@ -185,8 +188,9 @@ def _mean_of(level: "xr.Dataset", rotation_speed: float | None) -> tuple[float, 
 def _rotation_speed(run: Run, stretch: SetConditions) -> float | None:
     """Speed of the disc; None where the groove is not known. [1/s]"""
     diameter = run.facts.get("groove_diameter")
-    known = isinstance(diameter, int | float) and diameter > 0 and stretch.sliding_speed > 0
-    return stretch.sliding_speed / (pi * float(diameter)) if known else None
+    if isinstance(diameter, int | float) and diameter > 0 and stretch.sliding_speed > 0:
+        return stretch.sliding_speed / (pi * diameter)
+    return None
 
 
 def _known(value: float) -> float | None:
@@ -212,8 +216,8 @@ def _levels_of_protocol(run: Run, recording: "xr.Dataset") -> Iterator[_Level]:
     try:
         steps = analyse_voltage_steps(recording, rotation_speed=analyse_rotation_speed(recording))
     except InvalidInput:
-        for voltage, *friction in _separate_levels(recording):
-            yield _Level(voltage=voltage, friction=tuple(friction), **known)
+        for voltage, *mean_and_more in _separate_levels(recording):
+            yield _Level(voltage=voltage, friction=tuple(mean_and_more), **known)
         return
     for step in steps:
         friction = step.friction_force, step.friction_force_uncertainty

@@ -9,11 +9,21 @@ import numpy as np
 
 from sonolube.design.control import Amplifier
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.facts.protocol import Check, Metadata, Prompt, Protocol, SetPoint, Wait, flattened, step_at
+from sonolube.facts.protocol import (
+    PROMPT_DURATIONS,
+    Check,
+    Metadata,
+    Prompt,
+    Protocol,
+    SetPoint,
+    Wait,
+    flattened,
+    step_at,
+)
 from sonolube.laboratory.dry_run.amplifier_load import OFF, DriveLoad, drive_load
 from sonolube.laboratory.dry_run.findings import caveats_of, refusals_of
 from sonolube.laboratory.dry_run.heating import HeatedInterval, Heating, HeatingAssumptions, RubbedBodies, heating_over
-from sonolube.laboratory.dry_run.record import PROMPT_DURATIONS, DryRun, PlannedPoint, PlannedRecording
+from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint, PlannedRecording
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
 from sonolube.rig.excitation import actuator_capacitance

@@ -9,11 +9,6 @@ from sonolube.facts.protocol import Protocol, SetPoint
 from sonolube.laboratory.dry_run.amplifier_load import DriveLoad
 from sonolube.laboratory.dry_run.heating import Heating
 
-PROMPT_DURATIONS: Final[Mapping[str, float]] = MappingProxyType(
-    {"cleaning": 300.0, "mounting": 600.0, "load": 60.0, "profilometry": 900.0, "other": 60.0}
-)
-"""Time that an operator is taken to need, by the task of a prompt. [s]"""
-
 SAMPLE_SIZE: Final = 8
 """Bytes of one sample of a raw block."""
 

@@ -56,11 +56,11 @@ class Disturbances:
     hysteresis : float
         Half the width of the play of the force gauge, in N.
     deflected_stiffness : float
-        Of the holder, or of a waveguide, at the displacement sensor, by the force along the sliding. [N/m]
+        Of the holder, or of a waveguide, at the displacement sensor, by the force along the sliding, in N/m.
     deflection_play : float
-        Half the width of the play of that deflection. [m]
+        Half the width of the play of that deflection, in m.
     displacement_noise : float
-        Standard deviation of white noise of the displacement sensor. [m]
+        Standard deviation of white noise of the displacement sensor, in m.
     magnets : int
         At the rim of the disc, each a pulse of the Hall probe; one in D 4.1.2.
     flux_noise : float

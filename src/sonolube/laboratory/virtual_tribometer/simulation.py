@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.facts.protocol import Prompt
+from sonolube.facts.protocol import PROMPT_DURATIONS, Prompt
 from sonolube.laboratory.block import Block, Channel, quantity_of
 from sonolube.laboratory.devices import DeviceError, DeviceLost, DriveSetting, SamplesLost
-from sonolube.laboratory.dry_run.record import PROMPT_DURATIONS
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.arm_resonance import arm_resonance
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances

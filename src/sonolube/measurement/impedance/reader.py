@@ -9,7 +9,6 @@ from sonolube.input_files import input_bytes
 from sonolube.measurement.file_format import HEAD_SIZE, detect_format, refuse_unreadable
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, ImpedanceSweep, sorted_by_frequency
-from sonolube.measurement.impedance.swept_recording import swept_impedance
 from sonolube.measurement.limits import require_points
 
 _LARGEST_FILE = 1 << 28  # bytes; far above any sweep
@@ -21,8 +20,7 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     Parameters
     ----------
     path : Path
-        In any format of `IMPEDANCE_FORMATS`, which is detected by content; touchstone by its suffix. Or a recording
-        of a sweep, as `swept_impedance` takes it.
+        In any format of `IMPEDANCE_FORMATS`, which is detected by content; touchstone by its suffix.
     sweep : str or None
         Name of one of several sweeps, such as "memory" of a 4294A or a chunk number of an MFIA. None selects the
         measured sweep, and is refused where several remain.
@@ -39,9 +37,6 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     UnknownName
         Naming the file, if it has no such sweep.
     """
-    swept = swept_impedance(path)
-    if swept is not None:
-        return swept
     content, lines = _content_and_lines(path)
     formats = tuple(IMPEDANCE_FORMATS.values())
     file_format = detect_format(formats, content[:HEAD_SIZE], path) or formats[-1]

@@ -11,6 +11,7 @@ from sonolube.measurement.impedance.passivity import passive_spectrum
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
+from sonolube.measurement.swept_impedance import swept_impedance
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.dynamics import Structure
 from sonolube.report.measured import impedance_figures as figures, sheet
@@ -57,7 +58,7 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
     Parameters
     ----------
     path : Path
-        In any format of `read_impedance`.
+        In any format of `read_impedance`, or a recording of a sweep as `swept_impedance` takes it.
     settings : ImpedanceSettings
 
     Returns
@@ -69,7 +70,7 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
     InvalidInput
         If the file cannot be read, or nothing fits it.
     """
-    spectrum, turned = passive_spectrum(read_impedance(path, sweep=settings.sweep))
+    spectrum, turned = passive_spectrum(swept_impedance(path) or read_impedance(path, sweep=settings.sweep))
     section = _circuit(spectrum, settings) if settings.stack is None else _stack(spectrum, settings, settings.stack)
     frequency = spectrum.frequency
     ends = " to ".join(format_si(float(end), "Hz", digits=6) for end in (frequency[0], frequency[-1]))

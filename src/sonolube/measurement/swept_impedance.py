@@ -65,10 +65,10 @@ def swept_impedance(path: Path) -> ImpedanceSpectrum | None:
             found[hertz] = voltage / current
     if not found:
         raise InvalidInput(f"{path}: its drive holds no frequency for {_FEWEST} samples")
-    hertz, impedance = (np.array(values) for values in zip(*sorted(found.items()), strict=True))
+    frequencies = sorted(found)
     return ImpedanceSpectrum(
-        frequency=hertz,
-        impedance=impedance,
+        frequency=np.array(frequencies),
+        impedance=np.array([found[each] for each in frequencies]),
         file_name=path.name,
         file_format=f"{recording_format(path).name}, a sweep",
         sha256=str(recording.attrs.get("sha256", "")),
