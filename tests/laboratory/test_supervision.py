@@ -7,6 +7,7 @@ from threading import Event
 import pytest
 from pytest import MonkeyPatch, fixture
 from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
+from tests.laboratory.supervised_clock import Clock
 
 from sonolube.facts.protocol import protocol_from
 from sonolube.laboratory import Block, Devices, DriveSetting, RunResult, State, run_protocol, supervision
@@ -24,16 +25,6 @@ LIMITS = {"voltage_maximum": "30 V", "duration_maximum": "1 min"}
 PROTOCOL = protocol_from({"title": "test", "source": "test", "limits": LIMITS, "steps": STEPS})
 MOMENT = 1.0  # s, for outputs that never answer
 ENDED = "; the supervisor has switched motor and drive off"
-
-
-class Clock:
-    """Clock of the supervisor, which stands unless a test sets it forward."""
-
-    def __init__(self) -> None:
-        self.now = 0.0
-
-    def monotonic(self) -> float:
-        return self.now
 
 
 @fixture(autouse=True)

@@ -60,14 +60,14 @@ class CheckedValue:
         return f"check of {check.quantity}: {format_si(self.value, unit_of(check.quantity))}{basis}, wanted {bounds}"
 
 
-def speed_of(check: Check, *, turns: float, groove_diameter: float, is_set: bool) -> CheckedValue:
+def speed_of(check: Check, *, rotation_speed: float, groove_diameter: float, is_set: bool) -> CheckedValue:
     """Speed that is checked, by that of the disc.
 
     Parameters
     ----------
     check : Check
         Of one of `SPEEDS`.
-    turns : float
+    rotation_speed : float
         Of the disc. [1/s]
     groove_diameter : float
         Of the circle under the pin. [m]
@@ -77,7 +77,8 @@ def speed_of(check: Check, *, turns: float, groove_diameter: float, is_set: bool
     -------
     CheckedValue
     """
-    value = turns * pi * groove_diameter if check.quantity == "sliding_speed" else turns
+    slides = check.quantity == "sliding_speed"
+    value = rotation_speed * pi * groove_diameter if slides else rotation_speed
     return CheckedValue(check=check, value=value, is_set=is_set)
 
 

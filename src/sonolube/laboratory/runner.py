@@ -341,11 +341,11 @@ class _Run:
         """Value of a checked quantity, as measured; of a speed that nothing measures, as it is set."""
         is_speed, measures_speed = check.quantity in SPEEDS, SPEED_CHANNEL in self._devices.acquisition.channels
         if is_speed and not measures_speed:
-            return speed_of(check, turns=self._turns, groove_diameter=self._diameter, is_set=True)
+            return speed_of(check, rotation_speed=self._turns, groove_diameter=self._diameter, is_set=True)
         value, trip = self._sampling.measure(SPEED_CHANNEL if is_speed else check.quantity)
         self._end_at(trip)
         if is_speed and value is not None:
-            return speed_of(check, turns=value, groove_diameter=self._diameter, is_set=False)
+            return speed_of(check, rotation_speed=value, groove_diameter=self._diameter, is_set=False)
         return CheckedValue(check=check, value=value)
 
     def _doing(self) -> str:

@@ -10,12 +10,14 @@ from pytest import MonkeyPatch, raises
 from tests.laboratory.daqmx_device import DaqmxDevice, install
 from tests.laboratory.rig_stand_ins import EXAMPLE, OUTPUTS
 from tests.laboratory.simulated_rig import MemoryRecord
+from tests.laboratory.supervised_clock import Clock
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import protocol_from
 from sonolube.laboratory import DeviceError, Devices, State, run_protocol, supervision
 from sonolube.laboratory.drivers import DaqmxGuard, read_device_map
 
+TIMEOUT = 3.0  # s, of the watchdog
 LINE = "Dev1/port0/line0"
 GUARD = f'\n[guard]\ndriver = "daqmx"\nwatchdog_timeout = "3 s"\nenable_line = "{LINE}"\n'
 PROTOCOL = protocol_from(
@@ -47,7 +49,7 @@ def devices(folder: Path, guard: str = GUARD) -> Devices:
 
 
 def test_the_line_is_high_and_the_watchdog_renewed_while_outputs_are_enabled(card: DaqmxDevice) -> None:
-    guard = DaqmxGuard(outputs=["Dev1/ao0", "Dev1/ao1"], timeout=3.0, line=LINE)
+    guard = DaqmxGuard(outputs=["Dev1/ao0", "Dev1/ao1"], timeout=TIMEOUT, line=LINE)
     card.lines[LINE] = True
     guard.connect()
     assert not card.lines[LINE]
@@ -66,7 +68,7 @@ def test_the_line_is_high_and_the_watchdog_renewed_while_outputs_are_enabled(car
 
 
 def test_a_watchdog_that_nobody_renews_takes_the_outputs_off_and_the_renewal_says_so(card: DaqmxDevice) -> None:
-    guard = DaqmxGuard(outputs=["Dev1/ao0"], timeout=3.0, line=LINE)
+    guard = DaqmxGuard(outputs=["Dev1/ao0"], timeout=TIMEOUT, line=LINE)
     guard.connect()
     guard.enable()
     card.outputs["Dev1/ao0"] = np.ones(1)
@@ -80,7 +82,7 @@ def test_a_watchdog_that_nobody_renews_takes_the_outputs_off_and_the_renewal_say
 
 
 def test_nothing_is_enabled_before_it_was_connected_nor_without_a_watchdog_that_starts(card: DaqmxDevice) -> None:
-    guard = DaqmxGuard(outputs=["Dev1/ao0"], timeout=3.0, line=LINE)
+    guard = DaqmxGuard(outputs=["Dev1/ao0"], timeout=TIMEOUT, line=LINE)
     guard.disable()
     with raises(DeviceError, match="connect it"):
         guard.enable()
@@ -121,19 +123,16 @@ def test_a_watchdog_that_has_expired_ends_the_run_with_that_reason(card: DaqmxDe
 def test_a_call_of_the_driver_that_hangs_leaves_outputs_at_0_volt_and_the_line_low(
     hangs: str, tmp_path: Path, monkeypatch: MonkeyPatch
 ) -> None:
-    card, release, now = DaqmxDevice(), Event(), [0.0]
+    card, release, clock = DaqmxDevice(), Event(), Clock()
     install(card, monkeypatch)
-
-    class Clock:
-        monotonic = staticmethod(lambda: now[0])
 
     def hang(call: str) -> None:
         if call == hangs and any(card.lines.values()):
             card.hangs = lambda _: None
-            now[0] += 1e5
+            clock.now += 1e5
             assert release.wait()
 
-    monkeypatch.setattr(supervision, "time", Clock)
+    monkeypatch.setattr(supervision, "time", clock)
     monkeypatch.setattr(supervision, "LATE", 2.0)
     card.hangs = hang
     result = run_protocol(PROTOCOL, devices(tmp_path), MemoryRecord(), operator=lambda _: True)

@@ -173,7 +173,9 @@ def test_a_generator_that_keeps_silent_is_lost_in_the_time_that_is_given_to_it(b
             device.off()
 
 
-def test_the_output_is_switched_off_over_another_connection_while_a_call_hangs(bench: Bench) -> None:
+def test_the_output_is_switched_off_over_another_connection_while_a_call_hangs(
+    bench: Bench, monkeypatch: MonkeyPatch
+) -> None:
     generator, _, device = bench
     device.connect()
     device.drive(SETTING)
@@ -186,7 +188,7 @@ def test_the_output_is_switched_off_over_another_connection_while_a_call_hangs(b
             assert release.wait()
         return answer(command)
 
-    generator._answer = hang  # type: ignore[method-assign]
+    monkeypatch.setattr(generator, "_answer", hang)
     other = DriveSetting(voltage_peak_to_peak=28.0, frequency=23e3)
 
     def goes_on() -> None:

@@ -16,7 +16,7 @@ class DaqmxGuard:
     outputs : sequence of str
         Analogue outputs that the watchdog sets to 0 V where it is not renewed, such as Dev1/ao0.
     timeout : float or None
-        Of the watchdog; None without one. [s]
+        Of the watchdog, in s; None without one.
     line : str or None
         Digital line that is high while outputs are enabled, such as Dev1/port0/line0; the watchdog sets it low.
 

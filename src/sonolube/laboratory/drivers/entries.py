@@ -299,8 +299,8 @@ class GuardEntry(Table):
     ----------
     driver : str
     watchdog_timeout : float or None
-        Time without a block after which the device sets its analogue outputs to 0 V and the line low; None without a
-        watchdog. [s]
+        Time without a block, in s, after which the device sets its analogue outputs to 0 V and the line low; None
+        without a watchdog.
     enable_line : str or None
         Digital line that is high while outputs are enabled, such as Dev1/port0/line0.
     """
