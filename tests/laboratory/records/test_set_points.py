@@ -222,7 +222,7 @@ def test_runs_are_listed_without_an_index_where_it_cannot_be_written(
     from collections.abc import Iterator
     from contextlib import contextmanager
 
-    database = catalogue_index.database
+    database = catalogue_index.database  # type: ignore[attr-defined]
 
     @contextmanager
     def full(path: Path | None) -> Iterator[sqlite3.Connection]:

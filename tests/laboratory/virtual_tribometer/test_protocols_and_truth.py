@@ -51,7 +51,7 @@ SETTINGS = {  # loads in N, speeds in mm/s, voltages: D Tables 2.2, 2.6, 4.2, 4.
 
 def shortened(steps: tuple[Step, ...]) -> tuple[Step, ...]:
     """Steps whose recordings and waits last a minute at most."""
-    found = []
+    found: list[Step] = []
     for step in steps:
         if isinstance(step, Acquire | Wait):
             found.append(step.model_copy(update={"duration": min(step.duration, LONGEST)}))
