@@ -8,7 +8,7 @@ from reliability import friction_recordings as made
 from reliability.study import Measure, Record, Study
 from sonolube.measurement.friction.voltage_steps import friction_at_voltage_steps
 
-_KINDS = ("white", "red", "white and red", "uneven", "hum and resonance")
+_KINDS = ("white", "red", "white and red", "uneven", "hum and resonance", "random walk", "1/f")
 
 
 def _noise(kind: str, rng: np.random.Generator, plan: made.Layout, t: made.Samples) -> made.Samples:
@@ -20,6 +20,13 @@ def _noise(kind: str, rng: np.random.Generator, plan: made.Layout, t: made.Sampl
         return white
     if kind == "red":
         return red
+    if kind == "random walk":
+        return np.asarray(0.1 * white + 0.03 * np.sqrt(t[1] - t[0]) * np.cumsum(rng.standard_normal(t.size)))
+    if kind == "1/f":
+        spectrum = rng.standard_normal((2, t.size // 2 + 1)).T @ (1, 1j)
+        spectrum[1:] /= np.sqrt(np.arange(1, spectrum.size))
+        flicker = np.fft.irfft(spectrum, t.size)
+        return np.asarray(0.01 * flicker / np.std(flicker))
     if kind == "uneven":
         return (white + red) * made.held(plan, t, tuple(rng.uniform(0.3, 2, len(plan.levels))))
     if kind == "hum and resonance":
@@ -70,7 +77,7 @@ def _measures(records: Sequence[Record]) -> list[Measure]:
 STUDY = Study(
     title="False alarms of stick-slip",
     question="In recordings with wobble of one to five harmonics, run-in, voltage steps and noise, white, red, uneven "
-    "between steps, or with hum and a resonance, no stick-slip is found.",
+    "between steps, with hum and a resonance, of a random walk or 1/f, no stick-slip is found.",
     sources=("measurement/friction/*.py",),
     trials=1000,
     sample=5,

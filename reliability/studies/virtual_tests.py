@@ -3,60 +3,17 @@
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from reliability.recorded_protocol import TrueForces, recorded_protocol
 from reliability.study import Measure, Record, Study
-from sonolube.facts.protocol import protocol_by_name_or_file
-from sonolube.laboratory import Block, Channel, run_protocol
-from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.measurement.friction_analysis import analyse_voltage_steps
 from sonolube.rig import Rig, read_rig
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 _RIG = Path(__file__).parents[2] / "examples" / "rigs" / "power_map.toml"
 _LOWEST, _HIGHEST = 0.8, 1.2  # of the root mean square of deviation over uncertainty
-_SAME_VOLTAGE = 0.3  # V
-
-
-class _Record:
-    """Blocks and set voltages of one recording, in memory."""
-
-    def __init__(self) -> None:
-        self.blocks: list[Block] = []
-        self.voltages: list[tuple[int, float]] = [(0, 0.0)]
-
-    def begin(self, channels: Sequence[Channel], *, sample_rate: float) -> None:
-        """Begin the only recording."""
-
-    def append(self, block: Block) -> None:
-        """Keep a block."""
-        self.blocks.append(block)
-
-    def end(self) -> None:
-        """End the recording."""
-
-    def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
-        """Keep the set voltages."""
-        if kind == "drive":
-            self.voltages.append((sample or 0, float(facts["voltage_peak_to_peak"])))
-
-    def finish(self, outcome: str, *, reason: str = "") -> None:
-        """Nothing is open."""
-
-    def dataset(self) -> "xr.Dataset":
-        """Force and set voltage over time."""
-        import xarray as xr
-
-        force = np.concatenate([block.values[:, 0] for block in self.blocks])
-        number = np.arange(force.size)
-        since = np.searchsorted([sample for sample, _ in self.voltages], number, side="right") - 1
-        voltage = np.array([level for _, level in self.voltages])[since]
-        data = {"friction_force": ("time", force), "voltage_peak_to_peak": ("time", voltage)}
-        return xr.Dataset(data, {"time": number / self.blocks[0].sample_rate})
 
 
 @cache
@@ -65,14 +22,11 @@ def _rig() -> Rig:
 
 
 def _trial(seed: int) -> Record:
-    virtual = virtual_tribometer(_rig(), seed=seed, groove_diameter=0.028)
-    record = _Record()
-    result = run_protocol(protocol_by_name_or_file("map_test"), virtual.devices, record, operator=lambda prompt: True)
-    if result.outcome != "completed":
-        raise RuntimeError(result.reason)
-    steps = analyse_voltage_steps(record.dataset())
-    truth = virtual.truth()
-    force = [_true_force(truth, step.voltage_peak_to_peak) for step in steps]
+    record, truth = recorded_protocol(_rig(), "map_test", seed=seed)
+    (recording,) = record.datasets(with_speed=False)
+    steps = analyse_voltage_steps(recording)
+    forces = TrueForces(truth)
+    force = [forces.at(step) for step in steps]
     return {
         "steps": len(steps),
         "force": [
@@ -85,13 +39,6 @@ def _trial(seed: int) -> Record:
             if step.friction_reduction is not None
         ],
     }
-
-
-def _true_force(truth: "xr.Dataset", voltage: float) -> float:
-    """Worn-in friction of the virtual rig at a voltage. [N]"""
-    set_to = np.abs(truth["voltage_peak_to_peak"].to_numpy() - voltage) < _SAME_VOLTAGE
-    sliding = truth["sliding_speed"].to_numpy() > 0
-    return float(truth["friction_force"].to_numpy()[set_to & sliding][0])
 
 
 def _measures(records: Sequence[Record]) -> list[Measure]:

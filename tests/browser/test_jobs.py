@@ -1,6 +1,8 @@
 """Jobs: progress and result on disk, cancelled within a second, queued, found again, and limited."""
 
 import json
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -67,6 +69,34 @@ def test_a_job_whose_server_was_killed_counts_as_interrupted(jobs: Jobs) -> None
     started = jobs.start("sweep", LONG, label="", places=NOWHERE)
     jobs.end()
     assert Jobs(jobs.folder, most=1).job(started.id).state == "interrupted"
+
+
+OTHER = """
+import json, sys
+from pathlib import Path
+from sonolube.browser.jobs import Jobs
+jobs = Jobs(Path(sys.argv[1]), most=1)
+for _ in range(2):
+    print(jobs.start("sweep", json.loads(sys.argv[2]), label="", places={"rigs": {}, "uploads": ""}).id, flush=True)
+sys.stdin.read()
+jobs.end()
+"""
+
+
+def test_a_job_of_another_workbench_that_runs_is_neither_stopped_nor_deleted_here(jobs: Jobs) -> None:
+    command = [sys.executable, "-c", OTHER, str(jobs.folder), json.dumps(LONG)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdout is not None
+        names = [other.stdout.readline().strip() for _ in range(2)]  # one runs, one waits
+        assert [jobs.job(name).state for name in names] == ["running elsewhere"] * 2
+        for call in (jobs.cancel, jobs.delete):
+            with pytest.raises(InvalidInput, match="another workbench of yours runs this job"):
+                call(names[0])
+        assert jobs.job(names[0]).state == "running elsewhere"
+        other.communicate("")
+    assert [jobs.job(name).state for name in names] == ["interrupted"] * 2
+    jobs.delete(names[0])
+    assert [job.id for job in jobs.list()] == names[1:]
 
 
 @pytest.mark.parametrize("name", ["", "..", "../jobs", "no-such", "a/b", "x" * 300])

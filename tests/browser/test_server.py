@@ -3,8 +3,9 @@
 import http.client
 import json
 import socket
-from collections.abc import Iterator
-from contextlib import closing
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,21 @@ from tests.browser.workbench import Served, served
 from sonolube.cli import main
 
 RIG = {"name": "tribometer"}
+LONG = {"drive.voltage_peak_to_peak": "1V:200V:200", "sliding.sliding_speed": "1mm/s:1m/s:2000"}
 
 
 @pytest.fixture(scope="module")
-def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+def many_files() -> Iterator[None]:
+    """Let this process, and those that it starts, hold as many files as a thousand connections need."""
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(before[0], min(4096, before[1])), before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_NOFILE, before)
+
+
+@pytest.fixture(scope="module")
+def workbench(tmp_path_factory: pytest.TempPathFactory, many_files: None) -> Iterator[Served]:
     with served(tmp_path_factory.mktemp("server")) as found:
         yield found
 
@@ -104,26 +116,80 @@ def test_a_foreign_host_and_no_cookie_are_refused_by_the_server_itself(workbench
     assert request(workbench, "GET", "/api/jobs")[0] == 401
 
 
-def test_many_idle_connections_and_a_slow_client_leave_others_answered(workbench: Served) -> None:
-    idle = [socket.create_connection(("127.0.0.1", workbench.port)) for _ in range(300)]
-    idle[0].sendall(b"POST /api/tasks/friction HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\n\r\n{")
+SLOW = (
+    b"",  # says nothing
+    b"POST /api/tasks/friction HT",  # stops within the first line
+    b"POST /api/tasks/friction HTTP/1.1\r\nHost: 127.0.0.1\r\nX: " + b"x" * 8000,  # within a header
+    b"POST /api/tasks/friction HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\n\r\n{",  # within the body
+)
+CONNECTIONS, MOST_MEMORY = 1000, 16 * 2**20  # bytes by which the parent may grow; 3.5 MiB were measured
+
+
+def test_a_thousand_slow_connections_leave_others_answered_in_bounded_memory(workbench: Served) -> None:
+    parent = psutil.Process(workbench.process.pid)
+    assert asked(workbench, "/api/tasks/contact", {"rig": RIG})[0] == 200
+    before = parent.memory_info().rss
+    slow: list[socket.socket] = []
     try:
+        for place in range(CONNECTIONS):
+            slow.append(socket.create_connection(("127.0.0.1", workbench.port)))
+            slow[-1].sendall(SLOW[place % len(SLOW)])
         assert asked(workbench, "/api/tasks/contact", {"rig": RIG})[0] == 200
+        assert len(parent.net_connections()) > CONNECTIONS  # all are open, and the one that listens
+        assert parent.memory_info().rss - before < MOST_MEMORY
     finally:
-        for each in idle:
+        for each in slow:
             each.close()
+    assert asked(workbench, "/api/tasks/contact", {"rig": RIG})[0] == 200
+
+
+def test_a_long_study_ends_when_its_page_waits_no_more(workbench: Served) -> None:
+    body = json.dumps({"rig": RIG, "over": LONG}).encode()
+    workers = workers_of(workbench)
+    with closing(socket.create_connection(("127.0.0.1", workbench.port))) as connection:
+        head = f"POST /api/tasks/sweep HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: {cookie(workbench)}\r\n"
+        connection.sendall(f"{head}Content-Length: {len(body)}\r\n\r\n".encode() + body)
+        until(lambda: any(worker.cpu_percent(0.2) > 20 for worker in workers))
+    until(lambda: not set(workers) <= set(workers_of(workbench)))
+    for _ in workers:
+        assert asked(workbench, "/api/tasks/contact", {"rig": RIG})[0] == 200
+
+
+def workers_of(workbench: Served) -> list[psutil.Process]:
+    """Processes that answer its requests, those that have ended left out."""
+    found = []
+    for child in psutil.Process(workbench.process.pid).children():
+        with suppress(psutil.NoSuchProcess):  # or one that was not yet waited for
+            if "spawn_main" in " ".join(child.cmdline()):
+                found.append(child)
+    return found
+
+
+def until(is_so: Callable[[], bool]) -> None:
+    """Wait for a state; the limit is for what never comes, on a slow machine too."""
+    end = time.monotonic() + 120
+    while not is_so():
+        assert time.monotonic() < end
+        time.sleep(0.05)
 
 
 def test_a_killed_worker_is_one_sentence_and_is_replaced(workbench: Served) -> None:
-    workers = [
-        child for child in psutil.Process(workbench.process.pid).children() if "spawn_main" in " ".join(child.cmdline())
-    ]
+    workers = workers_of(workbench)
     assert workers
     for worker in workers:
         worker.kill()
     replies = [asked(workbench, "/api/tasks/contact", {"rig": RIG}) for _ in range(len(workers) + 1)]
     assert replies[-1][0] == 200
     assert all(status in (200, 503) for status, _ in replies)
+
+
+def test_a_server_that_is_terminated_ends_its_jobs(tmp_path: Path) -> None:
+    with served(tmp_path) as workbench:
+        status, _ = asked(workbench, "/api/jobs", {"task": "sweep", "arguments": {"rig": RIG, "over": LONG}})
+        assert status == 200
+        children = psutil.Process(workbench.process.pid).children()
+    _, left = psutil.wait_procs(children, timeout=60)
+    assert left == []
 
 
 def test_a_restart_with_the_same_folder_finds_the_jobs(tmp_path: Path) -> None:

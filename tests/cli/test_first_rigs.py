@@ -39,8 +39,8 @@ BY_AMPLITUDE = {
     "sweep": ("--of", "amplitude", "--points", "3"),
 }
 BY_VOLTAGE = {
-    ("map", "--kind", "velocity-power"): "take --kind velocity-stress, velocity-amplitude or frequency-amplitude",
-    ("map", "--kind", "frequency-voltage"): "take --kind velocity-stress, velocity-amplitude or frequency-amplitude",
+    ("map", "--kind", "velocity-power"): "take --kind velocity-amplitude, velocity-stress or frequency-amplitude",
+    ("map", "--kind", "frequency-voltage"): "take --kind velocity-amplitude, velocity-stress or frequency-amplitude",
     ("sweep", "--of", "voltage"): "take --of amplitude",
     ("sweep", "--of", "speed", "--voltage", "3V"): "give --vibration of each curve",
     ("control", "--voltage-limit", "30V"): "--voltage-limit has no meaning for an amplitude that is commanded",

@@ -1,16 +1,25 @@
 """Which resonances of the reference rig tell the stiffness of its contact."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.prediction.stiffness_probes import probe_sentences, stiffness_probes, told_probes
+from sonolube.prediction.stiffness_probes import Probe, probe_sentences, stiffness_probes, told_probes
 from sonolube.rig import read_rig
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
-PROBES = stiffness_probes(read_rig(RIGS / "tribometer.toml"), decay_length=[2e-6, 0.7e-6])
+
+
+def probes_of(name: str, *, decay_length: Any, **accuracy: float) -> tuple[Probe, ...]:
+    rig = read_rig(RIGS / f"{name}.toml")
+    assert rig.structure is not None
+    return stiffness_probes(rig.structure, normal_load=rig.normal_load, decay_length=decay_length, **accuracy)
+
+
+PROBES = probes_of("tribometer", decay_length=[2e-6, 0.7e-6])
 
 
 def test_slow_modes_of_the_reference_rig_move_as_an_independent_program_found() -> None:
@@ -40,9 +49,8 @@ def test_sentences_name_the_best_probe_first_and_the_blind_one_last() -> None:
 
 
 def test_expected_uncertainty_falls_with_finer_frequencies_down_to_that_of_the_mass() -> None:
-    rig = read_rig(RIGS / "tribometer.toml")
     coarse, fine = (
-        stiffness_probes(rig, decay_length=2e-6, resolution=share, modal_mass_deviation=0.05)[1]
+        probes_of("tribometer", decay_length=2e-6, resolution=share, modal_mass_deviation=0.05)[1]
         for share in (1 / 20, 1 / 1000)
     )
     assert coarse.log_stiffness_deviation[0] > 0.08
@@ -50,20 +58,18 @@ def test_expected_uncertainty_falls_with_finer_frequencies_down_to_that_of_the_m
 
 
 def test_a_rig_without_structure_has_no_probe_and_is_told_so() -> None:
-    probes = stiffness_probes(read_rig(RIGS / "welder_flat.toml"), decay_length=2e-6)
-    assert probes == ()
-    assert "no structure is known" in probe_sentences(probes)[0]
+    assert "no structure is known" in probe_sentences(())[0]
 
 
 def test_a_decay_length_of_zero_is_refused() -> None:
     with raises(InvalidInput, match="decay_length must be positive"):
-        stiffness_probes(read_rig(RIGS / "tribometer.toml"), decay_length=0.0)
+        probes_of("tribometer", decay_length=0.0)
 
 
 def test_a_prediction_tells_the_two_best_probes_and_the_mode_that_vibrates() -> None:
     collar = read_rig(RIGS / "collar.toml")
     assert collar.drive is not None
-    probes = stiffness_probes(collar, decay_length=1.6e-6)
+    probes = probes_of("collar", decay_length=1.6e-6)
     told = told_probes(probes, frequency=collar.drive.frequency)
     assert len(told) == 3
     best = min(probe.log_stiffness_deviation[0] for probe in probes)

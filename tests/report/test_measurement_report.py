@@ -115,7 +115,7 @@ def test_a_file_cannot_write_into_the_page(page: str) -> None:
 def test_a_mean_arrives_with_unit_uncertainty_digest_and_version(tmp_path: Path) -> None:
     sheet = friction_sheet(recording_file(tmp_path / "test.csv", 0.5), settings=FrictionSettings(sliding_speed=0.02))
     content = json.loads(json.dumps(measurement_object(report_of(sheet)), allow_nan=False))
-    force = content["results"][0]["values"]["friction_force"]
+    force = content["results"][0]["values"]["mean_force"]
     assert force["unit"] == "N"
     assert force["value"] == approx(0.5, abs=5 * force["uncertainty"])
     assert force["uncertainty"] == approx(0.02 / 6000**0.5, rel=0.3)

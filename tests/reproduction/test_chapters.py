@@ -11,7 +11,10 @@ PAGE = Path(__file__).parents[2] / "docs" / "validation.md"
 
 
 def test_the_reproduction_of_a_chapter_has_its_rows_and_figures_only() -> None:
-    result = reproduction(chapter=2)
+    parts: list[tuple[str, int, int]] = []
+    result = reproduction(chapter=2, advance=lambda *part: parts.append(part))
+    assert [done for _, done, _ in parts] == list(range(parts[0][2]))
+    assert {"section 2.3", "figures of section 2.3"} <= {what for what, _, _ in parts}
     assert {row.chapter for row in result.rows} == {2}
     assert {figure.chapter for figure in result.figures} == {2}
     # section 2.2, and the friction tests of Table 2.5 but not those of Table 4.2

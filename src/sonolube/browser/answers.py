@@ -6,12 +6,13 @@ import os
 import tomllib
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack, contextmanager, suppress
+from functools import cache
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.browser.places import Places
 from sonolube.charts import chart_object, chart_tables
-from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError
+from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError, UnknownName
 from sonolube.example_files import example_file
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.blocks import Block, Rows, Table, Verbatim
@@ -31,7 +32,21 @@ _DEVICES: Final = ("lab run", "lab hold", "lab check")  # which open a device
 
 def offered_tasks() -> tuple[Task, ...]:
     """Tasks that a page may call: those that open no device and write no folder of this computer."""
-    return tuple(task for task in TASKS if task.name not in _DEVICES and not _writes(task))
+    return tuple(task for task in TASKS if _is_offered(task))
+
+
+def offered_task(name: str) -> Task:
+    """Return the task of a name, of those that a page may call; no other is imported.
+
+    Raises
+    ------
+    UnknownName
+        If there is none.
+    """
+    found = next((task for task in TASKS if task.name == name), None)
+    if found is None or not _is_offered(found):
+        raise UnknownName.among([task.name for task in offered_tasks()], kind="task", name=name)
+    return found
 
 
 def answered(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
@@ -114,6 +129,13 @@ def given_rig(source: Any, places: Places, stack: ExitStack) -> "Rig":
     """Rig of a request: an example or the text of a file, with entries replaced."""
     from sonolube.rig import read_rig
 
+    path, changes = requested_file(source, places, stack)
+    with names_only(path):
+        return read_rig(path, changes=changes)
+
+
+def requested_file(source: Any, places: Places, stack: ExitStack) -> tuple[Path, list[str]]:
+    """Path of the file of a rig of a request, and the entries to replace in it."""
     if not isinstance(source, Mapping):
         raise InvalidInput("rig: give an object with its name or text, and changes", key="rig")
     changes = source.get("changes") or {}
@@ -121,8 +143,7 @@ def given_rig(source: Any, places: Places, stack: ExitStack) -> "Rig":
         raise InvalidInput("rig.changes: give texts by dotted key, such as drive.frequency: 22 kHz", key="rig")
     path = rig_path(source, places, stack)
     _refuse_other_files(source, changes)
-    with names_only(path):
-        return read_rig(path, changes=[f"{key}={value}" for key, value in changes.items()])
+    return path, [f"{key}={value}" for key, value in changes.items()]
 
 
 def _refuse_other_files(source: Mapping[str, Any], changes: Mapping[str, str]) -> None:
@@ -241,9 +262,12 @@ def _required(task: Task) -> list[str]:
     return [each.name for each in arguments if each.default is each.empty and each.name not in optional]
 
 
-def _writes(task: Task) -> bool:
-    """Whether a task writes a folder that is named as an argument."""
-    return any(isinstance(mark, Parameter) and mark.is_output for mark in marks_of(task.function).values())
+@cache
+def _is_offered(task: Task) -> bool:
+    """Whether a task opens no device, and writes no folder that is named as an argument."""
+    if task.name in _DEVICES:
+        return False
+    return not any(isinstance(mark, Parameter) and mark.is_output for mark in marks_of(task.function).values())
 
 
 def _charted(chart: Any) -> dict[str, Any]:

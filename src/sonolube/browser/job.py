@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sonolube.browser.answers import answer_object, called, given_arguments, offered_tasks
+from sonolube.browser.answers import answer_object, called, given_arguments, offered_task
 from sonolube.browser.places import Places
 from sonolube.browser.worker import encoded, limit_process
 from sonolube.errors import SonolubeError
@@ -46,8 +46,8 @@ def main(folder: Path) -> None:
     request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
     record = _Record(folder)
     record.write("running", stage="starting")
-    task = next(task for task in offered_tasks() if task.name == request["task"])
     try:
+        task = offered_task(request["task"])
         with given_arguments(task, request["arguments"], Places(**request["places"])) as given:
             watch = {"progress": record.progress} if "progress" in marks_of(task.function) else {}
             answer = called(task, given | watch)

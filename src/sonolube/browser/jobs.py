@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_atomically
+from sonolube.files import process_start, user_state_folder, write_atomically
 
 KEPT_DAYS: Final = 30
 """Days after which a finished job is deleted."""
@@ -26,8 +26,7 @@ _REQUEST, _STATE, _RESULT = "request.json", "state.json", "result.json"
 
 def jobs_folder() -> Path:
     """Folder in which jobs are kept: `sonolube/jobs` in the folder of states of this user."""
-    base = os.environ.get("XDG_STATE_HOME") or (os.environ.get("LOCALAPPDATA") if os.name == "nt" else None)
-    return Path(base or Path.home() / ".local" / "state") / "sonolube" / "jobs"
+    return user_state_folder() / "jobs"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,7 +42,7 @@ class Job:
     created : float
         Time of day in seconds since 1970.
     state : str
-        "waiting", "running", "done", "refused", "failed", "cancelled" or "interrupted".
+        "waiting", "running", "running elsewhere", "done", "refused", "failed", "cancelled" or "interrupted".
     stage : str
         What is done now.
     done, total : int
@@ -85,6 +84,7 @@ class Jobs:
         self.folder, self._most = folder, most
         self._running: dict[str, subprocess.Popen[bytes]] = {}
         self._waiting: list[str] = []
+        self._owner = {"process": os.getpid(), "begun": process_start(os.getpid())}
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         self._settle()
 
@@ -94,7 +94,7 @@ class Jobs:
         place = self.folder / name
         place.mkdir(mode=0o700)
         request = {"task": task, "arguments": arguments, "label": label, "places": places, "created": time.time()}
-        write_atomically(place / _REQUEST, json.dumps(request))
+        write_atomically(place / _REQUEST, json.dumps(request | {"owner": self._owner}))
         self._waiting.append(name)
         self.tend()
         return self.job(name)
@@ -123,7 +123,7 @@ class Jobs:
         elif name in self._running:
             known["state"] = "running"
         elif known.get("state") not in _ENDED:
-            known["state"] = "interrupted"
+            known["state"] = "running elsewhere" if self._is_of_another(request.get("owner")) else "interrupted"
         about = {key: request[key] for key in ("task", "label", "created")}
         return Job(id=name, **(about | known))
 
@@ -157,8 +157,15 @@ class Jobs:
         return path
 
     def cancel(self, name: str) -> Job:
-        """Stop a job within a second; what it computed is gone."""
-        self.job(name)
+        """Stop a job within a second; what it computed is gone.
+
+        Raises
+        ------
+        InvalidInput
+            If another workbench of this user runs it.
+        """
+        if self.job(name).state == "running elsewhere":
+            raise InvalidInput("another workbench of yours runs this job; stop it there")
         if name in self._waiting:
             self._waiting.remove(name)
             self._record(name, state="cancelled")
@@ -190,6 +197,14 @@ class Jobs:
         for process in self._running.values():
             _end(process)
         self._running.clear()
+
+    def _is_of_another(self, owner: Any) -> bool:
+        """Whether the owner of a job is another workbench that still runs."""
+        if not isinstance(owner, dict) or owner == self._owner:
+            return False
+        begun = owner.get("begun")
+        process = owner.get("process")
+        return bool(begun) and isinstance(process, int) and process_start(process) == begun
 
     def _note_end(self, name: str, code: int) -> None:
         """Record the end of a process that did not record it itself."""

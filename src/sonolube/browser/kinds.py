@@ -4,19 +4,13 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from sonolube.browser.answers import Answering, answered, offered_tasks
+from sonolube.browser.answers import Answering, answered, offered_task, offered_tasks
 from sonolube.browser.places import Places
-from sonolube.errors import UnknownName
 
 
 def _task(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Answer of a task."""
-    known = {task.name: task for task in offered_tasks()}
-    name = str(payload.get("task", ""))
-    if name not in known:
-        raise UnknownName.among(known, kind="task", name=name)
-    arguments = payload.get("arguments") or {}
-    return answered(known[name], arguments, places)
+    return answered(offered_task(str(payload.get("task", ""))), payload.get("arguments") or {}, places)
 
 
 def _rig(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:

@@ -3,17 +3,19 @@
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
-from sonolube.browser.answers import given_rig, names_only, rig_path
+from sonolube.browser.answers import names_only, requested_file
 from sonolube.browser.places import Places
+from sonolube.design import map_kinds
 from sonolube.errors import InvalidInput
 from sonolube.example_files import example_files
-from sonolube.rig import Rig
+from sonolube.rig import Rig, commanded_quantity
 from sonolube.rig.file.guidance import guidance
-from sonolube.rig.file.reader import rig_content
-from sonolube.units import convert
+from sonolube.rig.file.reader import rig_contents, rig_of_file
+from sonolube.tasks.design.parametric_study import studies_of
+from sonolube.units import convert, to_si
 from sonolube.vocabulary import quantities
 
 _FIRST: Final = (
@@ -27,6 +29,8 @@ _FIRST: Final = (
 """Entries of the operating point, above all others."""
 
 _DECADE: Final = 10.0  # of the value of the file, over which a slider runs below and above
+_PREFIXES: Final = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
+_READABLE: Final = (1e-5, 1e7)  # sizes of the numbers along an axis
 _STEPS: Final = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
@@ -51,6 +55,8 @@ class RigField:
         How the number is obtained.
     is_first : bool
         Whether it belongs to the operating point.
+    numbers : mapping of str to float
+        Its number in each unit that the axis of a figure may have.
     """
 
     key: str
@@ -62,6 +68,7 @@ class RigField:
     assumed: str = ""
     help: str = ""
     is_first: bool = False
+    numbers: Mapping[str, float] = field(default_factory=dict)
 
     def object(self) -> dict[str, Any]:
         """Field for JSON."""
@@ -80,22 +87,19 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     Returns
     -------
     dict
-        Title, source, fields by table, what a drawing shows, assumptions, and the rigs that may be chosen.
+        Title, source, fields by table, what a drawing shows, assumptions, the rigs that may be chosen, and the studies
+        and maps that the rig has.
 
     Raises
     ------
     InvalidInput
         If the file or a change is refused.
     """
-    source = payload.get("rig")
-    if not isinstance(source, Mapping):
-        raise InvalidInput("rig: give an object with its name or text, and changes", key="rig")
     with ExitStack() as stack:
-        path = rig_path(source, places, stack)
-        changes = [f"{key}={value}" for key, value in (source.get("changes") or {}).items()]
-        rig = given_rig(source, places, stack)
+        path, changes = requested_file(payload.get("rig"), places, stack)
         with names_only(path):
-            original, content = rig_content(path), rig_content(path, changes=changes)
+            original, content = rig_contents(path, (), changes)
+            rig = rig_of_file(path, content, changes=changes)
     fields = list(rig_fields(content, original, rig.assumptions))
     return {
         "title": rig.title,
@@ -103,6 +107,8 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         "fields": [field.object() for field in sorted(fields, key=_order)],
         "drawing": _drawing(rig),
         "assumptions": dict(rig.assumptions),
+        "studies": studies_of(rig),
+        "maps": map_kinds(commanded_quantity(rig)),
         "rigs": [*places.rigs, *(name for name, each in example_files().items() if each.is_rig)],
     }
 
@@ -144,6 +150,7 @@ def rig_fields(
             assumed=assumptions.get(key, ""),
             help="" if advice is None else advice.text,
             is_first=key in _FIRST,
+            numbers={} if known is None or number is None else _numbers(text, known.unit),
         )
 
 
@@ -185,6 +192,18 @@ def _ends(original: str | float, text: str) -> tuple[float, float] | None:
         except InvalidInput:
             return None
     return _rounded(number / _DECADE), _rounded(number * _DECADE)
+
+
+def _numbers(text: str, si: str) -> dict[str, float]:
+    """Number of a value in its SI unit with each prefix that leaves it readable."""
+    try:
+        number = to_si(text, unit=si, name="value")
+    except InvalidInput:
+        return {}
+    if not si or not si[0].isalpha() or si[-1].isdigit() or si.startswith("kg"):
+        return {si: number}
+    scaled = {f"{prefix}{si}": number / size for prefix, size in _PREFIXES.items()}
+    return {unit: float(f"{each:.6g}") for unit, each in scaled.items() if _READABLE[0] <= abs(each) <= _READABLE[1]}
 
 
 def _rounded(number: float) -> float:

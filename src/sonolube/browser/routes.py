@@ -14,6 +14,7 @@ from starlette.responses import FileResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
+from sonolube.browser.first_page import shipped_answer
 from sonolube.browser.jobs import KEPT_DAYS, Jobs
 from sonolube.browser.places import Places
 from sonolube.browser.pool import Pool
@@ -83,13 +84,18 @@ class Workbench:
 
         async def endpoint(request: Request) -> Response:
             payload = {} if request.method == "GET" else await _content(request)
-            return await self._ask(kind, payload)
+            return await self._ask(kind, payload, request)
 
         return _refusing(endpoint)
 
-    async def _ask(self, kind: str, payload: Mapping[str, Any]) -> Response:
-        """Answer of a worker."""
-        status, body = await self.pool.ask(kind, payload, self._places)
+    async def _ask(self, kind: str, payload: Mapping[str, Any], request: Request | None = None) -> Response:
+        """Answer of a worker, which is ended where it computes long and the page waits no more.
+
+        While the workers start, the first page gets the shipped one.
+        """
+        shipped = None if self.pool.is_warm or self._places.rigs else shipped_answer(kind, payload)
+        is_gone = None if request is None else request.is_disconnected
+        status, body = (200, shipped) if shipped else await self.pool.ask(kind, payload, self._places, is_gone=is_gone)
         return Response(body, status_code=status, media_type=_JSON, headers={"cache-control": "no-store"})
 
     async def _task(self, request: Request) -> Response:
@@ -97,7 +103,7 @@ class Workbench:
 
         async def endpoint(request: Request) -> Response:
             name = request.path_params["name"].replace("/", " ")
-            return await self._ask("task", {"task": name, "arguments": await _content(request)})
+            return await self._ask("task", {"task": name, "arguments": await _content(request)}, request)
 
         return await _refusing(endpoint)(request)
 

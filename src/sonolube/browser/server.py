@@ -2,6 +2,7 @@
 
 import os
 import secrets
+import signal
 import socket
 import sys
 import webbrowser
@@ -12,6 +13,7 @@ from pathlib import Path
 import uvicorn
 
 from sonolube.browser.jobs import Jobs, jobs_folder
+from sonolube.browser.places import OPENED
 from sonolube.browser.pool import Pool
 from sonolube.browser.routes import Workbench
 from sonolube.browser.security import Access, Guard
@@ -80,6 +82,7 @@ def run(options: Options) -> None:
     name = f"[{options.host}]" if ":" in options.host else options.host
     link = f"http://{name}:{port}/?token={access.token}"
     workbench = _workbench(options)
+    signal.signal(signal.SIGTERM, _leave)  # the server raises it again once it has shut down
     try:
         server = _Server(
             uvicorn.Config(
@@ -89,7 +92,7 @@ def run(options: Options) -> None:
                 server_header=False,
                 lifespan="off",
                 timeout_keep_alive=30,
-                limit_concurrency=400,
+                limit_concurrency=2000,
                 h11_max_incomplete_event_size=64 * 1024,
             ),
             link=link,
@@ -102,6 +105,12 @@ def run(options: Options) -> None:
         workbench.uploads.end()
 
 
+def _leave(number: int, frame: object) -> None:
+    """End this process by way of what ends its workers and jobs."""
+    del frame
+    sys.exit(128 + number)
+
+
 def _workbench(options: Options) -> Workbench:
     """Workbench with its processes."""
     cores = os.cpu_count() or 1
@@ -111,7 +120,7 @@ def _workbench(options: Options) -> Workbench:
         jobs=Jobs(jobs_folder(), most=cores),
         uploads=Uploads(),
         rigs=rigs,
-        opened=next(iter(rigs), "tribometer"),
+        opened=next(iter(rigs), OPENED),
     )
 
 

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from sonolube import __version__
-from sonolube.browser.answers import called, given_arguments, offered_tasks, positional, rig_path
+from sonolube.browser.answers import called, given_arguments, offered_task, positional, rig_path
 from sonolube.browser.places import Places
 from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, UnknownName
@@ -44,13 +44,10 @@ def taken(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     InvalidInput
         If the task refuses its arguments, or has nothing of this form.
     """
-    known = {task.name: task for task in offered_tasks()}
-    name, form = str(payload.get("task", "")), str(payload.get("form", ""))
-    if name not in known:
-        raise UnknownName.among(known, kind="task", name=name)
+    task, form = offered_task(str(payload.get("task", ""))), str(payload.get("form", ""))
     if form not in _FORMS:
         raise UnknownName.among(_FORMS, kind="form", name=form)
-    return _FORMS[form](known[name], payload.get("arguments") or {}, places)
+    return _FORMS[form](task, payload.get("arguments") or {}, places)
 
 
 def _file(name: str, kind: str, text: str) -> dict[str, Any]:
@@ -184,8 +181,9 @@ def report(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str
     answer = _answer(task, arguments, places)
     settings = [] if answer.call is None else answer.call.settings()
     rig = [] if answer.rig is None else [("rig", answer.rig.title), *(("changed", each) for each in answer.rig.changes)]
+    point = [(each["label"], each["text"]) for each in answer.object().get("operating_point", ())]
     page = answer.page() or _page_of_blocks(answer)
-    page = replace(page, name="answer", settings=[*page.settings, *rig, *settings])
+    page = replace(page, name="answer", settings=[*page.settings, *rig, *point, *settings])
     notes = [*answer.every_caveat(), *(f"assumed {key}: {reason}" for key, reason in answer.assumptions().items())]
     text = rendered_files(answer.figures(), page=page, notes=notes)["answer.html"]
     return _file("answer.html", "text/html", str(text))

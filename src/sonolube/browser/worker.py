@@ -1,6 +1,7 @@
 """A worker process: imports sonolube once, then answers requests one after the other, within limits."""
 
 import contextlib
+import gc
 import json
 import os
 import signal
@@ -10,7 +11,7 @@ from collections.abc import Mapping
 from multiprocessing.connection import Connection
 from typing import Any, Final
 
-from sonolube.browser.places import Places
+from sonolube.browser.places import OPENED, Places
 from sonolube.errors import SonolubeError
 
 _BAD_REQUEST, _REFUSED, _FAILED = 400, 422, 500
@@ -31,7 +32,7 @@ def limit_process(*, memory: int = 2 * _GIBIBYTE, file_size: int = _GIBIBYTE, cp
             resource.setrlimit(kind, (most, most))
 
 
-def serve(connection: Connection, folder: str) -> None:
+def serve(connection: Connection, folder: str, warm: Connection) -> None:
     """Answer requests from a connection until it ends.
 
     Parameters
@@ -40,11 +41,15 @@ def serve(connection: Connection, folder: str) -> None:
         Sends (kind, payload, places), gets (status, JSON as bytes).
     folder : str
         Empty one, in which relative names of requests lie.
+    warm : Connection
+        Gets one message once what most requests need is imported.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends its workers
     os.chdir(folder)
     limit_process()
     warm_up()
+    with contextlib.suppress(OSError):  # where the workbench has ended meanwhile, as the next line sees
+        warm.send(True)
     while True:
         try:
             request = connection.recv()
@@ -59,7 +64,9 @@ def serve(connection: Connection, folder: str) -> None:
 def warm_up() -> None:
     """Import what most requests need, and load the kernels of a first prediction."""
     with contextlib.suppress(SonolubeError):
-        reply("task", {"task": "predict", "arguments": {"rig": {"name": "tribometer"}, "draws": 200}}, Places(rigs={}))
+        reply("task", {"task": "predict", "arguments": {"rig": {"name": OPENED}, "draws": 200}}, Places(rigs={}))
+    gc.collect()
+    gc.freeze()  # modules and kernels stay, so that later collections need not look at them
 
 
 def reply(kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, bytes]:

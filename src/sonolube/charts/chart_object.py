@@ -1,6 +1,7 @@
 """A chart as an object for JSON, and its numbers as tables."""
 
 from dataclasses import fields, is_dataclass
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -84,7 +85,7 @@ def _numbers(values: Any) -> Any:
     array = np.asarray(values, dtype=np.float64)
     if array.ndim > 1:
         return [_numbers(row) for row in array]
-    return [float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None for value in array]
+    return [float(f"{value:.{_DIGITS}g}") if isfinite(value) else None for value in array.tolist()]
 
 
 def colour_code(colour: int | str) -> str:
@@ -122,4 +123,5 @@ def _columns(panel: Panel, part: Part) -> dict[str, list[str]]:
 def _texts(values: Any, axis: Axis | None = None) -> list[str]:
     """Numbers as text, or the words that an axis has in their place."""
     words = {} if axis is None else dict(zip(axis.ticks or range(len(axis.words)), axis.words, strict=False))
-    return [words.get(float(value), f"{value:.4g}" if np.isfinite(value) else "") for value in values]
+    numbers = np.asarray(values, dtype=np.float64).tolist()
+    return [words[value] if value in words else f"{value:.4g}" if isfinite(value) else "" for value in numbers]

@@ -334,9 +334,9 @@ def _with_power(rig: Rig, computed: "xr.Dataset", power: Floats) -> "xr.Dataset"
 
 MAPS: Mapping[str, Callable[..., "xr.Dataset"]] = MappingProxyType(
     {
-        "velocity-stress": velocity_stress_map,
         "velocity-power": velocity_power_map,
         "velocity-amplitude": velocity_amplitude_map,
+        "velocity-stress": velocity_stress_map,
         "frequency-voltage": frequency_voltage_map,
         "frequency-amplitude": frequency_amplitude_map,
     }
@@ -345,7 +345,7 @@ MAPS: Mapping[str, Callable[..., "xr.Dataset"]] = MappingProxyType(
 
 
 def map_kinds(quantity: CommandedQuantity) -> tuple[str, ...]:
-    """Kinds of maps of rigs whose vibration is set by a quantity.
+    """Kinds of maps of rigs whose vibration is set by a quantity, the usual one first.
 
     Parameters
     ----------

@@ -21,6 +21,7 @@ from .contact_stiffness.stiffness_estimate import (
     LogEstimate as LogEstimate,
     single_mode as single_mode,
 )
+from .friction.force_cycle import ForceCycle as ForceCycle, find_cycle as find_cycle
 from .friction.loops import (
     FrictionLoops as FrictionLoops,
     FrictionWork as FrictionWork,
@@ -43,6 +44,7 @@ from .friction.rotation import (
     revolutions_at as revolutions_at,
 )
 from .friction.running_in import SteadyStateOnset as SteadyStateOnset, steady_state_onset as steady_state_onset
+from .friction.sliding import at_rest as at_rest
 from .friction.slip_events import SlipChain as SlipChain, find_slips as find_slips, noise_spectra as noise_spectra
 from .friction.step_means import (
     SampledParts as SampledParts,
@@ -52,12 +54,8 @@ from .friction.step_means import (
     without_wobble as without_wobble,
     wobble_columns as wobble_columns,
 )
-from .friction.stick_slip import (
-    StickSlipBurst as StickSlipBurst,
-    StickSlipEstimate as StickSlipEstimate,
-    estimate_stick_slip as estimate_stick_slip,
-    stick_slip_of_parts as stick_slip_of_parts,
-)
+from .friction.stick_slip import estimate_stick_slip as estimate_stick_slip, stick_slip_of_parts as stick_slip_of_parts
+from .friction.stick_slip_estimate import StickSlipBurst as StickSlipBurst, StickSlipEstimate as StickSlipEstimate
 from .friction.voltage_steps import (
     VoltageStep as VoltageStep,
     friction_at_voltage_steps as friction_at_voltage_steps,

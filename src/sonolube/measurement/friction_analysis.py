@@ -1,5 +1,6 @@
 """Friction analyses of a recording (xarray dataset): one function per analysis, each returning a record."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,15 +14,16 @@ from sonolube.measurement.friction.motor_current import (
 )
 from sonolube.measurement.friction.rotation import DiscRotation, disc_rotation, hall_pulse_times, revolutions_at
 from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
-from sonolube.measurement.friction.stick_slip import StickSlipEstimate, estimate_stick_slip
+from sonolube.measurement.friction.stick_slip import estimate_stick_slip
+from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate
 from sonolube.measurement.friction.voltage_steps import (
     VoltageStep,
     friction_at_voltage_steps,
     rotation_speed_at_voltage_steps,
-    voltage_envelope,
 )
 from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, window_statistics
 from sonolube.measurement.friction.wobble import WobbleCorrection, remove_wobble
+from sonolube.measurement.recorded_sliding import recorded_voltage, speed_changes, speed_of_one_direction
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -135,14 +137,11 @@ def analyse_running_in(
     Returns
     -------
     RunningIn
+        After D 2.3.3, Table 2.3.
 
     See Also
     --------
     steady_state_onset : of arrays.
-
-    References
-    ----------
-    .. [1] D 2.3.3, Table 2.3.
     """
     windows = analyse_windows(recording, window_duration=window_duration)
     friction, fluctuation = (
@@ -165,7 +164,7 @@ def analyse_voltage_steps(
     Parameters
     ----------
     recording : xarray.Dataset
-        With `friction_force`, and `voltage_peak_to_peak` or the alternating `stack_voltage`.
+        With `friction_force`, and `voltage_peak_to_peak` or `stack_voltage`; a channel of the speed tells rest.
     shortest_step : float
         Duration in seconds below which a level is a transition, not a step.
     settling_time : float
@@ -198,6 +197,7 @@ def analyse_voltage_steps(
         shortest_step=shortest_step,
         settling_time=settling_time,
         revolutions=revolutions if rotation_speed is None else rotation_speed * (t - t[0]),
+        sliding_speed=speed_of_one_direction(recording),
     )
 
 
@@ -212,7 +212,10 @@ def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:
     Returns
     -------
     float or None
+        None, too, where a channel shows that the speed changes.
     """
+    if speed_changes(recording):
+        return None
     return rotation_speed_at_voltage_steps(
         time=channel_values(recording, "time"),
         friction_force=channel_values(recording, "friction_force"),
@@ -221,11 +224,9 @@ def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:
 
 
 def _voltage(recording: "xr.Dataset") -> Floats:
-    """Return the peak-to-peak voltage of a recording, from the alternating voltage where it is not recorded."""
-    if "voltage_peak_to_peak" in recording:
-        return channel_values(recording, "voltage_peak_to_peak")
-    stack_voltage = channel_values(recording, "stack_voltage")
-    return voltage_envelope(time=channel_values(recording, "time"), stack_voltage=stack_voltage)
+    """Return the peak-to-peak voltage of a recording; refuse one without, with the channels it has."""
+    voltage = recorded_voltage(recording)
+    return channel_values(recording, "stack_voltage") if voltage is None else voltage
 
 
 def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
@@ -250,10 +251,9 @@ def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
     """
     time, force = channel_values(recording, "time"), channel_values(recording, "friction_force")
     velocity = channel_values(recording, "relative_velocity")
-    try:
+    loops = None
+    with suppress(InvalidInput):  # of a single stroke, such as a rod pulled through a ring
         loops = friction_loops(time=time, friction_force=force, relative_velocity=velocity)
-    except InvalidInput:  # a single stroke, such as a rod pulled through a ring
-        loops = None
     work = friction_work(time=time, friction_force=force, relative_velocity=velocity)
     return FrictionCycles(work=work, loops=loops)
 
@@ -264,7 +264,7 @@ def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = 
     Parameters
     ----------
     recording : xarray.Dataset
-        With `friction_force`, without gaps.
+        With `friction_force`; it is cut at gaps.
     minimum_drop : float or None
         Smallest mean fall, in N, that counts as stick-slip.
 

@@ -1,12 +1,20 @@
 """Validation of sampled signals: increasing time, equal lengths, and a uniform sample interval."""
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.ndimage import median_filter, uniform_filter1d
 
 from sonolube.checks import Complexes, Floats, require_finite
 from sonolube.errors import InvalidInput
 
 _INTERVAL_TOLERANCE = 0.05  # relative deviation of a sample interval from the mean
+_LOCAL = 31  # intervals over which their local median is taken
+_GAP = 2.5  # local medians, above which an interval is a gap
+_OTHER_RATE = 1.5  # ratio of the local intervals from which the rate has changed
+_SAME_RATE = 0.01  # relative deviation of the mean intervals of stretches of one rate
+_ROUNDED = 1.0  # intervals by which a rounded clock deviates
 
 
 def require_time_series(*, time: ArrayLike, **signals: ArrayLike) -> tuple[Floats, ...]:
@@ -89,3 +97,67 @@ def uniform_sample_interval(*, time: Floats) -> float:
         at = float(time[int(np.argmax(uneven))])
         raise InvalidInput(f"time must be evenly spaced; after {at:.6g} s samples were dropped or the rate changes")
     return interval
+
+
+def even_stretches(*, time: Floats, fewest: int) -> tuple[float, list[slice]]:
+    """Sample interval of a recording, and the stretches that are sampled at it without a gap.
+
+    Parameters
+    ----------
+    time : ndarray, shape (samples,)
+        Increasing. [s]
+    fewest : int
+        Samples of a stretch; shorter ones are left out.
+
+    Returns
+    -------
+    float
+        Mean interval of the longest stretch. [s]
+    list of slice
+        Empty where there is none.
+
+    Notes
+    -----
+    A stretch ends where an interval exceeds 2.5 local medians, or where their median changes by half. A clock that was
+    rounded or that jitters by less than that is even on average; stretches of other rates are left out.
+    """
+    interval = np.diff(time)
+    if interval.size < fewest - 1:
+        return float(np.median(interval)), []
+    local = median_filter(interval, _LOCAL, mode="nearest")
+    mean = uniform_filter1d(np.minimum(interval, _GAP * local), _LOCAL, mode="nearest")
+    later = np.roll(mean, -_LOCAL)
+    later[-_LOCAL:] = mean[-1]
+    is_cut = (interval > _GAP * local) | (np.abs(np.log(later / mean)) > np.log(_OTHER_RATE))
+    edges = np.concatenate([[0], np.flatnonzero(is_cut) + 1, [time.size]])
+    found = [slice(int(a), int(b)) for a, b in pairwise(edges) if b - a >= fewest]
+    if not found:
+        return float(np.median(interval)), []
+    rates = [float(time[part][-1] - time[part][0]) / (part.stop - part.start - 1) for part in found]
+    own = rates[int(np.argmax([part.stop - part.start for part in found]))]
+    return own, [part for part, rate in zip(found, rates, strict=True) if abs(rate / own - 1) < _SAME_RATE]
+
+
+def evenly_sampled(*, time: Floats, signal: Floats, sample_interval: float) -> tuple[Floats, Floats]:
+    """Stretch of a signal at even times: as it is where they are, else interpolated between its samples.
+
+    Parameters
+    ----------
+    time : ndarray, shape (samples,)
+        Increasing, without gaps. [s]
+    signal : ndarray, shape (samples,)
+        Without missing values.
+    sample_interval : float
+        [s]
+
+    Returns
+    -------
+    tuple of ndarray
+        Time and signal. Times that deviate from even ones by less than an interval are a rounded clock: the samples
+        stay as they are.
+    """
+    even = np.linspace(time[0], time[-1], time.size)
+    if np.max(np.abs(time - even)) < _ROUNDED * sample_interval:
+        return even, signal
+    even = np.arange(time[0], time[-1] + sample_interval / 2, sample_interval)
+    return even, np.interp(even, time, signal)

@@ -16,7 +16,7 @@ discrepancy instead of the noise.
 """
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from math import erfc, sqrt
 from statistics import NormalDist
 from typing import Final
@@ -74,6 +74,7 @@ POPULATION_PRIOR: Final = Prior()
 """Prior with decay lengths unknown: weak, and the same for every way that was compared."""
 
 
+@lru_cache(maxsize=8)
 def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
     r"""Standard normal numbers that fill the space more evenly than random ones.
 
@@ -87,6 +88,7 @@ def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
     Returns
     -------
     ndarray, shape (count, columns)
+        Not writable, since it is kept for the next call.
 
     Notes
     -----
@@ -106,7 +108,9 @@ def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
     quantile = (
         NormalDist().inv_cdf
     )  # of the standard library, since importing scipy.special takes as long as predicting
-    return np.array([quantile(share) for share in shares.ravel().tolist()]).reshape(shares.shape)
+    normals = np.array([quantile(share) for share in shares.ravel().tolist()]).reshape(shares.shape)
+    normals.flags.writeable = False
+    return normals
 
 
 def log_hyperprior(closure: Closure, hyperparameters: Floats, prior: Prior = POPULATION_PRIOR) -> Floats:

@@ -22,6 +22,7 @@ _OUTCOMES: Final = 24  # of a measurement, over which the width is averaged
 _RUN: Final = 0.05  # standard uncertainty of the ratio of one run
 _FARTHER: Final = 2.0  # speed of the other point over that of the rig
 _STIFFNESS: Final = (0.3, 0.1)  # standard deviations of the logarithm of a measured contact stiffness
+_TAILS: Final = np.array([0.1, 0.9])  # probabilities of the ends of the interval
 _NARROWEST: Final = 1e-6
 
 
@@ -118,12 +119,13 @@ def expected_width(target: Floats, *, observed: Floats, noise: float) -> float:
     values, known = target[order], observed[order]
     jitter = noise * np.random.default_rng(8).standard_normal(observed.size)
     outcomes = np.quantile(observed + jitter, (np.arange(_OUTCOMES) + 0.5) / _OUTCOMES)
-    logs = -0.5 * ((outcomes[:, None] - known) / noise) ** 2
-    weights = np.exp(logs - logs.max(axis=1, keepdims=True))
-    cumulative = np.cumsum(weights, axis=1)
-    cumulative /= cumulative[:, -1:]
-    ends = [values[np.minimum([np.searchsorted(each, p) for each in cumulative], values.size - 1)] for p in (0.1, 0.9)]
-    return float(np.mean(ends[1] - ends[0]))
+    deviations = outcomes[:, None] / noise - known / noise
+    logs = np.multiply(deviations, -0.5 * deviations, out=deviations)
+    logs -= logs.max(axis=1, keepdims=True)
+    cumulative = np.cumsum(np.exp(logs, out=logs), axis=1, out=logs)
+    ends = [each.searchsorted(each[-1] * _TAILS) for each in cumulative]
+    low, high = values[np.minimum(ends, values.size - 1)].T
+    return float(np.mean(high - low))
 
 
 def width(draws: Floats) -> float:

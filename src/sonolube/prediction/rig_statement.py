@@ -1,5 +1,6 @@
 """Prediction of a rig in words: its outcome, what to measure, what limits it, and its caveats."""
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -11,10 +12,10 @@ from sonolube.prediction.laboratory import Laboratory
 from sonolube.prediction.own_runs import OwnRuns
 from sonolube.prediction.predictive import RigPrediction
 from sonolube.prediction.run_check import RunCheck
-from sonolube.prediction.scores import central_interval
+from sonolube.prediction.scores import PROBABILITIES, central_interval
 from sonolube.prediction.wear_statement import pair_of, wear_statement, worn_body
 from sonolube.rig import Rig
-from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,8 +41,19 @@ def interval(prediction: "xr.Dataset | LabelledArrays", name: str, probability: 
     low, high : float
         In the unit of the quantity.
     """
-    low, high = central_interval(prediction[name].to_numpy(), probability)
+    values = prediction[name]
+    if isinstance(values, LabelledArray) and probability in PROBABILITIES:
+        return _intervals(values)[probability]
+    low, high = central_interval(values.to_numpy(), probability)
     return float(low), float(high)
+
+
+@lru_cache(maxsize=16)
+def _intervals(values: LabelledArray) -> dict[float, tuple[float, float]]:
+    """Intervals of the draws of a quantity by their probability, which sentences, rows and JSON ask for in turn."""
+    ends = [end for probability in PROBABILITIES for end in ((1 - probability) / 2, (1 + probability) / 2)]
+    found = np.quantile(values.to_numpy(), ends).tolist()
+    return {probability: (found[2 * at], found[2 * at + 1]) for at, probability in enumerate(PROBABILITIES)}
 
 
 def statement(prediction: "xr.Dataset | LabelledArrays") -> tuple[str, ...]:

@@ -8,8 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics import modes, with_contact_spring
-from sonolube.rig import Rig
+from sonolube.models.dynamics import Structure, modes, with_contact_spring
 from sonolube.units import format_si
 
 _RESOLVED = 3.0  # shift over its standard uncertainty
@@ -65,13 +64,21 @@ class Probe:
 
 
 def stiffness_probes(
-    rig: Rig, *, decay_length: ArrayLike, resolution: float = 1 / 50, modal_mass_deviation: float = 0.1
+    structure: Structure,
+    *,
+    normal_load: float,
+    decay_length: ArrayLike,
+    resolution: float = 1 / 50,
+    modal_mass_deviation: float = 0.1,
 ) -> tuple[Probe, ...]:
-    r"""Resonances of a rig whose shift between free and pressed tells the stiffness of its contact.
+    r"""Resonances of a structure whose shift between free and pressed tells the stiffness of its contact.
 
     Parameters
     ----------
-    rig : Rig
+    structure : Structure
+        Of the rig, without its contact.
+    normal_load : float
+        Force pressing the bodies together. [N]
     decay_length : array_like, shape (n,)
         Decay lengths of the contact's force to compare; the stiffness is load over decay length. [m]
     resolution : float
@@ -82,7 +89,7 @@ def stiffness_probes(
     Returns
     -------
     tuple of Probe
-        One a mode that moves the contact, in order of frequency; none for a rig without structure.
+        One a mode that moves the contact, in order of frequency.
 
     Raises
     ------
@@ -110,16 +117,14 @@ def stiffness_probes(
     require_non_negative(modal_mass_deviation=modal_mass_deviation)
     if lengths.ndim != 1:
         raise InvalidInput(f"decay_length must be a number or a list, got shape {lengths.shape}")
-    if rig.structure is None:
-        return ()
-    free = modes(rig.structure)
-    stiffness = rig.normal_load / lengths
+    free = modes(structure)
+    stiffness = normal_load / lengths
     at, upper, lower = (
-        [modes(with_contact_spring(rig.structure, normal_stiffness=float(k))) for k in stiffness * factor]
+        [modes(with_contact_spring(structure, normal_stiffness=float(k))) for k in stiffness * factor]
         for factor in (1.0, np.exp(_STEP), np.exp(-_STEP))
     )
     found = []
-    participation = np.abs(rig.structure.contact_vector @ free.shapes)
+    participation = np.abs(structure.contact_vector @ free.shapes)
     for mode in np.flatnonzero(participation > 1e-6 * participation.max()):
         pressed = np.array([one.natural_frequency[mode] for one in at])
         damping = np.array([one.damping_ratio[mode] for one in at])

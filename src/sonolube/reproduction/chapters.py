@@ -47,6 +47,7 @@ from sonolube.reproduction.friction_models.friction_test_rows import (
 )
 from sonolube.reproduction.friction_models.mechanisms import mechanism_figures
 from sonolube.reproduction.friction_models.variant_figures import variant_figures
+from sonolube.reproduction.row import Row
 from sonolube.reproduction.section import ChapterFigure, Reproduction, Section
 from sonolube.validation.comparison import ComparedFit, compare_models
 from sonolube.validation.figures import comparison_figures
@@ -106,13 +107,17 @@ SECTIONS: Final = (
 """All reproduced sections: those of the chapters, then the friction models on the friction tests of all chapters."""
 
 
-def reproduction(*, chapter: int | None = None) -> Reproduction:
+def reproduction(
+    *, chapter: int | None = None, advance: Callable[[str, int, int], None] = lambda what, done, total: None
+) -> Reproduction:
     """Return the findings on the claims, and the published numbers beside the computed ones, with figures.
 
     Parameters
     ----------
     chapter : int, optional
         Only this chapter; all chapters where absent.
+    advance : callable
+        Called with the section that is computed, the number of steps done and their total.
 
     Returns
     -------
@@ -127,14 +132,17 @@ def reproduction(*, chapter: int | None = None) -> Reproduction:
     if chapter is not None and chapter not in chapters:
         raise UnknownName.among(map(str, chapters), kind="chapter", name=str(chapter))
     chosen = [section for section in SECTIONS if chapter in (None, section.chapter)]
-    rows = tuple(row for section in chosen for row in section.rows())
+    rows: list[Row] = []
+    figures: list[ChapterFigure] = []
+    for done, section in enumerate(chosen):
+        advance(f"section {section.number}", done, 2 * len(chosen))
+        rows += section.rows()
+    for done, section in enumerate(chosen, start=len(chosen)):
+        advance(f"figures of section {section.number}", done, 2 * len(chosen))
+        figures += (ChapterFigure(chapter=section.chapter, **asdict(figure)) for figure in section.figures())
     return Reproduction(
-        findings=findings(rows),
-        rows=rows,
-        figures=tuple(
-            ChapterFigure(chapter=section.chapter, **asdict(figure))
-            for section in chosen
-            for figure in section.figures()
-        ),
+        findings=findings(tuple(rows)),
+        rows=tuple(rows),
+        figures=tuple(figures),
         caveats=() if chapter == 3 else (roughness_caveat(),),
     )

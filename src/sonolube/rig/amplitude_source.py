@@ -7,9 +7,8 @@ from functools import lru_cache
 import numpy as np
 
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.models.actuator import Drive
 from sonolube.models.contact import RoughContact, separation
-from sonolube.models.dynamics import Status, Structure, steady_state
+from sonolube.models.dynamics import Status, Structure, static_contact, steady_state
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_harmonics
 from sonolube.rig.linear_response import gap_law_of
@@ -148,30 +147,33 @@ def moved_rig(rig: Rig) -> DrivenRig:
     return used.driven
 
 
-def source_caveats(rig: Rig) -> tuple[str, ...]:
+def source_caveats(rig: Rig, *, taken: AmplitudeSource, vibration_amplitude: float) -> tuple[str, ...]:
     """Return a line where the amplitudes of two sources of a rig differ by more than their error, at its own drive.
 
     Parameters
     ----------
     rig : Rig
+    taken : {"measured", "computed", "waveguide", "per-volt"}
+        Source by which the rig vibrates.
+    vibration_amplitude : float
+        By that source. [m]
 
     Returns
     -------
     tuple of str
     """
-    taken = resolved_vibration(rig).source
-    found = {source: _amplitude_by(rig, source) for source in available_sources(rig)}
-    own = found.pop(taken)
+    found = {source: _amplitude_by(rig, source) for source in available_sources(rig) if source != taken}
+    error = {source: AMPLITUDE_ERROR * max(other, vibration_amplitude) for source, other in found.items()}
     others = [
         f"{source} {format_si(found[source], 'm')}"
         for source in AMPLITUDE_SOURCES
-        if source in found and abs(found[source] - own) > AMPLITUDE_ERROR * max(found[source], own)
+        if source in found and abs(found[source] - vibration_amplitude) > error[source]
     ]
     if not others:
         return ()
     return (
         f"the amplitudes differ by more than their error of {100 * AMPLITUDE_ERROR:.0f} %: {taken}"
-        f" {format_si(own, 'm')}, taken here, and {', '.join(others)}",
+        f" {format_si(vibration_amplitude, 'm')}, taken here, and {', '.join(others)}",
     )
 
 
@@ -305,16 +307,23 @@ def _calibrated(rig: DrivenRig) -> DrivenRig:
 
 @dataclass(frozen=True, kw_only=True)
 class _Excited:
-    """A rig under a voltage, frequency and load; it counts by what gives its motion."""
+    """A rig under a voltage, frequency and load; it counts by what gives its motion.
+
+    The offset of the voltage is left out where no constant voltage moves the contact.
+    """
 
     rig: DrivenRig = field(compare=False)
     voltage_peak_to_peak: float
     frequency: float
     normal_load: float
-    by: tuple[Structure, RoughContact, Drive] = field(init=False)
+    voltage_offset: float = field(init=False)
+    by: tuple[Structure, RoughContact, str, tuple[float, ...] | None] = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "by", (self.rig.structure, self.rig.contact, self.rig.drive))
+        rig, drive = self.rig, self.rig.drive
+        ratio = drive.offset_ratio if static_contact(rig.structure).displacement_per_volt else 0.0
+        object.__setattr__(self, "voltage_offset", ratio * self.voltage_peak_to_peak)
+        object.__setattr__(self, "by", (rig.structure, rig.contact, drive.waveform, drive.waveform_samples))
 
     @classmethod
     def by_own_drive(cls, rig: DrivenRig) -> "_Excited":
@@ -351,8 +360,9 @@ def _amplitude(excited: _Excited, scale: float) -> float:
         normal_load=load,
         frequency=excited.frequency,
         voltage_harmonics=scale * voltage_harmonics(rig.drive, voltage_peak_to_peak=volts),
-        voltage_offset=rig.drive.offset_ratio * volts,
+        voltage_offset=excited.voltage_offset,
         separation=separation(rig.contact, normal_load=load),
         relative_tolerance=1e-8,
+        stability=False,
     )
     return float("nan") if states.status == Status.NOT_CONVERGED else float(states.vibration_amplitude)

@@ -109,7 +109,8 @@ def simulate(rig: Rig) -> Simulation:
     A motion that does not repeat gives the mean over periods of the drive, segment by segment.
     """
     rest_separation(rig)
-    used, vibration = resolved_vibration(rig), steady_vibration(rig)
+    used = resolved_vibration(rig)
+    vibration = steady_vibration(rig, used)
     origin, caveats = _origin(vibration), _caveats(rig, used, vibration)
     friction = _friction_point(rig, vibration, origin, caveats)
     caveats = (*caveats, *ratio_caveats(friction_ratio=friction.friction_ratio))
@@ -152,7 +153,7 @@ def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
     chosen = rig if model is None else replace(rig, friction_model=friction_model_named(rig, model))
     used = resolved_vibration(chosen)
     try:
-        vibration = steady_vibration(chosen)
+        vibration = steady_vibration(chosen, used)
     except OutsideRange as refusal:
         if used.driven is not None:
             raise
@@ -195,7 +196,8 @@ def wear_point(rig: Rig, *, model: str | None = None) -> WearPoint:
     rest_separation(rig)
     name = wear_model_of(rig) if model is None else model
     WEAR_MODELS.named(name)
-    used, vibration = resolved_vibration(rig), steady_vibration(rig)
+    used = resolved_vibration(rig)
+    vibration = steady_vibration(rig, used)
     caveats = _caveats(rig, used, vibration)
     return _wear_point(rig, vibration, name, caveats, None, is_chosen=model is not None)
 
@@ -220,7 +222,7 @@ def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction
     """
     used = resolved_vibration(rig)
     try:
-        vibration = steady_vibration(rig)
+        vibration = steady_vibration(rig, used)
     except OutsideRange as refusal:
         if used.driven is not None:
             raise
@@ -253,7 +255,8 @@ def operating_caveats(rig: Rig) -> tuple[str, ...]:
         Of contact, amplitude, stack and gap; empty where the rig has no operating point.
     """
     try:
-        return _caveats(rig, resolved_vibration(rig), steady_vibration(rig))
+        used = resolved_vibration(rig)
+        return _caveats(rig, used, steady_vibration(rig, used))
     except SonolubeError:
         return ()
 
@@ -342,7 +345,7 @@ def _caveats(rig: Rig, used: ResolvedVibration, vibration: SteadyVibration) -> t
     """Return the caveats of contact, amplitude, stack and gap."""
     return (
         *resting_caveats(rig, vibration_amplitude=vibration.vibration_amplitude),
-        *source_caveats(rig),
+        *source_caveats(rig, taken=used.source, vibration_amplitude=vibration.vibration_amplitude),
         *([] if used.driven is None else _stack_caveats(used.driven, vibration)),
     )
 

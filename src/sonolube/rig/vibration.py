@@ -93,12 +93,14 @@ class SteadyVibration:
     gap_closed: bool
 
 
-def steady_vibration(rig: Rig) -> SteadyVibration:
+def steady_vibration(rig: Rig, used: ResolvedVibration | None = None) -> SteadyVibration:
     """Return the steady vibration of a rig by the source of its amplitude, after transients have decayed.
 
     Parameters
     ----------
     rig : Rig
+    used : ResolvedVibration, optional
+        Source of the amplitude, where the caller has resolved it.
 
     Returns
     -------
@@ -117,7 +119,7 @@ def steady_vibration(rig: Rig) -> SteadyVibration:
     A periodic vibration of a structure that is stable and the only one found is the answer. Otherwise the rig is
     marched in time from rest, with the start-up ramp of its drive, until transients have decayed.
     """
-    used = resolved_vibration(rig)
+    used = used or resolved_vibration(rig)
     found = _sine(rig, used) if used.driven is None else _of_structure(used.driven)
     return replace(found, amplitude_source=used.source, amplitude_origin=used.text)
 

@@ -69,7 +69,7 @@ def test_a_group_is_measured_and_a_wrong_one_refused(tmp_path: Path, capsys: pyt
             ]
         )
     measured(capsys, path, code=2)
-    assert measured(capsys, path, "--group", "slow")[0]["values"]["friction_force"]["value"] == approx(0.8)
+    assert measured(capsys, path, "--group", "slow")[0]["values"]["mean_force"]["value"] == approx(0.8)
     assert measured(capsys, path, "--channel", "fast/friction_force")[0]["source"]["samples"] == "1000"
     measured(capsys, path, "--group", "medium", code=2)
 

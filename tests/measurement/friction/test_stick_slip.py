@@ -1,9 +1,12 @@
 """Stick-slip of signals with known frequency and amplitude."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import xarray as xr
 from pytest import approx, raises
+from scipy.signal import lfilter
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.stick_slip import estimate_stick_slip
@@ -32,11 +35,90 @@ def test_stick_slip_of_a_sawtooth_has_its_frequency_and_height(rate: float) -> N
     assert found.stick_slip_amplitude == approx(0.25, rel=0.01)
 
 
-def test_the_hundred_hertz_of_figure_2_17_are_detected_at_its_sampling_rate() -> None:
+def test_the_hundred_hertz_of_figure_2_17_cannot_be_seen_at_its_sampling_rate() -> None:
     t = seconds(2)
     found = analyse_stick_slip(recording(t, friction_force=1 + 0.28 * np.sin(2 * np.pi * 99 * t)))
+    assert not found.detected
+    assert not found.resolved
+    assert found.spectral_frequency == approx(99, rel=0.01)
+    assert "cannot be seen at this rate: the force swings at 99 Hz, 4 samples a period" in found.reason
+
+
+def swinging(*, speed: float, rate: float, duration: float, seed: int = 1) -> tuple[np.ndarray, np.ndarray, float]:
+    """Stick-slip of 50 g on 20 kN/m by the closed form of the slip, in noise of 30 mN; and the range of its force."""
+    stiffness, pulse, excess = 20e3, np.sqrt(20e3 / 0.05), 0.315
+    pull = stiffness * speed
+    slip = 2 / pulse * (np.pi - np.arctan(pulse * excess / pull))
+    period = slip + 2 * excess / pull
+    t = seconds(duration, rate)
+    since = (t + 0.0031) % period
+    swing = excess * np.cos(pulse * since) + pull / pulse * np.sin(pulse * since)
+    force = np.where(since < slip, swing, pull * (since - slip) - excess)
+    noise = 0.03 * np.random.default_rng(seed).standard_normal(t.size)
+    return t, 0.9 + force + noise, 2 * float(np.hypot(excess, pull / pulse))
+
+
+@pytest.mark.parametrize("duration", [1.5, 4.4, 20.0])
+@pytest.mark.parametrize("rate", [600.0, 1000.0, 10_000.0])
+@pytest.mark.parametrize("speed", [1e-3, 5e-3, 10e-3, 20e-3])
+def test_stick_slip_is_found_at_any_speed_rate_and_duration(speed: float, rate: float, duration: float) -> None:
+    t, force, span = swinging(speed=speed, rate=rate, duration=duration)
+    found = estimate_stick_slip(time=t, friction_force=force)
     assert found.detected
-    assert found.stick_slip_frequency == approx(99, rel=0.01)
+    assert found.stick_slip_amplitude == approx(span, rel=0.04)
+    lower, upper = found.stick_slip_amplitude_interval
+    assert lower < found.stick_slip_amplitude < upper <= np.ptp(force)
+    assert lower - 0.02 * span < span < upper + 0.01 * span
+    assert found.stick_slip_fraction > 0.9
+
+
+@pytest.mark.parametrize("speed", [10e-3, 20e-3])
+def test_below_six_samples_a_period_stick_slip_is_neither_found_nor_excluded(speed: float) -> None:
+    t, force, _ = swinging(speed=speed, rate=400.0, duration=4.4)
+    found = estimate_stick_slip(time=t, friction_force=force)
+    assert (found.detected, found.resolved) == (False, False)
+
+
+def test_a_longer_recording_of_jittering_slips_is_no_weaker_evidence() -> None:
+    rng, rate = np.random.default_rng(6), 5000.0
+    t = seconds(20, rate)
+    slips = np.cumsum(0.02 * (1 + 0.03 * rng.standard_normal(1100)))
+    force = 0.16 * ((t - np.concatenate([[0], slips])[np.searchsorted(slips, t)]) / 0.02 - 0.5)
+    force += 0.08 * rng.standard_normal(t.size)
+    for samples in (7500, 22_000, 50_000, t.size):
+        found = estimate_stick_slip(time=t[:samples], friction_force=force[:samples])
+        assert found.detected
+        assert found.stick_slip_frequency == approx(50, rel=0.02)
+
+
+NOISE: dict[str, Callable[[np.random.Generator, int], np.ndarray]] = {
+    "random walk": lambda rng, n: np.cumsum(rng.standard_normal(n)),
+    "white": lambda rng, n: rng.standard_normal(n),
+    "1/f": lambda rng, n: np.fft.irfft(
+        np.concatenate([[0], np.arange(1, n // 2 + 1) ** -0.5])
+        * (rng.standard_normal(n // 2 + 1) + 1j * rng.standard_normal(n // 2 + 1)),
+        n,
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", NOISE)
+def test_noise_has_a_positive_frequency_and_no_stick_slip(kind: str) -> None:
+    for seed in range(40):
+        rng, rate = np.random.default_rng([99, seed]), (400, 1000, 2000)[seed % 3]
+        t = seconds((2, 4, 10)[seed % 3], rate)
+        found = estimate_stick_slip(time=t, friction_force=10 + NOISE[kind](rng, t.size))
+        assert not found.detected
+        assert 0 < found.spectral_frequency <= rate / 2
+
+
+def test_a_resonance_in_noise_is_no_cycle_however_narrow() -> None:
+    for damping in (0.02, 0.005):
+        pole = np.exp((-damping + 1j) * 2 * np.pi * 100 / 1000)
+        for seed in range(10):
+            drive = np.random.default_rng(seed).standard_normal(12_000)
+            force = lfilter([1.0], [1.0, -2 * pole.real, abs(pole) ** 2], drive)[2000:]
+            assert not estimate_stick_slip(time=seconds(10, 1000), friction_force=50 + force).detected
 
 
 def test_noise_is_not_detected_as_stick_slip() -> None:
@@ -48,10 +130,33 @@ def test_noise_is_not_detected_as_stick_slip() -> None:
     assert "spectrum peaks" in found.reason
 
 
-def test_stick_slip_in_a_recording_with_a_gap_is_refused_with_its_time() -> None:
-    t = np.delete(seconds(10), slice(1000, 1003))
-    with raises(InvalidInput, match=r"after 2\.4975 s samples were dropped"):
-        estimate_stick_slip(time=t, friction_force=np.sin(t))
+def test_a_gap_is_cut_out_and_what_stands_before_and_after_it_is_used() -> None:
+    t = seconds(10, 1000)
+    force = 1 + 0.25 * ((8 * t) % 1) + 0.01 * np.random.default_rng(3).standard_normal(t.size)
+    kept = np.delete(np.arange(t.size), slice(4000, 5500))
+    found = estimate_stick_slip(time=t[kept], friction_force=force[kept])
+    assert found.detected
+    assert found.stick_slip_frequency == approx(8, rel=0.01)
+    assert found.stick_slip_amplitude == approx(0.25, rel=0.02)
+    assert [burst.start_time < 4.0 for burst in found.bursts] == [True, False]
+    assert not any(burst.start_time < 4.0 < burst.end_time - 0.2 for burst in found.bursts)
+    missing = np.where((t >= 4) & (t < 5.5), np.nan, force)
+    assert estimate_stick_slip(time=t, friction_force=missing).force_drops == found.force_drops
+
+
+@pytest.mark.parametrize("kind", ["rounded", "jittering"])
+def test_an_uneven_clock_is_made_even(kind: str) -> None:
+    t = seconds(10, 600)
+    force = 1 + 0.25 * ((8 * t) % 1) + 0.01 * np.random.default_rng(3).standard_normal(t.size)
+    clock = np.round(t, 3) if kind == "rounded" else t + 5e-4 * np.random.default_rng(4).uniform(-1, 1, t.size)
+    found = estimate_stick_slip(time=clock, friction_force=force)
+    assert found.stick_slip_frequency == approx(8, rel=0.01)
+    assert found.stick_slip_amplitude == approx(0.25, rel=0.03)
+
+
+def test_too_few_even_samples_are_refused() -> None:
+    with raises(InvalidInput, match="100 samples without an even stretch of 64"):
+        estimate_stick_slip(time=np.cumsum(np.where(np.arange(100) % 30, 1.0, 9.0)), friction_force=np.ones(100))
 
 
 def sawtooth(rng: np.random.Generator, t: np.ndarray, *, noise: float) -> np.ndarray:

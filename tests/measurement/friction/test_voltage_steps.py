@@ -1,10 +1,10 @@
 """Friction at the voltage steps of D 4.1.2, found in recordings made of Table 4.2."""
 
 import numpy as np
+import pytest
 import xarray as xr
-from pytest import approx, raises
+from pytest import approx
 
-from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.voltage_steps import (
     VoltageStep,
     friction_at_voltage_steps,
@@ -63,10 +63,62 @@ def test_a_short_voltage_disturbance_begins_no_step() -> None:
     assert len(steps) == 6
 
 
-def test_voltage_steps_without_one_at_zero_voltage_are_refused() -> None:
+def test_voltage_steps_without_one_at_zero_voltage_have_friction_but_no_reduction() -> None:
     t, force, volts = published_voltage_steps()
-    with raises(InvalidInput, match="no step without voltage; the lowest is 5"):
-        friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts + 5)
+    steps = friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts + 5)
+    assert [step.friction_force for step in steps] == approx(list(FORCES))
+    assert [step.friction_reduction for step in steps] == 6 * [None]
+
+
+def after_rest(seed: int = 3) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Coast-down for 0.3 s, rest to 2 s, a break-away peak, sliding to 32 s with steps from 12 s on, rest to 50 s."""
+    t = seconds(50)
+    volts = np.select([(t >= 12) & (t < 22), (t >= 22) & (t < 32)], [10.0, 20.0], 0.0)
+    level = 0.9 * np.select([volts == 10, volts == 20], [0.6, 0.05], 1.0)
+    moving = (t < 0.3) | ((t >= 2) & (t < 32))
+    force = np.where(moving, level, 0.0) + np.where((t >= 2) & (t < 2.05), 0.4, 0.0)
+    force += 0.03 * np.random.default_rng(seed).standard_normal(t.size)
+    return t, force, volts, moving
+
+
+@pytest.mark.parametrize("told_by", ["force", "measured speed", "motor as set"])
+def test_rest_and_break_away_are_no_friction_without_vibration(told_by: str) -> None:
+    t, force, volts, moving = after_rest()
+    channels = {"measured speed": {"sliding_speed": 0.02 * moving}, "motor as set": {"motor_on": 1.0 * moving}}
+    given = recording(t, friction_force=force, voltage_peak_to_peak=volts, **channels.get(told_by, {}))
+    steps = analyse_voltage_steps(given)
+    assert [step.voltage_peak_to_peak for step in steps] == [0, 10, 20]
+    assert steps[0].start_time == approx(2, abs=0.1)
+    assert steps[-1].end_time == approx(32, abs=0.15)
+    assert [step.friction_force for step in steps] == approx([0.9, 0.54, 0.045], abs=0.005)
+    assert [step.friction_reduction for step in steps[1:]] == approx([0.4, 0.95], abs=0.01)
+    assert not any(step.stick_slip.detected for step in steps)
+
+
+def test_a_step_at_which_vibration_leaves_almost_no_friction_is_no_rest() -> None:
+    t, force, volts, _ = after_rest()
+    force = np.where(volts == 20, 0.0, force)
+    steps = friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts)
+    assert steps[-1].friction_reduction == approx(1.0, abs=1e-3)
+
+
+def test_a_change_of_the_speed_begins_a_step_with_its_own_reduction() -> None:
+    t = seconds(40)
+    volts, speed = np.where((t // 10) % 2 == 1, 20.0, 0.0), np.where(t < 20, 0.02, 0.06)
+    level = np.select([t < 10, t < 20, t < 30], [0.9, 0.45, 0.6], 0.48)
+    force = level + 0.02 * np.random.default_rng(5).standard_normal(t.size)
+    given = recording(t, friction_force=force, voltage_peak_to_peak=volts, sliding_speed_set=speed)
+    steps = analyse_voltage_steps(given)
+    assert [step.sliding_speed for step in steps] == approx([0.02, 0.02, 0.06, 0.06])
+    assert [step.friction_reduction for step in steps] == [None, approx(0.5, abs=0.01), None, approx(0.2, abs=0.01)]
+
+
+def test_noise_of_the_channel_of_the_voltage_is_no_step() -> None:
+    rng, t = np.random.default_rng(8), seconds(40)
+    force, monitor = 0.9 + 0.03 * rng.standard_normal(t.size), 2e-3 * np.abs(rng.standard_normal(t.size))
+    (step,) = friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=monitor)
+    assert step.friction_reduction is None
+    assert step.friction_force == approx(0.9, abs=0.005)
 
 
 def test_the_envelope_of_a_sine_is_its_peak_to_peak_value() -> None:

@@ -97,4 +97,4 @@ def test_a_format_is_added_by_one_file_and_one_line_of_the_table(copied_package:
     )
     (result,) = json.loads(answer.stdout)["results"]
     assert result["source"]["format"] == "toy"
-    assert result["values"]["friction_force"]["value"] == approx(1.0)
+    assert result["values"]["mean_force"]["value"] == approx(1.0)

@@ -66,7 +66,7 @@ def test_friction_in_python_is_the_answer_of_the_program(recording: Path, capfd:
 
 def test_the_conditions_of_the_test_are_printed_below_its_numbers(recording: Path) -> None:
     text = measure.friction(recording, test_sheet=SHEET).text()
-    assert text.index("Friction force") < text.index("Test parameters") < text.index("not stated")
+    assert text.index("Mean force of the whole recording") < text.index("Test parameters") < text.index("not stated")
     assert "Test parameters" not in measure.friction(recording).text()
 
 
@@ -201,11 +201,11 @@ def test_many_files_are_one_dataset_with_a_place_for_each(recording: Path, tmp_p
     one, other = answer.object()["results"]
     with xr.open_dataset(path, engine="h5netcdf") as data:
         assert list(data["sheet"].values) == ["friction.csv", "stairs.csv"]
-        for name, unit in (("friction_force", "N"), ("friction_force_deviation", "N")):
+        for name, unit in (("mean_force", "N"), ("friction_force_deviation", "N")):
             expected = [each["values"][name]["value"] for each in (one, other)]
             assert list(data[name].values) == expected
             assert data[name].attrs["units"] == unit
-        assert float(data["friction_force_uncertainty"][0]) == one["values"]["friction_force"]["uncertainty"]
+        assert float(data["mean_force_uncertainty"][0]) == one["values"]["mean_force"]["uncertainty"]
         assert np.isnan(data["stick_slip_steps"][0])  # the first file has no steps
         assert list(data["steps_sheet"].values) == 6 * ["stairs.csv"]
         assert list(data["source_sha256"].values) == [each["source"]["sha256"] for each in (one, other)]

@@ -17,7 +17,7 @@ DETECTION_SCORE = 20.0
 _SEGMENT = 0.5  # s, of the spectrum of the noise
 _LONGEST_PERIOD = 1.0  # s; slower sawteeth cannot be told from drift
 _SHORTEST_PERIOD = 2e-3  # s
-_SHORTEST_SAMPLES = 8  # of a period, below which its shape is not resolved
+_SHORTEST_SAMPLES = 6  # of a period, below which its shape is not resolved
 _SCALE_RATIO = np.sqrt(2)  # between the periods of neighbouring templates
 _GAPS = 0.6, 1.6  # shortest and longest time between slips over the period of the template
 _LARGEST_RESPONSE = 8.0  # counted of one slip, in standard deviations, so that no single step makes a chain
@@ -124,10 +124,11 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
     .. math:: z(t) = \frac{\mathcal{F}^{-1}[Y H^* / S]}{\sqrt{\sum |H|^2 / S}} .
 
     A chain of slips, with gaps of 0.6 to 1.6 periods, scores :math:`\sum (z^2/2 - c)`, found by dynamic programming,
-    for periods from eight samples to a quarter of the signal, and last for the median gap. What is symmetric in time
+    for periods from six samples to a quarter of the signal, and last for the median gap. What is symmetric in time
     (Gaussian noise of any colour, wobble, hum) scores equally for rises, :math:`-z`; their largest response in a median
-    period gives the cost c, and their score is deducted. Where nothing is found, S is taken as flat, for clear
-    stick-slip that fills the signal and would be part of its own noise.
+    period gives the cost c, and their score is deducted. Of periods that score enough, the one whose sawtooth explains
+    most of the signal counts: stick-slip that fills a long signal is part of its own noise, and wrong periods score
+    too. Where nothing is found, S is taken as flat, for clear stick-slip.
 
     References
     ----------
@@ -147,20 +148,35 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
 
 
 def _best_of_periods(signal: Floats, spectrum: Floats, periods: Sequence[int]) -> SlipChain:
-    """Return the chains of the template with the highest score, and then of that for their median gap."""
+    """Return the chains whose sawtooth holds the most power, and then those of the template for their median gap."""
     best = SlipChain(bursts=(), template_period=0, score=0.0)
+    most = 0.0
     size = 1 << int(np.ceil(np.log2(signal.size + 2 * periods[-1])))
     weight = 1 / np.interp(np.fft.rfftfreq(size), np.linspace(0, 0.5, spectrum.size), spectrum)
     weighted = np.fft.rfft(signal, size) * weight
     for period in periods:
         chain = _chain_of_period(weighted, weight, signal.size, size, period)
-        if chain.score > best.score:
-            best = chain
+        power = _sawtooth_power(signal, chain.bursts)
+        if power > most or (most == 0 and chain.score > best.score):
+            best, most = chain, power
     if not best.bursts:
         return best
     gap = round(float(np.median(np.concatenate([np.diff(burst) for burst in best.bursts]))))
     matched = _chain_of_period(weighted, weight, signal.size, size, min(max(gap, periods[0]), periods[-1]))
     return matched if matched.bursts else best
+
+
+def _sawtooth_power(signal: Floats, bursts: Sequence[Indices]) -> float:
+    """Return the sum of squares that a sawtooth rising between the slips explains; 0 where the force does not rise."""
+    if not bursts:
+        return 0.0
+    product, square = 0.0, 0.0
+    for burst in bursts:
+        gaps = np.repeat(np.diff(burst), np.diff(burst))
+        rise = (np.arange(burst[0], burst[-1]) + 0.5 - np.repeat(burst[:-1], np.diff(burst))) / gaps - 0.5
+        product += float(rise @ signal[burst[0] : burst[-1]])
+        square += float(rise @ rise)
+    return product**2 / square if product > 0 else 0.0
 
 
 def _periods(samples: int, interval: float) -> list[int]:

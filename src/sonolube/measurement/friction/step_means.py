@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from sonolube.checks import Floats
-from sonolube.measurement.friction.stick_slip import StickSlipEstimate
+from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate
 from sonolube.measurement.friction.wobble_search import (
     find_rotation_speed,
     harmonic_columns,
@@ -91,7 +91,7 @@ def sampled_parts(parts: Sequence[slice], *, time: Floats, friction_force: Float
 
 
 def wobble_columns(
-    parts: SampledParts, *, revolutions: Sequence[Floats] | None, harmonics: int
+    parts: SampledParts, *, revolutions: Sequence[Floats] | None, harmonics: int, places: Sequence[Floats] | None = None
 ) -> tuple[list[Floats] | None, float]:
     """Return the harmonics of the rotation at the samples of each part, and the correction of the speed.
 
@@ -102,6 +102,9 @@ def wobble_columns(
         At the samples of each part; found in the force without it. []
     harmonics : int
         Number of harmonics.
+    places : sequence of ndarray or None
+        In proportion to the revolutions, at the samples of each part, along which these are found; the time, in s,
+        without it.
 
     Returns
     -------
@@ -111,13 +114,13 @@ def wobble_columns(
         Factor by which given revolutions were corrected, or the speed that was found; 0 without rotation.
     """
     values = parts.averaged(parts.forces)
-    sought = parts.times if revolutions is None else revolutions
-    places = parts.averaged(sought)
+    sought = revolutions if revolutions is not None else places if places is not None else parts.times
+    along = parts.averaged(sought)
     if revolutions is None:
-        speed = find_rotation_speed(places, values, harmonics=harmonics) or 0.0
+        speed = find_rotation_speed(along, values, harmonics=harmonics) or 0.0
     else:
-        speed = refined_speed(places, values, rotation_speed=1.0, harmonics=harmonics)
-    if not speed or speed * float(places[-1][-1] - places[0][0]) < 1:
+        speed = refined_speed(along, values, rotation_speed=1.0, harmonics=harmonics)
+    if not speed or speed * float(along[-1][-1] - along[0][0]) < 1:
         return None, 0.0
     waves = [harmonic_columns(revolutions=speed * place, harmonics=harmonics) for place in sought]
     return _additive_or_proportional(parts, waves), speed

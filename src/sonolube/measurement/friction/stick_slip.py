@@ -1,7 +1,6 @@
 """Stick-slip in a friction force signal: recurring slips, the fall of the force in a slip, and when it happens."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -12,80 +11,23 @@ from scipy.stats import t as student
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.slip_events import DETECTION_SCORE, Indices, find_slips, noise_spectra
-from sonolube.measurement.time_series import require_time_series, uniform_sample_interval
+from sonolube.measurement.friction.force_cycle import MIN_SAMPLES_OF_CYCLE, SHARE_OF_VARIANCE, ForceCycle, find_cycle
+from sonolube.measurement.friction.slip_events import DETECTION_SCORE, Indices, SlipChain, find_slips, noise_spectra
+from sonolube.measurement.friction.stick_slip_estimate import StickSlipBurst, StickSlipEstimate, combined, not_detected
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
+from sonolube.measurement.time_series import even_stretches, evenly_sampled, require_time_series
 
 _FEWEST_SAMPLES = 64
+_FEWEST_SLIPS = 3
 _PADDING = 4  # zero padding of the spectrum, in lengths of the signal
-_UNRESOLVED = 1 / 8  # of the sampling rate, above which a period has too few samples to show a sawtooth
-_LINE_SHARE = 0.5  # of the variance, in a spectral line of unresolved stick-slip
+_SLOW_FALL = 0.2  # of the period, from which a cycle has no sawtooth's ramps
+_FEW_SAMPLES = 16  # of a period, below which slips cannot be told from the ramps
+_SAME_FREQUENCY = 0.1  # relative deviation of the frequencies of slips and cycle
 _CLEAR = 8.0  # falls over the noise from which the duration of a slip is measured
 _HALF = 0.5  # of the median fall, from which a slip at the end of a burst is one
 _TIMING = 20  # of a gap, over which a slip may be moved to where the force falls
 _OVERSHOOT = 0.8  # of the fall below its middle
 _PROFILE = 0.25  # of a period, before and after a slip
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class StickSlipBurst:
-    """Time in which slips recur without interruption.
-
-    Parameters
-    ----------
-    start_time : float
-        Beginning of the stick phase before the first slip. [s]
-    end_time : float
-        Last slip. [s]
-    force_drops : int
-        Number of slips.
-    """
-
-    start_time: float
-    end_time: float
-    force_drops: int
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class StickSlipEstimate:
-    """Stick-slip in a friction force: whether, how often, how much the force falls, and when.
-
-    Parameters
-    ----------
-    detected : bool
-        Whether sudden falls of the force recur more strongly than noise explains.
-    reason : str
-        Why stick-slip was not detected; empty where it was.
-    stick_slip_frequency : float
-        Slips per time within the bursts; the frequency of the spectral peak where not detected. [Hz]
-    spectral_frequency : float
-        Frequency of the highest peak of the spectrum, in Hz.
-    stick_slip_amplitude : float
-        Mean fall of the force in a slip; 0 where not detected. [N]
-    stick_slip_amplitude_uncertainty : float
-        Its standard error. [N]
-    stick_slip_amplitude_interval : tuple of two float
-        Its 95 % interval. [N]
-    force_drops : int
-        Number of slips found.
-    stick_slip_fraction : float
-        Share of the time in which slips recur. []
-    bursts : tuple of StickSlipBurst
-        When they do.
-    slip_time : ndarray, shape (force_drops,)
-        Time of each slip, in s.
-    """
-
-    detected: bool
-    reason: str
-    stick_slip_frequency: float
-    spectral_frequency: float
-    stick_slip_amplitude: float
-    stick_slip_amplitude_uncertainty: float
-    stick_slip_amplitude_interval: tuple[float, float]
-    force_drops: int
-    stick_slip_fraction: float
-    bursts: tuple[StickSlipBurst, ...]
-    slip_time: Floats
 
 
 def estimate_stick_slip(
@@ -96,9 +38,9 @@ def estimate_stick_slip(
     Parameters
     ----------
     time : array_like, shape (samples,)
-        Evenly spaced. [s]
+        Increasing; it is cut at gaps, and a clock that jitters is made even. [s]
     friction_force : array_like, shape (samples,)
-        Without missing values. [N]
+        Cut where values are missing. [N]
     minimum_drop : float or None
         Smallest mean fall, in N, that counts as stick-slip.
 
@@ -109,7 +51,7 @@ def estimate_stick_slip(
     Raises
     ------
     InvalidInput
-        If the time has gaps, a value is missing, there are fewer than 64 samples, or `minimum_drop` is not positive.
+        If no 64 consecutive samples are even and known, or `minimum_drop` is not positive.
 
     See Also
     --------
@@ -121,89 +63,123 @@ def estimate_stick_slip(
     detects ten slips of fifty samples a period. The fall is the mean rise of the force over the stick phases between
     slips: the slope of a line fitted with weights :math:`(1 - x^2)^2` that vanish at the slips, times the duration. A
     difference of maximum and minimum would add the range of the noise; the weights leave out the ringing of the sensor.
-    The interval is Student's of the mean over the stick phases, with the covariance of neighbours, which share a slip.
+    The interval is Student's of the mean over the stick phases, with the covariance of neighbours, which share a slip,
+    and to either side what the force rises in one sample; it reaches down to the range of the mean cycle.
 
-    A period of fewer than eight samples does not show its shape: there a spectral line of half the variance passes for
-    stick-slip, its fall being the peak-to-peak value; D's 400 Hz resolve its 100 Hz by no more than four samples.
+    Near the natural frequency of the holder a slip takes as long as the stick. Such a steady cycle is found by
+    `find_cycle`; its fall is the range of the fitted cycle, its interval at least that of one sample.
+    No fall, and no end of its interval, exceeds the range of the force.
+
+    A period of fewer than six samples does not show its shape: where such a line holds half of the variance, the
+    estimate says that stick-slip cannot be seen at this rate. D's 400 Hz give its 100 Hz four samples.
 
     References
     ----------
     .. [1] D 2.3.2 to 2.3.4, figure 2.17.
     """
     t, f = require_time_series(time=time, friction_force=friction_force)
-    missing = int(np.isnan(f).sum())
-    if missing or t.size < _FEWEST_SAMPLES:
-        fault = f"misses {missing} values" if missing else f"has {t.size} samples"
-        raise InvalidInput(
-            f"friction_force {fault}; stick-slip needs at least {_FEWEST_SAMPLES} consecutive samples without a gap"
-        )
     if minimum_drop is not None:
         require_positive(minimum_drop=minimum_drop)
-    interval = uniform_sample_interval(time=t)
-    return stick_slip_of_parts([t], [f], sample_interval=interval, minimum_drop=minimum_drop or 0.0)[0]
+    known = np.isfinite(f)
+    return stick_slip_of_parts([t[known]], [f[known]], minimum_drop=minimum_drop or 0.0)[0]
 
 
 def stick_slip_of_parts(
-    times: Sequence[Floats], forces: Sequence[Floats], *, sample_interval: float, minimum_drop: float = 0.0
+    times: Sequence[Floats], forces: Sequence[Floats], *, minimum_drop: float = 0.0
 ) -> list[StickSlipEstimate]:
     """Return the stick-slip of each part of a recording, the noise being known from all of them.
 
     Parameters
     ----------
     times : sequence of ndarray
-        Of the samples of each part, evenly spaced, at least 64, in s.
+        Of the samples of each part, in s; cut into stretches without a gap.
     forces : sequence of ndarray
         Friction force in each part, without missing values and wobble, in N.
-    sample_interval : float
-        Time between samples. [s]
     minimum_drop : float
         Smallest mean fall that counts, in N.
 
     Returns
     -------
     list of StickSlipEstimate
+        A part without 64 even samples has a reason.
 
     Raises
     ------
     InvalidInput
-        If a part has fewer than 64 samples.
+        If no part has 64 samples without a gap.
 
     See Also
     --------
     noise_spectra : the noise that is common to the parts.
     """
-    fewest = min(force.size for force in forces)
-    if fewest < _FEWEST_SAMPLES:
-        raise InvalidInput(f"friction_force has {fewest} samples; stick-slip needs at least {_FEWEST_SAMPLES}")
-    signals = [np.asarray(detrend(force)) for force in forces]
-    spectra = noise_spectra(signals, sample_interval=sample_interval)
-    estimates = []
-    for t, force, signal, spectrum in zip(times, forces, signals, spectra, strict=True):
+    found = [even_stretches(time=t, fewest=_FEWEST_SAMPLES) for t in times]
+    intervals = [interval for interval, stretches in found if stretches]
+    if not intervals:
+        longest = max(t.size for t in times)
+        raise InvalidInput(
+            f"friction_force has {longest} samples without an even stretch of {_FEWEST_SAMPLES}; stick-slip needs one"
+        )
+    interval = float(np.median(intervals))
+    pieces = [
+        (part, evenly_sampled(time=times[part][each], signal=forces[part][each], sample_interval=interval))
+        for part, (_, stretches) in enumerate(found)
+        for each in stretches
+    ]
+    signals = [np.asarray(detrend(force)) for _, (_, force) in pieces]
+    spectra = noise_spectra(signals, sample_interval=interval)
+    estimates: list[list[StickSlipEstimate]] = [[] for _ in times]
+    spans: list[list[float]] = [[] for _ in times]
+    for (part, (t, force)), signal, spectrum in zip(pieces, signals, spectra, strict=True):
+        spans[part].append(float(t[-1] - t[0]))
         if np.std(signal) > 1e-12 * float(np.max(np.abs(force))):
-            estimates.append(_estimate(t, force, signal, spectrum, sample_interval, minimum_drop))
+            estimates[part].append(_estimate(t, force, signal, spectrum, interval, minimum_drop))
         else:
-            estimates.append(not_detected("the friction is constant", 0.0))
-    return estimates
+            estimates[part].append(not_detected("the friction is constant", 0.0))
+    return [combined(own, span) for own, span in zip(estimates, spans, strict=True)]
 
 
 def _estimate(
     t: Floats, force: Floats, signal: Floats, spectrum: Floats, interval: float, minimum: float
 ) -> StickSlipEstimate:
-    """Return the stick-slip of one part by its slips, or by a line above an eighth of the sampling rate."""
+    """Return the stick-slip of one stretch by its slips, or by its steady cycle where these have no ramps."""
     frequency, share = _spectral_peak(signal, interval)
-    chain = find_slips(signal, spectrum=spectrum, sample_interval=interval)
-    if chain.bursts:
-        found = _by_slips(t, force, chain.bursts, frequency)
-    elif frequency * interval > _UNRESOLVED and share > _LINE_SHARE:
-        found = _by_line(t, signal, frequency)
-    else:
+    fastest = 1 / (MIN_SAMPLES_OF_CYCLE * interval)
+    if frequency > fastest and share > SHARE_OF_VARIANCE:
         reason = (
-            f"falls of the force recur no more than noise explains (score {chain.score:.3g} of {DETECTION_SCORE:g})"
+            f"it cannot be seen at this rate: the force swings at {frequency:.3g} Hz, {1 / (frequency * interval):.2g} "
+            f"samples a period; sample at {2 * MIN_SAMPLES_OF_CYCLE * frequency:.2g} Hz or more"
         )
-        return not_detected(f"{reason}; the spectrum peaks at {frequency:.3g} Hz", frequency)
+        return not_detected(reason, frequency, resolved=False)
+    cycle, other = find_cycle(signal, sample_interval=interval, frequency=frequency)
+    chain = find_slips(signal, spectrum=spectrum, sample_interval=interval)
+    if cycle is not None and _is_smooth(cycle, interval):
+        found = _by_cycle(t, force, cycle, frequency)
+    elif cycle is not None and not _has_frequency(chain, cycle.frequency * interval):
+        found = _by_slips(t, force, [cycle.slips], frequency)
+    elif chain.bursts and not other:
+        found = _by_slips(t, force, chain.bursts, frequency)
+    else:
+        recur = f"falls of the force recur no more than noise explains (score {chain.score:.3g} of {DETECTION_SCORE:g})"
+        reason = f"{other or recur}; the spectrum peaks at {frequency:.3g} Hz; sought up to {fastest:.3g} Hz"
+        return not_detected(reason, frequency)
+    if found.force_drops < _FEWEST_SLIPS:
+        return not_detected(f"{found.force_drops} falls of the force are too few to recur", frequency)
     if not found.stick_slip_amplitude > minimum:
         return not_detected(f"the force falls by {found.stick_slip_amplitude:.3g} N only", frequency)
     return found
+
+
+def _is_smooth(cycle: ForceCycle, interval: float) -> bool:
+    """Return whether a cycle falls too slowly, or has too few samples, for the ramps of a sawtooth."""
+    return cycle.fall_share > _SLOW_FALL or cycle.frequency * interval * _FEW_SAMPLES > 1
+
+
+def _has_frequency(chain: SlipChain, frequency: float) -> bool:
+    """Return whether the slips of a chain recur at a frequency, in periods a sample."""
+    if not chain.bursts:
+        return False
+    gaps = np.concatenate([np.diff(burst) for burst in chain.bursts])
+    return abs(float(np.mean(gaps)) * frequency - 1) < _SAME_FREQUENCY
 
 
 def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: float) -> StickSlipEstimate:
@@ -218,8 +194,11 @@ def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: fl
         falls = falls * (1 - _slip_duration(signal, bursts, float(np.mean(falls))) / gaps)
     interval = float(t[-1] - t[0]) / (t.size - 1)
     period = float(np.mean(gaps)) * interval
-    mean, error = float(np.mean(falls)), _standard_error(falls)
-    reach = float(student.ppf(0.975, falls.size - 1)) * error
+    highest = np.array([float(np.ptp(signal[a:b])) for burst in bursts for a, b in pairwise(burst)])
+    mean, error = float(min(np.mean(falls), np.mean(highest))), _standard_error(falls)
+    reach = float(student.ppf(0.975, max(falls.size - 1, 1))) * error + mean / float(np.mean(gaps))
+    smooth = mean - _range_of_mean_cycle(signal, bursts) if noise * _CLEAR < mean else 0.0
+    ends = _within_range(mean - max(smooth, 0.0), reach, signal)[0], _within_range(mean, reach, signal)[1]
     spans = tuple(
         StickSlipBurst(
             start_time=float(max(t[0], t[burst[0]] - (t[burst[-1]] - t[burst[0]]) / (burst.size - 1))),
@@ -230,12 +209,13 @@ def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: fl
     )
     return StickSlipEstimate(
         detected=True,
+        resolved=True,
         reason="",
         stick_slip_frequency=1 / period,
         spectral_frequency=spectral,
         stick_slip_amplitude=mean,
         stick_slip_amplitude_uncertainty=error,
-        stick_slip_amplitude_interval=(mean - reach, mean + reach),
+        stick_slip_amplitude_interval=ends,
         force_drops=sum(burst.size for burst in bursts),
         stick_slip_fraction=float(min(1.0, sum(s.end_time - s.start_time for s in spans) / (t[-1] - t[0]))),
         bursts=spans,
@@ -257,6 +237,14 @@ def _falls(signal: Floats, bursts: Sequence[Indices]) -> tuple[Floats, float]:
             inner = residual[np.abs(x) < 0.5]
             squares, count = squares + float(inner @ inner), count + inner.size
     return np.array(rises), float(np.sqrt(squares / max(count, 1)))
+
+
+def _range_of_mean_cycle(signal: Floats, bursts: Sequence[Indices]) -> float:
+    """Return the range of the mean of the force about the slips; below the ramps' rise where slips are not sudden."""
+    half = int(max(2, 0.5 * np.median(np.concatenate([np.diff(burst) for burst in bursts]))))
+    slips = np.concatenate(bursts)
+    slips = slips[(slips >= half) & (slips <= signal.size - half)]
+    return float(np.ptp(np.mean(signal[slips[:, None] + np.arange(-half, half)], axis=0))) if slips.size else np.inf
 
 
 def _without_false_ends(signal: Floats, burst: Indices, least: float) -> Indices:
@@ -281,6 +269,8 @@ def _at_steepest(signal: Floats, burst: Indices) -> Indices:
 
 def _standard_error(falls: Floats) -> float:
     """Return the standard error of the mean of rises, of which neighbours share the slip between them."""
+    if falls.size < 2:
+        return float("inf")
     residual = falls - falls.mean()
     variance = float(residual @ residual) / (falls.size - 1)
     shared = float(residual[:-1] @ residual[1:]) / (falls.size - 1) + variance / falls.size
@@ -311,56 +301,54 @@ def _slip_duration(signal: Floats, bursts: Sequence[Indices], fall: float) -> fl
     return float((ends - begins) / 0.6)
 
 
-def _by_line(t: Floats, signal: Floats, frequency: float) -> StickSlipEstimate:
-    """Return the estimate for stick-slip whose periods have too few samples for a shape: a line of the spectrum."""
-    duration = float(t[-1] - t[0])
-    angle = 2 * np.pi * frequency * t
-    waves = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    coefficients, residual, _, _ = np.linalg.lstsq(waves, signal)
-    amplitude = float(np.hypot(*coefficients))
-    noise = float(np.sqrt(residual.sum() / max(1, signal.size - 2)))
-    error = 2 * noise * float(np.sqrt(2 / signal.size))
+def _by_cycle(t: Floats, force: Floats, cycle: ForceCycle, spectral: float) -> StickSlipEstimate:
+    """Return the estimate by a steady cycle without ramps: its range in each section."""
+    mean = float(min(np.mean(cycle.falls), np.ptp(force)))
+    spread = correlated_mean(cycle.falls)
+    resolution = max(cycle.truncation, mean * cycle.frequency * float(t[-1] - t[0]) / (t.size - 1))
+    reach = float(student.ppf(0.975, max(spread.effective_samples - 1, 1))) * spread.uncertainty + resolution
+    breaks = np.flatnonzero(np.diff(cycle.sections[:, 0]) > cycle.sections[0, 1] - cycle.sections[0, 0] + 1) + 1
+    bursts = tuple(
+        StickSlipBurst(
+            start_time=float(t[part[0, 0]]),
+            end_time=float(t[part[-1, 1]]),
+            force_drops=round(float(t[part[-1, 1]] - t[part[0, 0]]) * cycle.frequency),
+        )
+        for part in np.split(cycle.sections, breaks)
+    )
     return StickSlipEstimate(
         detected=True,
+        resolved=True,
         reason="",
-        stick_slip_frequency=frequency,
-        spectral_frequency=frequency,
-        stick_slip_amplitude=2 * amplitude,
-        stick_slip_amplitude_uncertainty=error,
-        stick_slip_amplitude_interval=(2 * amplitude - 1.96 * error, 2 * amplitude + 1.96 * error),
-        force_drops=int(duration * frequency),
-        stick_slip_fraction=1.0,
-        bursts=(StickSlipBurst(start_time=float(t[0]), end_time=float(t[-1]), force_drops=int(duration * frequency)),),
+        stick_slip_frequency=cycle.frequency,
+        spectral_frequency=spectral,
+        stick_slip_amplitude=mean,
+        stick_slip_amplitude_uncertainty=spread.uncertainty,
+        stick_slip_amplitude_interval=_within_range(mean, reach, force),
+        force_drops=sum(burst.force_drops for burst in bursts),
+        stick_slip_fraction=min(1.0, sum(b.end_time - b.start_time for b in bursts) / float(t[-1] - t[0])),
+        bursts=bursts,
         slip_time=np.empty(0),
     )
 
 
-def not_detected(reason: str, spectral_frequency: float) -> StickSlipEstimate:
-    """Return the estimate for a signal without recurring falls, with the reason and the frequency of its spectrum."""
-    return StickSlipEstimate(
-        detected=False,
-        reason=reason,
-        stick_slip_frequency=spectral_frequency,
-        spectral_frequency=spectral_frequency,
-        stick_slip_amplitude=0.0,
-        stick_slip_amplitude_uncertainty=0.0,
-        stick_slip_amplitude_interval=(0.0, 0.0),
-        force_drops=0,
-        stick_slip_fraction=0.0,
-        bursts=(),
-        slip_time=np.empty(0),
-    )
+def _within_range(mean: float, reach: float, signal: Floats) -> tuple[float, float]:
+    """Return the interval about a fall, which neither rises nor exceeds the range of the force."""
+    return max(0.0, mean - reach), min(mean + reach, float(np.ptp(signal)))
 
 
 def _spectral_peak(f: Floats, interval: float) -> tuple[float, float]:
-    """Return frequency, in Hz, and share of the power of the highest spectral peak, refined by a parabola."""
+    """Return frequency, in Hz, and share of the power of the highest local maximum of the spectrum, refined."""
     size = _PADDING * f.size
     power = np.abs(np.fft.rfft(f * hann(f.size, sym=False), size)) ** 2
     first = 2 * _PADDING  # below this bin lies the main lobe of the window
-    peak = first + int(np.argmax(power[first:]))
+    inner = power[first:-1]
+    peaks = np.flatnonzero((inner > power[first - 1 : -2]) & (inner >= power[first + 1 :])) + first
+    if not peaks.size:
+        return float((first + np.argmax(power[first:])) / (size * interval)), 0.0
+    peak = int(peaks[np.argmax(power[peaks])])
     share = float(power[max(0, peak - first) : peak + first + 1].sum() / power.sum())
-    shift = 0.0
-    if 0 < peak < power.size - 1 and power[peak - 1 : peak + 2].min() > 0:
-        below, at, above = np.log(power[peak - 1 : peak + 2])
-        shift = 0.5 * (below - above) / (below - 2 * at + above) if below - 2 * at + above else 0.0
+    below, at, above = np.log(np.maximum(power[peak - 1 : peak + 2], 1e-300))
+    curvature = below - 2 * at + above
+    shift = float(np.clip(0.5 * (below - above) / curvature, -0.5, 0.5)) if curvature else 0.0
     return float((peak + shift) / (size * interval)), share

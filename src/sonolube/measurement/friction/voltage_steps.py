@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.checks import Floats, require_finite, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import friction_reduction
+from sonolube.measurement.friction.constant_steps import sliding_steps
 from sonolube.measurement.friction.step_means import (
     SampledParts,
     StepMeans,
@@ -19,12 +19,14 @@ from sonolube.measurement.friction.step_means import (
     without_wobble,
     wobble_columns,
 )
-from sonolube.measurement.friction.stick_slip import StickSlipEstimate, not_detected, stick_slip_of_parts
+from sonolube.measurement.friction.stick_slip import stick_slip_of_parts
+from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate, not_detected
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import require_equal_length, require_time_series, uniform_sample_interval
 
-_SECTIONS_PER_STEP = 10  # sections of the shortest step, by whose medians steps are separated
-_ONSET_SECTIONS = 200  # of the first step, by whose medians the begin of sliding is found
-_REST_SHARE = 0.3  # of the level, below which the force at the begin of a recording is that of rest
+_FEWEST_AT_REST = 20  # samples, from which their mean tells the zero of the force
+_TENSION = 0.3  # of the highest level, above which a force at rest is that of a holder under tension, not a zero
+_SAME_SPEED = 0.05  # relative deviation of speeds that are the same
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -45,10 +47,14 @@ class VoltageStep:
         Standard deviation of the samples, wobble and stick-slip included. [N]
     friction_force_uncertainty : float
         Standard error of the mean. [N]
+    sliding_speed : float or None
+        Median over the step; None where it is not known. [m/s]
     friction_reduction : float or None
-        Against the steps without voltage; None for these themselves. []
+        Against the steps without voltage at the same speed; None for these themselves and where there are none. []
     friction_reduction_uncertainty : float or None
         Its standard uncertainty. []
+    force_zero : float
+        Mean force at rest that was taken off; 0 where none is known by a speed. [N]
     stick_slip : StickSlipEstimate
         In the step after the settling time, without wobble.
     """
@@ -59,8 +65,10 @@ class VoltageStep:
     friction_force: float
     friction_force_deviation: float
     friction_force_uncertainty: float
+    sliding_speed: float | None
     friction_reduction: float | None
     friction_reduction_uncertainty: float | None
+    force_zero: float
     stick_slip: StickSlipEstimate
 
 
@@ -110,6 +118,7 @@ def friction_at_voltage_steps(
     settling_time: float = 0.5,
     tolerance: float = 0.05,
     revolutions: ArrayLike | None = None,
+    sliding_speed: ArrayLike | None = None,
     harmonics: int = 3,
 ) -> tuple[VoltageStep, ...]:
     r"""Return mean friction, friction reduction and stick-slip at each step of a voltage.
@@ -131,6 +140,9 @@ def friction_at_voltage_steps(
     revolutions : array_like, shape (samples,), or None
         Revolutions of the disc made until each sample, whose speed is corrected by up to half a revolution over the
         recording; without it the rotation is sought in the force. []
+    sliding_speed : array_like, shape (samples,), or None
+        Measured or set, of one direction: rest is left out by it, and a change begins another step. Without it rest is
+        told by the force at the steps without voltage, see `at_rest`. [m/s]
     harmonics : int
         Number of harmonics of the rotation that are taken off.
 
@@ -142,7 +154,7 @@ def friction_at_voltage_steps(
     Raises
     ------
     InvalidInput
-        If no step is long enough, none is without voltage, or the friction without voltage is not positive.
+        If no step in which the surfaces slide is long enough, or the friction without voltage is not positive.
 
     See Also
     --------
@@ -152,10 +164,16 @@ def friction_at_voltage_steps(
 
     Notes
     -----
-    Settling begins where the voltage changes, in the first step where sliding does. With the mean :math:`F_0` of the
-    steps without voltage, weighted by their duration, and the covariance C of the means,
+    Settling begins where the voltage or the speed changes, or where sliding begins, so that a break-away peak is in no
+    mean. With the mean :math:`F_0` of the steps without voltage at the same speed, weighted by their duration, and the
+    covariance C of the means,
 
     .. math:: P_f = 1 - \frac{F_1}{F_0} , \qquad u_P^2 = g^T C g , \qquad g = \nabla P_f .
+
+    The mean force at rest before the first step, r, is the zero of the force where a speed tells that rest, and is
+    taken off; its variance :math:`u_r^2` is added to all elements of C. Where the force tells the rest, it is not taken
+    off, and :math:`r^2 - u_r^2` is added where that is positive. A force at rest above 0.3 of the level, and
+    above its own standard deviation, is no zero: the holder is under tension.
 
     A step shorter than a revolution is as uncertain as its part of the wobble, which the other steps determine.
 
@@ -164,28 +182,33 @@ def friction_at_voltage_steps(
     .. [1] D 2.1, D 4.1.2, figure 4.3 and Table 4.2.
     """
     t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
-    found = _found_steps(t, f, u, shortest_step=shortest_step, settling_time=settling_time, tolerance=tolerance)
-    without = np.array([level <= found.threshold for level in found.levels])
-    if not any(without):
-        lowest = min(found.levels)
-        raise InvalidInput(f"voltage_peak_to_peak has no step without voltage; the lowest is {lowest:.3g} V")
-    settled, levels = found.settled, found.levels
-    parts = sampled_parts(settled, time=t, friction_force=f)
-    turned = None if revolutions is None else _revolutions_of_parts(f, require_finite(revolutions=revolutions), settled)
-    waves = wobble_columns(parts, revolutions=turned, harmonics=harmonics)[0]
+    v = None if sliding_speed is None else require_time_series(time=time, sliding_speed=sliding_speed)[1]
+    found = sliding_steps(t, f, u, v, shortest_step=shortest_step, settling_time=settling_time, tolerance=tolerance)
+    parts = sampled_parts(found.settled, time=t, friction_force=f)
+    if revolutions is not None:
+        turned: list[Floats] | None = _of_parts(f, require_finite(revolutions=revolutions), found.settled)
+    else:
+        turned = None
+    places = None if v is None else _of_parts(f, _slid(t, v), found.settled)
+    waves = wobble_columns(parts, revolutions=turned, places=places, harmonics=harmonics)[0]
     stick_slip = _stick_slip(parts, without_wobble(parts, waves))
-    means = mean_of_parts(parts, waves=waves, stick_slip=stick_slip, onset=float(t[found.onset]))
-    reductions = _reductions(means, without, np.array([part.size for part in parts.times]))
+    means = mean_of_parts(parts, waves=waves, stick_slip=stick_slip, onset=float(t[found.steps[0][0]]))
+    zero, variance = _zero(found.at_rest, means.friction_force, by_speed=v is not None)
+    means = StepMeans(friction_force=means.friction_force - zero, covariance=means.covariance + variance)
+    without = np.array(found.voltages) <= found.threshold
+    reductions = _reductions(means, without, found.speeds, np.array([part.size for part in parts.times]))
     return tuple(
         VoltageStep(
-            voltage_peak_to_peak=levels[j],
+            voltage_peak_to_peak=found.voltages[j],
             start_time=float(t[first]),
             end_time=float(t[last - 1]),
             friction_force=float(means.friction_force[j]),
             friction_force_deviation=float(np.std(parts.forces[j], ddof=1)),
             friction_force_uncertainty=float(np.sqrt(means.covariance[j, j])),
-            friction_reduction=None if without[j] else reductions[j][0],
-            friction_reduction_uncertainty=None if without[j] else reductions[j][1],
+            sliding_speed=None if v is None else found.speeds[j],
+            friction_reduction=reductions[j][0],
+            friction_reduction_uncertainty=reductions[j][1],
+            force_zero=zero,
             stick_slip=stick_slip[j],
         )
         for j, (first, last) in enumerate(found.steps)
@@ -222,103 +245,60 @@ def rotation_speed_at_voltage_steps(
     find_rotation_speed : of parts of any recording.
     """
     t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
-    found = _found_steps(t, f, u, shortest_step=1.0, settling_time=0.5, tolerance=0.05)
+    found = sliding_steps(t, f, u, None, shortest_step=1.0, settling_time=0.5, tolerance=0.05)
     parts = sampled_parts(found.settled, time=t, friction_force=f)
     return wobble_columns(parts, revolutions=None, harmonics=harmonics)[1] or None
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _FoundSteps:
-    """Steps of a voltage: sample ranges, settled parts, levels, the change that begins one, and the sliding onset."""
-
-    steps: list[tuple[int, int]]
-    settled: list[slice]
-    levels: list[float]
-    threshold: float
-    onset: int
+def _of_parts(f: Floats, values: Floats, parts: Sequence[slice]) -> list[Floats]:
+    """Return values at the samples with a known force of each part."""
+    require_equal_length(friction_force=f, revolutions=values)
+    return [values[part][np.isfinite(f[part])] for part in parts]
 
 
-def _found_steps(
-    t: Floats, f: Floats, u: Floats, *, shortest_step: float, settling_time: float, tolerance: float
-) -> _FoundSteps:
-    """Return the steps of a voltage that are long enough."""
-    require_positive(shortest_step=shortest_step, tolerance=tolerance)
-    require_non_negative(settling_time=settling_time)
-    threshold = tolerance * float(np.nanmax(u) - np.nanmin(u))
-    least = max(shortest_step, 2 * settling_time)
-    levels_held = _constant_levels(t, u, threshold, shortest_step)
-    steps = [(first, last) for first, last in levels_held if t[last - 1] - t[first] > least]
-    if not steps:
-        raise InvalidInput(f"voltage_peak_to_peak is constant nowhere for {least:.3g} s")
-    onset = _sliding_onset(t, f, *steps[0])
-    settled = [_settled_part(t, max(first, onset), last, settling_time) for first, last in steps]
-    levels = [float(np.nanmedian(u[part])) for part in settled]
-    return _FoundSteps(steps=steps, settled=settled, levels=levels, threshold=threshold, onset=onset)
+def _slid(t: Floats, v: Floats) -> Floats:
+    """Return the distance slid until each sample over the mean speed while sliding, as a time. [s]"""
+    known = np.isfinite(v)
+    speed = np.interp(t, t[known], np.abs(v[known]))
+    moving = speed > 0
+    distance = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(t))])
+    return np.asarray(distance / float(speed[moving].mean()) if moving.any() else t - t[0])
 
 
-def _sliding_onset(t: Floats, f: Floats, first: int, last: int) -> int:
-    """Return the sample of the first step from which the force stays above half its level."""
-    part = np.where(np.isfinite(f[first:last]), f[first:last], 0.0)
-    size = max(1, part.size // _ONSET_SECTIONS)
-    sections = np.median(part[: part.size // size * size].reshape(-1, size), axis=1)
-    level = float(np.median(sections[sections.size // 2 :]))
-    at_rest = np.flatnonzero(sections[: sections.size // 2] < 0.5 * level)
-    if level <= 0 or not at_rest.size or sections[0] > _REST_SHARE * level:
-        return first
-    return first + (int(at_rest[-1]) + 1) * size
-
-
-def _revolutions_of_parts(f: Floats, revolutions: Floats, parts: Sequence[slice]) -> list[Floats]:
-    """Return the revolutions at the samples with a known force of each part."""
-    require_equal_length(friction_force=f, revolutions=revolutions)
-    return [revolutions[part][np.isfinite(f[part])] for part in parts]
+def _zero(at_rest: Floats, levels: Floats, *, by_speed: bool) -> tuple[float, float]:
+    """Return the zero of the force and its variance, by its mean at rest: taken off where a speed tells the rest."""
+    if at_rest.size < _FEWEST_AT_REST:
+        return 0.0, 0.0
+    mean = correlated_mean(at_rest)
+    if abs(mean.mean) > max(_TENSION * float(np.max(np.abs(levels))), mean.deviation):
+        return 0.0, 0.0
+    if by_speed:
+        return mean.mean, mean.uncertainty**2
+    return 0.0, max(0.0, mean.mean**2 - mean.uncertainty**2)
 
 
 def _stick_slip(parts: SampledParts, forces: Sequence[Floats]) -> list[StickSlipEstimate]:
     """Return the stick-slip of each step; a reason where the samples are uneven or too few."""
     try:
-        interval = max(uniform_sample_interval(time=t) for t in parts.times)
-        return stick_slip_of_parts(parts.times, forces, sample_interval=interval)
+        return stick_slip_of_parts(parts.times, forces)
     except InvalidInput as refusal:
         return [not_detected(str(refusal), 0.0) for _ in parts.times]
 
 
-def _reductions(means: StepMeans, without: NDArray[np.bool_], samples: NDArray[np.int64]) -> list[tuple[float, float]]:
-    """Return the friction reduction of each part and its standard uncertainty."""
-    weights = np.where(without, samples, 0) / samples[without].sum()
-    intrinsic = float(weights @ means.friction_force)
-    reductions = []
+def _reductions(
+    means: StepMeans, without: NDArray[np.bool_], speeds: Sequence[float], samples: NDArray[np.int64]
+) -> list[tuple[float | None, float | None]]:
+    """Return the friction reduction of each part and its standard uncertainty, by the parts of its speed."""
+    reductions: list[tuple[float | None, float | None]] = []
     for j, force in enumerate(means.friction_force):
+        same = without & np.isclose(speeds, speeds[j], rtol=_SAME_SPEED, equal_nan=True)
+        if without[j] or not same.any():
+            reductions.append((None, None))
+            continue
+        weights = np.where(same, samples, 0) / samples[same].sum()
+        intrinsic = float(weights @ means.friction_force)
         gradient = weights * force / intrinsic**2
         gradient[j] -= 1 / intrinsic
         reduction = float(friction_reduction(intrinsic_friction_force=intrinsic, reduced_friction_force=float(force)))
         reductions.append((reduction, float(np.sqrt(gradient @ means.covariance @ gradient))))
     return reductions
-
-
-def _constant_levels(t: Floats, u: Floats, threshold: float, shortest: float) -> list[tuple[int, int]]:
-    """Return the sample ranges of constant level, with those joined that a short disturbance separates."""
-    section = max(1, round(shortest / _SECTIONS_PER_STEP / float(np.median(np.diff(t)))))
-    starts = np.arange(0, t.size, section)
-    level = np.array([np.nanmedian(part) if np.isfinite(part).any() else np.nan for part in np.split(u, starts[1:])])
-    known = np.isfinite(level)
-    starts, level = starts[known], level[known]
-    edges = np.concatenate([[0], np.flatnonzero(np.abs(np.diff(level)) > threshold) + 1, [level.size]])
-    ends = np.append(starts[1:], t.size)
-    runs: list[tuple[int, int, float]] = []
-    for first, last in pairwise(edges):
-        if last - first < 2:
-            continue
-        value = float(np.median(level[first:last]))
-        if runs and abs(runs[-1][2] - value) <= threshold:
-            runs[-1] = (runs[-1][0], int(ends[last - 1]), runs[-1][2])
-        else:
-            runs.append((int(starts[first]), int(ends[last - 1]), value))
-    return [(first, last) for first, last, _ in runs]
-
-
-def _settled_part(t: Floats, first: int, last: int, settling: float) -> slice:
-    """Return the samples of a step without the settling at its beginning and a tenth of it at its end."""
-    lower = int(np.searchsorted(t, t[first] + settling))
-    upper = int(np.searchsorted(t, t[last - 1] - settling / 10, side="right"))
-    return slice(lower, upper)

@@ -17,7 +17,7 @@ from sonolube.measurement.recordings.channel_choice import (
     name_and_unit,
     require_common_length,
 )
-from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats
+from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats, missing_sample_caveat
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
@@ -85,12 +85,15 @@ def recording_dataset(
 def _damaged(
     variables: Mapping[str, tuple[str, Floats, dict[str, str | float]]], axis: Floats, quantity: str
 ) -> list[str]:
-    """Return the caveats on damaged samples of all channels."""
+    """Return the caveats on damaged and missing samples of all channels."""
     label = f"{quantity} [{unit_of(quantity) or '1'}]"
     return [
         caveat
         for name, (_, values, attributes) in variables.items()
-        for caveat in damaged_sample_caveats(name, values, unit=str(attributes["units"]), axis=axis, axis_label=label)
+        for caveat in (
+            *damaged_sample_caveats(name, values, unit=str(attributes["units"]), axis=axis, axis_label=label),
+            *missing_sample_caveat(name, values, axis=axis, axis_label=label),
+        )
     ]
 
 

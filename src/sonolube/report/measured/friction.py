@@ -12,6 +12,7 @@ from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.motor_current import MotorCalibration
 from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
+from sonolube.measurement.friction.sliding import NOISE_VOLTAGE, Mask, stretches
 from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, streamed_window_statistics
 from sonolube.measurement.friction_analysis import (
     analyse_cycles,
@@ -22,6 +23,7 @@ from sonolube.measurement.friction_analysis import (
     analyse_wobble,
     channel_values,
 )
+from sonolube.measurement.recorded_sliding import recorded_rest, recorded_speed, recorded_voltage
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording, recording_format_name
 from sonolube.measurement.recordings.tdms import TDMS_FORMAT as TDMS
@@ -29,12 +31,16 @@ from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.report.measured import friction_figures as figures, sheet
 from sonolube.report.measured.voltage_steps import step_sheet
 from sonolube.units import format_si
+from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _LARGE = 1 << 29  # bytes of a TDMS file beyond which it is read in blocks, for its windows only
 _CHANNELS = ("friction_force", "friction_coefficient")
+_ONE_VOLTAGE = 0.1  # of the highest voltage, up to which its range is no change of the vibration
+_LONG_REST = 0.5  # s, from which a rest is named
+_MOST_LISTED = 3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -136,12 +142,15 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
 def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet.Sheet]:
     """Sections of a recording of friction, as far as its channels allow."""
     name = friction_channel(recording)
-    sections = [_level(recording, name)]
     if "time" not in recording.variables:
-        return [*sections, sheet.Sheet(figures=(_cycle_figure(recording, name),))]
-    windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
+        return [_mean_of_all(recording, name), sheet.Sheet(figures=(_cycle_figure(recording, name),))]
     if name != "friction_force":
-        return [*sections, _windows(recording, windows, None)]
+        windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
+        return [_mean_of_all(recording, name), _windows(recording, windows, None)]
+    whole, rest = recording, recorded_rest(recording)
+    recording = whole.assign(friction_force=whole["friction_force"].where(~rest)) if rest.any() else whole
+    windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
+    sections = [_level(whole, recording), *_rest_caveat(whole, rest)]
     steady = None
     if settings.sliding_speed is not None:
         sections.append(
@@ -149,20 +158,50 @@ def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet
         )
         steady = _steady_state_or_none(windows, settings.sliding_speed)
     sections.append(_windows(recording, windows, steady))
-    sections += _steps_or_stick_slip(recording, settings.rotation_speed)
+    sections += _steps_or_stick_slip(whole, recording, settings.rotation_speed)
     if "relative_velocity" in recording.variables:
-        sections.append(sheet.attempted(partial(_cycles, recording), what="work of friction"))
+        sections.append(sheet.attempted(partial(_cycles, whole), what="work of friction"))
     if settings.rotation_speed is not None:
         sections.append(sheet.attempted(partial(_wobble, recording, settings.rotation_speed), what="wobble"))
     return sections
 
 
-def _level(recording: "xr.Dataset", name: str) -> sheet.Sheet:
-    """Mean and standard deviation of a channel_values, the uncertainty of the mean by the autocorrelation."""
-    mean = correlated_mean(channel_values(recording, name))
-    unit = str(recording[name].attrs.get("units", ""))
-    scatter = sheet.Value(f"{name}_deviation", "Standard deviation of the samples", mean.deviation, unit)
-    return sheet.Sheet(values=(sheet.quantity_value(name, mean.mean, uncertainty=mean.uncertainty), scatter))
+def _level(whole: "xr.Dataset", sliding: "xr.Dataset") -> sheet.Sheet:
+    """Mean friction force while sliding, where the vibration does not change; else the mean of the whole recording."""
+    voltage, speed = recorded_voltage(whole), recorded_speed(whole)
+    if voltage is None:
+        return _mean_of_all(whole, "friction_force")
+    low, high = np.nanmin(voltage), np.nanmax(voltage)
+    is_one = high - low <= max(_ONE_VOLTAGE * high, NOISE_VOLTAGE)
+    if not is_one or (speed is None and high > NOISE_VOLTAGE):
+        return _mean_of_all(whole, "friction_force")
+    return _mean_sheet(sliding, "friction_force", "friction_force", quantities()["friction_force"].meaning)
+
+
+def _mean_of_all(recording: "xr.Dataset", name: str) -> sheet.Sheet:
+    """Mean of a channel over the whole recording, whatever slid and vibrated in it."""
+    kind = name.removeprefix("friction_")
+    return _mean_sheet(recording, name, f"mean_{kind}", f"Mean {kind} of the whole recording")
+
+
+def _mean_sheet(recording: "xr.Dataset", channel: str, name: str, label: str) -> sheet.Sheet:
+    """Mean and standard deviation of a channel, the uncertainty of the mean by the autocorrelation."""
+    mean = correlated_mean(channel_values(recording, channel))
+    unit = str(recording[channel].attrs.get("units", ""))
+    scatter = sheet.Value(f"{channel}_deviation", "Standard deviation of the samples", mean.deviation, unit)
+    return sheet.Sheet(values=(sheet.Value(name, label, mean.mean, unit, uncertainty=mean.uncertainty), scatter))
+
+
+def _rest_caveat(recording: "xr.Dataset", rest: Mask) -> list[sheet.Sheet]:
+    """What was left out because the surfaces rest, and how that is known."""
+    time = channel_values(recording, "time")
+    spans = [(float(time[a]), float(time[b - 1])) for a, b in stretches(rest) if time[b - 1] - time[a] > _LONG_REST]
+    if not spans:
+        return []
+    listed = ", ".join(f"{format_si(a, 's')} to {format_si(b, 's')}" for a, b in spans[:_MOST_LISTED])
+    more = f" and {len(spans) - _MOST_LISTED} more" if len(spans) > _MOST_LISTED else ""
+    by = "the force, below half of that without voltage" if recorded_speed(recording) is None else "the speed"
+    return [sheet.Sheet(caveats=(f"at rest by {by}, and left out: {listed}{more}",))]
 
 
 def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyStateOnset | None) -> sheet.Sheet:
@@ -230,13 +269,14 @@ def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> s
     return sheet.Sheet(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
 
 
-def _steps_or_stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> list[sheet.Sheet]:
-    """Friction and stick-slip at the steps of a voltage; stick-slip of the whole recording where there are none."""
-    whole = sheet.attempted(partial(_stick_slip, recording, rotation_speed), what="stick-slip")
-    if not {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, recording.variables)):
-        return [whole]
-    steps = sheet.attempted(partial(step_sheet, recording, rotation_speed=rotation_speed), what="steps of the voltage")
-    return [steps] if steps.tables else [steps, whole]
+def _steps_or_stick_slip(whole: "xr.Dataset", sliding: "xr.Dataset", rotation_speed: float | None) -> list[sheet.Sheet]:
+    """Friction and stick-slip at the steps of a voltage; stick-slip of all that slides where there are none."""
+    steps = sheet.Sheet()
+    if {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, whole.variables)):
+        steps = sheet.attempted(partial(step_sheet, whole, rotation_speed=rotation_speed), what="steps of the voltage")
+    if steps.tables:
+        return [steps]
+    return [steps, sheet.attempted(partial(_stick_slip, sliding, rotation_speed), what="stick-slip")]
 
 
 def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> sheet.Sheet:
@@ -304,7 +344,8 @@ def _streamed(path: Path, settings: FrictionSettings) -> sheet.Sheet:
         path, channels=["friction_force"], mapping=settings.mapping, window_duration=settings.window_duration
     )["friction_force"]
     mean = correlated_mean(windows.mean)
-    sections = [sheet.Sheet(values=(sheet.quantity_value("friction_force", mean.mean, uncertainty=mean.uncertainty),))]
+    label = "Mean force of the whole recording"
+    sections = [sheet.Sheet(values=(sheet.Value("mean_force", label, mean.mean, "N", uncertainty=mean.uncertainty),))]
     steady = None
     if settings.sliding_speed is not None:
         steady = _steady_state_or_none(windows, settings.sliding_speed)

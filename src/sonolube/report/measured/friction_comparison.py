@@ -6,7 +6,7 @@ from functools import partial
 from sonolube.measurement.statistics.repeated_tests import compare_means, ratio_interval
 from sonolube.report.measured import friction_figures as figures, sheet
 
-_LEVELS = ("steady_friction_force", "friction_force", "friction_coefficient")
+_LEVELS = ("steady_friction_force", "friction_force", "mean_force", "mean_coefficient")
 
 
 def comparison_sheet(with_vibration: Sequence[sheet.Sheet], without_vibration: Sequence[sheet.Sheet]) -> sheet.Sheet:

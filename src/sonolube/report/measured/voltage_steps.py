@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction_analysis import analyse_rotation_speed, analyse_voltage_steps, channel_values
+from sonolube.measurement.recorded_sliding import speed_changes, speed_channel
 from sonolube.report.measured import friction_figures as figures, sheet
 from sonolube.units import format_si
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
 _STEP_LABELS = {
     "voltage_peak_to_peak": "Voltage",
+    "sliding_speed": "Speed",
     "start_time": "From",
     "end_time": "To",
     "friction_force": "Friction",
@@ -22,6 +24,7 @@ _STEP_LABELS = {
     "friction_reduction_uncertainty": "Uncertainty",
 }
 _VOLTAGE = {"voltage_peak_to_peak": "Voltage"}
+_SPEEDS = ("relative_velocity", "sliding_speed", "sliding_speed_set")  # in m/s
 _SLIP_COLUMNS = (
     *sheet.quantity_columns(_VOLTAGE),
     sheet.Column("detected", "Stick-slip"),
@@ -61,11 +64,13 @@ def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> shee
     found = analyse_rotation_speed(recording) if rotation_speed is None else None
     speed = found if rotation_speed is None else rotation_speed
     steps = analyse_voltage_steps(recording, rotation_speed=speed)
+    has_speed = speed_channel(recording) in _SPEEDS and speed_changes(recording)
+    labels = {name: label for name, label in _STEP_LABELS.items() if has_speed or name != "sliding_speed"}
     table = sheet.Table(
         name="steps",
         title="Friction at each step of the voltage",
-        columns=sheet.quantity_columns(_STEP_LABELS),
-        rows=tuple(tuple(getattr(step, name) for name in _STEP_LABELS) for step in steps),
+        columns=sheet.quantity_columns(labels),
+        rows=tuple(tuple(getattr(step, name) for name in labels) for step in steps),
     )
     rotation: tuple[sheet.Value, ...] = ()
     if found is not None:
@@ -77,14 +82,23 @@ def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> shee
     if sticking:
         pictures.append(figures.stick_slip(*force, steps))
     tables = [table, _slips(steps), *([_bursts(sticking)] if sticking else [])]
-    reason = f"stick-slip: at none of {len(steps)} steps; at the first, {steps[0].stick_slip.reason}"
+    first = next((step for step in steps if not step.stick_slip.resolved), steps[0])
+    at = "the first" if first is steps[0] else format_si(first.voltage_peak_to_peak, "V")
+    reason = f"stick-slip: at none of {len(steps)} steps; at {at}, {first.stick_slip.reason}"
     return sheet.Sheet(
         values=values,
         tables=tuple(tables),
         figures=tuple(pictures),
-        caveats=() if speed is not None else (_unknown_rotation(steps),),
+        caveats=(*_zero_taken_off(steps[0]), *(() if speed is not None else (_unknown_rotation(steps),))),
         not_found=() if sticking else (reason,),
     )
+
+
+def _zero_taken_off(step: VoltageStep) -> tuple[str, ...]:
+    """Caveat that the force at rest was taken for its zero."""
+    if not step.force_zero:
+        return ()
+    return (f"{format_si(step.force_zero, 'N')}, the mean force at rest before sliding, is taken off as its zero",)
 
 
 def _unknown_rotation(steps: Sequence[VoltageStep]) -> str:
@@ -102,7 +116,8 @@ def _slips(steps: Sequence[VoltageStep]) -> sheet.Table:
     for step in steps:
         found = step.stick_slip
         if not found.detected:
-            rows.append((step.voltage_peak_to_peak, "no", *[None] * (len(_SLIP_COLUMNS) - 2)))
+            seen = "no" if found.resolved else "cannot be seen"
+            rows.append((step.voltage_peak_to_peak, seen, *[None] * (len(_SLIP_COLUMNS) - 2)))
             continue
         fall = found.stick_slip_amplitude, *found.stick_slip_amplitude_interval
         recurrence = found.stick_slip_frequency, 1 / found.stick_slip_frequency, found.stick_slip_fraction

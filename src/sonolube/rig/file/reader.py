@@ -1,6 +1,7 @@
 """Reader of rig files: from TOML text to a `Rig`."""
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -45,7 +46,11 @@ def read_rig(path: str | Path, *, changes: Sequence[str] = ()) -> Rig:
     InvalidInput
         In one line that names the file, the key and the value.
     """
-    content = rig_content(path, changes=changes)
+    return rig_of_file(path, rig_content(path, changes=changes), changes=changes)
+
+
+def rig_of_file(path: str | Path, content: Mapping[str, Any], *, changes: Sequence[str]) -> Rig:
+    """Rig of the content of a file in which entries were replaced, as `rig_contents` returns it."""
     with prefixed(str(path)):
         rig = rig_from(content)
     return from_file(rig, path=str(path), changes=tuple(changes))
@@ -71,20 +76,31 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
     InvalidInput
         If the file cannot be read or is no TOML, or a change cannot be made.
     """
+    (content,) = rig_contents(path, changes)
+    return content
+
+
+def rig_contents(path: str | Path, *variants: Sequence[str]) -> list[dict[str, Any]]:
+    """Content of a rig's file, read once, with the changes of each variant, as `rig_content` returns it."""
     path = Path(path)
     with prefixed(str(path)):
         content = read_toml(path, kind="a rig file")
-        _refuse_repeated(changes)
-        # what another number follows from, such as a stiffness at the load of the file, before that load is replaced
-        stated = [change for change in changes if _key(change) in {*REPLACED, *ALTERNATIVES}]
-        for change in stated:
+        return [_changed(deepcopy(content), changes, folder=path.parent) for changes in variants]
+
+
+def _changed(content: dict[str, Any], changes: Sequence[str], *, folder: Path) -> dict[str, Any]:
+    """Content of a rig's file with some entries replaced."""
+    _refuse_repeated(changes)
+    # what another number follows from, such as a stiffness at the load of the file, before that load is replaced
+    stated = [change for change in changes if _key(change) in {*REPLACED, *ALTERNATIVES}]
+    for change in stated:
+        _apply(change, content)
+    content = _with_numbers(content)
+    for change in changes:
+        if change not in stated:
             _apply(change, content)
-        content = _with_numbers(content)
-        for change in changes:
-            if change not in stated:
-                _apply(change, content)
-        require_plain_content(content)
-        return _with_modes(content, path.parent)
+    require_plain_content(content)
+    return _with_modes(content, folder)
 
 
 def structure_entries(content: Mapping[str, Any]) -> dict[str, float]:

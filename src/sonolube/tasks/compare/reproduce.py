@@ -23,8 +23,8 @@ def reproduce(
 
     Example: sonolube reproduce --chapter 3 --out out
     """
-    with stage("reproducing"):
-        return ReproductionAnswer(result=reproduction(chapter=chapter))
+    with stage("reproducing") as advance:
+        return ReproductionAnswer(result=reproduction(chapter=chapter, advance=advance))
 
 
 @answer

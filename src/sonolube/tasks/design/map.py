@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
-_DEFAULTS = {VOLTAGE: "velocity-power", AMPLITUDE: "velocity-amplitude"}  # kind of map by commanded quantity
 _SETTINGS = ("sliding_speed", "normal_load", "frequency", VOLTAGE.name, AMPLITUDE.name, "actuator_power")
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
 _OVER = Parameter(
@@ -227,7 +226,7 @@ def _kind(rig: Rig, kind: str | None) -> str:
     quantity = commanded_quantity(rig)
     known = map_kinds(quantity)
     if kind is None or kind in known:
-        return kind or _DEFAULTS[quantity]
+        return kind or known[0]
     if quantity is AMPLITUDE:
         raise InvalidInput(
             f"{shown('kind')} {kind} needs a drive voltage, and {rig.title} has an amplitude alone: take"

@@ -1,6 +1,7 @@
 """Parametric study of `sweep --of`: friction over voltage, amplitude, speed, frequency, waveform or load, and power."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -219,6 +220,16 @@ def _curves(rig: Rig, of: str, voltages: Sequence[str], amplitudes: Sequence[str
         return {}
     read = [to_si(text, unit=own.unit, name=shown(name)) for text in texts]
     return {own.name: require_positive(**{own.name: read})}
+
+
+def studies_of(rig: Rig) -> list[str]:
+    """Names of the studies over one quantity that a rig has."""
+    found = []
+    for name in _RANGES | {"waveform": None}:
+        with suppress(InvalidInput):
+            _require_studied(rig, name)
+            found.append(name)
+    return found
 
 
 def _require_studied(rig: Rig, of: str) -> None:

@@ -90,6 +90,10 @@ def each_file(
                 if isinstance(files, InputFile) and len(paths) == 1:
                     raise
                 refused[with_names_only(str(path))] = reason_of(failure)
+            except Exception as failure:  # a defect at one file must not lose the others
+                if len(paths) == 1:
+                    raise
+                refused[with_names_only(str(path))] = with_names_only(_defect(failure))
     return sheets, refused
 
 
@@ -109,6 +113,12 @@ def measured(
 def reason_of(failure: SonolubeError) -> str:
     """Reason for which a file could not be measured, in one line."""
     return with_names_only(" ".join(str(failure).split()))
+
+
+def _defect(failure: Exception) -> str:
+    """An unforeseen error as the reason for which a file could not be measured."""
+    text = " ".join(str(failure).split())
+    return f"{type(failure).__name__}: {text}: a defect of sonolube, please report it with the file"
 
 
 def conditions(test_sheet: InputFile | None) -> PinOnDiscSheet | None:

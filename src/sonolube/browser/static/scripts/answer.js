@@ -1,18 +1,27 @@
 /** Parts of an answer as a page shows them: blocks of text, caveats, assumptions, refusals, differences. */
-import {html, useRef} from '../vendor/htm-preact-3.1.1.js';
+import {html, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {askAgain} from './api.js';
 import {focusField} from './fields.js';
 
-/** Table of texts. */
-export function TextTable({heads, rows, caption, test}) {
-  return html`<div class="table-frame" tabindex="0" role="group" aria-label=${caption ?? heads?.filter(Boolean).join(', ') ?? 'Table'}>
+const MOST = 100; // rows shown before all are asked for
+
+/**
+ * Table of texts; the first of a row is its head, where `hasRowHeads` is not false.
+ * @param {{heads?: string[], rows: string[][], caption?: string, label?: string, test?: string, kind?: string, hasRowHeads?: boolean}} props
+ */
+export function TextTable({heads, rows, caption, label, test, kind = 'table-frame', hasRowHeads = true}) {
+  const [isAll, setAll] = useState(false);
+  const shown = isAll ? rows : rows.slice(0, MOST);
+  return html`<div class=${kind} tabindex="0" role="group" aria-label=${label ?? caption ?? heads?.filter(Boolean).join(', ') ?? 'Table'}>
     <table class="table" data-test=${test}>
       ${caption && html`<caption>${caption}</caption>`}
       ${heads?.some(Boolean) && html`<thead><tr>${heads.map((head, place) => html`<th key=${place} scope="col">
         ${head || html`<span class="hidden">Quantity</span>`}</th>`)}</tr></thead>`}
-      <tbody>${rows.map((row, at) => html`<tr key=${at}>${row.map((cell, place) => (place === 0
+      <tbody>${shown.map((row, at) => html`<tr key=${at}>${row.map((cell, place) => (place === 0 && hasRowHeads
     ? html`<th key=${place} scope="row">${cell}</th>` : html`<td key=${place}>${cell}</td>`))}</tr>`)}</tbody>
-    </table></div>`;
+    </table>
+    ${shown.length < rows.length && html`<button type="button" class="button is-quiet" onClick=${() => setAll(true)}>
+      Show ${rows.length - shown.length} further rows</button>`}</div>`;
 }
 
 /** Block of an answer: text, rows, table or verbatim. */

@@ -5,7 +5,7 @@
  * @typedef {{text: string, faults: Fault[], kind: 'refused'|'busy'|'offline'|'link'}} Failure
  * @typedef {{content?: any, failure?: Failure}} Reply
  */
-import {useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {useEffect, useState} from '../vendor/htm-preact-3.1.1.js';
 import {useListening} from './state.js';
 
 const STATED = {'x-status': 'in-header'}; // a refusal is then no error of the browser's console
@@ -54,7 +54,7 @@ async function send(path, {method = 'GET', body, raw, signal} = {}) {
       headers: {...STATED, ...(body === undefined ? {} : {'content-type': 'application/json'})},
     });
   } catch (reason) {
-    if (signal?.aborted) return failed('refused', 'stopped');
+    if (signal?.aborted) return failed('busy', 'It was cancelled.');
     setConnection('offline');
     return failed('offline', SENTENCES.offline);
   }
@@ -106,23 +106,27 @@ export async function upload(file) {
 }
 
 const waiting = new Map();
-let isBusy = false;
+/** @type {AbortController|null} */
+let inFlight = null;
 
 async function run() {
-  if (isBusy) return;
-  isBusy = true;
+  if (inFlight) return;
   while (waiting.size) {
+    inFlight = new AbortController();
     const [slot, {work, done}] = waiting.entries().next().value;
     waiting.delete(slot);
-    done(await work());
+    done(await work(inFlight.signal));
   }
-  isBusy = false;
+  inFlight = null;
 }
+
+/** Stop the request in flight; the workbench then stops computing its answer. */
+export const cancelRequest = () => inFlight?.abort();
 
 /**
  * Do requests one after the other; a newer one of the same slot replaces one that waits.
  * @param {string} slot
- * @param {() => Promise<Reply>} work
+ * @param {(signal: AbortSignal) => Promise<Reply>} work
  * @returns {Promise<Reply|null>} null where a newer one took its place
  */
 export function inTurn(slot, work) {
@@ -160,10 +164,11 @@ function named(text, keys) {
  * Ask about a rig; refused entries are replaced by what was accepted last, so that the other fields stay live.
  * @param {string} path
  * @param {{rig?: {name: string, text?: string, changes: Object<string, string>}}} body
+ * @param {AbortSignal} signal
  * @returns {Promise<Reply & {refused?: Fault[]}>} `refused` names the entries that were left out
  */
-export async function askWithRig(path, body) {
-  const first = await ask(path, {body});
+async function askWithRig(path, body, signal) {
+  const first = await ask(path, {body, signal});
   const rig = body?.rig;
   if (!rig) return first;
   if (first.content) {
@@ -179,7 +184,7 @@ export async function askWithRig(path, body) {
     if (last === undefined || last === changes[key]) delete changes[key];
     else changes[key] = last;
   }
-  const second = await ask(path, {body: {...body, rig: {...rig, changes}}});
+  const second = await ask(path, {body: {...body, rig: {...rig, changes}}, signal});
   return second.content ? {...second, refused} : first;
 }
 
@@ -192,28 +197,20 @@ export async function askWithRig(path, body) {
  *   `of` is the body that `content` answers.
  */
 export function useReply(slot, path, body) {
-  const [found, setFound] = useState({content: null, failure: null, refused: [], of: null});
-  const [isWaiting, setWaiting] = useState(false);
+  const [found, setFound] = useState({content: null, failure: null, refused: [], of: null, text: ''});
   const {generation: turn} = useConnection();
-  const latest = useRef('');
   const text = path === null ? '' : JSON.stringify([path, body, turn]);
   useEffect(() => {
-    latest.current = text;
     if (path === null) return;
-    setWaiting(true);
-    shared(slot, text, () => askWithRig(path, body)).then((reply) => {
+    shared(slot, text, (signal) => askWithRig(path, body, signal)).then((reply) => {
       if (reply === null) return;
-      if (latest.current === text) setWaiting(false);
       setFound((old) => (reply.content
-        ? {content: reply.content, failure: null, refused: reply.refused ?? [], of: body}
-        : {...old, failure: reply.failure, refused: []}));
+        ? {content: reply.content, failure: null, refused: reply.refused ?? [], of: body, text}
+        : {...old, failure: reply.failure, refused: [], text}));
     });
   }, [text]);
-  return {...found, isWaiting};
+  return {...found, isWaiting: path !== null && found.text !== text};
 }
-
-/** Answer of a task to its latest arguments, as `useReply`. */
-export const useTask = (name, args, slot = name) => useReply(slot, name === null ? null : taskPath(name), args);
 
 /**
  * Whether the workbench answers, and how often it came back.

@@ -280,15 +280,11 @@ function onCurve(x, values, at, isStepped) {
 
 const ascends = (x) => x.every((value, at) => !at || value === null || x[at - 1] === null || value >= x[at - 1]);
 
-/**
- * What stands at a place of a panel.
- * @returns {{texts: string[], point: Object|null}}
- */
+/** What is said of a place of a panel in pixels: of the nearest point, else of the values there. */
 export function readAt(panel, map, left, top, scale) {
   const near = pointsOf(panel).map((point) => [Math.hypot(map.x.to(point.x) - left, map.y.to(point.y) - top), point])
     .filter(([distance]) => distance < NEAR * scale).sort(([one], [other]) => one - other)[0];
-  if (near) return {texts: pointText(panel, near[1]), point: near[1]};
-  return {texts: valuesAt(panel, map.x.back(left), map.y.back(top)), point: null};
+  return near ? pointText(panel, near[1]) : valuesAt(panel, map.x.back(left), map.y.back(top));
 }
 
 /** Values of the parts of a panel at a place of its axes. */

@@ -135,9 +135,8 @@ export function ChartPanel(props) {
   const hover = (event) => {
     const {map, left, top, isIn} = placeOf(event);
     if (!isIn) return hide();
-    const found = readAt(panel, map, left, top, devicePixelRatio);
     at.current = {x: map.x.back(left), y: map.y.back(top), number: at.current?.number ?? -1};
-    return showTip(map, left, top, found.texts);
+    return showTip(map, left, top, readAt(panel, map, left, top, devicePixelRatio));
   };
   const pick = (event) => {
     const start = pressed.current;

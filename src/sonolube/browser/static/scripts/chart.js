@@ -2,11 +2,11 @@
  * Figures of the workbench: a chart of the server as panels in a grid, with legend, scale of colours and tables.
  */
 import {html, useLayoutEffect, useMemo, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {TextTable} from './answer.js';
 import {MARKERS, ownScale} from './chart-draw.js';
 import {categoryColour, ColourScale} from './chart-field.js';
 import {ChartPanel, panelName} from './chart-panel.js';
 import {dash, rangesOf, themeOf} from './chart-scale.js';
-import {ChartTables} from './chart-table.js';
 
 const LEAST_WIDTH = 250; // px of a panel
 const [LOWEST, HIGHEST, WIDEST] = [180, 400, 760]; // px
@@ -125,6 +125,17 @@ function layoutOf(chart, ranges, width, isScaled) {
   };
 }
 
+/** Numbers of a chart as tables, below it. */
+function ChartTables({tables, name}) {
+  const [isOpen, setOpen] = useState(false);
+  if (!tables?.length) return null;
+  return html`<details class="chart-numbers" onToggle=${(event) => setOpen(event.target.open)} data-test=${`numbers:${name}`}>
+    <summary>Numbers</summary>
+    ${isOpen && tables.map((table, at) => html`<${TextTable} key=${at} caption=${table.title || 'Numbers'}
+      heads=${table.heads} rows=${table.rows} kind="chart-table" hasRowHeads=${false} />`)}
+  </details>`;
+}
+
 /**
  * @param {{name: string, caption?: string, chart: Object, tables?: Object[], dimmed?: boolean,
  *   kept?: {label: string, chart: Object}[], onPick?: (place: {panel: number, x: number, y: number}) => void,
@@ -148,8 +159,7 @@ export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onP
   const label = caption || chart.title?.replaceAll('\n', ', ') || panelName(chart.panels[0]);
   const hasXText = (place) => !chart.shares_x || !layout.isWhole || !chart.panels[place + layout.columns]?.parts.length;
 
-  return html`<figure ref=${figure} class=${`chart${dimmed ? ' is-dimmed' : ''}`} aria-label=${label}
-    aria-busy=${dimmed ? 'true' : undefined} data-test=${`chart:${name}`}>
+  return html`<figure ref=${figure} class=${`chart${dimmed ? ' is-dimmed' : ''}`} aria-label=${label} data-test=${`chart:${name}`}>
     ${chart.title && html`<p class="chart-title">${chart.title.split('\n').map((row, place) => html`<span key=${place}>${row}</span>`)}</p>`}
     ${layout && legend !== 'panels' && html`<${Legend} theme=${theme} title=${chart.legend_title}
       entries=${[...(legend === 'none' ? [] : entriesOf(chart.panels)), ...keptEntries]} />`}

@@ -5,7 +5,9 @@ import {ask, useConnection} from './api.js';
 const BETWEEN = 400; // ms from one look at a job to the next
 const MOST_COMPARED = 12; // latest jobs of a task whose arguments are compared
 
-export const isActive = (job) => job?.state === 'waiting' || job?.state === 'running';
+export const isActive = (job) => ['waiting', 'running', 'running elsewhere'].includes(job?.state);
+/** Whether this workbench runs it, and so can stop it. */
+export const isOwn = (job) => job.state !== 'running elsewhere';
 
 /** Seconds that a job has taken. */
 export const secondsOf = (job) => (isActive(job) ? Math.max(0, Date.now() / 1000 - job.created) : job.seconds);
@@ -70,10 +72,10 @@ export function useJob(task, args) {
 /** What is said of the progress of a job. */
 export function progressText(job) {
   if (job.state === 'waiting') return 'Waits until a running job has ended';
-  if (job.state !== 'running') return job.state[0].toUpperCase() + job.state.slice(1);
+  if (!isActive(job)) return job.state[0].toUpperCase() + job.state.slice(1);
   const parts = job.total ? `, ${job.done} of ${job.total}` : '';
   const stage = job.total && job.stage ? job.stage : 'running';
-  return `${stage[0].toUpperCase()}${stage.slice(1)}${parts}`;
+  return `${stage[0].toUpperCase()}${stage.slice(1)}${parts}${isOwn(job) ? '' : ', in another workbench'}`;
 }
 
 /** Progress of a job with what stops it; the reason where it failed. */
@@ -84,7 +86,7 @@ export function JobState({job, cancel}) {
   }
   return html`<div class="job-state" data-test="job-state"><${JobProgress} job=${job} />
     <span role="status">${progressText(job)}</span><span class="hint">${duration(secondsOf(job))}</span>
-    <button type="button" class="button" onClick=${cancel} data-test="cancel-job">Cancel</button></div>`;
+    ${isOwn(job) && html`<button type="button" class="button" onClick=${cancel} data-test="cancel-job">Cancel</button>`}</div>`;
 }
 
 export const JobProgress = ({job}) => (job.total

@@ -45,7 +45,7 @@ export function Schematic({drawing, fields, textOf}) {
       <path d="M118 84 H152 V100 L144 112 H126 L118 100 Z" class="part is-pin" />
       <path d="M168 90 v22 m-3 -17 3 -5 3 5 m-6 12 3 5 3 -5" class="force" />
       <path d="M126 112 H144" class="contact" />
-      <path d="M58 100 L122 111" class="thin" />
+      <path d="M74 103 L122 111" class="thin" />
       <rect x="40" y="113" width="190" height="20" rx="3" class="part is-disc" />
       <path d="M96 150 H166 m-6 -4 6 4 -6 4" class="force" />
     </g>

@@ -1,5 +1,6 @@
 /** Page Dissertation: its claims judged, every published number beside the computed one, corrections, figures. */
 import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {TextTable} from '../answer.js';
 import {callTask} from '../api.js';
 import {short} from '../chart-scale.js';
 import {isActive, JobState, useJob} from '../job.js';
@@ -95,16 +96,14 @@ function Errata() {
     const {content} = await callTask('published', {});
     const tables = [];
     for (const table of Object.keys(content?.answer ?? {})) tables.push((await callTask('published', {table})).content?.answer);
-    setFound(tables.filter(Boolean).flatMap((table) => table.corrections.map((each) => ({...each, table: table.id, title: table.title}))));
+    setFound(tables.filter(Boolean).flatMap((table) => table.corrections.map((each) => ({...each, table: table.id}))));
   };
   return html`<section aria-labelledby="errata-title"><h2 id="errata-title">Errata</h2><details onToggle=${read} data-test="errata">
     <summary>Corrections of the printed tables, with their evidence</summary>
     ${!found && html`<p class="loading" role="status">Reading the tables…</p>`}
-    ${found && html`<div class="table-frame card" tabindex="0" role="group" aria-label="Corrections"><table class="table"><thead><tr><th scope="col">Table</th>
-      <th scope="col">Erratum</th><th scope="col">Column</th><th scope="col">Printed</th><th scope="col">Corrected</th><th scope="col">Evidence</th></tr></thead>
-      <tbody>${found.map((each, place) => html`<tr key=${place}><th scope="row" title=${each.title}>${each.table}</th><td>${each.erratum}</td>
-        <td>${words(each.column)}${each.row === null ? '' : `, row ${each.row + 1}`}</td><td>${each.printed}</td><td>${each.corrected}</td><td>${each.evidence}</td></tr>`)}
-      </tbody></table></div>`}</details></section>`;
+    ${found && html`<${TextTable} label="Corrections" kind="table-frame card" heads=${['Table', 'Erratum', 'Column', 'Printed', 'Corrected', 'Evidence']}
+      rows=${found.map((each) => [each.table, each.erratum, `${words(each.column)}${each.row === null ? '' : `, row ${each.row + 1}`}`,
+    each.printed, each.corrected, each.evidence])} />`}</details></section>`;
 }
 
 function Figures({job, files}) {

@@ -1,36 +1,30 @@
 /** Page Explore: a study of the rig over one or two quantities; a click in its figure sets the rig. */
 import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats, Failure, RefusedNote} from '../answer.js';
-import {upload, useReply, useTask} from '../api.js';
+import {cancelRequest, taskPath, useReply} from '../api.js';
 import {Chart} from '../chart.js';
-import {short, split, TextField} from '../fields.js';
+import {short, TextField} from '../fields.js';
+import {MaterialChoices, RunsChoice, takeFile, uploadOf} from '../inputs.js';
 import {isActive, JobState, useJob} from '../job.js';
 import {useRig, Workspace} from '../rig-panel.js';
 import {change, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
 const ENDS = [['from', 'lowest', 'From'], ['to', 'highest', 'To']];
-const BODIES = [['pin', 'pin', 'Material of the pin'], ['disc', 'disc', 'Material of the disc']];
-const DIGITS = 3;
-/** Studies beside those over one quantity, which the server names: task, entries of the view it takes, whether it is a job. */
+/** Studies beside those over one quantity, which the server names: task, entries of the view it takes, what it needs, whether it is a job. */
 const STUDIES = {
   any: {title: 'Any entry', task: 'sweep', isOver: true, texts: ENDS},
   period: {title: 'One period', task: 'simulate'},
-  start: {title: 'Start-up', task: 'transient', texts: [['duration', 'duration', 'Duration']], isLong: true},
-  response: {title: 'Impedance', task: 'response', texts: ENDS},
+  start: {title: 'Start-up', task: 'transient', texts: [['duration', 'duration', 'Duration']], isLong: true, needsStructure: true},
+  response: {title: 'Impedance', task: 'response', texts: ENDS, needsStructure: true},
   map: {title: 'Map', task: 'map', kinds: true, runs: true},
-  heat: {title: 'Temperature', task: 'thermal', texts: [['duration', 'duration', 'Duration']], bodies: BODIES},
+  heat: {title: 'Temperature', task: 'thermal', texts: [['duration', 'duration', 'Duration']], hasBodies: true},
 };
-const VOLTAGE = 'drive.voltage_peak_to_peak';
 const OVER_POINTS = 41;
-const NO_FIELDS = [];
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
-/** Words of an argument of a task that the server allows. */
-function allowed(description, task, argument) {
-  const schema = description?.paths[`/api/tasks/${task}`]?.post.requestBody.content['application/json'].schema;
-  return (schema?.properties[argument]?.enum ?? []).filter((word) => word !== null);
-}
+/** Names of the studies that a rig has. */
+const offeredOf = ({studies, drawing}) => [...studies, ...Object.keys(STUDIES).filter((name) => drawing.has_structure || !STUDIES[name].needsStructure)];
 
 /** Field that the study of any entry runs over, and its values. */
 function overOf(view, fields) {
@@ -60,29 +54,32 @@ function rigOf(state) {
   return {...state.rig, changes};
 }
 
-/** Study that the view names, and its arguments; null before the rig is known. */
-function studyOf(state, fields) {
+/** One of some names, or else the first of them. */
+const among = (names, name) => (names.includes(name) ? name : names[0]);
+
+/** Study that the view names, and its arguments. */
+function studyOf(state, rigView) {
   const {view} = state;
-  const name = view.study ?? (fields.length && !fields.some(({key}) => key === VOLTAGE) ? 'amplitude' : 'voltage');
+  const {fields, maps} = rigView;
+  const name = among(offeredOf(rigView), view.study);
   const study = STUDIES[name] ?? {title: capital(name), task: 'sweep', args: {of: name}, texts: name === 'waveform' ? [] : ENDS};
-  if (!fields.length) return {name, study, args: null};
   const rig = rigOf(state);
   if (study.isOver) {
     const {field, from, to} = overOf(view, fields);
     const {[field.key]: swept, ...changes} = rig.changes; // a change of what is swept would be without effect
     return {name, study, args: {rig: {...rig, changes}, over: {[field.key]: `${from}:${to}:${OVER_POINTS}`}}};
   }
-  const texts = [...(study.texts ?? []), ...(study.bodies ?? [])].filter(([entry]) => view[entry]);
+  const texts = argumentsOf(study).filter(([entry]) => view[entry]);
   const args = {
-    rig, ...study.args, ...(study.kinds && view.kind && {kind: view.kind}),
+    rig, ...study.args, ...(study.kinds && view.kind && {kind: among(maps, view.kind)}),
     ...Object.fromEntries(texts.map(([entry, argument]) => [argument, view[entry]])),
-    ...(study.runs && view.runs && {runs: runsOf(view)}),
+    ...(study.runs && view.runs && {runs: uploadOf(view.runs)}),
   };
   return {name, study, args};
 }
 
-/** Uploaded runs that the view names, as on the page Predict. */
-const runsOf = ({runs}) => ({name: runs.slice(runs.indexOf(' ') + 1), upload: runs.split(' ')[0]});
+/** Entries of the view that a study takes, each with the argument of its task. */
+const argumentsOf = ({texts = [], hasBodies}) => [...texts, ...(hasBodies ? [['pin', 'pin'], ['disc', 'disc']] : [])];
 
 const plain = (label) => label.replaceAll('\n', ' ').toLowerCase();
 
@@ -93,20 +90,18 @@ function fieldOf(axis, fields) {
   return fields.find((field) => plain(field.label) === label) ?? fields.filter((field) => field.is_first).find(named);
 }
 
-const textAt = (value, axis) => [short(value, DIGITS), (axis.unit ?? '').replace('µ', 'u')].filter(Boolean).join(' ');
+const unitOf = (axis) => (axis.unit ?? '').replace('µ', 'u'); // as it is typed
+const textAt = (value, axis) => [short(value), unitOf(axis)].filter(Boolean).join(' ');
 
-/** Number of a field in the unit of an axis; undefined where the field has another unit. */
-function numberOn(axis, field, rig) {
-  const parts = field && split(rig.changes[field.key] ?? field.text);
-  return parts && parts.rest.trim().replace('µ', 'u') === (axis.unit ?? '').replace('µ', 'u') ? parts.number : undefined;
-}
+/** Number of a field in the unit of an axis, as the server gives it; undefined where there is none. */
+const numberOn = (axis, field) => field?.numbers[unitOf(axis)];
 
 /** Chart with the operating point of the rig: a rule where only x is of the rig, a point where both axes are. */
-function withPoint(chart, fields, rig) {
+function withPoint(chart, fields) {
   const panels = chart.panels.map((panel) => {
     const isMap = panel.parts.some((part) => part.kind === 'field');
-    const x = numberOn(panel.x, fieldOf(panel.x, fields), rig);
-    const y = isMap ? numberOn(panel.y, fieldOf(panel.y, fields), rig) : undefined;
+    const x = numberOn(panel.x, fieldOf(panel.x, fields));
+    const y = isMap ? numberOn(panel.y, fieldOf(panel.y, fields)) : undefined;
     const known = panel.parts.find((part) => part.kind === 'field' || part.kind === 'line')?.x.filter((value) => value !== null) ?? [];
     const isThere = x !== undefined && x >= Math.min(...known) && x <= Math.max(...known);
     if (!isThere || panel.parts.some((part) => part.kind === 'rule' && part.along === 'x')) return panel;
@@ -121,23 +116,20 @@ const Choice = ({group, name, title, isChosen, choose}) => html`<label class="ch
   onChange=${choose} data-test=${`${group}:${name}`} /><span>${title}</span></label>`;
 
 /** Choice of a study, and of the kind of a map. */
-function Studies({name, view, description}) {
+function Studies({name, view, rigView}) {
   const choose = (partial) => () => change({view: {from: null, to: null, duration: null, fixed: null, ...partial}});
-  const quantities = allowed(description, 'sweep', 'of');
-  const kinds = allowed(description, 'map', 'kind');
-  const studies = [...quantities.map((each) => [each, capital(each)]), ...Object.entries(STUDIES).map(([each, {title}]) => [each, title])];
+  const studies = offeredOf(rigView).map((each) => [each, STUDIES[each]?.title ?? capital(each)]);
+  const {maps} = rigView;
   return html`<fieldset class="choices"><legend>Study</legend>${studies.map(([each, title]) => html`<${Choice} key=${each} group="study" name=${each}
       title=${title} isChosen=${each === name} choose=${choose({study: each})} />`)}</fieldset>
-    ${name === 'map' && html`<fieldset class="choices"><legend>Map over</legend>${kinds.map((each) => html`<${Choice} key=${each} group="kind" name=${each}
-      title=${each.replaceAll('-', ' and ')} isChosen=${each === (view.kind ?? 'velocity-power')} choose=${choose({kind: each})} />`)}</fieldset>`}`;
+    ${name === 'map' && html`<fieldset class="choices"><legend>Map over</legend>${maps.map((each) => html`<${Choice} key=${each} group="kind" name=${each}
+      title=${each.replaceAll('-', ' and ')} isChosen=${each === among(maps, view.kind)} choose=${choose({kind: each})} />`)}</fieldset>`}`;
 }
 
 /** Texts that a study takes beside the rig. */
 function StudyTexts({study, view, faults, over}) {
   const fields = study.texts ?? [];
-  const materials = useReply('materials', study.bodies ? 'api/tasks/materials' : null, useMemo(() => ({}), []));
-  const names = Object.entries(materials.content?.answer ?? {});
-  if (!fields.length && !study.bodies) return null;
+  if (!fields.length) return null;
   const usual = {from: over?.from, to: over?.to};
   const faultOf = (argument) => faults.find((fault) => fault.key === argument)?.text;
   return html`<div class="study-texts">
@@ -150,34 +142,11 @@ function StudyTexts({study, view, faults, over}) {
         onSettle=${settle} placeholder=${usual[entry] ?? 'usual'} aria-invalid=${faultOf(argument) ? 'true' : undefined}
         aria-describedby=${faultOf(argument) ? `study-${entry}-refusal` : undefined} data-test=${`study-text:${entry}`} />
       ${faultOf(argument) && html`<p class="refusal" id=${`study-${entry}-refusal`}>${faultOf(argument)}</p>`}</div>`)}
-    ${(study.bodies ?? []).map(([entry, argument, label]) => html`<div key=${entry} class="field"><label for=${`study-${entry}`}>${label}</label>
-      <select id=${`study-${entry}`} value=${view[entry] ?? ''} onChange=${(event) => change({view: {[entry]: event.target.value || null}})}
-        aria-describedby=${faultOf(argument) ? `study-${entry}-refusal` : undefined} data-test=${`study-text:${entry}`}><option value="" selected=${!view[entry]}>as in the rig</option>
-        ${names.map(([each, {title}]) => html`<option key=${each} value=${each} selected=${each === view[entry]}>${title}</option>`)}</select>
-      ${faultOf(argument) && html`<p class="refusal" id=${`study-${entry}-refusal`}>${faultOf(argument)}</p>`}</div>`)}
+    ${study.hasBodies && html`<${MaterialChoices} view=${view} faultOf=${faultOf} />`}
   </div>`;
 }
 
-/** Own runs on a map. */
-function OwnRuns({view}) {
-  const chooser = useRef(null);
-  const [note, setNote] = useState('');
-  const take = async (file) => {
-    if (!file) return;
-    const {file: uploaded, failure} = await upload(file);
-    setNote(failure?.text ?? '');
-    if (uploaded) change({view: {runs: `${uploaded.upload} ${uploaded.name}`}});
-  };
-  return html`<div class="row study-runs"><button type="button" class="button" onClick=${() => chooser.current.click()} data-test="choose-runs">
-      ${view.runs ? 'Other own runs…' : 'Own runs…'}</button>
-    ${view.runs && html`<span>${runsOf(view).name}</span><button type="button" class="small" onClick=${() => change({view: {runs: null}})}
-      data-test="remove-runs">leave out</button>`}
-    <input type="file" accept=".csv,.txt" class="hidden" tabindex="-1" aria-label="Own runs" ref=${chooser}
-      onChange=${(event) => take(event.target.files[0])} data-test="runs-file" />
-    ${note && html`<p class="refusal" role="alert">${note}</p>`}</div>`;
-}
-
-/** Seconds that something already takes, shown after the first. */
+/** Seconds that something already takes, shown after the first with what stops it. */
 function Waiting({isWaiting}) {
   const [seconds, setSeconds] = useState(0);
   useEffect(() => {
@@ -187,7 +156,8 @@ function Waiting({isWaiting}) {
     return () => clearInterval(timer);
   }, [isWaiting]);
   return html`<span class="status" role="status" data-test="status">${isWaiting && html`Computing…${seconds > 0 && html` ${seconds} s
-    <progress aria-label="Computing" />`}`}</span>`;
+    <progress aria-label="Computing" />`}`}</span>
+    ${isWaiting && seconds > 0 && html`<button type="button" class="button" onClick=${cancelRequest} data-test="cancel-study">Cancel</button>`}`;
 }
 
 /** Answer of a study: at once, or as a job where it takes long; while the rig moves, that of the last rest. */
@@ -195,8 +165,8 @@ function useStudy(study, args, isMoving) {
   const rest = useRef(args);
   if (!isMoving) rest.current = args;
   const asked = rest.current;
-  const direct = useTask(study.isLong || !asked ? null : study.task, asked, 'study');
-  const job = useJob(study.isLong && asked ? study.task : null, asked);
+  const direct = useReply('study', study.isLong ? null : taskPath(study.task), asked);
+  const job = useJob(study.isLong ? study.task : null, asked);
   if (study.isLong) {
     return {content: job.content, failure: job.failure, refused: [], isWaiting: isActive(job.job) || job.isSought, isOld: job.isOld || isMoving, job, of: asked};
   }
@@ -208,12 +178,13 @@ function Study({study, args, fields, title}) {
   const {state, isMoving} = useApp();
   const {content, failure, refused, isWaiting, isOld, job, of} = useStudy(study, args, isMoving);
   const [note, setNote] = useState('');
-  const charts = useMemo(() => (content?.charts ?? []).filter((one) => one.chart).map((one) => ({...one, chart: withPoint(one.chart, fields, state.rig)})),
-    [content, fields, JSON.stringify(state.rig)]);
-  const own = [...(study.texts ?? []), ...(study.bodies ?? [])].map(([, argument]) => argument);
+  const [runsNote, setRunsNote] = useState('');
+  const charts = useMemo(() => (content?.charts ?? []).filter((one) => one.chart).map((one) => ({...one, chart: withPoint(one.chart, fields)})), [content, fields]);
+  const own = argumentsOf(study).map(([, argument]) => argument);
   const faults = (failure?.faults ?? []).map((fault) => ({...fault, key: fault.key || (own.find((argument) => fault.text.startsWith(argument)) ?? '')}));
   return html`<${StudyTexts} study=${study} view=${state.view} faults=${faults} over=${study.isOver ? overOf(state.view, fields) : undefined} />
-    ${study.runs && html`<${OwnRuns} view=${state.view} />`}
+    ${study.runs && html`<div class="study-runs"><${RunsChoice} view=${state.view} onFile=${async (file) => setRunsNote(await takeFile(file))} />
+      ${runsNote && html`<p class="refusal" role="alert">${runsNote}</p>`}</div>`}
     ${job && html`<div class="row">${job.isOld && !isActive(job.job) && !job.isSought && html`<button type="button" class="button is-main"
         onClick=${() => job.start(`${study.title}: ${title}`)} data-test="start-job">${content ? 'Compute again' : 'Compute'}</button>
       <span class="hint">${content ? 'The figure is of the rig before.' : 'Takes some seconds.'}</span>`}
@@ -237,12 +208,11 @@ function Study({study, args, fields, title}) {
 export default function Explore() {
   const {state} = useApp();
   const {view: rigView} = useRig();
-  const fields = rigView?.fields ?? NO_FIELDS;
-  const {name, study, args} = studyOf(state, fields);
-  const {content: description} = useReply('description', 'api/description', undefined);
+  const fields = rigView?.fields ?? [];
+  const {name, study, args} = rigView ? studyOf(state, rigView) : {};
   useEffect(() => (args ? offer(study.task, args) : undefined), [JSON.stringify(args)]);
   const lead = html`<p class="overline">Explore</p><h1 class="statement">Choose an operating point</h1>
-    <${Studies} name=${name} view=${state.view} description=${description} />`;
+    ${rigView && html`<${Studies} name=${name} view=${state.view} rigView=${rigView} />`}`;
   return html`<${Workspace} lead=${lead}>${args && html`<${Study} key=${[name, args.kind, state.view.key, state.rig.name].join(' ')}
     study=${study} args=${args} fields=${fields} title=${rigView.title} />`}<//>`;
 }

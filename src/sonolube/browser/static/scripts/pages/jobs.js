@@ -3,7 +3,7 @@ import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats} from '../answer.js';
 import {ask, useConnection} from '../api.js';
 import {Chart} from '../chart.js';
-import {duration, isActive, JobProgress, progressText, secondsOf} from '../job.js';
+import {duration, isActive, isOwn, JobProgress, progressText, secondsOf} from '../job.js';
 import {change, useApp} from '../state.js';
 
 const [QUICK, SLOW] = [700, 5000]; // ms between looks while a job is active, and otherwise
@@ -70,9 +70,9 @@ function Job({job, isOpen, look}) {
     <div class="row">
       ${job.state === 'done' && html`<button type="button" class="button" aria-expanded=${isOpen} aria-label=${`${isOpen ? 'Close' : 'Open'} ${name}`}
         onClick=${() => change({view: {job: isOpen ? null : job.id}})} data-test="open-job">${isOpen ? 'Close' : 'Open'}</button>`}
-      ${isActive(job) && html`<button type="button" class="button" onClick=${cancel} aria-label=${`Cancel ${name}`} data-test="cancel-job">Cancel</button>`}
-      <button type="button" class="button is-quiet" onClick=${isAsked ? remove : () => setAsked(true)} onBlur=${() => setAsked(false)}
-        aria-label=${`${isAsked ? 'Delete for good:' : 'Delete'} ${name}`} data-test="delete-job">${isAsked ? 'Delete for good' : 'Delete'}</button>
+      ${isActive(job) && isOwn(job) && html`<button type="button" class="button" onClick=${cancel} aria-label=${`Cancel ${name}`} data-test="cancel-job">Cancel</button>`}
+      ${isOwn(job) && html`<button type="button" class="button is-quiet" onClick=${isAsked ? remove : () => setAsked(true)} onBlur=${() => setAsked(false)}
+        aria-label=${`${isAsked ? 'Delete for good:' : 'Delete'} ${name}`} data-test="delete-job">${isAsked ? 'Delete for good' : 'Delete'}</button>`}
     </div>
     ${isOpen && html`<div class="job-opened"><${JobResult} id=${job.id} /></div>`}
   </li>`;

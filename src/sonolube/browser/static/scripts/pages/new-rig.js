@@ -1,8 +1,9 @@
 /** Page New rig: the questions of the task `new`, whose answer is a first rig file with what is least known of it. */
-import {html, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats, Failure} from '../answer.js';
-import {upload, useReply} from '../api.js';
+import {useReply} from '../api.js';
 import {TextField} from '../fields.js';
+import {NOTHING, takeFile, uploadOf} from '../inputs.js';
 import {openRigText} from '../rig-panel.js';
 import {change, settle, useApp} from '../state.js';
 
@@ -16,24 +17,14 @@ const NAME = 'name';
 const words = (name) => name[0].toUpperCase() + name.slice(1).replaceAll('_', ' ');
 
 /** Argument of a view: an upload for a file, else its text. */
-function argument(name, text) {
-  if (!FILES.includes(name)) return text;
-  const at = text.indexOf(' ');
-  return {name: text.slice(at + 1), upload: text.slice(0, at)};
-}
+const argument = (name, text) => (FILES.includes(name) ? uploadOf(text) : text);
 
 /** One question. */
 function Question({name, schema, view, isNeeded, refusal, list}) {
   const id = `new-${name}`;
   const [note, setNote] = useState('');
   const give = (text, isMoving) => change({view: {[name]: text || null}}, {replace: isMoving});
-  const take = async (event) => {
-    const [chosen] = event.target.files;
-    if (!chosen) return;
-    const {file, failure} = await upload(chosen);
-    setNote(failure?.text ?? '');
-    if (file) give(`${file.upload} ${file.name}`, false);
-  };
+  const take = async (event) => setNote(await takeFile(event.target.files[0], name));
   const described = [`${id}-help`, refusal && `${id}-refusal`].filter(Boolean).join(' ');
   return html`<div class=${`field${refusal ? ' is-refused' : ''}`}>
     <div class="field-head"><label for=${id}>${words(name)}${isNeeded && html` <span class="tag">needed</span>`}</label></div>
@@ -54,10 +45,9 @@ const fieldOf = (fault, names) => (names.includes(fault.key) ? fault.key
 
 /** The rig that was made. */
 function Made({answer, name, isDim}) {
-  const form = useRef(null);
   const {text, rig} = answer.answer;
   const use = () => openRigText(name, text, 'predict');
-  return html`<section class=${`card${isDim ? ' is-dim' : ''}`} aria-labelledby="made-title" data-test="made" ref=${form}>
+  return html`<section class=${`card${isDim ? ' is-dim' : ''}`} aria-labelledby="made-title" data-test="made">
     <h2 id="made-title">${rig}</h2>
     <p class="row"><button type="button" class="button is-main" onClick=${use} data-test="use-rig">Predict with this rig</button>
       <span class="hint">Every entry can be changed there, and the file taken away.</span></p>
@@ -69,10 +59,9 @@ function Made({answer, name, isDim}) {
 
 export default function NewRig() {
   const {state: {view}} = useApp();
-  const nothing = useMemo(() => ({}), []);
   const description = useReply('description', 'api/description', undefined);
-  const materials = useReply('materials', 'api/tasks/materials', nothing);
-  const actuators = useReply('actuators', 'api/tasks/actuators', nothing);
+  const materials = useReply('materials', 'api/tasks/materials', NOTHING);
+  const actuators = useReply('actuators', 'api/tasks/actuators', NOTHING);
   const schema = description.content?.paths[PATH].post.requestBody.content['application/json'].schema;
   const names = Object.keys(schema?.properties ?? {});
   const args = Object.fromEntries(names.filter((name) => view[name]).map((name) => [name, argument(name, view[name])]));

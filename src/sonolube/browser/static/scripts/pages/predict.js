@@ -1,9 +1,10 @@
 /** Page Predict: how much friction and wear fall on the rig, how sure that is, and what would sharpen it. */
-import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
-import {ask, callTask, inTurn, upload, useLate, useReply} from '../api.js';
+import {ask, callTask, inTurn, useLate, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {focusField, short} from '../fields.js';
+import {MaterialChoices, RunsChoice, takeFile, uploadOf} from '../inputs.js';
 import {useRig, Workspace} from '../rig-panel.js';
 import {change, decode, encode, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
@@ -27,14 +28,11 @@ const ADVISED = [
 ];
 
 /** Arguments of the task for a state. */
-function argumentsOf(state, runs, isMoving) {
-  const {pin, disc, lubricant} = state.view;
-  const given = {runs, pin, disc, lubricant: Boolean(lubricant), draws: isMoving && MOVING_DRAWS};
+function argumentsOf(state, isMoving) {
+  const {pin, disc, lubricant, runs} = state.view;
+  const given = {runs: runs && uploadOf(runs), pin, disc, lubricant: Boolean(lubricant), draws: isMoving && MOVING_DRAWS};
   return {rig: state.rig, ...Object.fromEntries(Object.entries(given).filter(([, value]) => value))};
 }
-
-/** Uploaded runs that the view names; they last as long as the workbench. */
-const runsOf = (view) => (view.runs ? {name: view.runs.slice(view.runs.indexOf(' ') + 1), upload: view.runs.split(' ')[0]} : null);
 
 /** Numbers of an answer: the table of quantities by name, with its median and interval, and the operating point. */
 function Numbers({answer}) {
@@ -76,8 +74,7 @@ function Sharpen({answer}) {
 }
 
 /** Files of own runs: dropped anywhere on the page, or chosen. */
-function OwnRuns({runs, onFile, note}) {
-  const chooser = useRef(null);
+function OwnRuns({view, onFile, note}) {
   const [help, setHelp] = useState('');
   const read = async () => {
     const {content, failure} = await ask('api/description');
@@ -85,38 +82,20 @@ function OwnRuns({runs, onFile, note}) {
     setHelp(schema?.properties.runs.description ?? failure.text);
   };
   return html`<section class="card" aria-labelledby="runs-title" data-test="own-runs">
-    <h2 id="runs-title">Own runs</h2>
-    ${runs && html`<p class="row"><strong class="grow">${runs.name}</strong><button type="button" class="button"
-      onClick=${() => change({view: {runs: null}})} data-test="remove-runs">Leave out</button></p>`}
-    <p class="row"><button type="button" class="button" id="own-runs" onClick=${() => chooser.current.click()}
-      data-test="choose-runs">${runs ? 'Choose other runs…' : 'Choose runs…'}</button>
-      <span class="hint">or drop a CSV file on this page</span></p>
-    <input type="file" accept=".csv,.txt" class="hidden" tabindex="-1" aria-label="Own runs" ref=${chooser}
-      onChange=${(event) => onFile(event.target.files[0])} data-test="runs-file" />
+    <h2 id="runs-title">Own runs</h2><${RunsChoice} view=${view} onFile=${onFile} />
+    <p class="hint">Or drop a CSV file on this page.</p>
     ${note && html`<p class="refusal" role="alert">${note}</p>`}
     <details onToggle=${read}><summary>What the file holds</summary><p class="hint">${help || 'Reading…'}</p></details>
   </section>`;
 }
 
 /** Materials and lubrication, which the task takes beside the rig. */
-function Materials({view, fault, isFirst}) {
-  const known = useReply('materials', isFirst ? null : 'api/tasks/materials', useMemo(() => ({}), []));
-  const names = Object.entries(known.content?.answer ?? {});
-  const choose = (name) => (event) => change({view: {[name]: event.target.value || null}});
-  const choice = (name, label) => html`<div class="field"><label for=${`material-${name}`}>${label}</label>
-    <select id=${`material-${name}`} value=${view[name] ?? ''} onChange=${choose(name)} data-test=${`material:${name}`}
-      aria-describedby=${fault ? 'materials-refusal' : undefined}>
-      <option value="" selected=${!view[name]}>as in the rig</option>
-      ${view[name] && !names.some(([each]) => each === view[name]) && html`<option value=${view[name]} selected>${view[name]}</option>`}
-      ${names.map(([each, {title}]) => html`<option key=${each} value=${each} selected=${each === view[name]}>${title}</option>`)}
-    </select></div>`;
-  return html`<fieldset class="fields materials"><legend>For wear and heat</legend>
-    ${choice('pin', 'Material of the pin')}${choice('disc', 'Material of the disc')}
-    <label class="check"><input type="checkbox" checked=${Boolean(view.lubricant)} data-test="lubricant"
-      onChange=${(event) => change({view: {lubricant: event.target.checked ? 'yes' : null}})} /> The contact is lubricated</label>
-    ${fault && html`<p class="refusal" id="materials-refusal">${fault}</p>`}
-  </fieldset>`;
-}
+const Materials = ({view, faultOf, isFirst}) => html`<fieldset class="fields materials"><legend>For wear and heat</legend>
+  <${MaterialChoices} view=${view} faultOf=${faultOf} isAsked=${!isFirst} />
+  <label class="check"><input type="checkbox" checked=${Boolean(view.lubricant)} data-test="lubricant"
+    onChange=${(event) => change({view: {lubricant: event.target.checked ? 'yes' : null}})} /> The contact is lubricated</label>
+  ${faultOf('lubricant') && html`<p class="refusal">${faultOf('lubricant')}</p>`}
+</fieldset>`;
 
 /** Answers that were kept, beside the answer of now. */
 function Kept({kept, now, onRemove}) {
@@ -164,7 +143,7 @@ function useKept(state, content) {
     for (const fragment of fragments.filter((each) => !keptAnswers.has(each))) {
       inTurn(fragment, async () => {
         const of = await decode(fragment);
-        return {of, ...await callTask('predict', argumentsOf(of, runsOf(of.view), false))};
+        return {of, ...await callTask('predict', argumentsOf(of, false))};
       }).then((reply) => {
         if (reply?.content) keptAnswers.set(fragment, {label: labelOf(reply.of), answer: reply.content});
         draw({});
@@ -196,30 +175,23 @@ export default function Predict() {
   const {state, isMoving} = useApp();
   const {view} = useRig();
   const [note, setNote] = useState('');
-  const runs = runsOf(state.view);
-  const body = argumentsOf(state, runs, isMoving);
+  const body = argumentsOf(state, isMoving);
   const reply = useReply('predict', state.rig.name ? 'api/tasks/predict' : null, body);
   const {content, failure, refused, isWaiting} = reply;
   const {kept, keep, remove} = useKept(state, content);
-  useEffect(() => offer('predict', argumentsOf(state, runs, false)), [JSON.stringify(body)]);
-  const onFile = async (file) => {
-    if (!file) return;
-    setNote('');
-    const {file: uploaded, failure: reason} = await upload(file);
-    if (reason) setNote(reason.text);
-    else change({view: {runs: `${uploaded.upload} ${uploaded.name}`}});
-  };
+  useEffect(() => offer('predict', argumentsOf(state, false)), [JSON.stringify(body)]);
+  const onFile = async (file) => setNote(await takeFile(file));
   const isDropping = useDrop(onFile);
   const changed = new Set(Object.keys(state.rig.changes));
-  const materialsFault = failure?.faults.find((fault) => ['pin', 'disc', 'lubricant'].includes(fault.key))?.text;
+  const faultOf = (key) => failure?.faults.find((fault) => fault.key === key)?.text;
   const shown = [...changed, 'pin', 'disc', 'lubricant'];
-  const extra = html`<${Materials} view=${state.view} fault=${materialsFault} isFirst=${!content && !failure} />`;
-  const ownRuns = html`<${OwnRuns} runs=${runs} onFile=${onFile} note=${note} />`;
+  const extra = html`<${Materials} view=${state.view} faultOf=${faultOf} isFirst=${!content && !failure} />`;
+  const ownRuns = html`<${OwnRuns} view=${state.view} onFile=${onFile} note=${note} />`;
   const isDim = useLate(isWaiting || Boolean(failure));
   if (!content) {
     return html`<${Workspace} extra=${extra} lead=${html`<p class="overline">Predict</p><h1 class="statement is-pending">
       ${failure ? 'No answer yet' : 'Computing the first answer…'}</h1>
-      <${Failure} failure=${failure} shown=${shown} />`}>${failure ? runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}<//>`;
+      <${Failure} failure=${failure} shown=${shown} />`}>${failure ? state.view.runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}<//>`;
   }
   const [outcome, ...others] = content.answer.statement;
   const [first, rest] = outcome.split(/(?<=\.) (?=[A-Z])(.*)/s);

@@ -1,0 +1,96 @@
+"""Pictures of the workbench in each state, for its page in the docs: `python -m tests.browser.pictures FOLDER`."""
+
+import io
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import Browser, Page
+from tests.browser.pages import LOAD, VOLTS, at_rest, opened, show, started_browser
+from tests.browser.workbench import Served, served
+
+NEW = {"pin": "steel", "disc": "steel", "load": "5 N", "speed": "0.1 m/s", "frequency": "22 kHz", "amplitude": "2 um"}
+"""Answers to the questions of a new rig."""
+
+_COLOURS = 255  # of a picture, which keep it small
+_SHADES: tuple[tuple[str, dict[str, object]], ...] = (
+    ("light", {}),
+    ("dark", {"color_scheme": "dark"}),
+    ("narrow", {"viewport": {"width": 390, "height": 844}}),
+)
+
+Shots = Iterator[tuple[str, bytes]]
+
+
+def every_picture() -> Shots:
+    """Name and content of each picture, those of the page without its server last."""
+    with tempfile.TemporaryDirectory() as folder, served(Path(folder)) as workbench, started_browser() as browser:
+        for name, options in _SHADES:
+            with opened(browser, workbench, **options) as page:
+                yield f"predict-{name}", page.screenshot()
+        with opened(browser, workbench) as page:
+            yield from _pages(page, workbench)
+        yield from _without_an_answer(browser, workbench)
+
+
+def _pages(page: Page, workbench: Served) -> Shots:
+    """Every page with what it shows at work."""
+    show(page, workbench, "tribometer", {LOAD: "3 kg"})
+    yield "refused", page.screenshot()
+    show(page, workbench, "tribometer", {}, where="explore")
+    page.get_by_test_id("study:map").check()
+    at_rest(page)
+    yield "explore", page.screenshot()
+    page.get_by_test_id("study:start").check()
+    page.get_by_test_id("start-job").click()
+    page.get_by_test_id("study").wait_for()
+    show(page, workbench, "tribometer", {}, where="dissertation")
+    page.get_by_test_id("start-job").click()
+    page.get_by_test_id("cancel-job").wait_for()
+    yield "dissertation", page.screenshot()
+    page.get_by_test_id("page:jobs").click()
+    page.get_by_test_id("open-job").click()
+    page.get_by_test_id("job-result").wait_for()
+    yield "jobs", page.screenshot()
+    show(page, workbench, "tribometer", {}, where="new")
+    for name, text in NEW.items():
+        page.get_by_test_id(f"new:{name}").fill(text)
+    page.keyboard.press("Enter")
+    page.get_by_test_id("use-rig").wait_for()
+    at_rest(page)
+    yield "new", page.screenshot()
+
+
+def _without_an_answer(browser: Browser, workbench: Served) -> Shots:
+    """The page that asks for the link, that waits for its first answer, and that has lost its server."""
+    page = browser.new_page(viewport={"width": 900, "height": 440})
+    page.goto(workbench.address)
+    yield "link", page.screenshot()
+    page.route("**/api/tasks/**", lambda route: None)  # never answered
+    page.goto(workbench.link)
+    page.get_by_test_id("rig-title").wait_for()
+    yield "loading", page.screenshot()
+    page.unroute_all()
+    page.reload()
+    at_rest(page)
+    workbench.process.terminate()
+    workbench.process.wait()
+    page.get_by_test_id(f"field:{VOLTS}").fill("14 V")
+    page.keyboard.press("Enter")
+    page.get_by_test_id("offline").wait_for()
+    yield "offline", page.screenshot()
+    page.close()
+
+
+def main(folder: Path) -> None:
+    """Write the pictures as small PNG files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in every_picture():
+        picture = Image.open(io.BytesIO(content)).convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
+        picture.save(folder / f"workbench-{name}.png", optimize=True)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,63 @@
+"""Answers that are shipped for the first page: those that are computed, and only for its own requests."""
+
+import asyncio
+import json
+from collections.abc import Mapping
+from typing import Any, cast
+
+import pytest
+from pytest import approx
+from starlette.responses import Response
+
+from sonolube.browser.first_page import REQUESTS, computed_answers, shipped_answer, shipped_answers
+from sonolube.browser.pool import Pool
+from sonolube.browser.routes import Workbench
+from sonolube.browser.worker import encoded
+
+CHANGED = {"rig": {"name": "tribometer", "changes": {"contact.normal_load": "4 N"}}}
+
+
+def same(one: Any, other: Any, place: str = "") -> None:
+    """Two objects of JSON are equal, their numbers to the rounding of another processor."""
+    if isinstance(one, dict):
+        assert list(one) == list(other), place
+        for key, value in one.items():
+            same(value, other[key], f"{place}.{key}")
+    elif isinstance(one, list):
+        assert len(one) == len(other), place
+        for at, value in enumerate(one):
+            same(value, other[at], f"{place}[{at}]")
+    else:
+        assert one == (approx(other, rel=1e-6, abs=1e-9) if isinstance(other, float) else other), place
+
+
+def test_shipped_answers_are_those_that_are_computed() -> None:
+    same(shipped_answers(), computed_answers())  # else: python -m sonolube.browser.first_page
+
+
+def test_they_are_given_to_the_first_page_only_and_while_no_worker_has_started() -> None:
+    for kind, payload in REQUESTS.items():
+        assert json.loads(shipped_answer(kind, payload) or b"") == shipped_answers()[kind]
+    assert shipped_answer("rig", CHANGED) is None
+    assert shipped_answer("take", REQUESTS["rig"]) is None
+
+
+class SlowPool:
+    """Stands in for a pool."""
+
+    def __init__(self, *, is_warm: bool) -> None:
+        self.is_warm = is_warm
+
+    async def ask(self, kind: str, payload: Mapping[str, Any], places: object, **more: object) -> tuple[int, bytes]:
+        return 200, encoded("computed")
+
+
+@pytest.mark.parametrize(
+    ("is_warm", "rigs", "is_computed"), [(False, {}, False), (True, {}, True), (False, {"own": "own.toml"}, True)]
+)
+def test_a_worker_answers_as_soon_as_there_is_one(is_warm: bool, rigs: dict[str, str], is_computed: bool) -> None:
+    unused: Any = type("Unused", (), {"folder": ""})()
+    pool = cast("Pool", SlowPool(is_warm=is_warm))
+    workbench = Workbench(pool=pool, jobs=unused, uploads=unused, rigs=rigs, opened="tribometer")
+    reply: Response = asyncio.run(workbench._ask("rig", REQUESTS["rig"]))
+    assert (bytes(reply.body) == b'"computed"') is is_computed

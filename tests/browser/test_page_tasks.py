@@ -1,0 +1,191 @@
+"""The task of each page by keyboard alone and by touch, and the pages at every size, light and dark."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+from tests.browser.pages import LOAD, SPEED, VOLTS, at_rest, numbers, opened, reach, show
+from tests.browser.pictures import NEW
+from tests.browser.workbench import Served
+from tests.chromium import CHROMIUM
+
+PAGES = ("predict", "explore", "dissertation", "jobs", "new")
+PHONE: dict[str, Any] = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine; Debian's package is called chromium"),
+]
+
+
+@pytest.fixture(scope="module")
+def phone(browser: Browser, workbench: Served) -> Iterator[Page]:
+    with opened(browser, workbench, **PHONE) as found:
+        yield found
+
+
+def press(page: Page, test: str, key: str = "Enter") -> None:
+    """Reach an element by the tab key, and press a key on it."""
+    reach(page, test)
+    page.keyboard.press(key)
+
+
+def test_predict_by_keyboard_alone(page: Page) -> None:
+    before = numbers(page)
+    reach(page, f"field:{VOLTS}")
+    page.keyboard.press("Control+A")
+    page.keyboard.type("14 V")
+    page.keyboard.press("Enter")
+    at_rest(page)
+    assert numbers(page) != before
+    reach(page, "drag:1")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("Tab")
+    at_rest(page)
+    expect(page.get_by_test_id(f"field:{SPEED}")).not_to_have_value("20.3 mm/s")
+    page.locator("#answer").focus()
+    press(page, "keep")
+    expect(page.get_by_test_id("differences")).to_be_visible()
+    reach(page, "take", back=True)
+    page.keyboard.press("Enter")
+    press(page, "take:command")
+    expect(page.get_by_test_id("taken")).to_have_value(re.compile(f"^sonolube predict .*--set '{VOLTS}=14 V'"))
+
+
+def test_explore_by_keyboard_alone(page: Page) -> None:
+    press(page, "page:explore")
+    at_rest(page)
+    page.locator("#answer").focus()
+    reach(page, "study:voltage")
+    page.keyboard.press("ArrowRight")
+    expect(page.get_by_test_id("study:speed")).to_be_checked()
+    at_rest(page)
+    reach(page, "plot:0")
+    page.keyboard.press("ArrowRight")
+    expect(page.get_by_test_id("tip").first).to_be_visible()
+    page.keyboard.press("Enter")
+    expect(page.get_by_test_id("picked")).to_contain_text("Sliding speed")
+    at_rest(page)
+    expect(page.get_by_test_id(f"field:{SPEED}")).not_to_have_value("20.3 mm/s")
+
+
+def test_jobs_by_keyboard_alone(page: Page) -> None:
+    press(page, "page:explore")
+    at_rest(page)
+    press(page, "study:voltage", "ArrowLeft")  # to the last study, then on to that of a job
+    while not page.get_by_test_id("study:start").is_checked():
+        page.keyboard.press("ArrowLeft")
+    page.get_by_test_id("start-job").wait_for()
+    press(page, "start-job")
+    page.get_by_test_id("study").wait_for()
+    press(page, "page:jobs")
+    at_rest(page)
+    press(page, "open-job")
+    page.get_by_test_id("job-result").wait_for()
+    press(page, "delete-job")
+    page.keyboard.press("Enter")
+    expect(page.get_by_test_id("no-jobs")).to_be_visible()
+
+
+def test_the_figures_of_the_dissertation_are_started_and_cancelled_by_keyboard_alone(page: Page) -> None:
+    press(page, "page:dissertation")
+    at_rest(page)
+    press(page, "start-job")
+    press(page, "cancel-job")
+    expect(page.get_by_test_id("start-job")).to_be_visible()
+    press(page, "page:jobs")
+    expect(page.get_by_test_id("job-state").first).to_have_text("cancelled")
+    press(page, "delete-job")
+    page.keyboard.press("Enter")
+    expect(page.get_by_test_id("no-jobs")).to_be_visible()
+
+
+def test_a_new_rig_by_keyboard_alone(page: Page) -> None:
+    press(page, "page:new")
+    at_rest(page)
+    for name, text in NEW.items():
+        reach(page, f"new:{name}")
+        page.keyboard.type(text)
+    page.keyboard.press("Tab")
+    press(page, "use-rig")
+    page.locator('[data-test="page:predict"][aria-current=page]').wait_for()
+    at_rest(page)
+    expect(page.get_by_test_id(f"field:{LOAD}")).to_have_value("5 N")
+    assert len(numbers(page)) >= 5
+
+
+def test_predict_by_touch(phone: Page, workbench: Served) -> None:
+    show(phone, workbench, "tribometer", {})
+    slider = phone.get_by_test_id(f"slider:{VOLTS}")
+    slider.scroll_into_view_if_needed()
+    box = slider.bounding_box()
+    assert box is not None
+    phone.touchscreen.tap(box["x"] + 0.9 * box["width"], box["y"] + box["height"] / 2)
+    expect(phone.get_by_test_id(f"field:{VOLTS}")).not_to_have_value("28 V")
+    at_rest(phone)
+    phone.get_by_test_id("keep").tap()
+    expect(phone.get_by_test_id("differences")).to_be_visible()
+    phone.get_by_test_id("take").tap()
+    phone.get_by_test_id("take:command").tap()
+    expect(phone.get_by_test_id("taken")).to_be_visible()
+
+
+def test_explore_by_touch(phone: Page, workbench: Served) -> None:
+    show(phone, workbench, "tribometer", {}, where="explore")
+    phone.get_by_test_id("study:speed").tap()
+    at_rest(phone)
+    plot = phone.get_by_test_id("plot:0").first
+    plot.scroll_into_view_if_needed()
+    plot.tap()
+    expect(phone.get_by_test_id("picked")).to_contain_text("Sliding speed")
+
+
+def test_a_new_rig_by_touch(phone: Page, workbench: Served) -> None:
+    show(phone, workbench, "tribometer", {}, where="new")
+    for name, text in NEW.items():
+        phone.get_by_test_id(f"new:{name}").tap()
+        phone.get_by_test_id(f"new:{name}").fill(text)
+    phone.keyboard.press("Tab")
+    phone.get_by_test_id("use-rig").tap()
+    phone.locator('[data-test="page:predict"][aria-current=page]').wait_for()
+    at_rest(phone)
+    assert len(numbers(phone)) >= 5
+
+
+def test_jobs_by_touch(phone: Page, workbench: Served) -> None:
+    show(phone, workbench, "tribometer", {}, where="dissertation")
+    phone.get_by_test_id("start-job").tap()
+    phone.get_by_test_id("cancel-job").tap()
+    show(phone, workbench, "tribometer", {}, where="jobs")
+    expect(phone.get_by_test_id("job-state").first).to_have_text("cancelled")
+    phone.get_by_test_id("delete-job").first.tap()
+    phone.get_by_test_id("delete-job").first.tap()
+    expect(phone.get_by_test_id("no-jobs")).to_be_visible()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (820, 1180), (390, 844)])
+def test_pages_have_their_layout(width: int, height: int, scheme: Any, browser: Browser, workbench: Served) -> None:
+    with opened(browser, workbench, viewport={"width": width, "height": height}, color_scheme=scheme) as page:
+        for where in PAGES:
+            show(page, workbench, "tribometer", {}, where=where)
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), where
+            assert page.evaluate(_CUT_OFF) == [], where
+            if where == "predict":
+                panel, lead = (page.locator(place).bounding_box() for place in (".rig", ".lead"))
+                assert panel is not None
+                assert lead is not None
+                beside = panel["x"] + panel["width"] <= lead["x"]
+                assert beside if width > 1000 else beside or lead["y"] <= panel["y"]
+        shade = page.evaluate("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).map(Number)")
+        assert (sum(shade) < 3 * 128) is (scheme == "dark")
+
+
+_CUT_OFF = """() => [...document.querySelectorAll('button, select, input:not([type=range]), h1, label')]
+    .filter((element) => element.checkVisibility() && !element.closest('.table-frame, .choices, .hidden, .skip')
+      && !element.classList.contains('hidden') && !element.classList.contains('skip'))
+    .map((element) => [element, element.getBoundingClientRect()])
+    .filter(([, box]) => box.width && (box.right > innerWidth + 1 || box.left < -1))
+    .map(([element]) => element.outerHTML.slice(0, 120))"""
