@@ -9,7 +9,7 @@ import pytest
 from pytest import MonkeyPatch
 from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 
-from sonolube.facts.protocol import protocol_from
+from sonolube.facts.protocol import Prompt, protocol_from
 from sonolube.laboratory import Devices, DriveSetting, RunControl, run_protocol
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
@@ -89,3 +89,17 @@ def test_no_model_is_computed_while_the_virtual_motor_turns(monkeypatch: MonkeyP
     assert started
     assert computed
     assert not any(computed)
+
+
+def test_models_at_the_load_of_a_prompt_are_computed_before_the_virtual_motor_turns(monkeypatch: MonkeyPatch) -> None:
+    devices = virtual_tribometer(read_rig(RIG), seed=0).devices
+    assert devices.prepare is not None
+    assert devices.attend is not None
+    setting = DriveSetting(voltage_peak_to_peak=25.9, frequency=22e3, voltage_offset=12.95)
+    devices.prepare(setting, 0.7)
+    devices.attend(Prompt(task="load", text="Hang 9 N.", normal_load="9 N"))
+    monkeypatch.setattr(FrictionDraw, "_computed", lambda *_: pytest.fail("computed while the motor turns"))
+    for device in (devices.motor, devices.drive):
+        device.connect()
+    devices.motor.turn(0.7)
+    devices.drive.drive(setting)

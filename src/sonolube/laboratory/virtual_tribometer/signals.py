@@ -7,6 +7,9 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.compilation import kernel
 
+_PULL_LOOPS = 5
+_PULL_PERIOD = 30.0  # s
+
 
 @dataclass(frozen=True, slots=True)
 class Approach:
@@ -119,6 +122,25 @@ def hall_pulses(*, revolutions: Floats, magnets: int, pulse: float = 0.06) -> Fl
     """
     from_centre = (revolutions * magnets) % 1.0 - 0.5
     return np.asarray(np.exp(-0.5 * (from_centre / pulse) ** 2))
+
+
+def pulled(*, since: Floats, greatest: float) -> Floats:
+    """Force with which an operator pulls at the pin: five loops of 30 s, each further than the one before.
+
+    Parameters
+    ----------
+    since : ndarray
+        Time since the first loop began, in s.
+    greatest : float
+        At the top of the last loop, in N.
+
+    Returns
+    -------
+    ndarray
+    """
+    loop, within = np.divmod(since / _PULL_PERIOD, 1.0)
+    share = np.where(loop < _PULL_LOOPS, (loop + 1) / _PULL_LOOPS, 0.0)
+    return np.asarray(greatest * share * (1 - np.abs(2 * within - 1)))
 
 
 @dataclass(slots=True)

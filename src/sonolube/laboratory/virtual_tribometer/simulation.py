@@ -22,6 +22,7 @@ from sonolube.laboratory.virtual_tribometer.signals import (
     correlated,
     hall_pulses,
     play,
+    pulled,
     resonant,
     waveform,
 )
@@ -52,7 +53,6 @@ SIZES_STREAM: Final = 10
 _BURSTS: Final = 11
 _DISPLACEMENT: Final = 12
 _GAUGE_RANGE: Final = 60.0  # N, that the gauge has at least
-_PULL_LOOPS, _PULL_PERIOD = 5, 30.0  # loops of an operator who pulls at the pin, each further by a step; s
 _DISPLACEMENT_RANGE: Final = 1e-3  # m
 _STANDS: Final = 1e-9  # 1/s
 
@@ -108,6 +108,7 @@ class VirtualRig:
         thermocouple = Thermocouple(disturbances.contact_share, disturbances.thermocouple_time)
         self._temperatures = Temperatures(rig, heating, thermocouple)
         self._capacitance = actuator_capacitance(rig)
+        self._prepared: list[tuple[DriveSetting | None, float]] = []
         self._admittances: dict[float, complex] = {}
         held = None if rig.structure is None else arm_resonance(rig.structure)
         self._arm = held or (disturbances.natural_frequency, disturbances.holder_damping_ratio)
@@ -204,7 +205,9 @@ class VirtualRig:
         """Work out the friction at a setting of drive and motor, which takes seconds for some rigs."""
         import scipy.signal  # noqa: F401  for which the first block would wait
 
-        self._friction.at(setting, rotation_speed * pi * self._diameter, normal_load=self._load)
+        speed = rotation_speed * pi * self._diameter
+        self._prepared.append((setting, speed))
+        self._friction.at(setting, speed, normal_load=self._load)
 
     def attend(self, prompt: Prompt) -> None:
         """Let the time of a prompt pass: the rig cools, the gauge is set to zero, load and pull change as it says."""
@@ -222,6 +225,8 @@ class VirtualRig:
         if self._load == 0:
             self._untouched += turned - self._lifted_at
         self._load, self._lifted_at = load, turned
+        for setting, speed in self._prepared:  # while the motor rests
+            self._friction.at(setting, speed, normal_load=load)
 
     def drive(self, setting: DriveSetting | None) -> None:
         """Set the drive, None for off."""
@@ -320,20 +325,12 @@ class VirtualRig:
         turning = self._turning.at(time)
         drawn = sizes.holder_stiffness * (distance - self._began_to_slide)  # while the pin still sticks
         force = np.where(drawn < (1 + sizes.static_share) * level, drawn, force) * (turning / (turning + _STANDS))
-        force = force + self._pulling(time)
+        force = force + pulled(since=time - self._pulled_from, greatest=self._pull)
         reading = force + self._drift * (time - self._zeroed) + self._white("friction_force", sizes.sensor_noise, time)
         if sizes.hysteresis > 0:
             reading = play(reading, sizes.hysteresis, self._gauge)
             self._gauge = float(reading[-1])
         return np.asarray(reading)
-
-    def _pulling(self, time: Floats) -> Floats:
-        """Force with which an operator pulls at the pin: loops, each further than the one before. [N]"""
-        if not self._pull:
-            return np.zeros_like(time)
-        loop, within = np.divmod((time - self._pulled_from) / _PULL_PERIOD, 1.0)
-        share = np.where(loop < _PULL_LOOPS, (loop + 1) / _PULL_LOOPS, 0.0)
-        return np.asarray(self._pull * share * (1 - np.abs(2 * within - 1)))
 
     def _displacement(self, time: Floats, wobble: Floats) -> Floats:
         """Deflection of the holder by the force along the sliding, with play. [m]"""
@@ -341,7 +338,7 @@ class VirtualRig:
         ratio = self._ratio.at(time)
         turning = self._turning.at(time)
         friction = self._friction.friction_coefficient * self._load * wobble * ratio * turning / (turning + _STANDS)
-        bent = (friction + self._pulling(time)) / sizes.deflected_stiffness
+        bent = (friction + pulled(since=time - self._pulled_from, greatest=self._pull)) / sizes.deflected_stiffness
         if sizes.deflection_play > 0:
             bent = play(bent, sizes.deflection_play, self._bent)
             self._bent = float(bent[-1])
