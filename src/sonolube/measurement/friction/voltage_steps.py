@@ -171,8 +171,7 @@ def friction_at_voltage_steps(
     .. math:: P_f = 1 - \frac{F_1}{F_0} , \qquad u_P^2 = g^T C g , \qquad g = \nabla P_f .
 
     The mean force at rest before the first step, r, is the zero of the force where a speed tells that rest, and is
-    taken off; its variance :math:`u_r^2` is added to all elements of C. Where the force tells the rest, it is not taken
-    off, and :math:`r^2 - u_r^2` is added where that is positive. A force at rest above 0.3 of the level, and
+    taken off; its variance :math:`u_r^2` is added to all elements of C. A force at rest above 0.3 of the level, and
     above its own standard deviation, is no zero: the holder is under tension.
 
     A step shorter than a revolution is as uncertain as its part of the wobble, which the other steps determine.
@@ -193,7 +192,7 @@ def friction_at_voltage_steps(
     waves = wobble_columns(parts, revolutions=turned, places=places, harmonics=harmonics)[0]
     stick_slip = _stick_slip(parts, without_wobble(parts, waves))
     means = mean_of_parts(parts, waves=waves, stick_slip=stick_slip, onset=float(t[found.steps[0][0]]))
-    zero, variance = _zero(found.at_rest, means.friction_force, by_speed=v is not None)
+    zero, variance = (0.0, 0.0) if v is None else _zero(found.at_rest, means.friction_force)
     means = StepMeans(friction_force=means.friction_force - zero, covariance=means.covariance + variance)
     without = np.array(found.voltages) <= found.threshold
     reductions = _reductions(means, without, found.speeds, np.array([part.size for part in parts.times]))
@@ -265,16 +264,14 @@ def _slid(t: Floats, v: Floats) -> Floats:
     return np.asarray(distance / float(speed[moving].mean()) if moving.any() else t - t[0])
 
 
-def _zero(at_rest: Floats, levels: Floats, *, by_speed: bool) -> tuple[float, float]:
-    """Return the zero of the force and its variance, by its mean at rest: taken off where a speed tells the rest."""
+def _zero(at_rest: Floats, levels: Floats) -> tuple[float, float]:
+    """Return the zero of the force and its variance, by its mean at rest."""
     if at_rest.size < _FEWEST_AT_REST:
         return 0.0, 0.0
     mean = correlated_mean(at_rest)
     if abs(mean.mean) > max(_TENSION * float(np.max(np.abs(levels))), mean.deviation):
         return 0.0, 0.0
-    if by_speed:
-        return mean.mean, mean.uncertainty**2
-    return 0.0, max(0.0, mean.mean**2 - mean.uncertainty**2)
+    return mean.mean, mean.uncertainty**2
 
 
 def _stick_slip(parts: SampledParts, forces: Sequence[Floats]) -> list[StickSlipEstimate]:
