@@ -17,7 +17,7 @@ from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.report.page import Page, PageTable, rendered_files
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.blocks import Rows, Table, Verbatim
+from sonolube.report.blocks import Rows, Table, Verbatim
 from sonolube.tasks.parameters import RigParameter
 from sonolube.tasks.table import Task
 from sonolube.tasks.task import marks_of

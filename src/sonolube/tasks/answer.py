@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.tasks.blocks import Block, Rows, Table, Verbatim, text_lines
+from sonolube.report.blocks import Block, Rows, Table, Verbatim, text_lines
 from sonolube.vocabulary import si as si
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from sonolube.laboratory.records import Observation, RunObserver, run_to_watch
 from sonolube.printable_text import printable
 from sonolube.report.results import observation as results
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
+from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.lab.run_answer import SIMULATED
 
 LOOK_INTERVAL = 0.5

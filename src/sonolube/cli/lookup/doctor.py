@@ -19,7 +19,7 @@ from sonolube.models.dynamics.backend import device_name, gpu_obstacle
 from sonolube.models.dynamics.warm_up import compiled_code_folder, is_compiled
 from sonolube.reference_solutions.self_checks import SELF_CHECKS
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
+from sonolube.report.blocks import Block, Rows
 
 _PROGRAMS = {  # names of each program, and what it is for
     "C compiler": (("cc", "gcc", "clang"), "compiles what control exports", "apt-get install gcc libc6-dev"),

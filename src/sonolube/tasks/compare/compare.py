@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Table
 from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig
 from sonolube.tasks.progress import stage

@@ -7,10 +7,10 @@ import xarray as xr
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Table
 from sonolube.report.results import ranked_models as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import OptionalRig, OwnRuns, Parameter, Stop, Watch, file_stem, optional_rig
 from sonolube.tasks.progress import stage

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_chart
 from sonolube.report import Drawing, Page
-from sonolube.report.results import efficiency as results
+from sonolube.report.blocks import Block, Rows
+from sonolube.report.results.design import efficiency as results
+from sonolube.report.results.rig_text import rig_settings
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.design.friction_target import friction_force
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Number, OwnRuns, Parameter, RigParameter, RigSource, file_stem, rig_of
-from sonolube.tasks.results.rig_text import rig_settings
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 if TYPE_CHECKING:

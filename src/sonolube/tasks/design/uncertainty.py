@@ -23,17 +23,23 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.report.results import uncertainty as results
+from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results.beyond_the_model import BeyondTheModel, beyond_the_model
-from sonolube.report.results.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
+from sonolube.report.results.design import uncertainty as results
+from sonolube.report.results.design.status_tables import failure_objects, status_tables
+from sonolube.report.results.design.uncertain_entries import (
+    agreement,
+    distributions,
+    entry_rows,
+    free_lines,
+    posterior_object,
+)
+from sonolube.report.results.rig_text import amplitude_object, amplitude_rows, rig_settings
 from sonolube.rig import Rig, operating_caveats, steady_vibration
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows, Table
 from sonolube.tasks.parameters import DoorParameter, Interval, Kept, Parameter, RigFile, Stop, Watch, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
-from sonolube.tasks.results.rig_text import amplitude_object, amplitude_rows, rig_settings
-from sonolube.tasks.results.status_tables import status_tables
 from sonolube.tasks.task import shown, task
 from sonolube.vocabulary import quantity
 
@@ -149,7 +155,7 @@ class UncertaintyAnswer(Answer):
             "unit": quantity(self._of).unit,
             "points": int(self.result[self._of].size),
             "statuses": status_counts(self.result),
-            "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
+            "without_result": failure_objects(self.failures()),
             "contact_lost": contact_loss_probability(self.result),
             "uncertain": {
                 key: {"distribution": law.text, "truncated_fraction": law.truncated_fraction}

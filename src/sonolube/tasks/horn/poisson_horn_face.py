@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import si_value
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.reproduction.chapter2.horn_figures import face_friction_chart
 from sonolube.reproduction.chapter2.horn_friction import FACE_END, FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS
 from sonolube.reproduction.cube import Horn
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task

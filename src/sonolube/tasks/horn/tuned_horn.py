@@ -24,8 +24,8 @@ from sonolube.models.fem import generate_mesh, medium_from_material, step_text
 from sonolube.models.fem.figures import mode_figure, shaped_surface
 from sonolube.models.fem.part_modes import longest_axis
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part

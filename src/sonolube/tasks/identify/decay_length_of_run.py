@@ -25,9 +25,9 @@ from sonolube.measurement.recordings.joined_recording import join_recordings
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import decay_length as results
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import Mapped, mapping_of
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch, file_stem

@@ -21,11 +21,11 @@ from sonolube.models.fem.impedance_spectra import (
 )
 from sonolube.models.fem.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
-from sonolube.report.results import impedance_spectra as results
+from sonolube.report.blocks import Block, Table
+from sonolube.report.results.parts import impedance_spectra as results
 from sonolube.rig.datasets import labelled
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
 from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name

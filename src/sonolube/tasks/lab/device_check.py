@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory.drivers import DeviceMap, first_block, missing_parts, read_device_map, unfulfilled
+from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import shown, task

@@ -14,10 +14,10 @@ from sonolube.laboratory.closed_loop import (
 )
 from sonolube.laboratory.records import Run
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import held_friction as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.lab.run_answer import SIMULATED, off_text
 from sonolube.units import format_si
 

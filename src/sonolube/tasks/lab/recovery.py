@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.laboratory.records import Recovery, drop_raw_blocks, recover_run, run_folders
+from sonolube.report.blocks import Block
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import task
 

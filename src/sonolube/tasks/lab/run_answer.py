@@ -8,10 +8,10 @@ from sonolube.laboratory import RunResult, State
 from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_chart, dry_run_lines, dry_run_sums
 from sonolube.laboratory.records import Run
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows, Table
+from sonolube.report.results.next_step import next_command
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows, Table
-from sonolube.tasks.lab.next_step import next_command
 from sonolube.units import format_si
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.example_files import ExampleFile, example_file, example_files
+from sonolube.report.blocks import Block, Rows, Verbatim
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows, Verbatim
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.table import TASKS
 from sonolube.tasks.task import task

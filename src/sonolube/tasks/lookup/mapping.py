@@ -13,8 +13,8 @@ from sonolube.measurement.recordings.text_tables import TextTable
 from sonolube.measurement.run_columns import TEXT_NAMES
 from sonolube.measurement.run_headings import RunHeading, fits, run_heading
 from sonolube.measurement.run_table import run_text
+from sonolube.report.blocks import Block, Table
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Parameter, file_stem
 from sonolube.tasks.task import shown, task

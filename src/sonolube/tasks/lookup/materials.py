@@ -5,9 +5,9 @@ from functools import partial
 from typing import Annotated
 
 from sonolube.facts.materials import Material, material, material_classes, material_families, material_names
+from sonolube.report.blocks import Block, Table
 from sonolube.report.results import looked_up as results
 from sonolube.report.results.facts_dataset import facts_dataset
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.lookup.listing import Listing
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import task

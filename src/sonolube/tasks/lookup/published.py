@@ -5,8 +5,8 @@ from typing import Annotated
 
 from sonolube.facts import published as data
 from sonolube.facts.published import Table as PublishedTable
+from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results import looked_up as results
-from sonolube.tasks.blocks import Block, Rows, Table
 from sonolube.tasks.lookup.listing import Listing
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import task

@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 
 from sonolube.facts.protocol import protocol_schema
 from sonolube.laboratory.drivers import device_map_schema
+from sonolube.report.blocks import Verbatim
 from sonolube.rig import rig_schema
-from sonolube.tasks.blocks import Verbatim
 from sonolube.tasks.lookup.listing import Listing
 from sonolube.tasks.openapi import tasks_description
 from sonolube.tasks.parameters import Parameter

@@ -18,11 +18,11 @@ from sonolube.report import (
     pin_on_disc_rows,
     read_pin_on_disc_sheet,
 )
+from sonolube.report.blocks import Block, Rows
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
 from sonolube.tasks.measure.sheets import sheet_blocks
 from sonolube.tasks.own_tables import mapping_of

@@ -25,8 +25,8 @@ from sonolube.models.fem.mode_files import (
 )
 from sonolube.models.fem.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.number_table import number_table
 from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch

@@ -9,7 +9,7 @@ from sonolube.report.results.measured_on_rig import measured_on
 from sonolube.rig import friction_point
 from sonolube.rig.simulation import friction_model_named
 from sonolube.tasks.parameters import Interval, Parameter, RigFile, rig_of
-from sonolube.tasks.results.rig_record import RigRecord
+from sonolube.tasks.predict.rig_record import RigRecord
 from sonolube.tasks.task import task
 
 

@@ -8,12 +8,12 @@ from sonolube.facts.materials import material
 from sonolube.models.friction import BoundaryLubricant
 from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results import regime as results
 from sonolube.rig import LubricationMap, LubricationPoint, Rig, lubrication_map, lubrication_point, wear_of_materials
 from sonolube.rig.datasets import labels
 from sonolube.rig.figures import lubrication_chart
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows, Table
 from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
 from sonolube.tasks.task import in_si, plausible, shown, task
 from sonolube.units import format_si

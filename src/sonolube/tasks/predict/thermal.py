@@ -8,7 +8,7 @@ from sonolube.report import Drawing
 from sonolube.rig import temperature_point, thermal_solid
 from sonolube.rig.figures import temperature_chart
 from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
-from sonolube.tasks.results.rig_record import RigRecord
+from sonolube.tasks.predict.rig_record import RigRecord
 from sonolube.tasks.task import in_si, plausible, shown, task
 
 _PIN = Parameter(help="Material of the pin, which the contact stays on; by default the rig's.", kind="MATERIAL")
