@@ -86,7 +86,7 @@ class Circular(Answer):
 
 
 @task
-def hello(frequency: Annotated[Number, Parameter(help="Of the drive.", unit="Hz")]) -> Circular:
+def hello(frequency: Annotated[Number, Parameter("Of the drive.", unit="Hz")]) -> Circular:
     """Circular frequency of a frequency.
 
     Example: sonolube hello 1kHz

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 _RUNS = Parameter(
-    help=runs_help("Own measured runs, which each model predicts as published tests fitted it"),
+    runs_help("Own measured runs, which each model predicts as published tests fitted it"),
     kind="RUNS.csv",
     is_file=True,
 )
@@ -45,7 +45,7 @@ _RUNS = Parameter(
 def compare(
     rig: OptionalRig = None,
     *,
-    model: Annotated[Sequence[str], Parameter(help="Only this model; may come again.", kind="NAME")] = (),
+    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", kind="NAME")] = (),
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
     progress: Watch = None,

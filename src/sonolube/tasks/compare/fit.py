@@ -24,7 +24,7 @@ _CAPTION = (
     "Left: measured friction ratios of {runs} runs with their standard uncertainty, and the models of the least unseen"
     " error as curves. Right: root mean square errors of conditions that were left out of the fit, and of the fit."
 )
-_RUNS = Parameter(help=runs_help("Own measured runs, a row each"), kind="RUNS.csv", is_file=True)
+_RUNS = Parameter(runs_help("Own measured runs, a row each"), kind="RUNS.csv", is_file=True)
 
 
 @task
@@ -33,7 +33,7 @@ def fit(
     *,
     rig: OptionalRig = None,
     mapping: MappedRuns = None,
-    model: Annotated[Sequence[str], Parameter(help="Only this model; may come again.", kind="NAME")] = (),
+    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", kind="NAME")] = (),
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "FitAnswer":

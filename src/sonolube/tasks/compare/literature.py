@@ -19,7 +19,7 @@ from sonolube.validation.previous_study_map import StudyPoint, study_chart
 from sonolube.validation.study_table import studies_of_runs, study_table
 
 _TABLE = Parameter(
-    help="Further studies to draw on the map, in the columns of studies.csv, which is written; each point with"
+    "Further studies to draw on the map, in the columns of studies.csv, which is written; each point with"
     " study, source and a friction, as in a table of runs. Or own runs of the laboratory, such as"
     " catalogue:material=brass,load=5N.",
     kind="STUDIES.csv",

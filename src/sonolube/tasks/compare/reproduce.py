@@ -15,7 +15,7 @@ from sonolube.tasks.task import task
 @task
 def reproduce(
     *,
-    chapter: Annotated[int | None, Parameter(help="Only this chapter: 2, 3 or 4.", lowest=2, highest=4)] = None,
+    chapter: Annotated[int | None, Parameter("Only this chapter: 2, 3 or 4.", lowest=2, highest=4)] = None,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "ReproductionAnswer":

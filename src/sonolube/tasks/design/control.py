@@ -45,46 +45,40 @@ def control(
     friction: Annotated[
         str | float | None,
         Parameter(
-            help="Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
-            kind="FRICTION",
+            "Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.", kind="FRICTION"
         ),
     ] = None,
     feed_forward: Annotated[
-        Literal["model", "efficiency", "none"], Parameter(help="Map from friction to voltage or amplitude.")
+        Literal["model", "efficiency", "none"], Parameter("Map from friction to voltage or amplitude.")
     ] = "model",
     efficiency: Annotated[
         Number | None,
-        Parameter(
-            help="Efficiency at the rig's speed, in m2/N, instead of the published.", unit="m2/N", kind="COEFFICIENT"
-        ),
+        Parameter("Efficiency at the rig's speed, in m2/N, instead of the published.", unit="m2/N", kind="COEFFICIENT"),
     ] = None,
-    delay: Annotated[Number, Parameter(help="Delay of the friction measurement.", unit="s")] = "1ms",
-    rate: Annotated[Number, Parameter(help="Sampling rate of the controller.", unit="Hz")] = "5kHz",
-    noise: Annotated[Number, Parameter(help="Standard deviation of the sensor.", unit="N")] = "0N",
-    factor: Annotated[float, Parameter(help="Real friction over that of the model.", lowest=0.01, highest=100)] = 1.0,
+    delay: Annotated[Number, Parameter("Delay of the friction measurement.", unit="s")] = "1ms",
+    rate: Annotated[Number, Parameter("Sampling rate of the controller.", unit="Hz")] = "5kHz",
+    noise: Annotated[Number, Parameter("Standard deviation of the sensor.", unit="N")] = "0N",
+    factor: Annotated[float, Parameter("Real friction over that of the model.", lowest=0.01, highest=100)] = 1.0,
     closed_loop: Annotated[
-        Number | None, Parameter(help="Time constant of the closed loop; the delay by default.", unit="s")
+        Number | None, Parameter("Time constant of the closed loop; the delay by default.", unit="s")
     ] = None,
     amplitude_limit: Annotated[
-        Number | None,
-        Parameter(help="Largest amplitude of a rig without a voltage; the rig's own by default.", unit="m"),
+        Number | None, Parameter("Largest amplitude of a rig without a voltage; the rig's own by default.", unit="m")
     ] = None,
     voltage_limit: Annotated[
-        Number | None, Parameter(help="Largest swing, peak to peak; the rig's own by default.", unit="V")
+        Number | None, Parameter("Largest swing, peak to peak; the rig's own by default.", unit="V")
     ] = None,
-    current_limit: Annotated[Number | None, Parameter(help="Largest current.", unit="A", kind="CURRENT")] = None,
-    slew_limit: Annotated[Number | None, Parameter(help="Fastest change of voltage.", unit="V/s", kind="V/s")] = None,
-    warming: Annotated[Number, Parameter(help="Final temperature rise, such as 40K.", unit="K")] = "0K",
+    current_limit: Annotated[Number | None, Parameter("Largest current.", unit="A", kind="CURRENT")] = None,
+    slew_limit: Annotated[Number | None, Parameter("Fastest change of voltage.", unit="V/s", kind="V/s")] = None,
+    warming: Annotated[Number, Parameter("Final temperature rise, such as 40K.", unit="K")] = "0K",
     warming_time: Annotated[
-        Number | None, Parameter(help="Time constant of the warming; a quarter of the run by default.", unit="s")
+        Number | None, Parameter("Time constant of the warming; a quarter of the run by default.", unit="s")
     ] = None,
-    track: Annotated[bool, Parameter(help="Follow the resonance by the phase of the impedance.")] = True,
-    quality: Annotated[float, Parameter(help="Quality factor, where the rig has no structure.", lowest=0.6)] = 50.0,
-    coupling: Annotated[
-        float, Parameter(help="Effective coupling, where it has none.", lowest=0.001, highest=0.999)
-    ] = 0.2,
-    stick_slip: Annotated[bool, Parameter(help="Also compute stick-slip of the slider on an elastic holder.")] = False,
-    duration: Annotated[Number, Parameter(help="Duration of the run.", unit="s")] = "0.2s",
+    track: Annotated[bool, Parameter("Follow the resonance by the phase of the impedance.")] = True,
+    quality: Annotated[float, Parameter("Quality factor, where the rig has no structure.", lowest=0.6)] = 50.0,
+    coupling: Annotated[float, Parameter("Effective coupling, where it has none.", lowest=0.001, highest=0.999)] = 0.2,
+    stick_slip: Annotated[bool, Parameter("Also compute stick-slip of the slider on an elastic holder.")] = False,
+    duration: Annotated[Number, Parameter("Duration of the run.", unit="s")] = "0.2s",
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> ControlAnswer:

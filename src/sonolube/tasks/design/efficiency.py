@@ -28,16 +28,16 @@ _CAPTION = (
 
 @task
 def efficiency(
-    runs: Annotated[OwnRuns, Parameter(help="Measured runs, a row each.", kind="RUNS.csv", is_file=True)],
+    runs: Annotated[OwnRuns, Parameter("Measured runs, a row each.", kind="RUNS.csv", is_file=True)],
     *,
     rig: Annotated[RigSource, RigParameter(without=("load", "amplitude"))],
     mapping: MappedRuns = None,
     target_friction: Annotated[
         str | float | None,
-        Parameter(help="Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.", kind="FRICTION"),
+        Parameter("Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.", kind="FRICTION"),
     ] = None,
-    speed: Annotated[Number | None, Parameter(help="Sliding speed of that target.", unit="m/s")] = None,
-    level: Annotated[float, Parameter(help="Confidence level.", lowest=0.5, highest=0.9999)] = 0.95,
+    speed: Annotated[Number | None, Parameter("Sliding speed of that target.", unit="m/s")] = None,
+    level: Annotated[float, Parameter("Confidence level.", lowest=0.5, highest=0.9999)] = 0.95,
 ) -> "EfficiencyAnswer":
     """Efficiency line from measured runs (D 4.1 to 4.3), and the power that a friction takes.
 

@@ -32,14 +32,14 @@ _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLI
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
 _OVER = Parameter(
-    help="Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
+    "Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
     " drive.frequency, drive.voltage_peak_to_peak or, without a voltage, vibration.vibration_amplitude. May come"
     " again.",
     kind="KEY=VALUES",
     is_mapping=True,
 )
 _RUNS = Parameter(
-    help=runs_help(
+    runs_help(
         "Measured runs to draw as points, and to interpolate from six on, with the quantities of both axes; a voltage"
         " gives its power, a load its stress. Columns"
     ),
@@ -57,7 +57,7 @@ def map(  # noqa: A001 - the command's name
         Literal["velocity-stress", "velocity-power", "velocity-amplitude", "frequency-voltage", "frequency-amplitude"]
         | None,
         Parameter(
-            help="Quantities that the map runs over; velocity-power by default, velocity-amplitude without a voltage."
+            "Quantities that the map runs over; velocity-power by default, velocity-amplitude without a voltage."
         ),
     ] = None,
     over: Annotated[Values | None, _OVER] = None,
@@ -65,7 +65,7 @@ def map(  # noqa: A001 - the command's name
     mapping: MappedRuns = None,
     form: Annotated[
         Sequence[Literal["png", "pdf", "svg", "html"]],
-        Parameter(help="png, pdf, svg or an interactive html; may come again."),
+        Parameter("png, pdf, svg or an interactive html; may come again."),
     ] = (),
     backend: Backend = "cpu",
     progress: Watch = None,

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 _OVER = Parameter(
-    help="A key of the file with its values: first:last:count, first:last:count:log or one,two,...;"
+    "A key of the file with its values: first:last:count, first:last:count:log or one,two,...;"
     " first:last alone for the sample lhs. May come again.",
     kind="KEY=VALUES",
     is_mapping=True,
@@ -50,33 +50,30 @@ def sweep(
     over: Annotated[Values | None, _OVER] = None,
     of: Annotated[
         Literal["voltage", "amplitude", "speed", "frequency", "power", "waveform", "load"] | None,
-        Parameter(help="One quantity over its usual range, with a figure of its own."),
+        Parameter("One quantity over its usual range, with a figure of its own."),
     ] = None,
-    lowest: Annotated[str | None, Parameter(help="With of: lowest value.", kind="QUANTITY", option="--from")] = None,
-    highest: Annotated[str | None, Parameter(help="With of: highest value.", kind="QUANTITY", option="--to")] = None,
+    lowest: Annotated[str | None, Parameter("With of: lowest value.", kind="QUANTITY", option="--from")] = None,
+    highest: Annotated[str | None, Parameter("With of: highest value.", kind="QUANTITY", option="--to")] = None,
     points: Annotated[
-        int | None,
-        Parameter(help="Number of points to draw for the sample lhs, or of values of one quantity.", lowest=1),
+        int | None, Parameter("Number of points to draw for the sample lhs, or of values of one quantity.", lowest=1)
     ] = None,
     voltage: Annotated[
-        Sequence[str], Parameter(help="With of speed or frequency: drive, peak to peak, of a curve. May come again.")
+        Sequence[str], Parameter("With of speed or frequency: drive, peak to peak, of a curve. May come again.")
     ] = (),
     vibration: Annotated[
         Sequence[str],
-        Parameter(
-            help="With of speed: amplitude of a curve, of a rig without a voltage. May come again.", kind="LENGTH"
-        ),
+        Parameter("With of speed: amplitude of a curve, of a rig without a voltage. May come again.", kind="LENGTH"),
     ] = (),
     sample: Annotated[
         Literal["grid", "lhs", "list"],
-        Parameter(help="Every value with every other, points drawn by Latin hypercube, or row by row."),
+        Parameter("Every value with every other, points drawn by Latin hypercube, or row by row."),
     ] = "grid",
-    seed: Annotated[int, Parameter(help="Of the points drawn.", lowest=0)] = 0,
-    workers: Annotated[int, Parameter(help="Threads, or processes of a local cluster.", lowest=1)] = 2,
+    seed: Annotated[int, Parameter("Of the points drawn.", lowest=0)] = 0,
+    workers: Annotated[int, Parameter("Threads, or processes of a local cluster.", lowest=1)] = 2,
     scheduler: Annotated[
-        str | None, Parameter(help="Dask scheduler, or local for processes on this machine.", kind="ADDRESS")
+        str | None, Parameter("Dask scheduler, or local for processes on this machine.", kind="ADDRESS")
     ] = None,
-    chunk: Annotated[int, Parameter(help="Points computed and kept together.", lowest=1)] = 100_000,
+    chunk: Annotated[int, Parameter("Points computed and kept together.", lowest=1)] = 100_000,
     backend: Backend = "cpu",
     keep: Keep = None,
     progress: Watch = None,

@@ -59,28 +59,27 @@ def uncertainty(
     rig: RigFile,
     *,
     of: Annotated[
-        str, Parameter(help="The outcome, such as vibration_amplitude or wear_rate_ratio.", kind="QUANTITY")
+        str, Parameter("The outcome, such as vibration_amplitude or wear_rate_ratio.", kind="QUANTITY")
     ] = "friction_ratio",
     samples: Annotated[
-        int,
-        Parameter(help="Number of samples, up to the next power of two; for Sobol indices of each block.", lowest=32),
+        int, Parameter("Number of samples, up to the next power of two; for Sobol indices of each block.", lowest=32)
     ] = 1024,
     sobol: Annotated[
-        bool, Parameter(help="Rank the entries by their contribution to the variance, by Sobol indices.")
+        bool, Parameter("Rank the entries by their contribution to the variance, by Sobol indices.")
     ] = False,
     over: Annotated[
         Values | None,
         Parameter(
-            help="A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
+            "A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
             kind="KEY=VALUES",
             is_mapping=True,
         ),
     ] = None,
     identified: Annotated[
-        bool, Parameter(help="Draw the tribometer's masses, springs and dampers from the published facts.")
+        bool, Parameter("Draw the tribometer's masses, springs and dampers from the published facts.")
     ] = False,
-    seed: Annotated[int, Parameter(help="Of the samples.", lowest=0)] = 0,
-    workers: Annotated[int, Parameter(help="Threads.", lowest=1)] = 2,
+    seed: Annotated[int, Parameter("Of the samples.", lowest=0)] = 0,
+    workers: Annotated[int, Parameter("Threads.", lowest=1)] = 2,
     interval: Interval = True,
     keep: Annotated[Kept | None, DoorParameter(files="sweep.nc sweep.json")] = None,
     progress: Watch = None,

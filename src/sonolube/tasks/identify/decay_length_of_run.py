@@ -46,7 +46,7 @@ _CAPTION = (
     " hypothesis; the zero with its smoothed course."
 )
 _FILE = Parameter(
-    help="Table of the switches of one run (CSV), the folder of a run of decay_length_run, or a recording with"
+    "Table of the switches of one run (CSV), the folder of a run of decay_length_run, or a recording with"
     " friction_force, voltage_peak_to_peak, normal_load, stack_current and shifts.",
     kind="FILE",
     is_file=True,
@@ -57,26 +57,24 @@ _FILE = Parameter(
 def decay_length(
     file: Annotated[InputFile, _FILE],
     *,
-    vibration: Annotated[
-        Number, Parameter(help="Of the vibration along the normal, at the beginning.", unit="m")
-    ] = "2.3um",
-    frequency: Annotated[Number, Parameter(help="Of the vibration.", unit="Hz", quantity="frequency")] = "22kHz",
-    sliding_speed: Annotated[Number, Parameter(help="Sliding speed.", unit="m/s", quantity="sliding_speed")] = "65mm/s",
-    load: Annotated[Number, Parameter(help="Normal load.", unit="N")] = "5N",
+    vibration: Annotated[Number, Parameter("Of the vibration along the normal, at the beginning.", unit="m")] = "2.3um",
+    frequency: Annotated[Number, Parameter("Of the vibration.", unit="Hz", quantity="frequency")] = "22kHz",
+    sliding_speed: Annotated[Number, Parameter("Sliding speed.", unit="m/s", quantity="sliding_speed")] = "65mm/s",
+    load: Annotated[Number, Parameter("Normal load.", unit="N")] = "5N",
     free_frequency: Annotated[
-        Number | None, Parameter(help="Of the slow mode, pin free; needed where shifts are not small.", unit="Hz")
+        Number | None, Parameter("Of the slow mode, pin free; needed where shifts are not small.", unit="Hz")
     ] = None,
     modal_mass: Annotated[
-        Number | None, Parameter(help="Of the slow mode at the contact; gives contact stiffnesses.", unit="kg")
+        Number | None, Parameter("Of the slow mode at the contact; gives contact stiffnesses.", unit="kg")
     ] = None,
     large_amplitude: Annotated[
-        Number | None, Parameter(help="Of the slow mode at large drive; that of the vibration by default.", unit="m")
+        Number | None, Parameter("Of the slow mode at large drive; that of the vibration by default.", unit="m")
     ] = None,
     rotation_speed: Annotated[
-        Number | None, Parameter(help="Of the disc, to remove its wobble from a recording.", unit="1/s")
+        Number | None, Parameter("Of the disc, to remove its wobble from a recording.", unit="1/s")
     ] = None,
     mapping: Mapped = None,
-    seed: Annotated[int, Parameter(help="Seed of the sampling; equal seeds give equal results.", lowest=0)] = 0,
+    seed: Annotated[int, Parameter("Seed of the sampling; equal seeds give equal results.", lowest=0)] = 0,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "DecayLengthAnswer":

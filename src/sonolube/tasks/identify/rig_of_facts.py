@@ -21,19 +21,18 @@ from sonolube.tasks.task import shown, task
 from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
 
 _FACTS = Parameter(
-    help="Facts about the rig; those of the dissertation's tribometer by default.", kind="FACTS.toml", is_file=True
+    "Facts about the rig; those of the dissertation's tribometer by default.", kind="FACTS.toml", is_file=True
 )
 
 
 @task
 def rig(
     base: Annotated[
-        InputFile | None,
-        Parameter(help="Rig whose tables stack and structure to replace.", kind="[RIG.toml]", is_file=True),
+        InputFile | None, Parameter("Rig whose tables stack and structure to replace.", kind="[RIG.toml]", is_file=True)
     ] = None,
     *,
     facts: Annotated[InputFile | None, _FACTS] = None,
-    seed: Annotated[int, Parameter(help="Seed of the search; equal seeds give equal results.", lowest=0)] = 0,
+    seed: Annotated[int, Parameter("Seed of the search; equal seeds give equal results.", lowest=0)] = 0,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "IdentificationAnswer":

@@ -92,12 +92,12 @@ class CheckedDevices(Answer):
 
 @task
 def check(
-    device_map: Annotated[str | Path, Parameter(help="Devices of a rig.", kind="MAP.toml", is_file=True)],
+    device_map: Annotated[str | Path, Parameter("Devices of a rig.", kind="MAP.toml", is_file=True)],
     *,
     protocol: Annotated[
-        InputFile | None, Parameter(help="Such as map_test, or a TOML file: can these devices run it?", kind="PROTOCOL")
+        InputFile | None, Parameter("Such as map_test, or a TOML file: can these devices run it?", kind="PROTOCOL")
     ] = None,
-    connect: Annotated[bool, Parameter(help="Connect, and read one block with motor and drive off.")] = False,
+    connect: Annotated[bool, Parameter("Connect, and read one block with motor and drive off.")] = False,
 ) -> CheckedDevices:
     """Check a device map: what is missing to run it, whether it can run a protocol, and what its inputs read.
 

@@ -31,36 +31,34 @@ def hold(
     friction: Annotated[
         str | float | None,
         Parameter(
-            help="Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
+            "Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
             kind="FRICTION",
         ),
     ] = None,
     step_to: Annotated[
-        Number | None, Parameter(help="Sliding speed after the step; twice the rig's by default.", unit="m/s")
+        Number | None, Parameter("Sliding speed after the step; twice the rig's by default.", unit="m/s")
     ] = None,
     step_at: Annotated[
-        Number | None, Parameter(help="Time under control until the step; half of --duration by default.", unit="s")
+        Number | None, Parameter("Time under control until the step; half of --duration by default.", unit="s")
     ] = None,
-    delay: Annotated[Number, Parameter(help="Delay of the friction measurement.", unit="s")] = "1ms",
-    rate: Annotated[Number, Parameter(help="Sampling rate of the controller.", unit="Hz")] = "20Hz",
+    delay: Annotated[Number, Parameter("Delay of the friction measurement.", unit="s")] = "1ms",
+    rate: Annotated[Number, Parameter("Sampling rate of the controller.", unit="Hz")] = "20Hz",
     closed_loop: Annotated[
-        Number | None, Parameter(help="Time constant of the closed loop; the delay by default.", unit="s")
+        Number | None, Parameter("Time constant of the closed loop; the delay by default.", unit="s")
     ] = None,
     voltage_limit: Annotated[
-        Number | None, Parameter(help="Largest swing, peak to peak; the rig's own by default.", unit="V")
+        Number | None, Parameter("Largest swing, peak to peak; the rig's own by default.", unit="V")
     ] = None,
     temperature_limit: Annotated[
-        str | None, Parameter(help="Temperature that ends the test, such as 60degC.", kind="TEMPERATURE")
+        str | None, Parameter("Temperature that ends the test, such as 60degC.", kind="TEMPERATURE")
     ] = None,
-    friction_limit: Annotated[Number | None, Parameter(help="Friction force that ends the test.", unit="N")] = None,
-    quality: Annotated[float, Parameter(help="Quality factor, where the rig has no structure.", lowest=0.6)] = 50.0,
-    coupling: Annotated[
-        float, Parameter(help="Effective coupling, where it has none.", lowest=0.001, highest=0.999)
-    ] = 0.2,
+    friction_limit: Annotated[Number | None, Parameter("Friction force that ends the test.", unit="N")] = None,
+    quality: Annotated[float, Parameter("Quality factor, where the rig has no structure.", lowest=0.6)] = 50.0,
+    coupling: Annotated[float, Parameter("Effective coupling, where it has none.", lowest=0.001, highest=0.999)] = 0.2,
     run_in: Annotated[
-        Number, Parameter(help="Sliding without vibration before the controller takes over.", unit="s")
+        Number, Parameter("Sliding without vibration before the controller takes over.", unit="s")
     ] = "1s",
-    duration: Annotated[Number, Parameter(help="Time under control.", unit="s")] = "10s",
+    duration: Annotated[Number, Parameter("Time under control.", unit="s")] = "10s",
     device_map: Device = "virtual",
     seed: Seed = 0,
     real_time: RealTime = False,

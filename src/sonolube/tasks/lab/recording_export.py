@@ -41,10 +41,8 @@ class ExportedRecording(Answer):
 def export(
     run: RunFolder,
     *,
-    file_format: Annotated[
-        Literal["netcdf", "tdms", "csv"], Parameter(help="Of the files.", option="--format")
-    ] = "netcdf",
-    out: Annotated[str | Path, Parameter(help="Folder for the files.", is_output=True)] = "out",
+    file_format: Annotated[Literal["netcdf", "tdms", "csv"], Parameter("Of the files.", option="--format")] = "netcdf",
+    out: Annotated[str | Path, Parameter("Folder for the files.", is_output=True)] = "out",
 ) -> ExportedRecording:
     """Write the recording of a run to files for other programs, one a part.
 

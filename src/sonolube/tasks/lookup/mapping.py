@@ -29,7 +29,7 @@ Meaning = RunHeading | str
 """Quantity and unit of a column, or `LEFT_OUT`."""
 
 _COLUMN = Parameter(
-    help="Quantity and unit of a column, such as 'Kraft=friction_force N', or - to leave it out; may come again.",
+    "Quantity and unit of a column, such as 'Kraft=friction_force N', or - to leave it out; may come again.",
     kind="LABEL=QUANTITY",
     is_mapping=True,
 )
@@ -37,9 +37,7 @@ _COLUMN = Parameter(
 
 @task
 def mapping(
-    file: Annotated[
-        InputFile, Parameter(help="Table of runs, or text export of an instrument.", kind="FILE", is_file=True)
-    ],
+    file: Annotated[InputFile, Parameter("Table of runs, or text export of an instrument.", kind="FILE", is_file=True)],
     *,
     column: Annotated[Mapping[str, str] | None, _COLUMN] = None,
 ) -> "MappingAnswer":

@@ -18,7 +18,7 @@ _SCHEMAS = {"rig": rig_schema, "protocol": protocol_schema, "devices": device_ma
 @task
 def schema(
     kind: Annotated[
-        Literal["rig", "protocol", "devices", "tasks"], Parameter(help="Files to describe, or the tasks of sonolube.")
+        Literal["rig", "protocol", "devices", "tasks"], Parameter("Files to describe, or the tasks of sonolube.")
     ] = "rig",
 ) -> Listing:
     """JSON schema of rig files, protocols or device maps, or OpenAPI of the tasks; the same with and without --json.

@@ -37,13 +37,13 @@ if TYPE_CHECKING:
 
 Files = Annotated[
     Sequence[InputFile] | InputFile,
-    Parameter(help="Files, or folders whose files are taken.", kind="FILES...", is_file=True),
+    Parameter("Files, or folders whose files are taken.", kind="FILES...", is_file=True),
 ]
-Group = Annotated[str | None, Parameter(help="Of the channels, in TDMS, HDF5 and MATLAB files.", kind="GROUP")]
-Channels = Annotated[Sequence[str], Parameter(help="To read, as labelled; may come again.", kind="LABEL")]
-Sections = Annotated[Sequence[str], Parameter(help="To read, such as a step; may come again.", kind="NUMBER|NAME")]
+Group = Annotated[str | None, Parameter("Of the channels, in TDMS, HDF5 and MATLAB files.", kind="GROUP")]
+Channels = Annotated[Sequence[str], Parameter("To read, as labelled; may come again.", kind="LABEL")]
+Sections = Annotated[Sequence[str], Parameter("To read, such as a step; may come again.", kind="NUMBER|NAME")]
 TestSheet = Annotated[
-    InputFile | None, Parameter(help="Conditions of the test, listed in its report.", kind="TEST.toml", is_file=True)
+    InputFile | None, Parameter("Conditions of the test, listed in its report.", kind="TEST.toml", is_file=True)
 ]
 Measure = Callable[[Path], Sheet]
 

@@ -20,8 +20,7 @@ def _described(model: type[FrictionModel]) -> str:
 
 
 _MODEL = Parameter(
-    help=f"Friction model instead of the rig's own: {'; '.join(map(_described, FRICTION_MODELS.values()))}.",
-    kind="NAME",
+    f"Friction model instead of the rig's own: {'; '.join(map(_described, FRICTION_MODELS.values()))}.", kind="NAME"
 )
 
 

@@ -22,8 +22,8 @@ from sonolube.units import format_si
 def response(
     rig: RestingRig,
     *,
-    lowest: Annotated[Number, Parameter(help="Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
-    highest: Annotated[Number, Parameter(help="Highest frequency.", unit="Hz", option="--to")] = "100kHz",
+    lowest: Annotated[Number, Parameter("Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Parameter("Highest frequency.", unit="Hz", option="--to")] = "100kHz",
 ) -> "ResponseAnswer":
     """Linear response: tip amplitude per volt and electrical impedance over frequency.
 

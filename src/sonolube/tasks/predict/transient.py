@@ -22,7 +22,7 @@ _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "bea
 def transient(
     rig: RigFile,
     *,
-    duration: Annotated[Number, Parameter(help="Time that is integrated.", unit="s")] = "0.1s",
+    duration: Annotated[Number, Parameter("Time that is integrated.", unit="s")] = "0.1s",
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "StartUpAnswer":
