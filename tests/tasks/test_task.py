@@ -7,8 +7,8 @@ from typing import Annotated, Any
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.tasks.answer import Answer, answer
 from sonolube.report.blocks import Block, Rows
+from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.progress import TaskCancelled, stage

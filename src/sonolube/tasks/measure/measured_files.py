@@ -20,11 +20,11 @@ from sonolube.report import (
 )
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.measured.sheet import Sheet
+from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
-from sonolube.tasks.measure.sheets import sheet_blocks
 from sonolube.tasks.own_tables import mapping_of
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.progress import stage

@@ -8,11 +8,11 @@ from sonolube.report import Drawing, MeasurementReport, measurement_object
 from sonolube.report.blocks import Block
 from sonolube.report.measured.contact_stiffness import StiffnessSettings, contact_stiffness_sheet
 from sonolube.report.measured.sheet import Sheet
+from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.measure.sheets import sheet_blocks
 from sonolube.tasks.parameters import Number, OptionalRig, Parameter, Stop, Watch, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
