@@ -11,7 +11,7 @@ from sonolube.report.results.design import efficiency as results
 from sonolube.report.results.rig_text import rig_settings
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.design.friction_target import friction_force
+from sonolube.tasks.design.closed_loop import friction_force
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Number, OwnRuns, Parameter, RigParameter, RigSource, file_stem, rig_of
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
