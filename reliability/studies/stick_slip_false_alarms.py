@@ -21,7 +21,7 @@ def _noise(kind: str, rng: np.random.Generator, plan: made.Layout, t: made.Sampl
     if kind == "red":
         return red
     if kind == "random walk":
-        return 0.1 * white + 0.03 * np.sqrt(t[1] - t[0]) * np.cumsum(rng.standard_normal(t.size))
+        return np.asarray(0.1 * white + 0.03 * np.sqrt(t[1] - t[0]) * np.cumsum(rng.standard_normal(t.size)))
     if kind == "1/f":
         spectrum = rng.standard_normal((2, t.size // 2 + 1)).T @ (1, 1j)
         spectrum[1:] /= np.sqrt(np.arange(1, spectrum.size))

@@ -3,6 +3,7 @@
 import io
 import os
 import stat
+import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -229,6 +230,40 @@ def locked_folder(folder: Path, *, purpose: str) -> Iterator[None]:
             yield
         finally:
             _release(handle, place)
+
+
+def user_state_folder() -> Path:
+    """Folder of states of this user, which outlive a program.
+
+    Returns
+    -------
+    Path
+        `sonolube` below $XDG_STATE_HOME, %LOCALAPPDATA% or ~/.local/state.
+    """
+    base = os.environ.get("XDG_STATE_HOME") or (os.environ.get("LOCALAPPDATA") if os.name == "nt" else None)
+    return Path(base or Path.home() / ".local" / "state") / "sonolube"
+
+
+def process_start(process: int) -> str:
+    """Time at which a process has started, as the system writes it; empty where there is none.
+
+    Parameters
+    ----------
+    process : int
+        Number, which a later process may get again.
+
+    Returns
+    -------
+    str
+    """
+    with suppress(OSError, IndexError):
+        boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
+        state, *rest = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+        return "" if state == "Z" else f"{boot} {rest[18]}"
+    with suppress(OSError, subprocess.SubprocessError):  # where the system keeps no /proc
+        command = ["ps", "-o", "lstart=", "-p", str(process)]
+        return subprocess.run(command, capture_output=True, text=True, check=False, timeout=5).stdout.strip()
+    return ""
 
 
 def is_locked(folder: Path) -> bool:

@@ -75,9 +75,9 @@ def test_no_model_is_computed_while_the_virtual_motor_turns(monkeypatch: MonkeyP
     computed, started = list[bool](), list[str]()
     compute, start = FrictionDraw._computed, devices.acquisition.start
 
-    def counted(draw: FrictionDraw, setting: DriveSetting, sliding_speed: float) -> object:
+    def counted(draw: FrictionDraw, setting: DriveSetting, sliding_speed: float, normal_load: float) -> object:
         computed.append(bool(started))
-        return compute(draw, setting, sliding_speed)
+        return compute(draw, setting, sliding_speed, normal_load)
 
     def noted(channels: Sequence[str], *, sample_rate: float) -> float:
         started.append("now")

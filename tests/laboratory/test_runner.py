@@ -13,7 +13,8 @@ from tests.laboratory.simulated_rig import Fault, MemoryRecord, SimulatedRig
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Prompt, Protocol, protocol_from
-from sonolube.laboratory import Block, RunControl, RunResult, State, run_protocol
+from sonolube.laboratory import Block, Channel, RunControl, RunResult, State, run_protocol
+from sonolube.laboratory.block import quantity_of
 
 MAP_TEST = {
     "title": "map test",
@@ -110,8 +111,6 @@ def test_a_device_that_cannot_be_switched_off_is_told() -> None:
     [
         ({"friction_force_maximum": "0.9 N"}, {}, "channel friction_force is 1 N; its limit is 900 mN"),
         ({"temperature_maximum": "300 K"}, {"temperature": 301.0}, "channel temperature is 301 K; its limit is 300 K"),
-        ({"current_maximum": "0.5 A"}, {"current": -0.7}, "channel current is -700 mA; its limit is 500 mA"),
-        ({"current_maximum": "0.5 A"}, {"current": np.nan}, "channel current gives no number"),
         ({"friction_force_maximum": "20 N"}, {"friction_force": 20.0}, "channel friction_force is saturated at 20 N"),
     ],
 )
@@ -121,6 +120,44 @@ def test_a_limit_trips_within_one_block(limits: dict[str, str], values: dict[str
     assert (result.outcome, result.reason) == ("stopped", reason)
     begins = 200 if "0.9 N" in limits.values() else 0  # motor on at 0.5 s, at 400 Hz
     assert sum(record.samples()) <= begins + 0.05 * 400
+
+
+@pytest.mark.parametrize(
+    ("channel", "value", "reason"),
+    [
+        ("current", -0.7, "channel current is -700 mA; its limit is 500 mA"),
+        ("current", np.nan, "channel current gives no number"),
+        ("current_peak", 0.6, "channel current_peak is 600 mA; its limit is 500 mA"),
+        ("current_rms", 0.36, "channel current_rms is 360 mA; its limit is 354 mA"),  # 0.5 A / sqrt(2)
+    ],
+)
+def test_a_current_beyond_its_limit_trips_within_one_block(channel: str, value: float, reason: str) -> None:
+    steps: list[Mapping[str, object]] = [
+        {"kind": "acquire", "channels": ["friction_force"], "sample_rate": "110 kHz", "duration": "1 s"},
+        {"kind": "drive", "voltage_peak_to_peak": "10 V", "frequency": "22 kHz"},
+        {"kind": "wait", "duration": "1 s"},
+    ]
+    result, _, record = run(protocol(*steps, current_maximum="0.5 A"), MeteredRig(values={channel: value}))
+    assert (result.outcome, result.reason) == ("stopped", reason)
+    assert sum(record.samples()) == 0.05 * 110_000
+
+
+class MeteredRig(SimulatedRig):
+    """Rig with meters of the peak and the rms of the current."""
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        meters = {name: Channel(name=name, quantity=quantity_of(name)) for name in ("current_peak", "current_rms")}
+        return {**super().channels, **meters}
+
+
+def test_a_setting_beyond_the_limit_of_the_voltage_is_never_sent() -> None:
+    test = protocol()
+    looser = test.model_copy(update={"limits": test.limits.model_copy(update={"voltage_maximum": 20.0})})
+    result, rig, _ = run(looser)
+    assert result.outcome == "stopped"
+    assert result.reason == "the drive is to be set to 20.7 V; limits.voltage_maximum is 20 V"
+    assert "drive 20.7 V" not in rig.calls  # 10.35 V and an offset of as much
 
 
 def test_a_lost_sample_is_no_silent_gap() -> None:

@@ -10,10 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
-from sonolube.browser.places import Places
-
-OPENED: Final = "tribometer"
-"""Name of the example that the first page shows."""
+from sonolube.browser.places import OPENED, Places
 
 _RIG: Final = {"rig": {"name": OPENED, "changes": {}}}
 REQUESTS: Final[Mapping[str, Mapping[str, Any]]] = {"rig": _RIG, "task": {"task": "predict", "arguments": _RIG}}

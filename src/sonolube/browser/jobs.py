@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_atomically
+from sonolube.files import process_start, user_state_folder, write_atomically
 
 KEPT_DAYS: Final = 30
 """Days after which a finished job is deleted."""
@@ -26,8 +26,7 @@ _REQUEST, _STATE, _RESULT = "request.json", "state.json", "result.json"
 
 def jobs_folder() -> Path:
     """Folder in which jobs are kept: `sonolube/jobs` in the folder of states of this user."""
-    base = os.environ.get("XDG_STATE_HOME") or (os.environ.get("LOCALAPPDATA") if os.name == "nt" else None)
-    return Path(base or Path.home() / ".local" / "state") / "sonolube" / "jobs"
+    return user_state_folder() / "jobs"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -85,7 +84,7 @@ class Jobs:
         self.folder, self._most = folder, most
         self._running: dict[str, subprocess.Popen[bytes]] = {}
         self._waiting: list[str] = []
-        self._owner = {"process": os.getpid(), "begun": _begun(os.getpid())}
+        self._owner = {"process": os.getpid(), "begun": process_start(os.getpid())}
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         self._settle()
 
@@ -204,7 +203,8 @@ class Jobs:
         if not isinstance(owner, dict) or owner == self._owner:
             return False
         begun = owner.get("begun")
-        return bool(begun) and _begun(owner.get("process")) == begun
+        process = owner.get("process")
+        return bool(begun) and isinstance(process, int) and process_start(process) == begun
 
     def _note_end(self, name: str, code: int) -> None:
         """Record the end of a process that did not record it itself."""
@@ -234,18 +234,6 @@ class Jobs:
         """Write the state of a job."""
         known = self._read(name, _STATE) or {}
         write_atomically(self.folder / name / _STATE, json.dumps(known | state))
-
-
-def _begun(process: Any) -> str:
-    """When a process of a number began, as the system writes it; empty where there is none."""
-    if not isinstance(process, int):
-        return ""
-    with contextlib.suppress(OSError, IndexError):
-        return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[19]
-    with contextlib.suppress(OSError, subprocess.SubprocessError):  # where the system keeps no /proc
-        command = ["ps", "-o", "lstart=", "-p", str(process)]
-        return subprocess.run(command, capture_output=True, text=True, check=False, timeout=5).stdout.strip()
-    return ""
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:

@@ -2,6 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
+
+OPENED: Final = "tribometer"
+"""Name of the example that the first page shows."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

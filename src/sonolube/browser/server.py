@@ -12,8 +12,8 @@ from pathlib import Path
 
 import uvicorn
 
-from sonolube.browser.first_page import OPENED
 from sonolube.browser.jobs import Jobs, jobs_folder
+from sonolube.browser.places import OPENED
 from sonolube.browser.pool import Pool
 from sonolube.browser.routes import Workbench
 from sonolube.browser.security import Access, Guard

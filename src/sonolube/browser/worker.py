@@ -11,8 +11,7 @@ from collections.abc import Mapping
 from multiprocessing.connection import Connection
 from typing import Any, Final
 
-from sonolube.browser.first_page import OPENED
-from sonolube.browser.places import Places
+from sonolube.browser.places import OPENED, Places
 from sonolube.errors import SonolubeError
 
 _BAD_REQUEST, _REFUSED, _FAILED = 400, 422, 500

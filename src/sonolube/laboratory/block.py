@@ -18,6 +18,8 @@ CHANNEL_QUANTITIES: Final[Mapping[str, str]] = MappingProxyType(
         "voltage": "stack_voltage",
         "voltage_peak_to_peak": "voltage_peak_to_peak",
         "current": "stack_current",
+        "current_peak": "stack_current_peak",
+        "current_rms": "stack_current_rms",
         "temperature": "temperature",
         "gaussmeter": "magnetic_flux_density",
         "displacement": "displacement",

@@ -46,6 +46,11 @@ class DriveSetting:
     voltage_offset: float = 0.0
     waveform: str = "sine"
 
+    @property
+    def voltage_maximum(self) -> float:
+        """Greatest magnitude of the voltage, its offset included. [V]"""
+        return abs(self.voltage_offset) + self.voltage_peak_to_peak / 2
+
 
 class Acquisition(Protocol):
     """Analogue inputs with one hardware clock."""
@@ -138,6 +143,8 @@ class Devices:
     prepare : callable or None
         Works out what the devices need for a drive setting (None for off) at a speed of the disc, in 1/s. It is called
         for every set point before anything is connected; None where no set point takes the devices time.
+    resources : tuple of str
+        Canonical names of the hardware (device, address, port), which one run of a user has at a time.
     attend : callable or None
         Takes a prompt after it was confirmed: of simulated devices the time passes, and load and lubricant change.
     """
@@ -149,11 +156,12 @@ class Devices:
     groove_diameter: float
     simulated: bool = False
     prepare: Callable[[DriveSetting | None, float], None] | None = None
+    resources: tuple[str, ...] = ()
     attend: Callable[[Prompt], None] | None = None
 
 
 def connect_devices(devices: Devices) -> None:
-    """Connect all devices, outputs off; drive and motor first, so that what ran before is off.
+    """Connect all devices, outputs off: the acquisition first, which touches no output where another program has it.
 
     Parameters
     ----------
@@ -164,7 +172,7 @@ def connect_devices(devices: Devices) -> None:
     DeviceError
         If a device does not answer.
     """
-    for device in (devices.drive, devices.motor, devices.acquisition):
+    for device in (devices.acquisition, devices.drive, devices.motor):
         device.connect()
 
 

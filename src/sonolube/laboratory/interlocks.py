@@ -9,15 +9,19 @@ import numpy as np
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import Limits
 from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.devices import DriveSetting
+from sonolube.laboratory.drive_sampling import SAMPLES_PER_PERIOD, DriveSampling
 from sonolube.units import format_si
 
-_WATCHED: Final = {  # channel by the limit that it is held to
-    "voltage_maximum": "voltage",
-    "current_maximum": "current",
-    "temperature_maximum": "temperature",
-    "friction_force_maximum": "friction_force",
+_WATCHED: Final = {  # channels by the limit that they are held to
+    "voltage_maximum": ("voltage",),
+    "current_maximum": ("current", "current_peak", "current_rms"),
+    "temperature_maximum": ("temperature",),
+    "friction_force_maximum": ("friction_force",),
 }
 _SET_POINTS: Final = ("voltage_maximum",)  # held to by set points alone where no channel measures them
+_ROUNDING: Final = 1 + 1e-9
+_PEAK_OVER_RMS: Final = 2**0.5  # of a sine
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +57,9 @@ class Trip:
     reason: str
 
 
-def interlocks_for(limits: Limits, channels: Mapping[str, Channel]) -> tuple[Interlock, ...]:
+def interlocks_for(
+    limits: Limits, channels: Mapping[str, Channel], drive: DriveSampling | None
+) -> tuple[Interlock, ...]:
     """Interlocks for the limits of a protocol.
 
     Parameters
@@ -61,33 +67,74 @@ def interlocks_for(limits: Limits, channels: Mapping[str, Channel]) -> tuple[Int
     limits : Limits
     channels : mapping of str to Channel
         Of the acquisition, by name.
+    drive : DriveSampling or None
+        Of the protocol; None where nothing is driven.
 
     Returns
     -------
     tuple of Interlock
+        A limit of the current holds for `current` and `current_peak`; over the square root of two for `current_rms`.
 
     Raises
     ------
     InvalidInput
-        If limits have no channel to watch them, or lie beyond the range of their channel.
+        If limits have no channel to watch them, or lie beyond the range of their channel; if the current is limited,
+        fewer than five samples a period are taken of it, and no channel measures its peak, or its rms under a sine.
     """
     found, faults = [], []
     for name, watched in _WATCHED.items():
-        limit, channel = getattr(limits, name), channels.get(watched)
-        if limit is None or (channel is None and name in _SET_POINTS):
+        limit, present = getattr(limits, name), [channels[each] for each in watched if each in channels]
+        if limit is None or (not present and name in _SET_POINTS):
             continue
-        if channel is None:
-            faults.append(
-                f"limits.{name} cannot be watched: no device has a channel {watched}; add one, or leave the limit out"
-            )
-        elif limit > max(abs(channel.lowest), abs(channel.highest)):
-            held, reach = format_si(limit, channel.unit), format_si(channel.highest, channel.unit)
-            faults.append(f"limits.{name} of {held} lies beyond the range of channel {watched}, {reach}")
-        else:
-            found.append(Interlock(channel, limit))
+        locks = [Interlock(each, limit / _PEAK_OVER_RMS if each.name == "current_rms" else limit) for each in present]
+        fault = _fault(name, watched[0], locks, drive)
+        faults += [fault] if fault else []
+        found += locks
     if faults:
         raise InvalidInput(faults[0]) if len(faults) == 1 else SeveralFaults(faults)
     return tuple(found)
+
+
+def _fault(name: str, watched: str, locks: Sequence[Interlock], drive: DriveSampling | None) -> str:
+    """Why a limit cannot be held by its interlocks; empty where it can."""
+    if not locks:
+        return f"limits.{name} cannot be watched: no device has a channel {watched}; add one, or leave the limit out"
+    for lock in locks:
+        channel = lock.channel
+        if lock.limit > max(abs(channel.lowest), abs(channel.highest)):
+            held, reach = format_si(lock.limit, channel.unit), format_si(channel.highest, channel.unit)
+            return f"limits.{name} of {held} lies beyond the range of channel {channel.name}, {reach}"
+    if name != "current_maximum" or drive is None or drive.is_resolved:
+        return ""
+    measured = {lock.channel.name for lock in locks}
+    if "current_peak" in measured or ("current_rms" in measured and drive.is_sine):
+        return ""
+    reason = drive.caveat(["current"])
+    if "current_rms" in measured:
+        reason += "; of other waves than a sine, current_rms tells no peak"
+    needed = format_si(SAMPLES_PER_PERIOD * drive.frequency, "Hz")
+    others = "a channel current_peak" if not drive.is_sine else "a channel current_peak or current_rms"
+    return (
+        f"limits.{name} cannot be watched: {reason}; record at {needed} or more, add {others}, or leave the limit out"
+    )
+
+
+def set_point_trip(setting: DriveSetting, limits: Limits) -> str:
+    """Why the peak of a drive setting, its offset included, is beyond the limit of the voltage; empty where it is not.
+
+    Parameters
+    ----------
+    setting : DriveSetting
+    limits : Limits
+
+    Returns
+    -------
+    str
+    """
+    most, reached = limits.voltage_maximum, setting.voltage_maximum
+    if reached <= most * _ROUNDING:
+        return ""
+    return f"the drive is to be set to {format_si(reached, 'V')}; limits.voltage_maximum is {format_si(most, 'V')}"
 
 
 def first_trip(block: Block, names: Sequence[str], locks: Sequence[Interlock]) -> Trip | None:

@@ -8,7 +8,9 @@ from typing import Final
 from sonolube.facts.protocol import Protocol, protocol_text
 from sonolube.input_files import input_text
 from sonolube.laboratory.devices import Devices
-from sonolube.laboratory.records import RunRecorder, new_run
+from sonolube.laboratory.drive_sampling import DriveSampling, drive_sampling, recorded_channels
+from sonolube.laboratory.interlocks import interlocks_for
+from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
 from sonolube.laboratory.set_points import groove_diameter
 from sonolube.rig import Rig
 
@@ -29,6 +31,8 @@ class RunPlan:
         None for the virtual tribometer.
     seed : int
     tags : sequence of str
+    drive : DriveSampling or None
+        How often the drive is sampled, where the protocol does not tell it.
     facts : mapping of str to str or float
         What is known besides, such as operator, humidity or the date of a calibration; before those of the protocol.
     """
@@ -39,7 +43,25 @@ class RunPlan:
     device_file: Path | None = None
     seed: int = 0
     tags: Sequence[str] = ()
+    drive: DriveSampling | None = None
     facts: Mapping[str, str | float] = field(default_factory=dict)
+
+    def unresolved(self, devices: Devices) -> str:
+        """What record and limits do not show of the drive, in one line; empty where they show it.
+
+        Parameters
+        ----------
+        devices : Devices
+
+        Returns
+        -------
+        str
+        """
+        drive = self.drive or drive_sampling(self.protocol)
+        if drive is None:
+            return ""
+        locks = interlocks_for(self.protocol.limits, devices.acquisition.channels, drive)
+        return drive.caveat([*recorded_channels(self.protocol), *(lock.channel.name for lock in locks)])
 
 
 def begin_record(
@@ -63,7 +85,7 @@ def begin_record(
     Raises
     ------
     InvalidInput
-        If another run is at work at the rig.
+        If the folder cannot be written.
     """
     return new_run(
         out,
@@ -88,6 +110,8 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
         "simulated": devices.simulated,
         **{f"device_{name.replace(' ', '_')}": text for name, text in devices.description.items()},
     }
+    if unresolved := plan.unresolved(devices):
+        facts[UNRESOLVED] = unresolved
     facts["groove_diameter"] = groove_diameter(plan.protocol, devices)
     facts |= {name: text for name in _STATED if (text := getattr(metadata, name))} | dict(plan.facts)
     if metadata.normal_load is not None:
@@ -106,5 +130,5 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
         if rig.changes:
             facts["changed_entries"] = "; ".join(rig.changes)
     if plan.device_file is not None:
-        facts["rig"] = plan.device_file.stem  # one run at a time on the devices of a map, whatever rig file is given
+        facts["rig"] = plan.device_file.stem
     return facts

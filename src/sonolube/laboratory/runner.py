@@ -1,6 +1,7 @@
 """Runner: a protocol on the devices of a rig, recorded block by block; however it ends, motor and drive are off."""
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import pi
@@ -11,8 +12,10 @@ from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, connect_devices, switch_outputs_off
+from sonolube.laboratory.drive_sampling import drive_sampling, idle_rate
 from sonolube.laboratory.ending import RunEnded, ending, release_devices
-from sonolube.laboratory.interlocks import Trip, interlocks_for
+from sonolube.laboratory.interlocks import Trip, interlocks_for, set_point_trip
+from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.sampling import BLOCK_DURATION, Recorder, Sampling
 from sonolube.laboratory.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
 from sonolube.laboratory.states import Event, RunState, State, after
@@ -137,34 +140,37 @@ class _Run:
         self._points = flattened(protocol)
         self._point = self._points[0]
         self._diameter = groove_diameter(protocol, devices)
-        locks = interlocks_for(protocol.limits, devices.acquisition.channels)
+        locks = interlocks_for(protocol.limits, devices.acquisition.channels, drive_sampling(protocol))
         self._sampling = Sampling(devices.acquisition, recorder, locks)
-        self._present = RunState()
+        self._present, self._is_connected = RunState(), False
         self._drive: DriveSetting | None = None
         self._turns = 0.0
         self._conditions: dict[str, float | str] = {"lubricant": ""}
 
     def complete(self, advance: Advance | None) -> RunResult:
         """Follow the protocol to its end, whatever that is."""
-        try:
-            self._happens(Event.START)
-            self._prepare(advance)
-            connect_devices(self._devices)
-            self._happens(Event.PREPARED)
-            for point, following in pairwise(self._points):
-                self._reach(point)
-                self._run_until(following.time, advance)
-            self._happens(Event.COMPLETED)
-        except BaseException as failure:
-            self._happens(*ending(failure))
-            if not isinstance(failure, SonolubeError):
-                self._close()
-                raise
-        return self._close()
+        with ExitStack() as held:
+            try:
+                self._happens(Event.START)
+                held.enter_context(reserved(self._devices.resources))
+                self._prepare(advance)
+                self._is_connected = True
+                connect_devices(self._devices)
+                self._happens(Event.PREPARED)
+                for point, following in pairwise(self._points):
+                    self._reach(point)
+                    self._run_until(following.time, advance)
+                self._happens(Event.COMPLETED)
+            except BaseException as failure:
+                self._happens(*ending(failure))
+                if not isinstance(failure, SonolubeError):
+                    self._close()
+                    raise
+            return self._close()
 
     def switch_off(self) -> list[str]:
-        """Switch drive and motor off, and return what failed; never raises."""
-        failures = switch_outputs_off(self._devices)
+        """Switch drive and motor off where they were connected, and return what failed; never raises."""
+        failures = switch_outputs_off(self._devices) if self._is_connected else []
         self._drive, self._turns = None, 0.0
         return failures
 
@@ -221,7 +227,7 @@ class _Run:
             assert point.sample_rate is not None
             self._sampling.record(point.channels, sample_rate=point.sample_rate)
         else:
-            self._sampling.start(point.channels, sample_rate=point.sample_rate)
+            self._sampling.start(point.channels, sample_rate=point.sample_rate or idle_rate(self._points))
 
     @property
     def _records_now(self) -> bool:
@@ -242,10 +248,17 @@ class _Run:
             if setting is None:
                 self._devices.drive.off()
             else:
+                self._require_within(setting)
                 self._devices.drive.drive(setting)
             self._drive = setting
             frequency = 0.0 if setting is None else setting.frequency
             self._note("drive", step=point.step, voltage_peak_to_peak=point.voltage_peak_to_peak, frequency=frequency)
+
+    def _require_within(self, setting: DriveSetting) -> None:
+        """End the run before a setting beyond the limit of the voltage is sent."""
+        excess = set_point_trip(setting, self._protocol.limits)
+        if excess:
+            raise RunEnded(Event.TRIP, excess)
 
     def _note_conditions(self) -> None:
         """Note load and lubricant where the protocol tells others than before."""
@@ -355,7 +368,8 @@ class _Run:
     def _close(self) -> RunResult:
         """Switch everything off, release the devices and close the record."""
         failures = self.switch_off()
-        for reason in release_devices(self._devices, self._sampling.stop):
+        released = release_devices(self._devices, self._sampling.stop) if self._is_connected else []
+        for reason in released:
             self._note("device error", reason=reason)
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
         present = self._present

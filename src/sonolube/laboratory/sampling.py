@@ -12,8 +12,6 @@ from sonolube.laboratory.interlocks import Interlock, Trip, first_trip
 BLOCK_DURATION: Final = 0.05
 """Longest time between two looks at the limits, and at requests to pause or stop. [s]"""
 
-_IDLE_RATE: Final = 1000.0  # Hz, of protocols that record nothing
-
 
 class Recorder(Interface):
     """Record of a run, as `sonolube.laboratory.records` keeps it."""
@@ -65,19 +63,19 @@ class Sampling:
         """Whether samples are recorded."""
         return self._recording
 
-    def start(self, channels: Sequence[str], *, sample_rate: float | None) -> None:
+    def start(self, channels: Sequence[str], *, sample_rate: float) -> None:
         """Sample channels to be recorded, and those that limits watch, from sample 0 on.
 
         Parameters
         ----------
         channels : sequence of str
-        sample_rate : float or None
-            None where nothing is recorded. [Hz]
+        sample_rate : float
+            [Hz]
         """
         watched = [lock.channel.name for lock in self._locks if lock.channel.name not in channels]
         self._names = [*channels, *watched] or [next(iter(self._acquisition.channels))]
         self._recorded = len(channels)
-        self.rate = self._acquisition.start(self._names, sample_rate=sample_rate or _IDLE_RATE)
+        self.rate = self._acquisition.start(self._names, sample_rate=sample_rate)
         self.sample, self._origin = 0, self.time
 
     def stop(self) -> None:

@@ -7,6 +7,7 @@ from typing import Final
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import Protocol, SetPoint, flattened
 from sonolube.laboratory.devices import Devices, DriveSetting
+from sonolube.laboratory.drive_sampling import drive_sampling
 from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.units import format_si
 
@@ -47,7 +48,7 @@ def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
     """
     faults: dict[tuple[str, str], tuple[float, str]] = {}
     try:
-        interlocks_for(protocol.limits, devices.acquisition.channels)
+        interlocks_for(protocol.limits, devices.acquisition.channels, drive_sampling(protocol))
     except InvalidInput as refusal:
         unwatched = refusal.faults if isinstance(refusal, SeveralFaults) else (str(refusal),)
         faults |= {("", text): (0.0, text) for text in unwatched}

@@ -147,7 +147,7 @@ def moved_rig(rig: Rig) -> DrivenRig:
     return used.driven
 
 
-def source_caveats(rig: Rig, *, taken: AmplitudeSource, amplitude: float) -> tuple[str, ...]:
+def source_caveats(rig: Rig, *, taken: AmplitudeSource, vibration_amplitude: float) -> tuple[str, ...]:
     """Return a line where the amplitudes of two sources of a rig differ by more than their error, at its own drive.
 
     Parameters
@@ -155,7 +155,7 @@ def source_caveats(rig: Rig, *, taken: AmplitudeSource, amplitude: float) -> tup
     rig : Rig
     taken : {"measured", "computed", "waveguide", "per-volt"}
         Source by which the rig vibrates.
-    amplitude : float
+    vibration_amplitude : float
         By that source. [m]
 
     Returns
@@ -163,16 +163,17 @@ def source_caveats(rig: Rig, *, taken: AmplitudeSource, amplitude: float) -> tup
     tuple of str
     """
     found = {source: _amplitude_by(rig, source) for source in available_sources(rig) if source != taken}
+    error = {source: AMPLITUDE_ERROR * max(other, vibration_amplitude) for source, other in found.items()}
     others = [
         f"{source} {format_si(found[source], 'm')}"
         for source in AMPLITUDE_SOURCES
-        if source in found and abs(found[source] - amplitude) > AMPLITUDE_ERROR * max(found[source], amplitude)
+        if source in found and abs(found[source] - vibration_amplitude) > error[source]
     ]
     if not others:
         return ()
     return (
         f"the amplitudes differ by more than their error of {100 * AMPLITUDE_ERROR:.0f} %: {taken}"
-        f" {format_si(amplitude, 'm')}, taken here, and {', '.join(others)}",
+        f" {format_si(vibration_amplitude, 'm')}, taken here, and {', '.join(others)}",
     )
 
 

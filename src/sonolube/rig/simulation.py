@@ -345,7 +345,7 @@ def _caveats(rig: Rig, used: ResolvedVibration, vibration: SteadyVibration) -> t
     """Return the caveats of contact, amplitude, stack and gap."""
     return (
         *resting_caveats(rig, vibration_amplitude=vibration.vibration_amplitude),
-        *source_caveats(rig, taken=used.source, amplitude=vibration.vibration_amplitude),
+        *source_caveats(rig, taken=used.source, vibration_amplitude=vibration.vibration_amplitude),
         *([] if used.driven is None else _stack_caveats(used.driven, vibration)),
     )
 

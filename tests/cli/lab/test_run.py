@@ -38,6 +38,10 @@ def test_a_virtual_test_is_measured_as_a_real_one_and_returns_what_it_was_given(
         known = float(sliding["friction_force"][nearest])
         assert row["friction_force"] == approx(known, abs=5 * row["friction_force_uncertainty"])
     assert [row["voltage_peak_to_peak"] for row in rows] == approx([0, 5.1, 10.3, 15.5, 20.7, 25.9])
+    unseen = "voltage and current at 400 Hz do not resolve the drive (fewer than five samples a period)"
+    assert made["caveats"][0] == unseen
+    assert unseen in measured["caveats"]
+    assert unseen in (Path(made["folder"]) / "run.json").read_text()
     assert made["caveats"][-1] == "friction is drawn from the prediction of the rig: no measurement"
 
 

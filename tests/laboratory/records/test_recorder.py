@@ -192,16 +192,6 @@ def test_a_run_whose_last_document_does_not_fit_is_let_go_and_can_be_recovered(
     recorded(tmp_path, rig="tribometer")
 
 
-def test_a_rig_takes_one_run_at_a_time(tmp_path: Path) -> None:
-    recorder = begun(tmp_path, rig="tribometer 2")
-    with pytest.raises(InvalidInput, match="another run on rig tribometer-2 is at work"):
-        begun(tmp_path, rig="tribometer 2")
-    assert [summary.outcome for summary in runs_in(tmp_path)] == ["running"]
-    recorded(tmp_path, rig="another")
-    recorder.finish("completed")
-    recorded(tmp_path, rig="tribometer 2")
-
-
 def test_times_do_not_follow_a_clock_that_jumps_and_the_jump_is_noted(tmp_path: Path) -> None:
     with Clock.installed() as clock:
         recorder = begun(tmp_path)

@@ -1,5 +1,7 @@
 """Stick-slip of signals with known frequency and amplitude."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -89,7 +91,7 @@ def test_a_longer_recording_of_jittering_slips_is_no_weaker_evidence() -> None:
         assert found.stick_slip_frequency == approx(50, rel=0.02)
 
 
-NOISE = {
+NOISE: dict[str, Callable[[np.random.Generator, int], np.ndarray]] = {
     "random walk": lambda rng, n: np.cumsum(rng.standard_normal(n)),
     "white": lambda rng, n: rng.standard_normal(n),
     "1/f": lambda rng, n: np.fft.irfft(

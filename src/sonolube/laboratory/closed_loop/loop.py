@@ -1,5 +1,6 @@
 """Loop: blocks of one control interval are read, the voltage computed and set; however it ends, all is off."""
 
+from contextlib import ExitStack
 from math import ceil, nan, pi
 from typing import Final
 
@@ -20,7 +21,8 @@ from sonolube.laboratory.devices import (
     switch_outputs_off,
 )
 from sonolube.laboratory.ending import RunEnded, ending, release_devices
-from sonolube.laboratory.interlocks import first_trip, interlocks_for
+from sonolube.laboratory.interlocks import first_trip, interlocks_for, set_point_trip
+from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.runner import Advance, RunControl
 from sonolube.laboratory.sampling import Recorder
 from sonolube.laboratory.states import Event, RunState, State, after
@@ -80,34 +82,38 @@ class _Loop:
     def __init__(self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
         self._hold, self._devices, self._recorder, self._control = hold, devices, recorder, control
         channels = devices.acquisition.channels
-        self._locks = interlocks_for(hold.limits, channels)
+        self._locks = interlocks_for(hold.limits, channels, hold.drive_sampling)
         self._names = list(recorded_channels(hold, channels))
         self._present, self._is_recording = RunState(), False
+        self._is_connected = False
         self._next_sample, self._rate, self._count = 0, 0.0, 0
         self._rows: list[tuple[float, float, float, float]] = []
         self._run_in_means: list[float] = []
 
     def complete(self, advance: Advance | None) -> HeldFriction:
         """Run the loop to its end, whatever that is."""
-        try:
-            self._happens(Event.START)
-            connect_devices(self._devices)
-            self._happens(Event.PREPARED)
-            self._sample()
-            self._control_friction(self._running_in(), advance)
-            self._end_recording()
-            self._happens(Event.COMPLETED)
-        except BaseException as failure:
-            self._happens(*ending(failure))
-            if not isinstance(failure, SonolubeError):
-                raise
-        finally:
-            self._close()
+        with ExitStack() as held:
+            try:
+                self._happens(Event.START)
+                held.enter_context(reserved(self._devices.resources))
+                self._is_connected = True
+                connect_devices(self._devices)
+                self._happens(Event.PREPARED)
+                self._sample()
+                self._control_friction(self._running_in(), advance)
+                self._end_recording()
+                self._happens(Event.COMPLETED)
+            except BaseException as failure:
+                self._happens(*ending(failure))
+                if not isinstance(failure, SonolubeError):
+                    raise
+            finally:
+                self._close()
         return self._result()
 
     def switch_off(self) -> list[str]:
-        """Switch drive and motor off, and return what failed; never raises."""
-        return switch_outputs_off(self._devices)
+        """Switch drive and motor off where they were connected, and return what failed; never raises."""
+        return switch_outputs_off(self._devices) if self._is_connected else []
 
     def _happens(self, event: Event, reason: str = "") -> None:
         """Take an event into the state of the loop, and note it."""
@@ -179,13 +185,15 @@ class _Loop:
         if voltage <= 0:
             self._devices.drive.off()
             return
-        self._devices.drive.drive(
-            DriveSetting(
-                voltage_peak_to_peak=voltage,
-                voltage_offset=self._hold.offset_ratio * voltage,
-                frequency=self._hold.frequency,
-            )
+        setting = DriveSetting(
+            voltage_peak_to_peak=voltage,
+            voltage_offset=self._hold.offset_ratio * voltage,
+            frequency=self._hold.frequency,
         )
+        excess = set_point_trip(setting, self._hold.limits)
+        if excess:
+            raise RunEnded(Event.TRIP, excess)
+        self._devices.drive.drive(setting)
 
     def _measure(self) -> tuple[float, float]:
         """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""
@@ -222,7 +230,8 @@ class _Loop:
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
         failures, devices = self.switch_off(), self._devices
-        for reason in release_devices(devices, self._end_recording, devices.acquisition.stop):
+        before = self._end_recording, devices.acquisition.stop
+        for reason in release_devices(devices, *before) if self._is_connected else []:
             self._happens(Event.DEVICE_ERROR, reason)
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
         if self._recorder is not None:
@@ -265,7 +274,7 @@ def require_holdable(hold: FrictionHold, devices: Devices) -> None:
     InvalidInput
         Naming what is asked for, and the device or limit that forbids it.
     """
-    interlocks_for(hold.limits, devices.acquisition.channels)
+    interlocks_for(hold.limits, devices.acquisition.channels, hold.drive_sampling)
     if _FRICTION not in devices.acquisition.channels:
         raise InvalidInput(f"{devices.acquisition.name} has no channel {_FRICTION}, which the loop needs")
     reached = format_si(hold.voltage_maximum, "V")

@@ -27,7 +27,7 @@ def recorded_channels(hold: FrictionHold, channels: Mapping[str, Channel]) -> tu
     -------
     tuple of str
     """
-    watched = (lock.channel.name for lock in interlocks_for(hold.limits, channels))
+    watched = (lock.channel.name for lock in interlocks_for(hold.limits, channels, hold.drive_sampling))
     return tuple(dict.fromkeys([*(name for name in _RECORDED if name in channels), *watched]))
 
 

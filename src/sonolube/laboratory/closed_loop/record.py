@@ -7,6 +7,7 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.design.control import FrictionController
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Limits
+from sonolube.laboratory.drive_sampling import DriveSampling
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -90,6 +91,11 @@ class FrictionHold:
     def voltage_maximum(self) -> float:
         """Greatest magnitude of the voltage that the controller may command, its offset included. [V]"""
         return (abs(self.offset_ratio) + 0.5) * self.controller.level_maximum
+
+    @property
+    def drive_sampling(self) -> DriveSampling:
+        """Sample rate and frequency of the drive, a sine."""
+        return DriveSampling(sample_rate=self.sample_rate, frequency=self.frequency)
 
     def samples_per_interval(self, sample_rate: float) -> int:
         """Number of samples in an interval of the controller.

@@ -25,6 +25,7 @@ from sonolube.laboratory.drivers.entries import (
 from sonolube.laboratory.drivers.function_generator import FunctionGenerator
 from sonolube.laboratory.drivers.line_motor import Exchange, LineMotor, LineProtocol
 from sonolube.laboratory.drivers.output_limits import DriveLimits
+from sonolube.laboratory.drivers.resources import daqmx_resource, visa_resource
 from sonolube.laboratory.drivers.sensor_scale import SensorScale, tabulated_scale
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
 from sonolube.toml_text import text_of, toml_content
@@ -74,6 +75,7 @@ class DeviceMap:
             motor=self._motor(),
             description=MappingProxyType(self._description()),
             groove_diameter=self.entries.motor.groove_diameter,
+            resources=self._resources(),
         )
 
     def _acquisition(self) -> DaqmxAcquisition:
@@ -132,6 +134,16 @@ class DeviceMap:
             output_voltage=entry.output_maximum,
             frequency_maximum=highest,
         )
+
+    def _resources(self) -> tuple[str, ...]:
+        """Canonical names of the hardware."""
+        drive, motor = self.entries.drive, self.entries.motor
+        named = [
+            daqmx_resource(self.entries.acquisition.device),
+            visa_resource(drive.resource) if isinstance(drive, GeneratorEntry) else daqmx_resource(drive.output),
+            visa_resource(motor.resource) if isinstance(motor, LineMotorEntry) else daqmx_resource(motor.output),
+        ]
+        return tuple(dict.fromkeys(named))
 
     def _description(self) -> dict[str, str]:
         """Kind, serial number and settings of each device."""

@@ -12,6 +12,7 @@ from sonolube.laboratory.block import Block
 from sonolube.laboratory.devices import DeviceError, Devices
 from sonolube.laboratory.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
 from sonolube.laboratory.drivers.device_map import DeviceMap, read_device_map
+from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.set_points import impossibilities
 from sonolube.units import format_si
 
@@ -94,9 +95,9 @@ def first_block(devices: Devices, *, sample_rate: float) -> Block:
     Raises
     ------
     DeviceError
-        If a device is missing or does not answer; the others are off and released then.
+        If a device is missing, does not answer or is in use by a run; the others are off and released then.
     """
-    with ExitStack() as after:
+    with reserved(devices.resources), ExitStack() as after:
         for device in (devices.acquisition, devices.drive, devices.motor):
             after.callback(device.close)
             device.connect()

@@ -7,6 +7,7 @@ import numpy as np
 
 from sonolube.design.control import Amplifier
 from sonolube.facts.protocol import Check, step_at
+from sonolube.laboratory.drive_sampling import drive_sampling, recorded_channels
 from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint
 from sonolube.units import format_si
 
@@ -125,6 +126,10 @@ def _caveats(found: DryRun) -> Iterator[str]:
             "the rise of the contact is the mean over its nominal area by heat of friction alone; asperities flash"
             " hotter, and a thermocouple in the contact has read 53 degC (D 4.3.5), far more"
         )
+    sampling = drive_sampling(found.protocol)
+    unresolved = "" if sampling is None else sampling.caveat(recorded_channels(found.protocol))
+    if unresolved:
+        yield unresolved
     waiting = [
         point.setting.step
         for point in found.points

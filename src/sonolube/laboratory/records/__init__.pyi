@@ -18,3 +18,4 @@ from .run import (
     run_summary as run_summary,
     runs_in as runs_in,
 )
+from .run_folder import UNRESOLVED as UNRESOLVED

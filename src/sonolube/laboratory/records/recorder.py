@@ -1,10 +1,9 @@
 """Recorder of a run: every block is on its way to the disk when `append` returns, every event is a document."""
 
-import re
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
 from sonolube.files import locked_folder, remove_file
@@ -33,8 +32,6 @@ from sonolube.laboratory.records.run_folder import (
 if TYPE_CHECKING:
     import xarray as xr
 
-_RIGS: Final = ".rigs"  # folder of the locks of rigs
-
 
 def new_run(
     parent: Path, *, title: str, protocol: str, files: Mapping[str, str] | None = None, facts: Facts | None = None
@@ -51,8 +48,8 @@ def new_run(
     files : mapping of str to str, optional
         Further texts to keep, by name, such as those of rig.toml and devices.toml.
     facts : mapping of str to str, float, int or bool, optional
-        What is known of the run, quantities in SI under their names. The fact `rig` names the rig, at which one run is
-        at work at a time; the fact `tags` has words between commas, by which the catalogue finds runs.
+        What is known of the run, quantities in SI under their names. The fact `tags` has words between commas, by which
+        the catalogue finds runs.
 
     Returns
     -------
@@ -62,13 +59,10 @@ def new_run(
     Raises
     ------
     InvalidInput
-        If another run is at work at the rig, a name or fact is not plain, or the folder cannot be written.
+        If a name or fact is not plain, or the folder cannot be written.
     """
     known = dict(facts or {})
     with ExitStack() as locks:
-        if known.get("rig"):
-            rig = re.sub(r"[^A-Za-z0-9_-]+", "-", str(known["rig"])).strip("-") or "rig"
-            locks.enter_context(locked_folder(parent / _RIGS / rig, purpose=f"run on rig {rig}"))
         clock = RunClock()
         texts = {PROTOCOL: protocol, **(files or {})}
         folder, begun = make_run_folder(parent, title=title, begun=clock.begun, texts=texts, facts=known, referenced={})

@@ -13,11 +13,12 @@ import numpy as np
 
 from sonolube.files import unfinished_file
 from sonolube.laboratory.records.recorded_part import Floats
-from sonolube.laboratory.records.run_folder import RunFacts
+from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts
 from sonolube.vocabulary import quantity
 
 _PACKED: Final[Mapping[str, Any]] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 _ROWS: Final = 1 << 16  # of a chunk of set points
+_WAVES: Final = {"stack_voltage", "stack_current"}  # quantities of which samples are values of the wave itself
 _CSV_DIGITS: Final = "%.17g"  # what 64-bit floats hold
 
 
@@ -174,7 +175,10 @@ def _attributes(part: PartOfRecording, known: RunFacts) -> dict[str, str | float
     }
     if part.lubricants:
         found["lubricants"] = json.dumps(part.lubricants)
-    return found | ({"caveats": "\n".join(part.caveats)} if part.caveats else {})
+    caveats = [*part.caveats]
+    if UNRESOLVED in known.facts and _WAVES & set(part.variables.values()):
+        caveats.append(str(known.facts[UNRESOLVED]))
+    return found | ({"caveats": "\n".join(caveats)} if caveats else {})
 
 
 def _waveform(part: PartOfRecording, of: str) -> Mapping[str, Any]:

@@ -14,6 +14,7 @@ from sonolube.laboratory.records.run_folder import (
     DOCUMENTS,
     LATEST,
     PROTOCOL,
+    UNRESOLVED,
     RunFacts,
     changed_files,
     changed_recordings,
@@ -330,6 +331,8 @@ def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: R
     """What speaks against the record of a run."""
     found = [f"{name} is missing or was changed since the run began" for name in changed_files(folder, known)]
     found += [f"{name} was changed after the run wrote it" for name in changed_recordings(folder, known)]
+    if UNRESOLVED in known.facts:
+        found.append(str(known.facts[UNRESOLVED]))
     if summary.outcome == UNFINISHED:
         found.append("the program was killed during the run; sonolube lab recover completes its record")
     elif summary.outcome not in ("completed", RUNNING):

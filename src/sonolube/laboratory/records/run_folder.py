@@ -24,6 +24,9 @@ PURPOSE: Final = "run"
 RESERVE: Final = ".reserve"
 """File that is removed when a run ends, so that its last documents fit on a full disk."""
 
+UNRESOLVED: Final = "unresolved"
+"""Fact that says which channels were sampled too seldom to show the drive."""
+
 Fact = str | float | int | bool
 Facts = Mapping[str, Fact]
 

@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.sliding import Mask, at_rest, stretches, voltage_threshold
 
 _SECTION = 0.05  # s, by whose medians a disc that coasts down is told from one at rest
-_COASTS = 0.1  # of the level, above which it does
+_COASTS = 0.5  # of the level, above which it does
 _SECTIONS_PER_STEP = 10  # sections of the shortest step, by whose medians steps are separated
 
 
@@ -25,13 +25,13 @@ class SlidingSteps:
     settled : list of slice
         Samples of each without the settling.
     voltages : list of float
-        Median of each, peak to peak. [V]
+        Median of each, peak to peak, in V.
     speeds : list of float
-        Median sliding speed of each; NaN where it is not known. [m/s]
+        Median sliding speed of each, in m/s; NaN where it is not known.
     threshold : float
-        Voltage up to which there is none. [V]
+        Voltage up to which there is none, in V.
     at_rest : ndarray
-        Known force while the surfaces rest before they first slide. [N]
+        Known force while the surfaces rest before they first slide, in N.
     """
 
     steps: list[tuple[int, int]]
@@ -52,9 +52,11 @@ def sliding_steps(
     t, f, u : ndarray, shape (samples,)
         Time, in s; friction force, in N; peak-to-peak voltage, in V.
     v : ndarray, shape (samples,), or None
-        Sliding speed of one direction. [m/s]
-    shortest_step, settling_time : float
+        Sliding speed of one direction, in m/s.
+    shortest_step : float
         As `friction_at_voltage_steps`, in s.
+    settling_time : float
+        Left out at the beginning of each step. [s]
     tolerance : float
         Change that begins another step, over the range of the voltage or the highest speed.
 
@@ -73,7 +75,7 @@ def sliding_steps(
     """
     require_positive(shortest_step=shortest_step, tolerance=tolerance)
     require_non_negative(settling_time=settling_time)
-    threshold = voltage_threshold(u, tolerance=tolerance)
+    threshold = voltage_threshold(voltage_peak_to_peak=u, tolerance=tolerance)
     least = max(shortest_step, 2 * settling_time)
     held = _constant_levels(t, u, threshold, shortest_step)
     if v is not None:
@@ -110,7 +112,8 @@ def _force_before_sliding(t: Floats, f: Floats, rest: Mask, step: tuple[int, int
     size = max(1, round(_SECTION / float(np.median(np.diff(t)))))
     force = f[first:last]
     medians = [float(np.nanmedian(force[k : k + size])) for k in range(0, force.size, size)]
-    moving = np.flatnonzero(np.abs(medians) > _COASTS * float(np.nanmedian(np.abs(f[slice(*step)]))))
+    level = max(_COASTS * float(np.nanmedian(np.abs(f[slice(*step)]))), float(np.nanstd(force[force.size // 2 :])))
+    moving = np.flatnonzero(np.abs(medians) > level)
     begin = (int(moving[-1]) + 2) * size if moving.size else 0
     return np.asarray(force[begin:][np.isfinite(force[begin:])])
 

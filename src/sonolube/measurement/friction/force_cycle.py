@@ -39,11 +39,11 @@ class ForceCycle:
     frequency : float
         Of the cycle. [Hz]
     fall_share : float
-        Duration of the fall from the highest to the lowest force, over the period. []
+        Duration of the fall from the highest to the lowest force, over the period.
     falls : ndarray, shape (sections,)
-        Fall of the force in sections of eight cycles. [N]
+        Fall of the force in sections of eight cycles, in N.
     truncation : float
-        Share of the fall in the highest harmonic that the sampling rate resolves. [N]
+        Share of the fall in the highest harmonic that the sampling rate resolves, in N.
     slips : ndarray of int
         Indices of the samples after the middle of each fall.
     sections : ndarray, shape (sections, 2)
@@ -64,7 +64,7 @@ def find_cycle(signal: Floats, *, sample_interval: float, frequency: float) -> t
     Parameters
     ----------
     signal : ndarray, shape (samples,)
-        Evenly spaced, of zero mean. [N]
+        Evenly spaced, of zero mean, in N.
     sample_interval : float
         Time between samples. [s]
     frequency : float

@@ -10,12 +10,14 @@ from sonolube.checks import Floats
 
 Mask = NDArray[np.bool_]
 
+NOISE_VOLTAGE = 0.05
+"""Voltage up to which it is noise of its channel. [V]"""
+
 _MOVES = 0.05  # of the highest speed, above which the surfaces slide
 _REVERSAL = 0.2  # s, up to which a low speed is the reversal of a stroke
 _SECTION = 0.05  # s, over which medians of the force are taken
 _SECTIONS = 5  # of whose states the median counts
 _AT_REST = 0.5  # of the level without voltage, below which the force is that of rest
-_NOISE_VOLTAGE = 0.05  # V, up to which a voltage is noise of its channel
 _LEVEL = 90  # percentile of the sections that is the level: most of a recording may be rest
 
 
@@ -52,14 +54,29 @@ def at_rest(
     if sliding_speed is not None and not unknown.all():
         rest = rest_by_speed(time=time, speed=sliding_speed)
     if voltage_peak_to_peak is not None and unknown.any():
-        without = np.nan_to_num(voltage_peak_to_peak) <= voltage_threshold(voltage_peak_to_peak, tolerance=tolerance)
+        without = np.nan_to_num(voltage_peak_to_peak) <= voltage_threshold(
+            voltage_peak_to_peak=voltage_peak_to_peak, tolerance=tolerance
+        )
         rest |= unknown & rest_by_force(time=time, friction_force=friction_force, without_voltage=without)
     return rest
 
 
-def voltage_threshold(voltage_peak_to_peak: Floats, *, tolerance: float) -> float:
-    """Voltage up to which there is none, and change of it that begins another step: of its range, or of noise. [V]"""
-    return max(tolerance * float(np.nanmax(voltage_peak_to_peak) - np.nanmin(voltage_peak_to_peak)), _NOISE_VOLTAGE)
+def voltage_threshold(*, voltage_peak_to_peak: Floats, tolerance: float) -> float:
+    """Voltage up to which there is none, and change of it that begins another step: of its range, or of noise, in V.
+
+    Parameters
+    ----------
+    voltage_peak_to_peak : ndarray, shape (samples,)
+        [V]
+    tolerance : float
+        Of its range.
+
+    Returns
+    -------
+    float
+        50 mV at least.
+    """
+    return max(tolerance * float(np.nanmax(voltage_peak_to_peak) - np.nanmin(voltage_peak_to_peak)), NOISE_VOLTAGE)
 
 
 def rest_by_speed(*, time: Floats, speed: Floats) -> Mask:

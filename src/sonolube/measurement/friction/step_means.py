@@ -103,8 +103,8 @@ def wobble_columns(
     harmonics : int
         Number of harmonics.
     places : sequence of ndarray or None
-        In proportion to the revolutions, at the samples of each part, along which these are found; the time without
-        it. [s]
+        In proportion to the revolutions, at the samples of each part, along which these are found; the time, in s,
+        without it.
 
     Returns
     -------

@@ -25,7 +25,7 @@ from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import require_equal_length, require_time_series, uniform_sample_interval
 
 _FEWEST_AT_REST = 20  # samples, from which their mean tells the zero of the force
-_TENSION = 0.1  # of the highest level, above which a force at rest is that of a holder under tension, not a zero
+_TENSION = 0.3  # of the highest level, above which a force at rest is that of a holder under tension, not a zero
 _SAME_SPEED = 0.05  # relative deviation of speeds that are the same
 
 
@@ -172,8 +172,8 @@ def friction_at_voltage_steps(
 
     The mean force at rest before the first step, r, is the zero of the force where a speed tells that rest, and is
     taken off; its variance :math:`u_r^2` is added to all elements of C. Where the force tells the rest, it is not taken
-    off, and :math:`r^2 - u_r^2` is added where that is positive. A force at rest above a tenth of the level is no zero:
-    the holder is under tension.
+    off, and :math:`r^2 - u_r^2` is added where that is positive. A force at rest above 0.3 of the level, and
+    above its own standard deviation, is no zero: the holder is under tension.
 
     A step shorter than a revolution is as uncertain as its part of the wobble, which the other steps determine.
 
@@ -270,7 +270,7 @@ def _zero(at_rest: Floats, levels: Floats, *, by_speed: bool) -> tuple[float, fl
     if at_rest.size < _FEWEST_AT_REST:
         return 0.0, 0.0
     mean = correlated_mean(at_rest)
-    if abs(mean.mean) > _TENSION * float(np.max(np.abs(levels))):
+    if abs(mean.mean) > max(_TENSION * float(np.max(np.abs(levels))), mean.deviation):
         return 0.0, 0.0
     if by_speed:
         return mean.mean, mean.uncertainty**2

@@ -1,4 +1,4 @@
-"""Caveats on single samples far beyond all others of their channel, as a damaged line or a lost bit leaves them."""
+"""Caveats on samples far beyond all others of their channel, as a lost bit leaves them, and on missing ones."""
 
 import numpy as np
 
@@ -7,6 +7,7 @@ from sonolube.checks import Floats
 _MOST = 3  # samples of a channel that can be damaged; more are a signal
 _REACH = 20.0  # distance from the median over the largest of all other samples
 _FEWEST = 20  # samples of a channel of which one can be judged
+_SET_POINT = "_set"  # end of the names of set points, which are unknown before they are set
 
 
 def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats, axis_label: str) -> tuple[str, ...]:
@@ -46,3 +47,35 @@ def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats
         " from its median as every other sample: a damaged sample, which each mean contains; leave its line out"
         for place in known[np.sort(np.argsort(distance)[-count:])]
     )
+
+
+def missing_sample_caveat(name: str, values: Floats, *, axis: Floats, axis_label: str) -> tuple[str, ...]:
+    """Return a caveat for a channel that misses samples, with the first of them or the end of its column.
+
+    Parameters
+    ----------
+    name : str
+        Of the channel.
+    values : ndarray, shape (samples,)
+        Of the channel; missing ones are NaN.
+    axis : ndarray, shape (samples,)
+        Time or revolutions.
+    axis_label : str
+        Name and unit of the axis, such as "time [s]".
+
+    Returns
+    -------
+    tuple of str
+        Empty where none is missing, and for set points.
+    """
+    missing = np.flatnonzero(~np.isfinite(values))
+    if not missing.size or name.endswith(_SET_POINT):
+        return ()
+    if missing.size == values.size:
+        return (f"{name} holds no value",)
+    first = missing[0]
+    if missing.size == values.size - first:
+        where = f"ends at {axis_label} = {axis[first - 1]:.6g}, before the recording"
+    else:
+        where = f"misses {missing.size} of {values.size} samples, the first at {axis_label} = {axis[first]:.6g}"
+    return (f"{name} {where}: numbers are of the others",)

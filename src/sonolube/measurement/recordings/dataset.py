@@ -17,9 +17,8 @@ from sonolube.measurement.recordings.channel_choice import (
     name_and_unit,
     require_common_length,
 )
-from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats
+from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats, missing_sample_caveat
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
-from sonolube.measurement.recordings.missing_samples import missing_sample_caveat
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
 from sonolube.measurement.recordings.written_units import convert_to_si, si_conversion

@@ -12,7 +12,7 @@ from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.motor_current import MotorCalibration
 from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
-from sonolube.measurement.friction.sliding import Mask, stretches
+from sonolube.measurement.friction.sliding import NOISE_VOLTAGE, Mask, stretches
 from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, streamed_window_statistics
 from sonolube.measurement.friction_analysis import (
     analyse_cycles,
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 _LARGE = 1 << 29  # bytes of a TDMS file beyond which it is read in blocks, for its windows only
 _CHANNELS = ("friction_force", "friction_coefficient")
-_ONE_VOLTAGE = 0.9  # lowest over highest, from which the vibration does not change
+_ONE_VOLTAGE = 0.1  # of the highest voltage, up to which its range is no change of the vibration
 _LONG_REST = 0.5  # s, from which a rest is named
 _MOST_LISTED = 3
 
@@ -169,9 +169,11 @@ def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet
 def _level(whole: "xr.Dataset", sliding: "xr.Dataset") -> sheet.Sheet:
     """Mean friction force while sliding, where the vibration does not change; else the mean of the whole recording."""
     voltage, speed = recorded_voltage(whole), recorded_speed(whole)
-    if voltage is None or np.nanmin(voltage) < _ONE_VOLTAGE * np.nanmax(voltage):
+    if voltage is None:
         return _mean_of_all(whole, "friction_force")
-    if speed is None and np.nanmax(voltage) > 0:
+    low, high = np.nanmin(voltage), np.nanmax(voltage)
+    is_one = high - low <= max(_ONE_VOLTAGE * high, NOISE_VOLTAGE)
+    if not is_one or (speed is None and high > NOISE_VOLTAGE):
         return _mean_of_all(whole, "friction_force")
     return _mean_sheet(sliding, "friction_force", "friction_force", quantities()["friction_force"].meaning)
 

@@ -9,6 +9,7 @@ from sonolube.laboratory import RunControl
 from sonolube.laboratory.closed_loop import SpeedStep, hold_friction, hold_protocol, planned_hold, require_holdable
 from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import read_run
+from sonolube.laboratory.reservation import require_free
 from sonolube.laboratory.run_plan import RunPlan, begin_record
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.models.actuator.drive import Drive
@@ -108,7 +109,9 @@ def hold(
         device_file=file,
         seed=seed,
         tags=tag,
+        drive=wanted.drive_sampling,
     )
+    require_free(devices.resources)
     recorder = begin_record(plan, devices, out=Path(out), facts={"reference_friction_force": wanted.friction_force})
     requests = control or RunControl()
     with run_stage("holding", requests) as advance:

@@ -10,6 +10,7 @@ from sonolube.facts.protocol import Protocol, flattened
 from sonolube.laboratory import RunControl, require_possible, run_protocol
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.records import read_run
+from sonolube.laboratory.reservation import require_free
 from sonolube.laboratory.run_plan import RunPlan, begin_record
 from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.virtual_tribometer import VirtualTribometer
@@ -70,11 +71,12 @@ def run_and_record(
     Raises
     ------
     InvalidInput
-        If the devices cannot do what the protocol says, nobody can answer its prompts, or another run is at work.
+        If the devices cannot do what the protocol says, nobody can answer its prompts, or another run has one of them.
     """
     require_possible(plan.protocol, devices)
     answers = _answering(plan.protocol, devices, operator)
     control = control or RunControl()
+    require_free(devices.resources)
     recorder = begin_record(plan, devices, out=out)
     with run_stage("running", control) as advance:
         result = run_protocol(plan.protocol, devices, recorder, operator=answers, control=control, advance=advance)
