@@ -67,7 +67,7 @@ from collections.abc import Sequence
 from typing import Annotated
 
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block
+from sonolube.report.blocks import Block
 from sonolube.tasks.parameters import Number, Parameter
 from sonolube.tasks.task import in_si, task
 
@@ -86,7 +86,7 @@ class Circular(Answer):
 
 
 @task
-def hello(frequency: Annotated[Number, Parameter(help="Of the drive.", unit="Hz")]) -> Circular:
+def hello(frequency: Annotated[Number, Parameter("Of the drive.", unit="Hz")]) -> Circular:
     """Circular frequency of a frequency.
 
     Example: sonolube hello 1kHz

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
+from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.progress import TaskCancelled, stage
@@ -28,11 +28,11 @@ class Length(Answer):
 
 @task
 def stretched(
-    length: Annotated[Number, Parameter(help="At rest.", unit="m", lowest=0)],
+    length: Annotated[Number, Parameter("At rest.", unit="m", lowest=0)],
     *,
-    strain: Annotated[Number, Parameter(help="Of the rod.", unit="")] = "10 %",
-    table: Annotated[InputFile | None, Parameter(help="Of what is added.", is_file=True)] = None,
-    note: Annotated[str | None, Parameter(help="With a table.")] = None,
+    strain: Annotated[Number, Parameter("Of the rod.", unit="")] = "10 %",
+    table: Annotated[InputFile | None, Parameter("Of what is added.", is_file=True)] = None,
+    note: Annotated[str | None, Parameter("With a table.")] = None,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> Length:

@@ -14,8 +14,8 @@ from sonolube.browser.places import Places
 from sonolube.charts import chart_object, chart_tables
 from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError, UnknownName
 from sonolube.example_files import example_file
+from sonolube.report.blocks import Block, Rows, Table, Verbatim
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.blocks import Block, Rows, Table, Verbatim
 from sonolube.tasks.files import NamedBytes, file_path, private_files, with_names_only
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task

@@ -15,9 +15,9 @@ from sonolube.browser.answers import called, given_arguments, offered_task, posi
 from sonolube.browser.places import Places
 from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.report.blocks import Rows, Table, Verbatim
 from sonolube.report.page import Page, PageTable, rendered_files
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.blocks import Rows, Table, Verbatim
 from sonolube.tasks.parameters import RigParameter
 from sonolube.tasks.table import Task
 from sonolube.tasks.task import marks_of

@@ -4,15 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 
-from sonolube.tasks.table import TASKS, Task, docstring
-
-_PREDICT = "Predict a rig"
-_PART = "Predict a part"
-_DESIGN = "Design"
-_MEASURE = "Measure"
-_COMPARE = "Compare and identify"
-_LAB = "Laboratory"
-_LOOKUP = "Look up"
+from sonolube.tasks.table import LAB, LOOKUP, PREDICT, TASKS, Task, docstring
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +51,12 @@ _OWN_FUNCTIONS = {
 """Tasks of which a terminal has a function of its own."""
 
 _TERMINAL_ONLY = (
-    Command(_PREDICT, "app", "sonolube.browser.command:app"),
-    Command(_LAB, "lab watch", "sonolube.cli.lab.watch:watch"),
-    Command(_LOOKUP, "doctor", "sonolube.cli.lookup.doctor:doctor"),
+    Command(PREDICT, "app", "sonolube.browser.command:app"),
+    Command(LAB, "lab watch", "sonolube.cli.lab.watch:watch"),
+    Command(LOOKUP, "doctor", "sonolube.cli.lookup.doctor:doctor"),
 )
 
-_PANELS = (_PREDICT, _PART, _DESIGN, _MEASURE, _COMPARE, _LAB, _LOOKUP)
+_PANELS = list(dict.fromkeys(each.panel for each in TASKS))
 COMMANDS = tuple(
     sorted(
         (*(Command(each.panel, each.name, each.where, each) for each in TASKS), *_TERMINAL_ONLY),

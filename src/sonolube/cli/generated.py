@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from inspect import Parameter as Argument, Signature, signature
 from pathlib import Path
-from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 import typer
 
@@ -18,7 +17,7 @@ from sonolube.cli.console.progress import progress
 from sonolube.cli.console.questions import operator_arguments
 from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
-from sonolube.tasks.call import Mark
+from sonolube.tasks.call import Mark, item_of, members_of
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 from sonolube.tasks.progress import observed
 from sonolube.tasks.table import Task
@@ -179,18 +178,15 @@ def _input(argument: Argument, mark: Mark, writes: str, *, is_required: bool) ->
 
 def _typed_kind(kind: Any, mark: Parameter) -> Any:
     """Type that typer reads for an argument of a type."""
-    members = get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
-    members = tuple(each for each in members if each is not NoneType)
-    several = next((each for each in members if get_origin(each) in (Sequence, list, tuple)), None)
     if mark.is_mapping:
         return list[str]
-    if several is not None:
-        each = _typed_kind(get_args(several)[0], mark)
+    if (item := item_of(kind)) is not None:
+        each = _typed_kind(item, mark)
         words = get_args(each) if get_origin(each) is Literal else ()  # which typer does not take several of
         return list[StrEnum("Choice", {word: word for word in words}) if words else each]  # type: ignore[misc]
     if mark.is_file or mark.is_output:
         return Path
-    return str if mark.unit is not None else members[0]
+    return str if mark.unit is not None else members_of(kind)[0]
 
 
 def _description(mark: Parameter, flag: str, default: Any, kind: Any) -> Any:

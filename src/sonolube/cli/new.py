@@ -16,50 +16,33 @@ from sonolube.rig.new_rig.stated_text import pin_shape, reader, rotation_of, spe
 from sonolube.tasks.predict.new import DEFAULT_FINISH, DEFAULT_SHAPE, NewRig, refuse_two_of_one
 from sonolube.tasks.table import task_named
 
-_SPEED: Final = Question(option="--speed", text="Sliding speed, such as 0.2m/s or '100 rpm'", default="0.1m/s")
 _TRACK: Final = Question(option="--track-radius", text="Radius of the track, such as 15mm", default="20mm")
 _FINISHES: Final = "such as turned, N7, 'ground N6' or 'Ra 0.4um', or the file of a scan"
-_QUESTIONS: Final[Mapping[str, tuple[Question, Callable[[str], object]]]] = {
-    "pin": (
-        Question(
-            option="--pin", text="Material of the pin, such as aluminium_2024 or steel", default="stainless_steel_304"
-        ),
-        material,
-    ),
-    "disc": (
-        Question(option="--disc", text="Material of the disc, such as m50 or steel", default="stainless_steel_304"),
-        material,
-    ),
-    "shape": (
-        Question(
-            option="--shape",
-            text="End of the pin: flat with its diameter or ball, such as 'ball radius 5mm' or 'ball diameter 10mm'",
-            default=DEFAULT_SHAPE,
-        ),
+_METAL: Final = "stainless_steel_304"
+_ASKED: Final[tuple[tuple[str, str, str, Callable[[str], object]], ...]] = (
+    ("pin", "Material of the pin, such as aluminium_2024 or steel", _METAL, material),
+    ("disc", "Material of the disc, such as m50 or steel", _METAL, material),
+    (
+        "shape",
+        "End of the pin: flat with its diameter or ball, such as 'ball radius 5mm' or 'ball diameter 10mm'",
+        DEFAULT_SHAPE,
         pin_shape,
     ),
-    "load": (Question(option="--load", text="Normal load, such as 5N", default="5N"), reader("N", name="--load")),
-    "speed": (_SPEED, speed_of),
-    "frequency": (
-        Question(option="--frequency", text="Frequency of the vibration, such as 22kHz", default="20kHz"),
-        reader("Hz", name="--frequency"),
-    ),
-    "amplitude": (
-        Question(
-            option="--amplitude",
-            text="Vibration amplitude, zero to peak, such as 3um; or an actuator and its voltage: 'sa050510 50V'",
-            default="1um",
-        ),
+    ("load", "Normal load, such as 5N", "5N", reader("N", name="--load")),
+    ("speed", "Sliding speed, such as 0.2m/s or '100 rpm'", "0.1m/s", speed_of),
+    ("frequency", "Frequency of the vibration, such as 22kHz", "20kHz", reader("Hz", name="--frequency")),
+    (
+        "amplitude",
+        "Vibration amplitude, zero to peak, such as 3um; or an actuator and its voltage: 'sa050510 50V'",
+        "1um",
         vibration_of,
     ),
-    "pin_finish": (
-        Question(option="--pin-finish", text=f"Finish of the pin, {_FINISHES}", default=DEFAULT_FINISH),
-        surface_of,
-    ),
-    "disc_finish": (
-        Question(option="--disc-finish", text=f"Finish of the disc, {_FINISHES}", default=DEFAULT_FINISH),
-        surface_of,
-    ),
+    ("pin_finish", f"Finish of the pin, {_FINISHES}", DEFAULT_FINISH, surface_of),
+    ("disc_finish", f"Finish of the disc, {_FINISHES}", DEFAULT_FINISH, surface_of),
+)
+_QUESTIONS: Final = {
+    name: (Question(option=f"--{name.replace('_', '-')}", text=text, default=default), read)
+    for name, text, default, read in _ASKED
 }
 """Question for each argument, in their order, with the reader of its answer."""
 

@@ -42,8 +42,9 @@ class DrivenRig(Rig):
         Rig.__post_init__(self)
         if self.stack is None or self.structure is None:
             raise InvalidInput(
-                f"{self.title}: the tables stack and structure are missing; give them to compute its motion, or sweep"
-                " over vibration.vibration_amplitude, which needs none"
+                f"{self.title}: the tables stack and structure are missing, of which its motion is computed;"
+                " `sonolube example tribometer` writes a rig that has both; or sweep over"
+                " vibration.vibration_amplitude, which needs none"
             )
         require_drive(self)
 

@@ -69,12 +69,8 @@ def response_arrays(rig: Rig, result: FrequencyResponse) -> LabelledArrays:
     LabelledArrays
         Over `frequency`.
     """
-    values = {
-        "frequency": result.frequency,
-        "amplitude_per_volt": result.amplitude_per_volt,
-        "impedance": result.impedance,
-        "phase": result.phase,
-    }
+    names = ("frequency", "amplitude_per_volt", "impedance", "phase")
+    values = {name: getattr(result, name) for name in names}
     return labelled(values, along="frequency", title=f"Linear response of {rig.title}")
 
 

@@ -4,12 +4,12 @@ import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.tasks.blocks import Block, Rows, Table, Verbatim, text_lines
+from sonolube.report.blocks import Block, block_html, text_lines
+from sonolube.report.results.facts_dataset import scalar_dataset
 from sonolube.vocabulary import si as si
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ class Answer(ABC):
         if isinstance(found, Path):
             found = xr.load_dataset(found)
         elif found is None:
-            found = _scalars(self.object())
+            found = scalar_dataset(self.object())
         labelled = found if isinstance(found, xr.Dataset) else found.dataset()  # type: ignore[union-attr]
         return labelled.assign_attrs(self.notes())
 
@@ -198,7 +198,7 @@ class Answer(ABC):
 
     def _repr_html_(self) -> str:
         """Tables for notebooks."""
-        return "".join(map(_html, self._shown()))
+        return "".join(map(block_html, self._shown()))
 
     def _shown(self) -> list[Block]:
         """Content as Python shows it: with the reasons of refused inputs, which a terminal prints apart."""
@@ -214,30 +214,3 @@ def answer(kind: type[_Answer]) -> type[_Answer]:
 def _plain(name: str) -> str:
     """Name of a figure for comparison."""
     return name.casefold().replace(" ", "-")
-
-
-def _scalars(content: Mapping[str, Any]) -> "xr.Dataset":
-    """Quantities and texts of a JSON object as a dataset of scalars."""
-    import numpy as np
-    import xarray as xr
-
-    variables: dict[str, Any] = {}
-    for name, each in content.items():
-        if isinstance(each, Mapping) and set(each) == {"value", "unit"}:
-            value = np.nan if each["value"] is None else each["value"]
-            variables[name] = ((), value, {"units": each["unit"], "long_name": name.replace("_", " ")})
-    return xr.Dataset(variables, attrs={name: each for name, each in content.items() if isinstance(each, str)})
-
-
-def _html(block: Block) -> str:
-    """Block as HTML, all texts escaped."""
-    if isinstance(block, Rows):
-        rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in block.rows)
-        return f"<table><tbody>{rows}</tbody></table>"
-    if isinstance(block, Table):
-        heads = "".join(f"<th>{escape(head.strip())}</th>" for head in block.heads)
-        rows = "".join(f"<tr>{''.join(f'<td>{escape(cell.strip())}</td>' for cell in row)}</tr>" for row in block.rows)
-        return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
-    if isinstance(block, Verbatim):
-        return f"<pre>{escape(block.text)}</pre>"
-    return f"<p>{escape(block.strip())}</p>"

@@ -1,8 +1,9 @@
 """Call of a task: its name and its arguments as they were given."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin
 
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 
@@ -41,6 +42,18 @@ class Call:
                 text = _as_typed(value)
                 rows.append((self.names(name), text if name in self.given else f"{text} (default)"))
         return rows
+
+
+def members_of(kind: Any) -> tuple[Any, ...]:
+    """Types of a union but None; a type alone."""
+    members = get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
+    return tuple(each for each in members if each is not NoneType)
+
+
+def item_of(kind: Any) -> Any:
+    """Type of each of several values that an argument of a type takes; None where it takes one."""
+    several = (each for each in members_of(kind) if get_origin(each) in (Sequence, list, tuple))
+    return next((get_args(each)[0] for each in several), None)
 
 
 def _as_typed(value: Any) -> str:

@@ -3,11 +3,11 @@
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from inspect import Parameter as Argument, cleandoc, signature
-from types import NoneType, UnionType
-from typing import Any, Final, Literal, Union, get_args, get_origin
+from typing import Any, Final, Literal, get_args, get_origin
 
 from sonolube import __version__
 from sonolube.tasks.answer import Answer
+from sonolube.tasks.call import item_of, members_of
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
@@ -65,7 +65,7 @@ def answer_kinds(function: Callable[..., Answer]) -> list[type[Answer]]:
     if isinstance(kind, str):
         known = vars(sys.modules[function.__module__])
         return [known[name.strip()] for name in kind.split("|")]
-    return list(_members(kind))
+    return list(members_of(kind))
 
 
 def _operation(task: Task) -> dict[str, Any]:
@@ -136,17 +136,15 @@ def _reading(unit: str) -> str:
 
 def _argument(kind: Any, mark: Parameter) -> dict[str, Any]:
     """Type of an argument, without its default."""
-    members = _members(kind)
-    several = next((each for each in members if get_origin(each) in (Sequence, list, tuple)), None)
     if mark.is_mapping:
         return {"type": "object", "additionalProperties": {"type": ["string", "number", "array"]}}
-    if several is not None:
-        return {"type": "array", "items": _argument(get_args(several)[0], mark)}
+    if (item := item_of(kind)) is not None:
+        return {"type": "array", "items": _argument(item, mark)}
     if mark.is_file:
         path = {"type": "string", "description": "Path or name on the computer that computes."}
         return {"anyOf": [{"$ref": "#/components/schemas/File"}, path]}
     limits = {"minimum": mark.lowest, "maximum": mark.highest}
-    return _typed(members, mark) | {key: value for key, value in limits.items() if value is not None}
+    return _typed(members_of(kind), mark) | {key: value for key, value in limits.items() if value is not None}
 
 
 def _typed(members: Sequence[Any], mark: Parameter) -> dict[str, Any]:
@@ -170,12 +168,6 @@ def _or_null(schema: Mapping[str, Any], *, is_optional: bool) -> dict[str, Any]:
         return {"enum": [*schema["enum"], None]}
     kinds = schema["type"] if isinstance(schema["type"], list) else [schema["type"]]
     return dict(schema) | {"type": [*kinds, "null"]}
-
-
-def _members(kind: Any) -> tuple[Any, ...]:
-    """Types of a union but None; a type alone."""
-    members = get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
-    return tuple(each for each in members if each is not NoneType)
 
 
 def _answer(kind: type[Answer]) -> dict[str, Any]:

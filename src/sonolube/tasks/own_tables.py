@@ -16,15 +16,13 @@ if TYPE_CHECKING:
 Mapped = Annotated[
     InputFile | None,
     Parameter(
-        help="Of the columns: umt, anton-paar, t-11, rtec, pin-on-disc, or a file.",
-        kind="NAME|MAPPING.toml",
-        is_file=True,
+        "Of the columns: umt, anton-paar, t-11, rtec, pin-on-disc, or a file.", kind="NAME|MAPPING.toml", is_file=True
     ),
 ]
 MappedRuns = Annotated[
     InputFile | None,
     Parameter(
-        help="Of the columns of the runs whose headings are no names, as sonolube mapping writes it.",
+        "Of the columns of the runs whose headings are no names, as sonolube mapping writes it.",
         kind="MAPPING.toml",
         is_file=True,
     ),

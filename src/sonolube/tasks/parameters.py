@@ -1,7 +1,7 @@
 """Arguments of tasks: what an annotation says of one, types that several tasks share, and their reading."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias
 
@@ -17,7 +17,7 @@ Number = float | str
 """Quantity: a number in SI, or a text with its unit such as "20.3 mm/s"."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """Meaning of an argument of a task.
 
@@ -44,6 +44,7 @@ class Parameter:
     """
 
     help: str
+    _: KW_ONLY
     unit: str | None = None
     quantity: str = ""
     kind: str = ""
@@ -110,20 +111,16 @@ OptionalRig = Annotated[OptionalRigSource, RigParameter(is_optional=True)]
 Watch = Annotated[Progress | None, DoorParameter()]
 Stop = Annotated[Cancelled | None, DoorParameter()]
 Keep = Annotated[Kept | None, DoorParameter()]
-Pin = Annotated[str | None, Parameter(help="Material of the pin, for the heat; by default the rig's.", kind="MATERIAL")]
-Disc = Annotated[
-    str | None, Parameter(help="Material of the disc, for the heat; by default the rig's.", kind="MATERIAL")
-]
+Pin = Annotated[str | None, Parameter("Material of the pin, for the heat; by default the rig's.", kind="MATERIAL")]
+Disc = Annotated[str | None, Parameter("Material of the disc, for the heat; by default the rig's.", kind="MATERIAL")]
 Backend = Annotated[
     Literal["cpu", "gpu"],
-    Parameter(
-        help="Processor for the steady vibrations; gpu needs an NVIDIA GPU and sonolube[gpu], and falls back to cpu."
-    ),
+    Parameter("Processor for the steady vibrations; gpu needs an NVIDIA GPU and sonolube[gpu], and falls back to cpu."),
 ]
-Interval = Annotated[bool, Parameter(help="State the error of the friction model, and the interval with it.")]
+Interval = Annotated[bool, Parameter("State the error of the friction model, and the interval with it.")]
 Sizes = Annotated[
     Mapping[str, str | float] | None,
-    Parameter(help="A size of the part, such as length=127mm.", kind="SIZE=VALUE", option="--set", is_mapping=True),
+    Parameter("A size of the part, such as length=127mm.", kind="SIZE=VALUE", option="--set", is_mapping=True),
 ]
 
 

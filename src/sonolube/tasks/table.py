@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, Final
 if TYPE_CHECKING:
     from sonolube.tasks.answer import Answer
 
-_PREDICT: Final = "Predict a rig"
+PREDICT: Final = "Predict a rig"
 _PART: Final = "Predict a part"
 _DESIGN: Final = "Design"
 _MEASURE: Final = "Measure"
 _COMPARE: Final = "Compare and identify"
-_LAB: Final = "Laboratory"
-_LOOKUP: Final = "Look up"
+LAB: Final = "Laboratory"
+LOOKUP: Final = "Look up"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,16 +73,16 @@ def docstring(package: str, where: str) -> str:
 
 
 TASKS: Final = (
-    Task(_PREDICT, "new", "predict.new:new"),
-    Task(_PREDICT, "predict", "predict.predict:predict", "{rig}-prediction.*"),
-    Task(_PREDICT, "contact", "predict.contact:contact"),
-    Task(_PREDICT, "friction", "predict.friction:friction"),
-    Task(_PREDICT, "wear", "predict.wear:wear"),
-    Task(_PREDICT, "simulate", "predict.simulate:simulate", "{rig}-simulation.*"),
-    Task(_PREDICT, "response", "predict.response:response", "{rig}-response.*"),
-    Task(_PREDICT, "transient", "predict.transient:transient", "{rig}-transient.*"),
-    Task(_PREDICT, "thermal", "predict.thermal:thermal", "{rig}-thermal.*"),
-    Task(_PREDICT, "regime", "predict.regime:regime", "{rig}-regime.*"),
+    Task(PREDICT, "new", "predict.new:new"),
+    Task(PREDICT, "predict", "predict.predict:predict", "{rig}-prediction.*"),
+    Task(PREDICT, "contact", "predict.contact:contact"),
+    Task(PREDICT, "friction", "predict.friction:friction"),
+    Task(PREDICT, "wear", "predict.wear:wear"),
+    Task(PREDICT, "simulate", "predict.simulate:simulate", "{rig}-simulation.*"),
+    Task(PREDICT, "response", "predict.response:response", "{rig}-response.*"),
+    Task(PREDICT, "transient", "predict.transient:transient", "{rig}-transient.*"),
+    Task(PREDICT, "thermal", "predict.thermal:thermal", "{rig}-thermal.*"),
+    Task(PREDICT, "regime", "predict.regime:regime", "{rig}-regime.*"),
     Task(_PART, "modes", "parts.modes:modes", "{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.*"),
     Task(
         _PART,
@@ -123,27 +123,27 @@ TASKS: Final = (
     Task(_COMPARE, "identify decay-length", "identify.decay_length_of_run:decay_length", "{file}-decay-length.*"),
     Task(_COMPARE, "literature", "compare.literature:literature", "map-of-studies.* studies.csv"),
     Task(_COMPARE, "reproduce", "compare.reproduce:reproduce", "reproduction.html validation.json figures/*"),
-    Task(_LAB, "lab run", "lab.protocol_run:run"),
-    Task(_LAB, "lab virtual", "lab.protocol_run:virtual"),
-    Task(_LAB, "lab hold", "lab.friction_hold:hold"),
-    Task(_LAB, "lab runs", "lab.run_list:runs"),
-    Task(_LAB, "lab show", "lab.shown_run:show", "{run}-channels.*", writes_on_request=True),
-    Task(_LAB, "lab recover", "lab.recovery:recover"),
-    Task(_LAB, "lab export", "lab.recording_export:export", "{run}.* {run}-*"),
-    Task(_LAB, "lab check", "lab.device_check:check"),
-    Task(_LOOKUP, "materials", "lookup.materials:materials"),
-    Task(_LOOKUP, "actuators", "lookup.actuators:actuators"),
-    Task(_LOOKUP, "published", "lookup.published:published"),
+    Task(LAB, "lab run", "lab.protocol_run:run"),
+    Task(LAB, "lab virtual", "lab.protocol_run:virtual"),
+    Task(LAB, "lab hold", "lab.friction_hold:hold"),
+    Task(LAB, "lab runs", "lab.run_list:runs"),
+    Task(LAB, "lab show", "lab.shown_run:show", "{run}-channels.*", writes_on_request=True),
+    Task(LAB, "lab recover", "lab.recovery:recover"),
+    Task(LAB, "lab export", "lab.recording_export:export", "{run}.* {run}-*"),
+    Task(LAB, "lab check", "lab.device_check:check"),
+    Task(LOOKUP, "materials", "lookup.materials:materials"),
+    Task(LOOKUP, "actuators", "lookup.actuators:actuators"),
+    Task(LOOKUP, "published", "lookup.published:published"),
     Task(
-        _LOOKUP,
+        LOOKUP,
         "example",
         "lookup.example:example",
         "examples/*.csv examples/*.toml examples/facts/*.toml examples/lab/*.* examples/mappings/*.toml"
         " examples/protocols/*.toml examples/rigs/*.toml examples/rigs/modes/*.toml",
         folder=".",
     ),
-    Task(_LOOKUP, "mapping", "lookup.mapping:mapping", "{file}-mapping.toml"),
-    Task(_LOOKUP, "schema", "lookup.schema:schema"),
+    Task(LOOKUP, "mapping", "lookup.mapping:mapping", "{file}-mapping.toml"),
+    Task(LOOKUP, "schema", "lookup.schema:schema"),
 )
 """Every task, in the order of the help."""
 

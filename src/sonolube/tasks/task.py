@@ -1,6 +1,6 @@
 """A task: a function with annotated arguments that returns one answer, and the call that it answers."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 from functools import update_wrapper
@@ -212,16 +212,15 @@ def refuse_unused(*names: str, because: str) -> None:
     InvalidInput
         For the first of them that was given.
     """
-    call = _CALL.get()
-    for name in names:
-        if call is not None and name in call.given and call.arguments[name] is not None:
-            raise InvalidInput(f"{shown(name)} has no meaning {because}", key=name)
+    for name in given_arguments(names):
+        raise InvalidInput(f"{shown(name)} has no meaning {because}", key=name)
 
 
-def is_given(name: str) -> bool:
-    """Whether an argument of the running task was not left to its default."""
+def given_arguments(names: Iterable[str]) -> dict[str, Any]:
+    """Those of the arguments of the running task that were not left to their defaults, nor None."""
     call = _CALL.get()
-    return call is not None and name in call.given
+    known = {} if call is None else {name: call.arguments[name] for name in names if name in call.given}
+    return {name: value for name, value in known.items() if value is not None}
 
 
 def _choices(kind: Any) -> tuple[Any, ...]:

@@ -14,8 +14,8 @@ from pytest import CaptureFixture, raises
 from sonolube.cli.console.delivery import deliver
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.report import Drawing, Page
+from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
 
 
 def figure() -> Figure:

@@ -12,9 +12,9 @@ import typer
 
 from sonolube.errors import InvalidInput
 from sonolube.printable_text import printable
+from sonolube.report.blocks import text_lines
 from sonolube.targets import expect_target
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.blocks import text_lines
 
 if TYPE_CHECKING:
     from sonolube.tasks.answer import Content

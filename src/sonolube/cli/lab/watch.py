@@ -5,7 +5,6 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from shlex import quote
 from threading import Event
 from typing import Annotated, Any, Final
 
@@ -16,10 +15,9 @@ from sonolube.cli.console.options import Json
 from sonolube.interruption import asked_by_signal
 from sonolube.laboratory.records import Observation, RunObserver, run_to_watch
 from sonolube.printable_text import printable
+from sonolube.report.blocks import Block
 from sonolube.report.results import observation as results
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
-from sonolube.tasks.lab.run_answer import SIMULATED
 
 LOOK_INTERVAL = 0.5
 """Between two looks at a run. [s]"""
@@ -104,18 +102,7 @@ class WatchedRun(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Outcome or state, and what was seen last."""
-        seen = self.seen
-        outcome = seen.outcome + (f": {seen.reason}" if seen.reason and not seen.is_running else "")
-        rows = [
-            ("outcome", outcome),
-            ("state", seen.state + (f": {seen.reason}" if seen.reason and seen.is_running else "")),
-            ("step", results.step_text(seen).removeprefix("step ")),
-            ("time", results.time_text(seen)),
-            ("last second", results.means_text(seen)),
-            ("set", results.set_points_text(seen).removeprefix("set ")),
-            *(("limit", trip) for trip in seen.trips),
-        ]
-        return [f"{seen.folder.name}: {seen.known.title}", Rows([row for row in rows if row[1]])]
+        return results.observation_blocks(self.seen)
 
     def object(self) -> dict[str, Any]:
         """Same in SI."""
@@ -123,14 +110,7 @@ class WatchedRun(Answer):
 
     def caveats(self) -> Sequence[str]:
         """A writer that has died, samples that are missing, and a run that writes nothing."""
-        seen = self.seen
-        told = [line for line in results.warnings(seen) if line not in seen.trips]
-        if seen.outcome == "unfinished":
-            remedy = f"sonolube lab recover {quote(str(seen.folder))}"
-            told.append(f"the program died during the run, and motor or drive may be on; {remedy} completes its record")
-        if seen.known.facts.get("simulated"):
-            told.append(SIMULATED)
-        return told
+        return results.observation_caveats(self.seen)
 
     @property
     def is_failure(self) -> bool:

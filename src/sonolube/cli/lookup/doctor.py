@@ -1,31 +1,16 @@
 """Command `doctor`: state of the installation, how to mend it, and a self-check against closed forms."""
 
-import os
-import platform
-import sys
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from shutil import which
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import typer
 
-import sonolube
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.progress import progress
-from sonolube.extras import EXTRAS, installed_version, required_packages
-from sonolube.models.dynamics.backend import device_name, gpu_obstacle
-from sonolube.models.dynamics.warm_up import compiled_code_folder, is_compiled
-from sonolube.reference_solutions.self_checks import SELF_CHECKS
+from sonolube.report.blocks import Block
+from sonolube.report.results.installation import Installation, installation
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
-
-_PROGRAMS = {  # names of each program, and what it is for
-    "C compiler": (("cc", "gcc", "clang"), "compiles what control exports", "apt-get install gcc libc6-dev"),
-    "CalculiX": (("ccx",), "compared with by tests and benchmarks only", "apt-get install calculix-ccx"),
-    "Chromium": (("chromium", "chromium-browser", "google-chrome"), "tests of pages only", "apt-get install chromium"),
-}
 
 
 def doctor(json: Json = False) -> None:
@@ -35,24 +20,10 @@ def doctor(json: Json = False) -> None:
 
     Example: sonolube doctor
     """
-    warm = is_compiled()
     with progress("checking") as advance:
-        outcomes = []
-        for done, check in enumerate(SELF_CHECKS):
-            advance(check.title, done, len(SELF_CHECKS))
-            outcomes.append(check.outcome())
-    diagnosis = Diagnosis(
-        packages=required_packages(),
-        extras={name: extra.is_installed for name, extra in EXTRAS.items()},
-        gpu=device_name("gpu"),
-        gpu_obstacle=gpu_obstacle(),
-        cache_folder=compiled_code_folder(),
-        cache_was_warm=warm,
-        programs={name: _found(names) for name, (names, _, _) in _PROGRAMS.items()},
-        checks=tuple(outcomes),
-    )
-    deliver(diagnosis, as_json=json)
-    if not diagnosis.healthy:
+        state = installation(advance)
+    deliver(Diagnosis(state=state), as_json=json)
+    if not state.healthy:
         raise typer.Exit(1)
 
 
@@ -62,112 +33,12 @@ class Diagnosis(Answer):
 
     is_lookup: ClassVar[bool] = True
 
-    packages: Mapping[str, str]
-    extras: Mapping[str, bool]
-    gpu: str
-    gpu_obstacle: str
-    cache_folder: Path
-    cache_was_warm: bool
-    programs: Mapping[str, str]
-    checks: Sequence[Mapping[str, Any]]
-
-    @property
-    def cache_is_writable(self) -> bool:
-        """Whether compiled code can be kept."""
-        return _is_writable(self.cache_folder)
-
-    @property
-    def healthy(self) -> bool:
-        """Whether all self-checks pass, all required packages are there, and compiled code can be kept."""
-        return all(each["passed"] for each in self.checks) and all(self.packages.values()) and self.cache_is_writable
+    state: Installation
 
     def blocks(self) -> Sequence[Block]:
         """Sections of the state, each missing part with its remedy, and the verdict."""
-        return [
-            f"sonolube {sonolube.__version__} in {Path(sonolube.__file__).parent}",
-            f"Python {platform.python_version()} on {platform.platform(terse=True)} {platform.machine()},"
-            f" {os.cpu_count()} processor cores",
-            "required packages",
-            Rows([(name, found or "missing: pip install sonolube") for name, found in self.packages.items()]),
-            "optional parts",
-            Rows([(name, self._extra(name)) for name in self.extras]),
-            "processors and compiled code",
-            Rows([("GPU", self.gpu or f"none: {self.gpu_obstacle}"), ("compiled code", self._cache())]),
-            "other programs",
-            Rows([(name, self._program(name)) for name in self.programs]),
-            "self-check",
-            Rows([(str(each["title"]), _verdict(each)) for each in self.checks]),
-            self._verdict(),
-        ]
+        return self.state.blocks()
 
     def object(self) -> dict[str, Any]:
         """Same as an object."""
-        return {
-            "version": sonolube.__version__,
-            "folder": str(Path(sonolube.__file__).parent),
-            "python": platform.python_version(),
-            "executable": sys.executable,
-            "platform": platform.platform(),
-            "processor_cores": os.cpu_count(),
-            "packages": {name: found or None for name, found in self.packages.items()},
-            "extras": {
-                name: {
-                    "installed": installed,
-                    "command": EXTRAS[name].command,
-                    "obstacle": EXTRAS[name].obstacle or None,
-                }
-                for name, installed in self.extras.items()
-            },
-            "gpu": {"name": self.gpu or None, "reason": self.gpu_obstacle},
-            "compiled_code": {
-                "folder": str(self.cache_folder),
-                "writable": self.cache_is_writable,
-                "warm": self.cache_was_warm,
-            },
-            "programs": {name: path or None for name, path in self.programs.items()},
-            "checks": [dict(each) for each in self.checks],
-            "healthy": self.healthy,
-        }
-
-    def _extra(self, name: str) -> str:
-        """Package of an optional part with its version, or how to install it."""
-        extra = EXTRAS[name]
-        if self.extras[name]:
-            return f"{extra.package} {installed_version(extra.package)}".strip()
-        return f"not installed: {extra.command}"
-
-    def _cache(self) -> str:
-        """Folder of compiled code, and what to expect of it."""
-        state = "warm" if self.cache_was_warm else "was cold: the first computation compiled for some 20 s"
-        remedy = "" if self.cache_is_writable else "; not writable: set NUMBA_CACHE_DIR to a folder that is"
-        return f"{self.cache_folder}, {state}{remedy}"
-
-    def _program(self, name: str) -> str:
-        """Path of a program, or how to install it, with what it is for."""
-        _, purpose, remedy = _PROGRAMS[name]
-        return f"{self.programs[name] or f'not found: {remedy}'} ({purpose})"
-
-    def _verdict(self) -> str:
-        """Verdict in one line."""
-        passed = sum(bool(each["passed"]) for each in self.checks)
-        if self.healthy:
-            return f"all {passed} checks passed"
-        return f"{passed} of {len(self.checks)} checks passed; mend what is named above, or install anew"
-
-
-def _verdict(check: Mapping[str, Any]) -> str:
-    """Outcome of a self-check."""
-    if check["passed"]:
-        return f"passed, {check['computed']:.6g}"
-    return f"FAILED: {check['computed']} instead of {check['expected']:.6g}, {check['reason']}"
-
-
-def _found(names: Sequence[str]) -> str:
-    """Path of the first of these programs, empty where there is none."""
-    return next((path for name in names if (path := which(name))), "")
-
-
-def _is_writable(folder: Path) -> bool:
-    """Whether files can be written to a folder, or to the nearest one above it that exists."""
-    existing = next(each for each in (folder, *folder.parents) if each.exists())
-    return existing.is_dir() and os.access(existing, os.W_OK)
+        return self.state.object()

@@ -1,13 +1,17 @@
 """Table of the switches of the vibration in one run: friction, force zero, stack current and frequency shifts."""
 
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.input_files import open_input
+from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.measured_runs import run_caveats
+from sonolube.measurement.recordings.mapping import RecordingMapping
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -15,6 +19,10 @@ if TYPE_CHECKING:
 MIN_SWITCHES = 8
 """Switches with friction and zero below which nothing is decided."""
 
+_HEAD = 4096  # bytes of a file in which a table names its columns
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_DISTANCES = ("sliding_distance", "sliding distance", "gleitweg")
+_TIMES = ("time", "zeit")
 _MEASURED = ("friction_force", "intrinsic_friction_force", "force_zero")
 _OPTIONAL = ("stack_current", "small_drive_shift", "large_drive_shift")
 
@@ -156,3 +164,25 @@ def switch_table(runs: "xr.Dataset") -> SwitchTable:
     needed = ("sliding_distance", *_MEASURED)
     stated = {name: values for name, values in columns.items() if name in needed or np.isfinite(values).any()}
     return SwitchTable(**stated, title=title, caveats=run_caveats(runs))
+
+
+def is_switch_table(file: Path, mapping: RecordingMapping | None) -> bool:
+    """Whether a file is a table of switches: its mapping or its head names the sliding distance and no time.
+
+    Parameters
+    ----------
+    file : Path
+    mapping : RecordingMapping or None
+        Of the columns of the file.
+
+    Returns
+    -------
+    bool
+    """
+    if mapping is not None and "sliding_distance" in mapping.channels:
+        return mapping.axis is None
+    with refuse_unreadable(file), open_input(file) as stream:
+        head = stream.read(_HEAD)
+    lines = head.decode("utf-16" if head[:2] in _UTF_16 else "latin-1", errors="ignore").splitlines()
+    labels = next((line.lower() for line in lines if line.strip() and not line.startswith("#")), "")
+    return any(name in labels for name in _DISTANCES) and not any(name in labels for name in _TIMES)

@@ -1,7 +1,7 @@
-"""Quantities of several things, such as materials, as a labelled dataset."""
+"""Quantities of several things, such as materials, or of a JSON object, as a labelled dataset."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sonolube.vocabulary import quantities
 
@@ -39,3 +39,26 @@ def facts_dataset(kind: str, values: Mapping[str, Mapping[str, float]], titles: 
         for name in names
     }
     return xr.Dataset(variables | {"title": (kind, list(titles.values()))}, coords={kind: list(values)})
+
+
+def scalar_dataset(content: Mapping[str, Any]) -> "xr.Dataset":
+    """Quantities and texts of a JSON object as a dataset of scalars.
+
+    Parameters
+    ----------
+    content : mapping of str to object
+        Of which entries with value and unit become variables, and texts attributes.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    import numpy as np
+    import xarray as xr
+
+    variables: dict[str, Any] = {}
+    for name, each in content.items():
+        if isinstance(each, Mapping) and set(each) == {"value", "unit"}:
+            value = np.nan if each["value"] is None else each["value"]
+            variables[name] = ((), value, {"units": each["unit"], "long_name": name.replace("_", " ")})
+    return xr.Dataset(variables, attrs={name: each for name, each in content.items() if isinstance(each, str)})

@@ -1,34 +1,32 @@
 """Materials, actuators and published tables: heads, rows, lines, and objects for JSON."""
 
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 from math import exp
 from typing import Any, Final
 
-from sonolube.facts.materials import Material, SourcedValue
-from sonolube.facts.published import Column, Correction, Table
+from sonolube.facts.materials import Material, SourcedValue, material_families
+from sonolube.facts.published import Column, Correction, Table as PublishedTable
 from sonolube.models.actuator import CatalogueActuator
+from sonolube.report.blocks import Block, Rows, Table
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities, si
 
-MATERIAL_HEADS: Final = ("Young's modulus", "hardness", "yield strength", "title")
-"""Heads of the list of materials, behind the family."""
-
+_MATERIAL_HEADS: Final = ("Young's modulus", "hardness", "yield strength", "title")
 _OF_MATERIALS: Final = ("youngs_modulus", "hardness", "yield_strength")
 
-ACTUATOR_HEADS: Final = ("name", "stroke", "over", "blocked", "capacitance", "resonance")
-"""Heads of the list of actuators."""
-
+_ACTUATOR_HEADS: Final = ("name", "stroke", "over", "blocked", "capacitance", "resonance")
 _OF_ACTUATORS: Final = ("stroke", "stroke_voltage", "blocked_force", "free_capacitance", "resonance_frequency")
 
 
-def material_row(shown: Material) -> list[str]:
+def _material_row(shown: Material) -> list[str]:
     """Row of the list: name, main properties and title."""
     known = shown.properties
     cells = [format_si(known[key].value, known[key].unit) if key in known else "-" for key in _OF_MATERIALS]
     return [shown.name, *cells, shown.title]
 
 
-def property_rows(shown: Material) -> list[tuple[str, str, str]]:
+def _property_rows(shown: Material) -> list[tuple[str, str, str]]:
     """Every property with its source."""
     rows = [
         (key, format_si(known.value, known.unit, digits=4), _source(known)) for key, known in shown.properties.items()
@@ -56,14 +54,14 @@ def material_object(shown: Material) -> dict[str, Any]:
     }
 
 
-def actuator_row(shown: CatalogueActuator) -> list[str]:
+def _actuator_row(shown: CatalogueActuator) -> list[str]:
     """Row of the list: name and main quantities."""
     known = printed_quantities(shown)
     cells = [format_si(known[key], quantities()[key].unit) if key in known else "not printed" for key in _OF_ACTUATORS]
     return [shown.name, *cells]
 
 
-def actuator_rows(shown: CatalogueActuator) -> list[tuple[str, str]]:
+def _actuator_rows(shown: CatalogueActuator) -> list[tuple[str, str]]:
     """Every quantity that the data sheet has, by its meaning."""
     known = quantities()
     printed = printed_quantities(shown).items()
@@ -87,13 +85,13 @@ def actuator_object(shown: CatalogueActuator) -> dict[str, Any]:
     }
 
 
-def table_heads(shown: Table) -> list[str]:
+def _table_heads(shown: PublishedTable) -> list[str]:
     """Names of the columns with their units as printed."""
     columns = list(shown.columns.values())
     return [f"{column.name} [{_printed_unit(column)}]" if column.unit else column.name for column in columns]
 
 
-def correction_line(correction: Correction) -> str:
+def _correction_line(correction: Correction) -> str:
     """Correction of a cell or a column, with its evidence."""
     erratum = f" ({correction.erratum})" if correction.erratum else ""
     row = "" if correction.row is None else f", row {correction.row + 1}"
@@ -103,7 +101,7 @@ def correction_line(correction: Correction) -> str:
     )
 
 
-def table_object(shown: Table) -> dict[str, Any]:
+def table_object(shown: PublishedTable) -> dict[str, Any]:
     """Table with its columns as printed and its corrections."""
     return {
         "id": shown.id,
@@ -126,3 +124,48 @@ def table_object(shown: Table) -> dict[str, Any]:
 def _printed_unit(column: Column) -> str:
     """Unit in which a column is printed."""
     return column.unit if column.scale == 1 else f"{column.scale:g} {column.unit}".strip()
+
+
+def actuator_list(every: Sequence[CatalogueActuator]) -> list[Block]:
+    """Main quantities of all actuators, and their titles."""
+    return [
+        f"{len(every)} actuators on the market, by their data sheets",
+        Table(_ACTUATOR_HEADS, [_actuator_row(each) for each in every]),
+        "",
+        Rows([(each.name, each.title) for each in every]),
+    ]
+
+
+def actuator_blocks(shown: CatalogueActuator) -> list[Block]:
+    """Name, title, kind, every quantity that the data sheet has, and its source."""
+    return [
+        f"{shown.name}: {shown.title}, {shown.kind}",
+        Rows(_actuator_rows(shown)),
+        f"  source: {shown.source}",
+        *([f"  note: {shown.note}"] if shown.note else []),
+    ]
+
+
+def material_list(every: Sequence[Material]) -> list[Block]:
+    """Table of main properties of each family, alphabetically, classes last in their family."""
+    blocks: list[Block] = [f"{len(every)} materials, piezo ceramics and classes of materials, by family"]
+    for family in material_families():
+        rows = [_material_row(each) for each in every if each.family == family]
+        blocks += ["", Table((family.replace("_", " "), *_MATERIAL_HEADS), rows)]
+    return blocks
+
+
+def material_blocks(shown: Material) -> list[Block]:
+    """Name, title, and every property with its source."""
+    also = [f"  also {', '.join(shown.aliases)}"] if shown.aliases else []
+    return [f"{shown.name}: {shown.title}", *also, Table(("property", "value", "source"), _property_rows(shown))]
+
+
+def table_blocks(shown: PublishedTable) -> list[Block]:
+    """Title, columns as printed, and corrections."""
+    rows = list(zip(*[column.printed for column in shown.columns.values()], strict=True))
+    return [
+        f"Table {shown.id}: {shown.title}",
+        Table(_table_heads(shown), rows),
+        *map(_correction_line, shown.corrections),
+    ]

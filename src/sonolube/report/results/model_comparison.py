@@ -5,9 +5,10 @@ from itertools import combinations
 from math import hypot, isfinite
 from typing import Any
 
+from sonolube.report.blocks import Block, Table
 from sonolube.rig import FrictionPoint, Rig
 from sonolube.units import format_si
-from sonolube.validation.comparison import ComparedFit, FittedParameter, RigPrediction
+from sonolube.validation.comparison import DATA_SETS, ONLY_PREDICTED, ComparedFit, FittedParameter, RigPrediction
 from sonolube.validation.run_conditions import RunsTable
 from sonolube.validation.runs_comparison import RunsPrediction
 from sonolube.validation.tables import parameter_text
@@ -185,3 +186,39 @@ def runs_object(table: RunsTable, predictions: Sequence[RunsPrediction]) -> dict
 def finite(value: float) -> float | None:
     """Value, or None where JSON has no notation for it."""
     return value if isfinite(value) else None
+
+
+def fit_blocks(fits: Sequence[ComparedFit]) -> list[Block]:
+    """Errors and fitted parameters of each model, and refused tests."""
+    tests, assessed = fits[0].predictions, [one for one in fits if one.assessment]
+    heads = ("model", "sets", "tests", "k", "rms", "unseen", "median", "AICc")
+    return [
+        f"{len(fits)} models, {len(tests)} tests in sets {', '.join(DATA_SETS)}; errors of the friction ratio,"
+        " unseen: of each set by what has not seen it",
+        Table(heads, list(map(error_row, assessed))),
+        *[f"  {one.model.name}: {text}" for one in assessed for text in parameter_lines(one)],
+        *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
+        *[f"  not reached: {line}" for one in fits for line in refusal_lines(one)],
+    ]
+
+
+def rig_blocks(rig: Rig, own: FrictionPoint, predictions: Sequence[RigPrediction]) -> Iterator[Block]:
+    """Friction of the rig by its own model and by each applicable one."""
+    yield (
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}, "
+        f"{format_si(own.vibration_amplitude, 'm')}: {own.amplitude_origin}"
+    )
+    yield Table(("", "", ""), rig_rows(rig, own, predictions))
+    yield from disagreement(predictions)
+    for one in predictions:
+        if one.reason:
+            yield f"  not applicable: {one.model.name}: {one.reason}"
+
+
+def runs_blocks(table: RunsTable, of_runs: Sequence[RunsPrediction]) -> Iterator[Block]:
+    """Error of each model on own runs, and why others do not apply."""
+    head = f"{table.title}: {table.runs} runs under {len(table.conditions)} conditions"
+    yield f"{head}, by models as published tests fitted them"
+    yield Table(("model", "reached", "rms", "mean", "expected"), runs_rows(table, of_runs))
+    reasons = by_reason((one.reason, one.model.name) for one in of_runs)
+    yield from (f"  own runs not reached: {', '.join(names)}: {reason}" for reason, names in reasons.items())

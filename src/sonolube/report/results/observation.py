@@ -1,8 +1,11 @@
 """A run that is being recorded, as it was seen last: lines of text."""
 
+from shlex import quote
 from typing import Any, Final
 
 from sonolube.laboratory.records import Observation
+from sonolube.report.blocks import Block, Rows
+from sonolube.report.results.ended_run import SIMULATED
 from sonolube.units import format_si
 from sonolube.vocabulary import si, unit_of
 
@@ -83,4 +86,30 @@ def warnings(seen: Observation) -> list[str]:
         told.append(f"samples are missing in {seen.gaps} places")
     if seen.is_running and seen.means and seen.silence > _QUIET:
         told.append(f"nothing was written for {seen.silence:.0f} s")
+    return told
+
+
+def observation_blocks(seen: Observation) -> list[Block]:
+    """Outcome or state, and what was seen last."""
+    outcome = seen.outcome + (f": {seen.reason}" if seen.reason and not seen.is_running else "")
+    rows = [
+        ("outcome", outcome),
+        ("state", seen.state + (f": {seen.reason}" if seen.reason and seen.is_running else "")),
+        ("step", step_text(seen).removeprefix("step ")),
+        ("time", time_text(seen)),
+        ("last second", means_text(seen)),
+        ("set", set_points_text(seen).removeprefix("set ")),
+        *(("limit", trip) for trip in seen.trips),
+    ]
+    return [f"{seen.folder.name}: {seen.known.title}", Rows([row for row in rows if row[1]])]
+
+
+def observation_caveats(seen: Observation) -> list[str]:
+    """A writer that has died, samples that are missing, and a run that writes nothing."""
+    told = [line for line in warnings(seen) if line not in seen.trips]
+    if seen.outcome == "unfinished":
+        remedy = f"sonolube lab recover {quote(str(seen.folder))}"
+        told.append(f"the program died during the run, and motor or drive may be on; {remedy} completes its record")
+    if seen.known.facts.get("simulated"):
+        told.append(SIMULATED)
     return told

@@ -1,19 +1,18 @@
 """Task `compare`: models of friction under vibration against published tests, and on a rig."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block
 from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
-from sonolube.units import format_si
 from sonolube.validation.comparison import (
     DATA_SETS,
     ONLY_PREDICTED,
@@ -35,7 +34,7 @@ if TYPE_CHECKING:
 
 
 _RUNS = Parameter(
-    help=runs_help("Own measured runs, which each model predicts as published tests fitted it"),
+    runs_help("Own measured runs, which each model predicts as published tests fitted it"),
     kind="RUNS.csv",
     is_file=True,
 )
@@ -45,7 +44,7 @@ _RUNS = Parameter(
 def compare(
     rig: OptionalRig = None,
     *,
-    model: Annotated[Sequence[str], Parameter(help="Only this model; may come again.", kind="NAME")] = (),
+    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", kind="NAME")] = (),
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
     progress: Watch = None,
@@ -84,44 +83,11 @@ class ComparisonAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Errors and fitted parameters of each model, refused tests, and predictions of the rig."""
-        tests, assessed = self.fits[0].predictions, [one for one in self.fits if one.assessment]
-        heads = ("model", "sets", "tests", "k", "rms", "unseen", "median", "AICc")
         return [
-            f"{len(self.fits)} models, {len(tests)} tests in sets {', '.join(DATA_SETS)}; errors of the friction ratio,"
-            " unseen: of each set by what has not seen it",
-            Table(heads, list(map(results.error_row, assessed))),
-            *[f"  {one.model.name}: {text}" for one in assessed for text in results.parameter_lines(one)],
-            *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
-            *[f"  not reached: {line}" for one in self.fits for line in results.refusal_lines(one)],
-            *self._rig_blocks(),
-            *self._run_blocks(),
+            *results.fit_blocks(self.fits),
+            *(() if self.rig is None or self.own is None else results.rig_blocks(self.rig, self.own, self.predictions)),
+            *(() if self.table is None else results.runs_blocks(self.table, self.of_runs)),
         ]
-
-    def _rig_blocks(self) -> Iterator[Block]:
-        """Friction of the rig by its own model and by each applicable one."""
-        rig, own = self.rig, self.own
-        if rig is None or own is None:
-            return
-        yield (
-            f"{rig.title}, {format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}, "
-            f"{format_si(own.vibration_amplitude, 'm')}: {own.amplitude_origin}"
-        )
-        yield Table(("", "", ""), results.rig_rows(rig, own, self.predictions))
-        yield from results.disagreement(self.predictions)
-        for one in self.predictions:
-            if one.reason:
-                yield f"  not applicable: {one.model.name}: {one.reason}"
-
-    def _run_blocks(self) -> Iterator[Block]:
-        """Error of each model on own runs, and why others do not apply."""
-        table = self.table
-        if table is None:
-            return
-        head = f"{table.title}: {table.runs} runs under {len(table.conditions)} conditions"
-        yield f"{head}, by models as published tests fitted them"
-        yield Table(("model", "reached", "rms", "mean", "expected"), results.runs_rows(table, self.of_runs))
-        reasons = results.by_reason((one.reason, one.model.name) for one in self.of_runs)
-        yield from (f"  own runs not reached: {', '.join(names)}: {reason}" for reason, names in reasons.items())
 
     def object(self) -> dict[str, Any]:
         """Errors, fitted parameters and predictions of each model, and the predictions of the rig."""

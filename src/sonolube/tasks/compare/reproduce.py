@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 from sonolube.report import reproduction_files, summary_lines, validation_object
+from sonolube.report.blocks import Block
 from sonolube.reproduction import Reproduction, reproduction
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block
 from sonolube.tasks.parameters import Parameter, Stop, Watch
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
@@ -15,7 +15,7 @@ from sonolube.tasks.task import task
 @task
 def reproduce(
     *,
-    chapter: Annotated[int | None, Parameter(help="Only this chapter: 2, 3 or 4.", lowest=2, highest=4)] = None,
+    chapter: Annotated[int | None, Parameter("Only this chapter: 2, 3 or 4.", lowest=2, highest=4)] = None,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "ReproductionAnswer":

@@ -10,15 +10,14 @@ from sonolube.design.control import (
     ThermalDrift,
     VibrationMode,
     amplitude_mode,
-    assumed_mode,
     design_control,
 )
 from sonolube.design.control.stick_slip import stick_slip_suppression
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import EfficiencyLine
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
+from sonolube.tasks.design import closed_loop as loop
 from sonolube.tasks.design.control_answer import ControlAnswer
-from sonolube.tasks.design.friction_target import friction_force
 from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -45,46 +44,36 @@ def control(
     friction: Annotated[
         str | float | None,
         Parameter(
-            help="Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
-            kind="FRICTION",
+            "Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.", kind="FRICTION"
         ),
     ] = None,
     feed_forward: Annotated[
-        Literal["model", "efficiency", "none"], Parameter(help="Map from friction to voltage or amplitude.")
+        Literal["model", "efficiency", "none"], Parameter("Map from friction to voltage or amplitude.")
     ] = "model",
     efficiency: Annotated[
         Number | None,
-        Parameter(
-            help="Efficiency at the rig's speed, in m2/N, instead of the published.", unit="m2/N", kind="COEFFICIENT"
-        ),
+        Parameter("Efficiency at the rig's speed, in m2/N, instead of the published.", unit="m2/N", kind="COEFFICIENT"),
     ] = None,
-    delay: Annotated[Number, Parameter(help="Delay of the friction measurement.", unit="s")] = "1ms",
-    rate: Annotated[Number, Parameter(help="Sampling rate of the controller.", unit="Hz")] = "5kHz",
-    noise: Annotated[Number, Parameter(help="Standard deviation of the sensor.", unit="N")] = "0N",
-    factor: Annotated[float, Parameter(help="Real friction over that of the model.", lowest=0.01, highest=100)] = 1.0,
-    closed_loop: Annotated[
-        Number | None, Parameter(help="Time constant of the closed loop; the delay by default.", unit="s")
-    ] = None,
+    delay: loop.Delay = "1ms",
+    rate: loop.Rate = "5kHz",
+    noise: Annotated[Number, Parameter("Standard deviation of the sensor.", unit="N")] = "0N",
+    factor: Annotated[float, Parameter("Real friction over that of the model.", lowest=0.01, highest=100)] = 1.0,
+    closed_loop: loop.ClosedLoop = None,
     amplitude_limit: Annotated[
-        Number | None,
-        Parameter(help="Largest amplitude of a rig without a voltage; the rig's own by default.", unit="m"),
+        Number | None, Parameter("Largest amplitude of a rig without a voltage; the rig's own by default.", unit="m")
     ] = None,
-    voltage_limit: Annotated[
-        Number | None, Parameter(help="Largest swing, peak to peak; the rig's own by default.", unit="V")
-    ] = None,
-    current_limit: Annotated[Number | None, Parameter(help="Largest current.", unit="A", kind="CURRENT")] = None,
-    slew_limit: Annotated[Number | None, Parameter(help="Fastest change of voltage.", unit="V/s", kind="V/s")] = None,
-    warming: Annotated[Number, Parameter(help="Final temperature rise, such as 40K.", unit="K")] = "0K",
+    voltage_limit: loop.VoltageLimit = None,
+    current_limit: Annotated[Number | None, Parameter("Largest current.", unit="A", kind="CURRENT")] = None,
+    slew_limit: Annotated[Number | None, Parameter("Fastest change of voltage.", unit="V/s", kind="V/s")] = None,
+    warming: Annotated[Number, Parameter("Final temperature rise, such as 40K.", unit="K")] = "0K",
     warming_time: Annotated[
-        Number | None, Parameter(help="Time constant of the warming; a quarter of the run by default.", unit="s")
+        Number | None, Parameter("Time constant of the warming; a quarter of the run by default.", unit="s")
     ] = None,
-    track: Annotated[bool, Parameter(help="Follow the resonance by the phase of the impedance.")] = True,
-    quality: Annotated[float, Parameter(help="Quality factor, where the rig has no structure.", lowest=0.6)] = 50.0,
-    coupling: Annotated[
-        float, Parameter(help="Effective coupling, where it has none.", lowest=0.001, highest=0.999)
-    ] = 0.2,
-    stick_slip: Annotated[bool, Parameter(help="Also compute stick-slip of the slider on an elastic holder.")] = False,
-    duration: Annotated[Number, Parameter(help="Duration of the run.", unit="s")] = "0.2s",
+    track: Annotated[bool, Parameter("Follow the resonance by the phase of the impedance.")] = True,
+    quality: loop.Quality = 50.0,
+    coupling: loop.Coupling = 0.2,
+    stick_slip: Annotated[bool, Parameter("Also compute stick-slip of the slider on an elastic holder.")] = False,
+    duration: Annotated[Number, Parameter("Duration of the run.", unit="s")] = "0.2s",
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> ControlAnswer:
@@ -112,7 +101,7 @@ def control(
     settings = ControlSettings(
         friction_force=None
         if friction is None
-        else friction_force("friction", friction, normal_load=known.normal_load),
+        else loop.friction_force("friction", friction, normal_load=known.normal_load),
         **limits,
         dead_time=dead_time,
         sample_interval=interval,
@@ -161,15 +150,13 @@ def _assumed(rig: Rig, quality: float, coupling: float) -> tuple[VibrationMode |
     if commanded_quantity(rig) is AMPLITUDE:
         text = f"the amplitude follows its set point as a resonance of quality factor {quality:g}; not measured"
         return amplitude_mode(rig, quality_factor=quality), {"amplitude control": text}
-    text = f"at the drive's frequency, quality factor {quality:g}, coupling {coupling:g}; not measured"
-    return assumed_mode(rig, quality_factor=quality, coupling_factor=coupling), {"resonance": text}
+    return loop.assumed_resonance(rig, quality=quality, coupling=coupling)
 
 
 def _times(rate: Number, delay: Number, duration: Number) -> tuple[float, float, float]:
     """Sampling interval, delay and duration of the run, in s."""
-    sampling, dead_time, run_time = in_si("rate", rate), in_si("delay", delay), in_si("duration", duration)
-    if sampling <= 0 or run_time <= 0:
-        raise InvalidInput(f"{shown('rate')} {rate} and {shown('duration')} {duration} must be positive")
+    sampling, run_time = loop.sampling_and_duration(rate, duration)
+    dead_time = in_si("delay", delay)
     if dead_time > run_time:
         raise InvalidInput(f"{shown('delay')} {delay} must not exceed {shown('duration')} {duration}")
     return 1 / sampling, dead_time, run_time

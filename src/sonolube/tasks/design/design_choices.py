@@ -9,7 +9,7 @@ from sonolube.facts.materials import material
 from sonolube.models.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
 from sonolube.rig import Rig, structure_entries
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.tasks.design.friction_target import friction_force
+from sonolube.tasks.design.closed_loop import friction_force
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.ranges import Values, ends_by_key, values_by_key
 from sonolube.tasks.task import shown

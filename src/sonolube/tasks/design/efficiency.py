@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_chart
 from sonolube.report import Drawing, Page
-from sonolube.report.results import efficiency as results
+from sonolube.report.blocks import Block, Rows
+from sonolube.report.results.design import efficiency as results
+from sonolube.report.results.rig_text import rig_settings
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
-from sonolube.tasks.design.friction_target import friction_force
+from sonolube.tasks.design.closed_loop import friction_force
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Number, OwnRuns, Parameter, RigParameter, RigSource, file_stem, rig_of
-from sonolube.tasks.results.rig_text import rig_settings
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 if TYPE_CHECKING:
@@ -28,16 +28,16 @@ _CAPTION = (
 
 @task
 def efficiency(
-    runs: Annotated[OwnRuns, Parameter(help="Measured runs, a row each.", kind="RUNS.csv", is_file=True)],
+    runs: Annotated[OwnRuns, Parameter("Measured runs, a row each.", kind="RUNS.csv", is_file=True)],
     *,
     rig: Annotated[RigSource, RigParameter(without=("load", "amplitude"))],
     mapping: MappedRuns = None,
     target_friction: Annotated[
         str | float | None,
-        Parameter(help="Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.", kind="FRICTION"),
+        Parameter("Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.", kind="FRICTION"),
     ] = None,
-    speed: Annotated[Number | None, Parameter(help="Sliding speed of that target.", unit="m/s")] = None,
-    level: Annotated[float, Parameter(help="Confidence level.", lowest=0.5, highest=0.9999)] = 0.95,
+    speed: Annotated[Number | None, Parameter("Sliding speed of that target.", unit="m/s")] = None,
+    level: Annotated[float, Parameter("Confidence level.", lowest=0.5, highest=0.9999)] = 0.95,
 ) -> "EfficiencyAnswer":
     """Efficiency line from measured runs (D 4.1 to 4.3), and the power that a friction takes.
 

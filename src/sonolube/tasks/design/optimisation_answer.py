@@ -9,12 +9,12 @@ from sonolube.design.optimisation import OWN_ACTUATOR, DriveElectronics, Optimum
 from sonolube.design.optimisation.designs_dataset import design_counts, designs_dataset
 from sonolube.input_files import input_text
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.report.results import optimum as results
+from sonolube.report.blocks import Block, Rows, Table
+from sonolube.report.results.design import optimum as results
+from sonolube.report.results.design.status_tables import count_table
+from sonolube.report.results.rig_text import operating_point, rig_settings
 from sonolube.rig import Rig, read_rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows, Table
-from sonolube.tasks.results.rig_text import operating_point, rig_settings
-from sonolube.tasks.results.status_tables import count_table
 
 if TYPE_CHECKING:
     import xarray as xr

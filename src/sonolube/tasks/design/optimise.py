@@ -18,58 +18,49 @@ from sonolube.tasks.task import in_si, refuse_unused, shown, task
 Objective = Literal["power", "heat", "voltage"]
 
 _OVER = Parameter(
-    help="A range to choose from: drive.frequency or an entry of structure; or drive.waveform=one,two."
+    "A range to choose from: drive.frequency or an entry of structure; or drive.waveform=one,two."
     " May come again; the frequency by a fifth either way by default.",
     kind="KEY=FIRST:LAST",
     is_mapping=True,
 )
-_ACTUATOR = Parameter(help="own, a name that `sonolube actuators` lists, or catalogue. May come again.", kind="NAME")
-_CATALOGUE = Parameter(help="Further actuators, in the format of the built-in list.", kind="FILE.toml", is_file=True)
+_ACTUATOR = Parameter("own, a name that `sonolube actuators` lists, or catalogue. May come again.", kind="NAME")
+_CATALOGUE = Parameter("Further actuators, in the format of the built-in list.", kind="FILE.toml", is_file=True)
 
 
 @task
 def optimise(
     rig: RestingRig,
     *,
-    target_friction: Annotated[
-        str | float, Parameter(help="Coefficient or force, such as 0.1 or 0.3N.", kind="FRICTION")
-    ],
+    target_friction: Annotated[str | float, Parameter("Coefficient or force, such as 0.1 or 0.3N.", kind="FRICTION")],
     over: Annotated[Values | None, _OVER] = None,
     actuator: Annotated[Sequence[str], _ACTUATOR] = (),
     catalogue: Annotated[InputFile | None, _CATALOGUE] = None,
-    minimise: Annotated[Objective, Parameter(help="Quantity to minimise.")] = "power",
-    pareto: Annotated[Objective | None, Parameter(help="A second objective, for the front between both.")] = None,
+    minimise: Annotated[Objective, Parameter("Quantity to minimise.")] = "power",
+    pareto: Annotated[Objective | None, Parameter("A second objective, for the front between both.")] = None,
     robust: Annotated[
-        float | None, Parameter(help="Relative tolerance of stiffness, masses and gain.", lowest=0, highest=0.3)
+        float | None, Parameter("Relative tolerance of stiffness, masses and gain.", lowest=0, highest=0.3)
     ] = None,
     quantile: Annotated[
         float | None,
-        Parameter(help="Fraction of built rigs that must reach it; the worst by default.", lowest=0.5, highest=1),
+        Parameter("Fraction of built rigs that must reach it; the worst by default.", lowest=0.5, highest=1),
     ] = None,
-    samples: Annotated[int, Parameter(help="Structures drawn for each actuator.", lowest=2, highest=4096)] = 16,
-    voltage_limit: Annotated[Number | None, Parameter(help="Highest voltage either way.", unit="V")] = None,
-    current_limit: Annotated[Number | None, Parameter(help="Highest current.", unit="A", kind="CURRENT")] = None,
-    slew_limit: Annotated[
-        Number | None, Parameter(help="Fastest change, such as 3V/us.", unit="V/s", kind="RATE")
-    ] = None,
-    stress_limit: Annotated[Number | None, Parameter(help="Highest nominal stress.", unit="Pa", kind="STRESS")] = None,
-    temperature_limit: Annotated[
-        Number | None, Parameter(help="Highest temperature rise, such as 40K.", unit="K")
-    ] = None,
+    samples: Annotated[int, Parameter("Structures drawn for each actuator.", lowest=2, highest=4096)] = 16,
+    voltage_limit: Annotated[Number | None, Parameter("Highest voltage either way.", unit="V")] = None,
+    current_limit: Annotated[Number | None, Parameter("Highest current.", unit="A", kind="CURRENT")] = None,
+    slew_limit: Annotated[Number | None, Parameter("Fastest change, such as 3V/us.", unit="V/s", kind="RATE")] = None,
+    stress_limit: Annotated[Number | None, Parameter("Highest nominal stress.", unit="Pa", kind="STRESS")] = None,
+    temperature_limit: Annotated[Number | None, Parameter("Highest temperature rise, such as 40K.", unit="K")] = None,
     conductance: Annotated[
-        Number | None,
-        Parameter(help="Thermal conductance of the actuator, such as 0.5W/K.", unit="W/K", kind="CONDUCTANCE"),
+        Number | None, Parameter("Thermal conductance of the actuator, such as 0.5W/K.", unit="W/K", kind="CONDUCTANCE")
     ] = None,
-    horn: Annotated[str | None, Parameter(help="Of a half-wave horn at the tip.", kind="MATERIAL")] = None,
-    horn_limit: Annotated[
-        Number | None, Parameter(help="Stress amplitude allowed in it.", unit="Pa", kind="STRESS")
-    ] = None,
-    bolt: Annotated[str | None, Parameter(help="Preload bolt, such as M6x40mm.", kind="THREAD")] = None,
-    preload: Annotated[Number | None, Parameter(help="Tension of the bolt.", unit="N")] = None,
-    bolt_strength: Annotated[Number, Parameter(help="Proof strength; class 8.8.", unit="Pa", kind="STRESS")] = "640MPa",
-    quality: Annotated[float, Parameter(help="Mechanical quality factor of the catalogue's ceramics.")] = 80.0,
+    horn: Annotated[str | None, Parameter("Of a half-wave horn at the tip.", kind="MATERIAL")] = None,
+    horn_limit: Annotated[Number | None, Parameter("Stress amplitude allowed in it.", unit="Pa", kind="STRESS")] = None,
+    bolt: Annotated[str | None, Parameter("Preload bolt, such as M6x40mm.", kind="THREAD")] = None,
+    preload: Annotated[Number | None, Parameter("Tension of the bolt.", unit="N")] = None,
+    bolt_strength: Annotated[Number, Parameter("Proof strength; class 8.8.", unit="Pa", kind="STRESS")] = "640MPa",
+    quality: Annotated[float, Parameter("Mechanical quality factor of the catalogue's ceramics.")] = 80.0,
     source_resistance: Annotated[
-        Number | None, Parameter(help="To match by two elements, such as 50ohm.", unit="ohm", kind="RESISTANCE")
+        Number | None, Parameter("To match by two elements, such as 50ohm.", unit="ohm", kind="RESISTANCE")
     ] = None,
     progress: Watch = None,
     cancelled: Stop = None,

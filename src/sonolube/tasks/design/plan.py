@@ -29,60 +29,52 @@ def plan(
     *,
     runs: Annotated[
         RunsSource,
-        Parameter(
-            help="Own earlier runs: they give the scatter and update the prediction.", kind="RUNS.csv", is_file=True
-        ),
+        Parameter("Own earlier runs: they give the scatter and update the prediction.", kind="RUNS.csv", is_file=True),
     ] = None,
     mapping: MappedRuns = None,
     speed: Annotated[
         str | None,
         Parameter(
-            help="Sliding speeds, such as 20:200mm/s or 20,40,87mm/s; by default 1/3 to 3 times the rig's.",
-            kind="VALUES",
+            "Sliding speeds, such as 20:200mm/s or 20,40,87mm/s; by default 1/3 to 3 times the rig's.", kind="VALUES"
         ),
     ] = None,
-    load: Annotated[
-        str | None, Parameter(help="Normal loads, such as 3,5,7N; the rig's by default.", kind="VALUES")
-    ] = None,
+    load: Annotated[str | None, Parameter("Normal loads, such as 3,5,7N; the rig's by default.", kind="VALUES")] = None,
     vibration: Annotated[
         str | None,
-        Parameter(help="Vibration amplitudes, such as 0.5:2.3um; by default 1/5 of the rig's up to it.", kind="VALUES"),
+        Parameter("Vibration amplitudes, such as 0.5:2.3um; by default 1/5 of the rig's up to it.", kind="VALUES"),
     ] = None,
     voltage: Annotated[
-        str | None, Parameter(help="Drive voltages, peak to peak, instead of amplitudes.", kind="VALUES")
+        str | None, Parameter("Drive voltages, peak to peak, instead of amplitudes.", kind="VALUES")
     ] = None,
-    points: Annotated[int, Parameter(help="Number of conditions to test.", lowest=1)] = 4,
-    difference: Annotated[Number, Parameter(help="Friction reduction to be shown.", unit="", kind="SHARE")] = "10%",
-    power: Annotated[float, Parameter(help="Probability to show it where it is there.")] = 0.9,
-    significance: Annotated[float, Parameter(help="Probability to show it where it is not.")] = 0.05,
+    points: Annotated[int, Parameter("Number of conditions to test.", lowest=1)] = 4,
+    difference: Annotated[Number, Parameter("Friction reduction to be shown.", unit="", kind="SHARE")] = "10%",
+    power: Annotated[float, Parameter("Probability to show it where it is there.")] = 0.9,
+    significance: Annotated[float, Parameter("Probability to show it where it is not.")] = 0.05,
     comparison: Annotated[
         Literal["paired", "separate"],
-        Parameter(help="Each run without, with and again without vibration, or states on specimens of their own."),
+        Parameter("Each run without, with and again without vibration, or states on specimens of their own."),
     ] = "paired",
     scatter: Annotated[
         Number | None,
-        Parameter(
-            help="Standard deviation of friction between runs; by the runs, or D Table 2.3.", unit="", kind="SHARE"
-        ),
+        Parameter("Standard deviation of friction between runs; by the runs, or D Table 2.3.", unit="", kind="SHARE"),
     ] = None,
     block: Annotated[
-        Literal["day", "pair"], Parameter(help="What the runs of a block share: a day, or one pair of pin and disc.")
+        Literal["day", "pair"], Parameter("What the runs of a block share: a day, or one pair of pin and disc.")
     ] = "day",
     running_in: Annotated[
-        Number | None,
-        Parameter(help="Sliding until friction is steady; the longest of D Table 2.3 by default.", unit="m"),
+        Number | None, Parameter("Sliding until friction is steady; the longest of D Table 2.3 by default.", unit="m")
     ] = None,
-    measuring_time: Annotated[Number, Parameter(help="In steady friction, in each state.", unit="s")] = "12s",
+    measuring_time: Annotated[Number, Parameter("In steady friction, in each state.", unit="s")] = "12s",
     amplifier_voltage: Annotated[
-        Number | None, Parameter(help="Greatest voltage of the amplifier, offset included.", unit="V")
+        Number | None, Parameter("Greatest voltage of the amplifier, offset included.", unit="V")
     ] = None,
-    amplifier_power: Annotated[Number | None, Parameter(help="Greatest power of the amplifier.", unit="W")] = None,
+    amplifier_power: Annotated[Number | None, Parameter("Greatest power of the amplifier.", unit="W")] = None,
     temperature_rise: Annotated[
-        Number, Parameter(help="Greatest rise of the contact by friction; needs both materials.", unit="K")
+        Number, Parameter("Greatest rise of the contact by friction; needs both materials.", unit="K")
     ] = "50K",
     pin: Pin = None,
     disc: Disc = None,
-    seed: Annotated[int, Parameter(help="Of the order of the runs.", lowest=0)] = 0,
+    seed: Annotated[int, Parameter("Of the order of the runs.", lowest=0)] = 0,
 ) -> PlanAnswer:
     """Plan the next tests of a rig: points that tell models apart, replicates, order, protocols, and a sheet to print.
 

@@ -5,34 +5,29 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import numpy as np
-
 from sonolube import design
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
-from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
 from sonolube.errors import InvalidInput
 from sonolube.files import expect_files
 from sonolube.models.dynamics.backend import usable_backend
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
-from sonolube.rig import Rig, energy_balance, operating_caveats
-from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
-from sonolube.tasks.design.parametric_study import OUTCOMES, ParametricStudyAnswer, parametric_study
+from sonolube.report.blocks import Block
+from sonolube.report.results.design import sweep as results
+from sonolube.rig import Rig, operating_caveats
+from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.design.parametric_study import ParametricStudyAnswer, parametric_study
 from sonolube.tasks.parameters import Backend, Keep, Parameter, RigFile, Stop, Watch, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, ends_by_key, refuse_replaced, values_by_key
-from sonolube.tasks.results.rig_text import amplitude_object, amplitude_rows
-from sonolube.tasks.results.status_tables import status_tables
 from sonolube.tasks.task import refuse_unused, shown, task
-from sonolube.units import format_quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 _OVER = Parameter(
-    help="A key of the file with its values: first:last:count, first:last:count:log or one,two,...;"
+    "A key of the file with its values: first:last:count, first:last:count:log or one,two,...;"
     " first:last alone for the sample lhs. May come again.",
     kind="KEY=VALUES",
     is_mapping=True,
@@ -42,7 +37,6 @@ _CLOUD_CAPTION = (
     "Friction over each key that was swept, at all values of the others: points, at most 3000 of them, their median,"
     " and the interval of 90 %."
 )
-_LABELS = {"energy_balance": "energy"}
 # arguments without meaning for one quantity
 _OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk", "backend")
 _FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg", "sweep.pdf")
@@ -56,33 +50,30 @@ def sweep(
     over: Annotated[Values | None, _OVER] = None,
     of: Annotated[
         Literal["voltage", "amplitude", "speed", "frequency", "power", "waveform", "load"] | None,
-        Parameter(help="One quantity over its usual range, with a figure of its own."),
+        Parameter("One quantity over its usual range, with a figure of its own."),
     ] = None,
-    lowest: Annotated[str | None, Parameter(help="With of: lowest value.", kind="QUANTITY", option="--from")] = None,
-    highest: Annotated[str | None, Parameter(help="With of: highest value.", kind="QUANTITY", option="--to")] = None,
+    lowest: Annotated[str | None, Parameter("With of: lowest value.", kind="QUANTITY", option="--from")] = None,
+    highest: Annotated[str | None, Parameter("With of: highest value.", kind="QUANTITY", option="--to")] = None,
     points: Annotated[
-        int | None,
-        Parameter(help="Number of points to draw for the sample lhs, or of values of one quantity.", lowest=1),
+        int | None, Parameter("Number of points to draw for the sample lhs, or of values of one quantity.", lowest=1)
     ] = None,
     voltage: Annotated[
-        Sequence[str], Parameter(help="With of speed or frequency: drive, peak to peak, of a curve. May come again.")
+        Sequence[str], Parameter("With of speed or frequency: drive, peak to peak, of a curve. May come again.")
     ] = (),
     vibration: Annotated[
         Sequence[str],
-        Parameter(
-            help="With of speed: amplitude of a curve, of a rig without a voltage. May come again.", kind="LENGTH"
-        ),
+        Parameter("With of speed: amplitude of a curve, of a rig without a voltage. May come again.", kind="LENGTH"),
     ] = (),
     sample: Annotated[
         Literal["grid", "lhs", "list"],
-        Parameter(help="Every value with every other, points drawn by Latin hypercube, or row by row."),
+        Parameter("Every value with every other, points drawn by Latin hypercube, or row by row."),
     ] = "grid",
-    seed: Annotated[int, Parameter(help="Of the points drawn.", lowest=0)] = 0,
-    workers: Annotated[int, Parameter(help="Threads, or processes of a local cluster.", lowest=1)] = 2,
+    seed: Annotated[int, Parameter("Of the points drawn.", lowest=0)] = 0,
+    workers: Annotated[int, Parameter("Threads, or processes of a local cluster.", lowest=1)] = 2,
     scheduler: Annotated[
-        str | None, Parameter(help="Dask scheduler, or local for processes on this machine.", kind="ADDRESS")
+        str | None, Parameter("Dask scheduler, or local for processes on this machine.", kind="ADDRESS")
     ] = None,
-    chunk: Annotated[int, Parameter(help="Points computed and kept together.", lowest=1)] = 100_000,
+    chunk: Annotated[int, Parameter("Points computed and kept together.", lowest=1)] = 100_000,
     backend: Backend = "cpu",
     keep: Keep = None,
     progress: Watch = None,
@@ -139,28 +130,11 @@ class SweepAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Number of points by status, failures, and the point of least friction."""
-        result = self.result
-        device = f", on {result.attrs['device']}" if "device" in result.attrs else ""
-        least = self._least_texts()
-        return [
-            f"{result.attrs['rig']}, {result['friction_ratio'].size} points{device}",
-            Rows([*self._amplitude(), *((name, f"{count}") for name, count in status_counts(result).items())]),
-            *[f"  without result: {count}: {reason}" for reason, count in self._failures().items()],
-            *(("least friction", Rows(least)) if least else ()),
-        ]
+        return results.sweep_blocks(self.rig, self.plan, self.result)
 
     def object(self) -> dict[str, Any]:
         """Number of points by status, failures, and the point of least friction."""
-        result = self.result
-        return {
-            "rig": result.attrs["rig"],
-            **amplitude_object(self.rig),
-            **({"device": str(result.attrs["device"])} if "device" in result.attrs else {}),
-            "points": int(result["friction_ratio"].size),
-            "statuses": status_counts(result),
-            "without_result": [{"reason": reason, "points": count} for reason, count in self._failures().items()],
-            "least_friction": self._least(),
-        }
+        return results.sweep_object(self.rig, self.plan, self.result)
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point, and the meaning of ratios below 0 and above 1."""
@@ -178,57 +152,7 @@ class SweepAnswer(Answer):
 
     def page(self) -> Page:
         """Page `sweep.html`."""
-        source = str(self.plan.content.get("source", ""))
-        points, failures = int(self.result["friction_ratio"].size), self._failures()
-        return Page(
-            name="sweep",
-            title=self.result.attrs["title"],
-            settings=[
-                ("rig", f"{self.result.attrs['rig']} ({self.rig.name})"),
-                *([("source of its numbers", source)] if source else []),
-                *self._amplitude(),
-            ],
-            facts=[
-                ("points", f"{points}, {points - sum(failures.values())} with a result"),
-                *[(f"least friction: {name}", text) for name, text in self._least_texts()],
-                ("fingerprint", self.plan.digest[:16]),
-            ],
-            tables=status_tables(self.result, failures),
-        )
-
-    def _amplitude(self) -> list[tuple[str, str]]:
-        """Source of the amplitude at the rig's own operating point."""
-        return amplitude_rows(self.rig)
-
-    def _failures(self) -> dict[str, int]:
-        """Number of points without a result, by the reason."""
-        return failure_counts(self.result, outcome="friction_ratio")
-
-    def _least(self) -> dict[str, Any]:
-        """Values of the swept keys and outcomes at the point of least friction; empty where no point has a result."""
-        place = extreme_place(self.result, outcome="friction_ratio")
-        point = extreme_point(self.result[list(OUTCOMES)], outcome="friction_ratio")
-        if place is None or point is None:
-            return {}
-        swept = {key: values[0].item() for key, values in self.plan.rows(place, place + 1).items()}
-        powers = {name: float(point[name]) for name in ("actuator_power", "dissipated_power")}
-        balance = energy_balance(**powers)
-        return (
-            swept
-            | si({name: float(point[name]) for name in OUTCOMES if np.isfinite(point[name])})
-            | ({} if balance is None else {"energy_balance": balance})
-        )
-
-    def _least_texts(self) -> list[tuple[str, str]]:
-        """The same as text."""
-        return [(_LABELS.get(name, name), _as_text(name, value)) for name, value in self._least().items()]
-
-
-def _as_text(name: str, value: Any) -> str:
-    """Value of a swept key, or of an outcome, with its unit."""
-    if isinstance(value, dict):
-        return format_quantity(value["value"], name)
-    return value if isinstance(value, str) else format_quantity(value, name.rpartition(".")[2])
+        return results.sweep_page(self.rig, self.plan, self.result)
 
 
 def _plan(rig: Rig, over: Values, sample: str, points: int | None, seed: int) -> SweepPlan:

@@ -10,32 +10,22 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.design import SampleStatistics, band_chart, histogram_chart, outcome_statistics, propagate, sobol_chart
 from sonolube.design.identified_structure import IdentifiedStructure, identified_structure
-from sonolube.design.point_statistics import failure_counts, status_counts
-from sonolube.design.uncertainty_summary import (
-    Band,
-    RankedEntry,
-    contact_loss_probability,
-    outcome_band,
-    outcome_indices,
-    ranked_entries,
-)
+from sonolube.design.point_statistics import failure_counts
+from sonolube.design.uncertainty_summary import Band, RankedEntry, outcome_band, outcome_indices, ranked_entries
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
-from sonolube.report import Drawing, Page, PageTable
-from sonolube.report.results import uncertainty as results
+from sonolube.report import Drawing, Page
+from sonolube.report.blocks import Block
 from sonolube.report.results.beyond_the_model import BeyondTheModel, beyond_the_model
-from sonolube.report.results.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
+from sonolube.report.results.design import uncertainty as results
+from sonolube.report.results.design.uncertain_entries import agreement
 from sonolube.rig import Rig, operating_caveats, steady_vibration
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows, Table
 from sonolube.tasks.parameters import DoorParameter, Interval, Kept, Parameter, RigFile, Stop, Watch, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
-from sonolube.tasks.results.rig_text import amplitude_object, amplitude_rows, rig_settings
-from sonolube.tasks.results.status_tables import status_tables
 from sonolube.tasks.task import shown, task
-from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,7 +35,6 @@ _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with 
 _OF_THE_MODEL = ("friction_ratio", "friction_reduction")  # outcomes that have the error of the friction model
 _BAND_CAPTION = "Median of the samples and their intervals over the keys that were swept."
 _SOBOL_CAPTION = "Contribution of each uncertain entry to the variance, with intervals of 95 %."
-_RANKING_HEADS = ("entry", "share alone", "with the others", "deviation were it known")
 
 
 @task
@@ -53,28 +42,27 @@ def uncertainty(
     rig: RigFile,
     *,
     of: Annotated[
-        str, Parameter(help="The outcome, such as vibration_amplitude or wear_rate_ratio.", kind="QUANTITY")
+        str, Parameter("The outcome, such as vibration_amplitude or wear_rate_ratio.", kind="QUANTITY")
     ] = "friction_ratio",
     samples: Annotated[
-        int,
-        Parameter(help="Number of samples, up to the next power of two; for Sobol indices of each block.", lowest=32),
+        int, Parameter("Number of samples, up to the next power of two; for Sobol indices of each block.", lowest=32)
     ] = 1024,
     sobol: Annotated[
-        bool, Parameter(help="Rank the entries by their contribution to the variance, by Sobol indices.")
+        bool, Parameter("Rank the entries by their contribution to the variance, by Sobol indices.")
     ] = False,
     over: Annotated[
         Values | None,
         Parameter(
-            help="A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
+            "A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
             kind="KEY=VALUES",
             is_mapping=True,
         ),
     ] = None,
     identified: Annotated[
-        bool, Parameter(help="Draw the tribometer's masses, springs and dampers from the published facts.")
+        bool, Parameter("Draw the tribometer's masses, springs and dampers from the published facts.")
     ] = False,
-    seed: Annotated[int, Parameter(help="Of the samples.", lowest=0)] = 0,
-    workers: Annotated[int, Parameter(help="Threads.", lowest=1)] = 2,
+    seed: Annotated[int, Parameter("Of the samples.", lowest=0)] = 0,
+    workers: Annotated[int, Parameter("Threads.", lowest=1)] = 2,
     interval: Interval = True,
     keep: Annotated[Kept | None, DoorParameter(files="sweep.nc sweep.json")] = None,
     progress: Watch = None,
@@ -127,37 +115,12 @@ class UncertaintyAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
-        rows, idle = results.ranking_rows(self._ranking, self._of), self._without_effect()
-        return [
-            f"{self.rig.title}, {self.result[self._of].size} points: {results.in_sentence(self._of)}",
-            Rows([*amplitude_rows(self.rig), *self._outcome_rows(), *self._error_rows()]),
-            *(f"  without result: {count}: {reason}" for reason, count in self.failures().items()),
-            *results.status_lines(self.result, self._of),
-            "uncertain entries",
-            Rows(entry_rows(self.rig, self.result, self.structure)),
-            *free_lines(self.structure),
-            *(("which to measure better, by shares of the variance", Table(_RANKING_HEADS, rows)) if rows else ()),
-            *([f"  without effect: {', '.join(idle)}"] if idle else []),
-        ]
+        facts = [*self._outcome_rows(), *self._error_rows()]
+        return results.uncertainty_blocks(self.rig, self.result, self.structure, ranking=self._ranking, facts=facts)
 
     def object(self) -> dict[str, Any]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
-        content: dict[str, Any] = {
-            "rig": self.rig.title,
-            **amplitude_object(self.rig),
-            "of": self._of,
-            "unit": quantity(self._of).unit,
-            "points": int(self.result[self._of].size),
-            "statuses": status_counts(self.result),
-            "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
-            "contact_lost": contact_loss_probability(self.result),
-            "uncertain": {
-                key: {"distribution": law.text, "truncated_fraction": law.truncated_fraction}
-                for key, law in distributions(self.rig, self.result, self.structure).items()
-            },
-        }
-        if self.structure is not None:
-            content["identified"] = posterior_object(self.structure)
+        content = results.sampled_object(self.rig, self.result, self.structure)
         if self._swept:
             content["band"] = results.band_object(self._band)
         else:
@@ -204,29 +167,8 @@ class UncertaintyAnswer(Answer):
 
     def page(self) -> Page:
         """Page `uncertainty.html`."""
-        lost = contact_loss_probability(self.result)
-        entries = PageTable(
-            title="Uncertain entries",
-            heads=("entry", "distribution"),
-            rows=tuple(entry_rows(self.rig, self.result, self.structure)),
-        )
-        return Page(
-            name="uncertainty",
-            title=f"Uncertainty of the {results.in_sentence(self._of)}: {self.rig.title}",
-            settings=rig_settings(self.rig),
-            facts=[
-                ("points", f"{self.result[self._of].size}"),
-                *self._outcome_rows(),
-                *self._error_rows(),
-                *([("contact lost", f"for part of the time in {lost:.1%} of the points")] if lost else []),
-                *([("without effect", ", ".join(idle))] if (idle := self._without_effect()) else []),
-            ],
-            tables=[
-                *([entries] if entries.rows else []),
-                *self._ranking_tables(),
-                *status_tables(self.result, self.failures()),
-            ],
-        )
+        facts = [*self._outcome_rows(), *self._error_rows()]
+        return results.uncertainty_page(self.rig, self.result, self.structure, ranking=self._ranking, facts=facts)
 
     def failures(self) -> dict[str, int]:
         """Number of samples without a result, by the reason."""
@@ -281,18 +223,6 @@ class UncertaintyAnswer(Answer):
     def _ranking(self) -> list[RankedEntry]:
         """Entries by their contribution to the variance; empty without Sobol indices."""
         return ranked_entries(self.result) if self._ranked else []
-
-    def _without_effect(self) -> list[str]:
-        """Entries that the outcome was not seen to depend on: to know them better changes nothing."""
-        return [row.key for row in self._ranking if not row.matters]
-
-    def _ranking_tables(self) -> list[PageTable]:
-        """Ranking as a table of the page."""
-        rows, title = (
-            tuple(results.ranking_rows(self._ranking, self._of)),
-            "Which to measure better, by shares of the variance",
-        )
-        return [PageTable(title=title, heads=_RANKING_HEADS, rows=rows)] if rows else []
 
 
 def _axes(over: Values) -> dict[str, Floats]:

@@ -1,10 +1,7 @@
 """Task `identify decay-length`: what sets the decay length of a worn contact, from a run with switched vibration."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
-
-import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.identification import (
@@ -17,17 +14,14 @@ from sonolube.identification import (
     recorded_switches,
     switch_table,
 )
-from sonolube.input_files import open_input
-from sonolube.laboratory.records import read_run
-from sonolube.measurement.file_format import refuse_unreadable
+from sonolube.identification.decay_length.switch_table import is_switch_table
+from sonolube.laboratory.records.switched_run import switched_recording
 from sonolube.measurement.measured_runs import read_runs
-from sonolube.measurement.recordings.joined_recording import join_recordings
-from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import decay_length as results
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import Mapped, mapping_of
 from sonolube.tasks.parameters import Number, Parameter, Stop, Watch, file_stem
@@ -37,16 +31,12 @@ from sonolube.tasks.task import in_si, refuse_unused, shown, task
 if TYPE_CHECKING:
     import xarray as xr
 
-_HEAD = 4096  # bytes of a file in which a table names its columns
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_DISTANCES = ("sliding_distance", "sliding distance", "gleitweg")
-_TIMES = ("time", "zeit")
 _CAPTION = (
     "Readings at the switches of the vibration over the sliding distance, with the most probable course of each"
     " hypothesis; the zero with its smoothed course."
 )
 _FILE = Parameter(
-    help="Table of the switches of one run (CSV), the folder of a run of decay_length_run, or a recording with"
+    "Table of the switches of one run (CSV), the folder of a run of decay_length_run, or a recording with"
     " friction_force, voltage_peak_to_peak, normal_load, stack_current and shifts.",
     kind="FILE",
     is_file=True,
@@ -57,26 +47,24 @@ _FILE = Parameter(
 def decay_length(
     file: Annotated[InputFile, _FILE],
     *,
-    vibration: Annotated[
-        Number, Parameter(help="Of the vibration along the normal, at the beginning.", unit="m")
-    ] = "2.3um",
-    frequency: Annotated[Number, Parameter(help="Of the vibration.", unit="Hz", quantity="frequency")] = "22kHz",
-    sliding_speed: Annotated[Number, Parameter(help="Sliding speed.", unit="m/s", quantity="sliding_speed")] = "65mm/s",
-    load: Annotated[Number, Parameter(help="Normal load.", unit="N")] = "5N",
+    vibration: Annotated[Number, Parameter("Of the vibration along the normal, at the beginning.", unit="m")] = "2.3um",
+    frequency: Annotated[Number, Parameter("Of the vibration.", unit="Hz", quantity="frequency")] = "22kHz",
+    sliding_speed: Annotated[Number, Parameter("Sliding speed.", unit="m/s", quantity="sliding_speed")] = "65mm/s",
+    load: Annotated[Number, Parameter("Normal load.", unit="N")] = "5N",
     free_frequency: Annotated[
-        Number | None, Parameter(help="Of the slow mode, pin free; needed where shifts are not small.", unit="Hz")
+        Number | None, Parameter("Of the slow mode, pin free; needed where shifts are not small.", unit="Hz")
     ] = None,
     modal_mass: Annotated[
-        Number | None, Parameter(help="Of the slow mode at the contact; gives contact stiffnesses.", unit="kg")
+        Number | None, Parameter("Of the slow mode at the contact; gives contact stiffnesses.", unit="kg")
     ] = None,
     large_amplitude: Annotated[
-        Number | None, Parameter(help="Of the slow mode at large drive; that of the vibration by default.", unit="m")
+        Number | None, Parameter("Of the slow mode at large drive; that of the vibration by default.", unit="m")
     ] = None,
     rotation_speed: Annotated[
-        Number | None, Parameter(help="Of the disc, to remove its wobble from a recording.", unit="1/s")
+        Number | None, Parameter("Of the disc, to remove its wobble from a recording.", unit="1/s")
     ] = None,
     mapping: Mapped = None,
-    seed: Annotated[int, Parameter(help="Seed of the sampling; equal seeds give equal results.", lowest=0)] = 0,
+    seed: Annotated[int, Parameter("Seed of the sampling; equal seeds give equal results.", lowest=0)] = 0,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "DecayLengthAnswer":
@@ -102,11 +90,11 @@ def decay_length(
     with stage("weighing"):
         if path.is_dir():
             table = recorded_switches(
-                _recording_of_run(path),
+                switched_recording(path),
                 sliding_speed=conditions.sliding_speed,
                 rotation_speed=in_si("rotation_speed", rotation_speed),
             )
-        elif _is_table(path, columns):
+        elif is_switch_table(path, columns):
             refuse_unused("rotation_speed", because="for a table of switches; it is for recordings")
             table = switch_table(read_runs(path, mapping=columns))
         else:
@@ -118,31 +106,6 @@ def decay_length(
         decision = decide_decay_length(table, conditions, seed=seed)
     name = f"{file_stem(file)}-decay-length"
     return DecayLengthAnswer(table=table, conditions=conditions, decision=decision, name=name)
-
-
-def _recording_of_run(folder: Path) -> "xr.Dataset":
-    """Parts of a run that recorded friction and load, one after the other without the gaps between them.
-
-    Raises
-    ------
-    InvalidInput
-        If the folder holds no run, or no such part.
-    """
-    run = read_run(folder)
-    parts = [run.dataset(number) for number in range(1, len(run.recordings) + 1)]
-    chosen = [part for part in parts if "friction_force" in part and "normal_load" in part]
-    if not chosen:
-        raise InvalidInput(f"{folder}: no part of its recording has the channels friction_force and normal_load")
-    if not any("voltage_peak_to_peak" in part for part in chosen):
-        raise InvalidInput(f"{folder}: its vibration is never switched on; run the protocol decay_length_run")
-    undriven = [
-        part if "voltage_peak_to_peak" in part else part.assign(voltage_peak_to_peak=0 * part["normal_load_set"])
-        for part in chosen
-    ]
-    for part in undriven:
-        part["voltage_peak_to_peak"].attrs["units"] = "V"
-    joined = join_recordings(undriven)
-    return joined.isel(time=np.isfinite(joined["normal_load"].to_numpy()))
 
 
 @answer
@@ -179,14 +142,3 @@ class DecayLengthAnswer(Answer):
     def files(self) -> "Mapping[str, xr.Dataset]":
         """Readings and courses as netCDF."""
         return {f"{self.name}.nc": decision_dataset(self.table, self.decision)}
-
-
-def _is_table(file: Path, mapping: RecordingMapping | None) -> bool:
-    """Whether a file is a table of switches: its mapping or its head names the sliding distance and no time."""
-    if mapping is not None and "sliding_distance" in mapping.channels:
-        return mapping.axis is None
-    with refuse_unreadable(file), open_input(file) as stream:
-        head = stream.read(_HEAD)
-    lines = head.decode("utf-16" if head[:2] in _UTF_16 else "latin-1", errors="ignore").splitlines()
-    labels = next((line.lower() for line in lines if line.strip() and not line.startswith("#")), "")
-    return any(name in labels for name in _DISTANCES) and not any(name in labels for name in _TIMES)

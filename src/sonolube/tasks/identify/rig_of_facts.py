@@ -9,11 +9,11 @@ from sonolube.errors import InvalidInput
 from sonolube.identification import Identification, rig_tables
 from sonolube.input_files import input_text
 from sonolube.models.actuator import PiezoStack
+from sonolube.report.blocks import Block, Table, text_lines
 from sonolube.report.results import identification as results
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identify_from_facts
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table, text_lines
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Parameter, Stop, Watch
 from sonolube.tasks.progress import stage
@@ -21,19 +21,18 @@ from sonolube.tasks.task import shown, task
 from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
 
 _FACTS = Parameter(
-    help="Facts about the rig; those of the dissertation's tribometer by default.", kind="FACTS.toml", is_file=True
+    "Facts about the rig; those of the dissertation's tribometer by default.", kind="FACTS.toml", is_file=True
 )
 
 
 @task
 def rig(
     base: Annotated[
-        InputFile | None,
-        Parameter(help="Rig whose tables stack and structure to replace.", kind="[RIG.toml]", is_file=True),
+        InputFile | None, Parameter("Rig whose tables stack and structure to replace.", kind="[RIG.toml]", is_file=True)
     ] = None,
     *,
     facts: Annotated[InputFile | None, _FACTS] = None,
-    seed: Annotated[int, Parameter(help="Seed of the search; equal seeds give equal results.", lowest=0)] = 0,
+    seed: Annotated[int, Parameter("Seed of the search; equal seeds give equal results.", lowest=0)] = 0,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "IdentificationAnswer":

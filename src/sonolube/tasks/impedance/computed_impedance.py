@@ -21,52 +21,49 @@ from sonolube.models.fem.impedance_spectra import (
 )
 from sonolube.models.fem.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
-from sonolube.report.results import impedance_spectra as results
+from sonolube.report.blocks import Block
+from sonolube.report.results.parts import impedance_spectra as results
 from sonolube.rig.datasets import labelled
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
 from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
-from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_HEADS = ("mode", "f_s", "f_p", "k_eff", "tip per volt")
 
 
 @task
 def compute(
     part: Annotated[
         InputFile,
-        Parameter(help="stack, tribometer_actuator, cutter_head, or a part or STEP file.", kind="PART", is_file=True),
+        Parameter("stack, tribometer_actuator, cutter_head, or a part or STEP file.", kind="PART", is_file=True),
     ],
     *,
     sizes: Sizes = None,
-    lowest: Annotated[Number, Parameter(help="Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
-    highest: Annotated[Number, Parameter(help="Highest frequency.", unit="Hz", option="--to")] = "60kHz",
-    points: Annotated[int, Parameter(help="Number of frequencies.", kind="NUMBER", lowest=2)] = 1001,
+    lowest: Annotated[Number, Parameter("Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Parameter("Highest frequency.", unit="Hz", option="--to")] = "60kHz",
+    points: Annotated[int, Parameter("Number of frequencies.", kind="NUMBER", lowest=2)] = 1001,
     clamp: Annotated[
-        Sequence[str], Parameter(help="A face held still for a second spectrum, such as back.-z.", kind="FACE")
+        Sequence[str], Parameter("A face held still for a second spectrum, such as back.-z.", kind="FACE")
     ] = (),
     ceramic: Annotated[
-        str | None, Parameter(help="Ceramic of the stack or of a part that is no transducer; pic255.", kind="NAME")
+        str | None, Parameter("Ceramic of the stack or of a part that is no transducer; pic255.", kind="NAME")
     ] = None,
-    poled: Annotated[Axis | None, Parameter(help="Direction in which such a part is poled; z.")] = None,
-    drive: Annotated[str | None, Parameter(help="Its driven electrode; +z.", kind="FACE")] = None,
-    ground: Annotated[str | None, Parameter(help="Its grounded electrode; -z.", kind="FACE")] = None,
+    poled: Annotated[Axis | None, Parameter("Direction in which such a part is poled; z.")] = None,
+    drive: Annotated[str | None, Parameter("Its driven electrode; +z.", kind="FACE")] = None,
+    ground: Annotated[str | None, Parameter("Its grounded electrode; -z.", kind="FACE")] = None,
     measured: Annotated[
         InputFile | None,
-        Parameter(help="Spectrum to draw over it, as `measure impedance` reads it.", kind="FILE", is_file=True),
+        Parameter("Spectrum to draw over it, as `measure impedance` reads it.", kind="FILE", is_file=True),
     ] = None,
     tolerance: Annotated[
-        Number, Parameter(help="Largest change of a coupled resonance from mesh to mesh.", unit="", kind="RATIO")
+        Number, Parameter("Largest change of a coupled resonance from mesh to mesh.", unit="", kind="RATIO")
     ] = 0.02,
-    vtu: Annotated[bool, Parameter(help="Write the coupled modes for ParaView too.")] = False,
+    vtu: Annotated[bool, Parameter("Write the coupled modes for ParaView too.")] = False,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "ImpedanceAnswer":
@@ -120,42 +117,13 @@ class ImpedanceAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Capacitance and coupled modes of each spectrum, and the least impedance measured."""
-        blocks: list[Block] = [f"{self.part} of {self.ceramic}: {', '.join(self.transducer.electrodes.driven)} driven"]
-        for name, spectrum in self.spectra.items():
-            port, lowest = spectrum.port, float(spectrum.response.frequency[0])
-            blocks.append(
-                f"  {name}: {format_si(spectrum.low_frequency_capacitance, 'F')} at {format_si(lowest, 'Hz')}, "
-                f"{port.model.mesh.node_count} nodes, resonances +-{port.frequency_error:.1g}"
-            )
-            blocks.append(Table(_HEADS, results.mode_rows(spectrum)))
-        if self.measured is not None:
-            row = int(abs(self.measured.impedance).argmin())
-            least, at = float(abs(self.measured.impedance[row])), float(self.measured.frequency[row])
-            blocks.append(
-                f"  measured: least impedance {format_si(least, 'ohm')} at {format_si(at, 'Hz', digits=4)} in "
-                f"{self.measured.file_name}"
-            )
-        return blocks
+        electrodes = ", ".join(self.transducer.electrodes.driven)
+        return [f"{self.part} of {self.ceramic}: {electrodes} driven", *results.blocks(self.spectra, self.measured)]
 
     def object(self) -> dict[str, Any]:
         """Electrodes, coupled modes of each spectrum, origin of the dimensions, and the measured file."""
-        electrodes, measured = self.transducer.electrodes, self.measured
-        return {
-            "part": self.part,
-            "ceramic": self.ceramic,
-            "electrodes": {"driven": list(electrodes.driven), "grounded": list(electrodes.grounded)},
-            "spectra": {name: results.spectrum_object(spectrum) for name, spectrum in self.spectra.items()},
-            "dimensions": [
-                {
-                    "name": size.name,
-                    "value": size.value,
-                    "origin": "printed" if size.printed else "assumed",
-                    "source": size.source,
-                }
-                for size in self.transducer.dimensions
-            ],
-            "measured": None if measured is None else {"file": measured.file_name, "sha256": measured.sha256},
-        }
+        content = {"part": self.part, "ceramic": self.ceramic}
+        return content | results.impedance_object(self.transducer, self.spectra, self.measured)
 
     def assumptions(self) -> Mapping[str, str]:
         """Dimensions that no source prints, with the reason for their values."""

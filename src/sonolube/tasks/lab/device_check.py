@@ -8,8 +8,8 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory.drivers import DeviceMap, first_block, missing_parts, read_device_map, unfulfilled
 from sonolube.laboratory.dry_run.findings import SAFETY
+from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import shown, task
@@ -96,12 +96,12 @@ class CheckedDevices(Answer):
 
 @task
 def check(
-    device_map: Annotated[str | Path, Parameter(help="Devices of a rig.", kind="MAP.toml", is_file=True)],
+    device_map: Annotated[str | Path, Parameter("Devices of a rig.", kind="MAP.toml", is_file=True)],
     *,
     protocol: Annotated[
-        InputFile | None, Parameter(help="Such as map_test, or a TOML file: can these devices run it?", kind="PROTOCOL")
+        InputFile | None, Parameter("Such as map_test, or a TOML file: can these devices run it?", kind="PROTOCOL")
     ] = None,
-    connect: Annotated[bool, Parameter(help="Connect, and read one block with motor and drive off.")] = False,
+    connect: Annotated[bool, Parameter("Connect, and read one block with motor and drive off.")] = False,
 ) -> CheckedDevices:
     """Check a device map: what is missing to run it, whether it can run a protocol, and what its inputs read.
 

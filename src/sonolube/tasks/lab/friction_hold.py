@@ -1,10 +1,9 @@
 """Task `lab hold`: friction held at a reference on devices or a virtual tribometer, the speed changing meanwhile."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
-from sonolube.design.control import Amplifier, ControlDesign, ControlSettings, assumed_mode, design_control
+from sonolube.design.control import Amplifier, ControlSettings, design_control
 from sonolube.errors import InvalidInput
 from sonolube.laboratory import RunControl
 from sonolube.laboratory.closed_loop import SpeedStep, hold_friction, hold_protocol, planned_hold, require_holdable
@@ -15,7 +14,7 @@ from sonolube.laboratory.run_plan import RunPlan, begin_record
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.models.actuator.drive import Drive
 from sonolube.rig import Rig
-from sonolube.tasks.design.friction_target import friction_force
+from sonolube.tasks.design import closed_loop as loop
 from sonolube.tasks.lab.hold_answer import HoldAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
 from sonolube.tasks.lab.run_record import ControlDoor, device_file, run_stage
@@ -32,36 +31,30 @@ def hold(
     friction: Annotated[
         str | float | None,
         Parameter(
-            help="Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
+            "Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
             kind="FRICTION",
         ),
     ] = None,
     step_to: Annotated[
-        Number | None, Parameter(help="Sliding speed after the step; twice the rig's by default.", unit="m/s")
+        Number | None, Parameter("Sliding speed after the step; twice the rig's by default.", unit="m/s")
     ] = None,
     step_at: Annotated[
-        Number | None, Parameter(help="Time under control until the step; half of --duration by default.", unit="s")
+        Number | None, Parameter("Time under control until the step; half of --duration by default.", unit="s")
     ] = None,
-    delay: Annotated[Number, Parameter(help="Delay of the friction measurement.", unit="s")] = "1ms",
-    rate: Annotated[Number, Parameter(help="Sampling rate of the controller.", unit="Hz")] = "20Hz",
-    closed_loop: Annotated[
-        Number | None, Parameter(help="Time constant of the closed loop; the delay by default.", unit="s")
-    ] = None,
-    voltage_limit: Annotated[
-        Number | None, Parameter(help="Largest swing, peak to peak; the rig's own by default.", unit="V")
-    ] = None,
+    delay: loop.Delay = "1ms",
+    rate: loop.Rate = "20Hz",
+    closed_loop: loop.ClosedLoop = None,
+    voltage_limit: loop.VoltageLimit = None,
     temperature_limit: Annotated[
-        str | None, Parameter(help="Temperature that ends the test, such as 60degC.", kind="TEMPERATURE")
+        str | None, Parameter("Temperature that ends the test, such as 60degC.", kind="TEMPERATURE")
     ] = None,
-    friction_limit: Annotated[Number | None, Parameter(help="Friction force that ends the test.", unit="N")] = None,
-    quality: Annotated[float, Parameter(help="Quality factor, where the rig has no structure.", lowest=0.6)] = 50.0,
-    coupling: Annotated[
-        float, Parameter(help="Effective coupling, where it has none.", lowest=0.001, highest=0.999)
-    ] = 0.2,
+    friction_limit: Annotated[Number | None, Parameter("Friction force that ends the test.", unit="N")] = None,
+    quality: loop.Quality = 50.0,
+    coupling: loop.Coupling = 0.2,
     run_in: Annotated[
-        Number, Parameter(help="Sliding without vibration before the controller takes over.", unit="s")
+        Number, Parameter("Sliding without vibration before the controller takes over.", unit="s")
     ] = "1s",
-    duration: Annotated[Number, Parameter(help="Time under control.", unit="s")] = "10s",
+    duration: Annotated[Number, Parameter("Time under control.", unit="s")] = "10s",
     device_map: Device = "virtual",
     seed: Seed = 0,
     real_time: RealTime = False,
@@ -78,14 +71,12 @@ def hold(
     Example: sonolube lab hold examples/rigs/tribometer.toml --friction 0.7N --step-to 30mm/s
     """
     known, drive = _driven(rig_of(rig))
-    sampling_rate, run_time = in_si("rate", rate), in_si("duration", duration)
-    if sampling_rate <= 0 or run_time <= 0:
-        raise InvalidInput(f"{shown('rate')} {rate} and {shown('duration')} {duration} must be positive")
+    sampling_rate, run_time = loop.sampling_and_duration(rate, duration)
     if known.structure is not None:
         refuse_unused("quality", "coupling", because="for a rig whose file has the table structure")
     file = device_file(device_map)
     swing, voltage = drive.voltage_peak_to_peak or 0.0, in_si("voltage_limit", voltage_limit)
-    target = None if friction is None else friction_force("friction", friction, normal_load=known.normal_load)
+    target = None if friction is None else loop.friction_force("friction", friction, normal_load=known.normal_load)
     settings = ControlSettings(
         friction_force=target,
         amplifier=Amplifier(voltage_maximum=swing if voltage is None else voltage),
@@ -94,7 +85,11 @@ def hold(
         closed_loop_time=in_si("closed_loop", closed_loop),
         duration=run_time,
     )
-    design = _designed(known, settings, quality=quality, coupling=coupling)
+    mode, assumed = None, dict[str, str]()
+    with stage("designing the controller"):
+        if known.structure is None:
+            mode, assumed = loop.assumed_resonance(known, quality=quality, coupling=coupling)
+        design = design_control(known, settings, mode=mode)
     wanted = planned_hold(
         drive,
         design,
@@ -129,7 +124,7 @@ def hold(
         held=held,
         run=read_run(recorder.folder),
         simulated=devices.simulated,
-        assumed=_assumed(quality, coupling) if known.structure is None else {},
+        assumed=assumed,
         folder=recorder.folder / "hold",
     )
 
@@ -139,14 +134,6 @@ def _driven(rig: Rig) -> tuple[Rig, Drive]:
     if rig.drive is None:
         raise InvalidInput(f"{rig.file or rig.title}: has no drive, by which friction is held; add the table drive")
     return rig, rig.drive
-
-
-def _designed(rig: Rig, settings: ControlSettings, *, quality: float, coupling: float) -> ControlDesign:
-    """Controller of a rig, whose resonance is assumed where it has no structure."""
-    with stage("designing the controller"):
-        is_assumed = rig.structure is None
-        mode = assumed_mode(rig, quality_factor=quality, coupling_factor=coupling) if is_assumed else None
-        return design_control(rig, settings, mode=mode)
 
 
 def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time: float) -> tuple[SpeedStep, ...]:
@@ -161,9 +148,3 @@ def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time
 def _temperature(text: str) -> float:
     """Temperature of a limit. [K]"""
     return to_si(text, unit="K", name=shown("temperature_limit"))
-
-
-def _assumed(quality: float, coupling: float) -> Mapping[str, str]:
-    """Resonance that is assumed where the rig has no structure."""
-    text = f"at the drive's frequency, quality factor {quality:g}, coupling {coupling:g}; not measured"
-    return {"resonance": text}

@@ -5,20 +5,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sonolube.design.control import ControlDesign
-from sonolube.laboratory.closed_loop import (
-    HeldFriction,
-    HoldMetrics,
-    held_friction_chart,
-    held_friction_dataset,
-    hold_metrics,
-)
+from sonolube.laboratory.closed_loop import HeldFriction, held_friction_chart, held_friction_dataset
 from sonolube.laboratory.records import Run
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block
 from sonolube.report.results import held_friction as results
+from sonolube.report.results.ended_run import SIMULATED
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
-from sonolube.tasks.lab.run_answer import SIMULATED, off_text
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -53,37 +47,15 @@ class HoldAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Reference, margins by the design, friction held at each speed, and the record."""
-        held, design = self.held, self.design
-        rows = [
-            ("outcome", held.outcome + (f": {held.reason}" if held.reason else "")),
-            ("motor and drive", off_text(is_off=held.is_safe)),
-            ("reference", results.reference_text(held)),
-            ("controller", results.controller_text(design)),
-            ("margins told", results.margins_text(design)),
-            *((f"at {format_si(phase.sliding_speed, 'm/s')}", results.phase_text(phase)) for phase in self._phases()),
-            ("record", str(self.run.folder)),
-        ]
-        return [f"{self.rig.title}, friction held" + (" (virtual)" if self.simulated else ""), Rows(rows)]
+        return results.held_blocks(self.rig, self.held, self.design, self.run, simulated=self.simulated)
 
     def object(self) -> dict[str, Any]:
         """Reference, controller, margins, what was held at each speed, and the record."""
-        held = self.held
-        return {
-            "rig": self.rig.title,
-            "outcome": held.outcome,
-            "reason": held.reason,
-            "safe": held.is_safe,
-            "simulated": self.simulated,
-            "folder": str(self.run.folder),
-            "tags": self.run.facts.get("tags", ""),
-            "recordings": [str(path) for path in self.run.recordings],
-            **results.held_object(held, self.design),
-            "phases": [results.phase_object(phase) for phase in self._phases()],
-        }
+        return results.held_object(self.rig, self.held, self.design, self.run, simulated=self.simulated)
 
     def caveats(self) -> Sequence[str]:
         """What speaks against the record, speeds at which the reference was out of reach, and a simulation."""
-        told = (*self.run.caveats, *results.saturation_lines(self._phases()))
+        told = (*self.run.caveats, *results.saturation_lines(self.held))
         return (*told, SIMULATED) if self.simulated else told
 
     def assumptions(self) -> Mapping[str, str]:
@@ -108,7 +80,3 @@ class HoldAnswer(Answer):
     def is_failure(self) -> bool:
         """Whether the loop ended before its time."""
         return self.held.outcome != "completed"
-
-    def _phases(self) -> tuple[HoldMetrics, ...]:
-        """Figures of merit at each speed that was reached under control."""
-        return hold_metrics(self.held) if self.held.time.size else ()

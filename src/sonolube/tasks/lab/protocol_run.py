@@ -25,23 +25,22 @@ _OWN_TEST: Final = "map_test"  # of a virtual rig for which no protocol is named
 
 @task
 def run(
-    protocol: Annotated[InputFile, Parameter(help="Such as map_test, or a TOML file.", kind="PROTOCOL")],
+    protocol: Annotated[InputFile, Parameter("Such as map_test, or a TOML file.", kind="PROTOCOL")],
     device_map: Device = "virtual",
     *,
     rig: Annotated[
-        OptionalRigSource,
-        Parameter(help="The rig; a virtual tribometer takes its friction.", kind="RIG.toml", is_file=True),
+        OptionalRigSource, Parameter("The rig; a virtual tribometer takes its friction.", kind="RIG.toml", is_file=True)
     ] = None,
     seed: Seed = 0,
     real_time: RealTime = False,
-    dry_run: Annotated[bool, Parameter(help="Tell what will happen, and touch nothing.")] = False,
-    anyway: Annotated[bool, Parameter(help="Run although a dry run says that it is impossible.")] = False,
-    yes: Annotated[bool, Parameter(help="Take the prompts to the operator as done.")] = False,
+    dry_run: Annotated[bool, Parameter("Tell what will happen, and touch nothing.")] = False,
+    anyway: Annotated[bool, Parameter("Run although a dry run says that it is impossible.")] = False,
+    yes: Annotated[bool, Parameter("Take the prompts to the operator as done.")] = False,
     tag: Tags = (),
     fact: Annotated[
         Mapping[str, str | float] | None,
         Parameter(
-            help="For the record, such as operator=Ann; specimen=7; humidity=45 %; calibrated=2026-03-01.",
+            "For the record, such as operator=Ann; specimen=7; humidity=45 %; calibrated=2026-03-01.",
             kind="NAME=VALUE",
             is_mapping=True,
         ),
@@ -84,11 +83,11 @@ def virtual(
     *,
     protocol: Annotated[
         InputFile | None,
-        Parameter(help="Such as study_1, or a TOML file; map_test at load and speed of the rig.", kind="PROTOCOL"),
+        Parameter("Such as study_1, or a TOML file; map_test at load and speed of the rig.", kind="PROTOCOL"),
     ] = None,
-    seed: Annotated[int, Parameter(help="Of all that is drawn: another specimen, other noise.", lowest=0)] = 0,
+    seed: Annotated[int, Parameter("Of all that is drawn: another specimen, other noise.", lowest=0)] = 0,
     file_format: Annotated[
-        Literal["netcdf", "tdms", "csv"], Parameter(help="Of the recording, beside netCDF.", option="--format")
+        Literal["netcdf", "tdms", "csv"], Parameter("Of the recording, beside netCDF.", option="--format")
     ] = "netcdf",
     out: AllRuns = RUNS,
     progress: Watch = None,

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.laboratory.records import Recovery, drop_raw_blocks, recover_run, run_folders
+from sonolube.report.blocks import Block
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import task
 
@@ -58,11 +58,9 @@ class RecoveredRuns(Answer):
 
 @task
 def recover(
-    folder: Annotated[str | Path, Parameter(help="A run, or a folder of runs.", kind="DIR", is_output=True)],
+    folder: Annotated[str | Path, Parameter("A run, or a folder of runs.", kind="DIR", is_output=True)],
     *,
-    drop_blocks: Annotated[
-        bool, Parameter(help="Remove raw blocks whose every sample was found in the recording.")
-    ] = False,
+    drop_blocks: Annotated[bool, Parameter("Remove raw blocks whose every sample was found in the recording.")] = False,
 ) -> RecoveredRuns:
     """Complete the records of runs whose program was killed; what was damaged is kept aside.
 

@@ -11,14 +11,12 @@ from sonolube.tasks.task import shown
 RUNS = "runs"
 """Folder of all runs, where none is given."""
 
-RunFolder = Annotated[str | Path, Parameter(help="Folder of the run.", kind="RUN", is_file=True)]
-AllRuns = Annotated[
-    str | Path, Parameter(help="Folder of all runs; each has a new one in it.", kind="DIR", is_output=True)
-]
-Tags = Annotated[Sequence[str], Parameter(help="For the catalogue; may come again.", kind="TAG")]
-Seed = Annotated[int, Parameter(help="Of a virtual tribometer.", lowest=0)]
-RealTime = Annotated[bool, Parameter(help="Let a virtual test take its time.")]
-Device = Annotated[str | Path, Parameter(help="What to run on.", kind="virtual|MAP.toml", option="--device")]
+RunFolder = Annotated[str | Path, Parameter("Folder of the run.", kind="RUN", is_file=True)]
+AllRuns = Annotated[str | Path, Parameter("Folder of all runs; each has a new one in it.", kind="DIR", is_output=True)]
+Tags = Annotated[Sequence[str], Parameter("For the catalogue; may come again.", kind="TAG")]
+Seed = Annotated[int, Parameter("Of a virtual tribometer.", lowest=0)]
+RealTime = Annotated[bool, Parameter("Let a virtual test take its time.")]
+Device = Annotated[str | Path, Parameter("What to run on.", kind="virtual|MAP.toml", option="--device")]
 
 
 def facts_of(given: Mapping[str, str | float]) -> dict[str, str | float]:

@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.laboratory.catalogue import FoundRuns, query_from, query_runs, take_in
+from sonolube.report.blocks import Block, Table
 from sonolube.report.results import recorded_runs as results
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.lab.run_folders import RUNS, facts_of
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import refuse_unused, shown, task
@@ -51,24 +51,24 @@ class FoundRunsAnswer(Answer):
 
 @task
 def runs(
-    folder: Annotated[str | Path, Parameter(help="Folder of runs.", kind="DIR", is_file=True)] = RUNS,
+    folder: Annotated[str | Path, Parameter("Folder of runs.", kind="DIR", is_file=True)] = RUNS,
     *,
-    material: Annotated[Sequence[str], Parameter(help="Of pin or disc; may come again.", kind="NAME")] = (),
-    load: Annotated[str | None, Parameter(help="Normal load: 5N, 3N..6N, or 3N.. and up.", kind="FORCE")] = None,
-    speed: Annotated[str | None, Parameter(help="Sliding speed, such as 10mm/s..30mm/s.", kind="SPEED")] = None,
-    since: Annotated[str | None, Parameter(help="Begun then or later, such as 2026-01-31.", kind="DATE")] = None,
-    until: Annotated[str | None, Parameter(help="Begun before.", kind="DATE")] = None,
-    tag: Annotated[Sequence[str], Parameter(help="Among the tags of the run; may come again.", kind="TAG")] = (),
-    text: Annotated[Sequence[str], Parameter(help="In title, facts, protocol or notes.", kind="TEXT")] = (),
+    material: Annotated[Sequence[str], Parameter("Of pin or disc; may come again.", kind="NAME")] = (),
+    load: Annotated[str | None, Parameter("Normal load: 5N, 3N..6N, or 3N.. and up.", kind="FORCE")] = None,
+    speed: Annotated[str | None, Parameter("Sliding speed, such as 10mm/s..30mm/s.", kind="SPEED")] = None,
+    since: Annotated[str | None, Parameter("Begun then or later, such as 2026-01-31.", kind="DATE")] = None,
+    until: Annotated[str | None, Parameter("Begun before.", kind="DATE")] = None,
+    tag: Annotated[Sequence[str], Parameter("Among the tags of the run; may come again.", kind="TAG")] = (),
+    text: Annotated[Sequence[str], Parameter("In title, facts, protocol or notes.", kind="TEXT")] = (),
     outcome: Annotated[
-        str | None, Parameter(help="completed, stopped, failed, interrupted or running.", kind="OUTCOME")
+        str | None, Parameter("completed, stopped, failed, interrupted or running.", kind="OUTCOME")
     ] = None,
     add: Annotated[
-        Sequence[str | Path], Parameter(help="Take in a recording or a folder of them.", kind="PATH", is_file=True)
+        Sequence[str | Path], Parameter("Take in a recording or a folder of them.", kind="PATH", is_file=True)
     ] = (),
     fact: Annotated[
         Mapping[str, str | float] | None,
-        Parameter(help="Of what is taken in, such as normal_load=5; tags=map,old.", kind="NAME=VALUE", is_mapping=True),
+        Parameter("Of what is taken in, such as normal_load=5; tags=map,old.", kind="NAME=VALUE", is_mapping=True),
     ] = None,
 ) -> FoundRunsAnswer:
     """Runs that were recorded, with what they are found by.

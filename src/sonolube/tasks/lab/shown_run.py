@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sonolube.laboratory.records import Run, read_run
+from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import recorded_runs as results
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.lab.run_folders import RunFolder
 from sonolube.tasks.task import task
 

@@ -5,8 +5,8 @@ from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.example_files import ExampleFile, example_file, example_files
+from sonolube.report.blocks import Block, Rows, Verbatim
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows, Verbatim
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.table import TASKS
 from sonolube.tasks.task import task
@@ -20,7 +20,7 @@ _ALL = "all"
 @task
 def example(
     name: Annotated[
-        str | None, Parameter(help="File to write, such as tribometer, or all; the list by default.", kind="EXAMPLE")
+        str | None, Parameter("File to write, such as tribometer, or all; the list by default.", kind="EXAMPLE")
     ] = None,
 ) -> "ExampleAnswer":
     """Example files, such as rigs: list them, or write one with its path in the help texts below the current folder.

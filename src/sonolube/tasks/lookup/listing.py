@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from sonolube.report.blocks import Block
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -2,34 +2,22 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
-from typing import Annotated, Any, Final
+from typing import Annotated, Any
 
-from sonolube.errors import InvalidInput, UnknownName
-from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, Selection, TextLayout
+from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping_toml import mapping_toml
-from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
 from sonolube.measurement.recordings.text_tables import TextTable
-from sonolube.measurement.run_columns import TEXT_NAMES
-from sonolube.measurement.run_headings import RunHeading, fits, run_heading
+from sonolube.measurement.run_headings import RunHeading
 from sonolube.measurement.run_table import run_text
+from sonolube.measurement.stated_columns import LEFT_OUT, Meaning, mapping_of_columns, samples, stated_columns
+from sonolube.report.blocks import Block, Table
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Parameter, file_stem
 from sonolube.tasks.task import shown, task
-from sonolube.units import unit_description
-from sonolube.vocabulary import quantities
-
-LEFT_OUT: Final = "-"
-"""Statement that leaves a column out."""
-
-_MOST_CELLS: Final = 3  # that tell what a column holds
-Meaning = RunHeading | str
-"""Quantity and unit of a column, or `LEFT_OUT`."""
 
 _COLUMN = Parameter(
-    help="Quantity and unit of a column, such as 'Kraft=friction_force N', or - to leave it out; may come again.",
+    "Quantity and unit of a column, such as 'Kraft=friction_force N', or - to leave it out; may come again.",
     kind="LABEL=QUANTITY",
     is_mapping=True,
 )
@@ -37,9 +25,7 @@ _COLUMN = Parameter(
 
 @task
 def mapping(
-    file: Annotated[
-        InputFile, Parameter(help="Table of runs, or text export of an instrument.", kind="FILE", is_file=True)
-    ],
+    file: Annotated[InputFile, Parameter("Table of runs, or text export of an instrument.", kind="FILE", is_file=True)],
     *,
     column: Annotated[Mapping[str, str] | None, _COLUMN] = None,
 ) -> "MappingAnswer":
@@ -59,93 +45,6 @@ def mapping(
         columns[label] = found
     _require_distinct(columns, path)
     return MappingAnswer(table=table, columns=columns, name=f"{file_stem(file)}-mapping.toml")
-
-
-def stated_columns(table: TextTable, statements: Mapping[str, str], path: Path) -> dict[str, Meaning | None]:
-    """Meaning of each column by its label: as stated, else by its heading; None where neither tells it with its unit.
-
-    Parameters
-    ----------
-    table : TextTable
-    statements : mapping of str to str
-        Quantity and unit, or `LEFT_OUT`, by label.
-    path : Path
-        Of the file, for messages.
-
-    Returns
-    -------
-    dict of str to RunHeading, str or None
-
-    Raises
-    ------
-    InvalidInput
-        If a column has no label, a label is that of no column, or a statement cannot be read.
-    """
-    labels = numbered_labels(table.labels)
-    if "" in labels:
-        place = labels.index("") + 1
-        raise InvalidInput(f"{path}: line {table.line}: column {place} has no heading; name it, or delete the column")
-    known = {label: label for label in labels}
-    stated = {column_of_label(known, label, path): meaning(text, label) for label, text in statements.items()}
-    return {label: stated.get(label) or _by_heading(own) for label, own in zip(labels, table.labels, strict=True)}
-
-
-def meaning(text: str, label: str) -> Meaning:
-    """Quantity and unit that a text such as "friction_force N" states, or `LEFT_OUT`.
-
-    Parameters
-    ----------
-    text : str
-    label : str
-        Of the column, for messages.
-
-    Returns
-    -------
-    RunHeading or str
-
-    Raises
-    ------
-    UnknownName
-        If there is no such quantity.
-    InvalidInput
-        If the unit is missing, unknown or of another kind.
-    """
-    if text.strip() == LEFT_OUT:
-        return LEFT_OUT
-    name, _, unit = text.strip().partition(" ")
-    found = run_heading(text)
-    if name in quantities() or name in TEXT_NAMES:
-        found = RunHeading(name, unit.strip(" []()"))
-    if found is None:
-        raise UnknownName.among((*quantities(), *TEXT_NAMES), kind=f"quantity of column {label!r}:", name=name)
-    if not fits(found):
-        unit = "" if found.name in TEXT_NAMES else quantities()[found.name].unit
-        expected = unit_description(unit) if unit else "none"
-        raise InvalidInput(f"column {label!r}: {text!r} has no unit of {found.name}; expected {expected}")
-    return found
-
-
-def samples(table: TextTable, label: str) -> list[str]:
-    """First cells of a column that are not empty.
-
-    Parameters
-    ----------
-    table : TextTable
-    label : str
-
-    Returns
-    -------
-    list of str
-    """
-    place = numbered_labels(table.labels).index(label)
-    filled = [cells[place].strip() for _, cells in table.rows if "".join(cells[place : place + 1]).strip()]
-    return filled[:_MOST_CELLS]
-
-
-def _by_heading(label: str) -> RunHeading | None:
-    """Meaning of a column by its heading, where that has its unit too."""
-    found = run_heading(label)
-    return found if found is not None and fits(found) else None
 
 
 def _require_distinct(columns: Mapping[str, Meaning], path: Path) -> None:
@@ -187,23 +86,8 @@ class MappingAnswer(Answer):
 
     def files(self) -> Mapping[str, str]:
         """Mapping as TOML."""
-        return {self.name: mapping_toml(self._mapping())}
+        return {self.name: mapping_toml(mapping_of_columns(self.table, self.columns))}
 
     def keeps(self, name: str, present: str) -> bool:
         """Whether a mapping of this name was changed since it was written."""
         return present != self.files().get(name)
-
-    def _mapping(self) -> RecordingMapping:
-        """Mapping of the columns; a time is the axis, which tables of runs have no use for."""
-        sources = {
-            found.name: ChannelSource(column=label, unit=None if found.name in TEXT_NAMES else found.unit)
-            for label, found in self.columns.items()
-            if isinstance(found, RunHeading)
-        }
-        axis = sources.pop("time", None)
-        return RecordingMapping(
-            channels=MappingProxyType(sources),
-            axis=axis,
-            selection=Selection(without=tuple(label for label, found in self.columns.items() if found == LEFT_OUT)),
-            text=TextLayout(lines_to_skip=self.table.line - 1),
-        )

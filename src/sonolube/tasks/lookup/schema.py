@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 
 from sonolube.facts.protocol import protocol_schema
 from sonolube.laboratory.drivers import device_map_schema
+from sonolube.report.blocks import Verbatim
 from sonolube.rig import rig_schema
-from sonolube.tasks.blocks import Verbatim
 from sonolube.tasks.lookup.listing import Listing
 from sonolube.tasks.openapi import tasks_description
 from sonolube.tasks.parameters import Parameter
@@ -18,7 +18,7 @@ _SCHEMAS = {"rig": rig_schema, "protocol": protocol_schema, "devices": device_ma
 @task
 def schema(
     kind: Annotated[
-        Literal["rig", "protocol", "devices", "tasks"], Parameter(help="Files to describe, or the tasks of sonolube.")
+        Literal["rig", "protocol", "devices", "tasks"], Parameter("Files to describe, or the tasks of sonolube.")
     ] = "rig",
 ) -> Listing:
     """JSON schema of rig files, protocols or device maps, or OpenAPI of the tasks; the same with and without --json.

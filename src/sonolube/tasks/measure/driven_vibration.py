@@ -16,9 +16,9 @@ from sonolube.tasks.task import in_si, task
 def vibration(
     files: Files,
     *,
-    frequency: Annotated[Number, Parameter(help="Of the drive, such as 22kHz.", unit="Hz", quantity="frequency")],
+    frequency: Annotated[Number, Parameter("Of the drive, such as 22kHz.", unit="Hz", quantity="frequency")],
     modes: Annotated[
-        InputFile | None, Parameter(help="Computed shapes at the points, one a column.", kind="MODES.csv", is_file=True)
+        InputFile | None, Parameter("Computed shapes at the points, one a column.", kind="MODES.csv", is_file=True)
     ] = None,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,

@@ -32,13 +32,13 @@ def calibration(
     *,
     apply: Annotated[
         Sequence[InputFile],
-        Parameter(help="A displacement to compute the force of; may come again.", kind="FILE", is_file=True),
+        Parameter("A displacement to compute the force of; may come again.", kind="FILE", is_file=True),
     ] = (),
     mapping: Mapped = None,
-    degree: Annotated[int, Parameter(help="Of the polynomials of loading and unloading.", lowest=1, highest=7)] = 3,
-    levels: Annotated[int, Parameter(help="Of displacement in the Preisach model.", lowest=2, highest=64)] = 16,
+    degree: Annotated[int, Parameter("Of the polynomials of loading and unloading.", lowest=1, highest=7)] = 3,
+    levels: Annotated[int, Parameter("Of displacement in the Preisach model.", lowest=2, highest=64)] = 16,
     displacement_uncertainty: Annotated[
-        Number, Parameter(help="Of a reading, standard.", unit="m", quantity="displacement_uncertainty")
+        Number, Parameter("Of a reading, standard.", unit="m", quantity="displacement_uncertainty")
     ] = "0um",
     test_sheet: TestSheet = None,
     progress: Watch = None,

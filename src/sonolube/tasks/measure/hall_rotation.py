@@ -14,12 +14,10 @@ from sonolube.tasks.task import in_si, task
 def rotation(
     files: Files,
     *,
-    groove_diameter: Annotated[
-        Number, Parameter(help="Of the circle under the pin.", unit="m", quantity="groove_diameter")
-    ],
-    magnets: Annotated[int, Parameter(help="Magnets at the rim.", lowest=1)] = 1,
+    groove_diameter: Annotated[Number, Parameter("Of the circle under the pin.", unit="m", quantity="groove_diameter")],
+    magnets: Annotated[int, Parameter("Magnets at the rim.", lowest=1)] = 1,
     prominence: Annotated[
-        float, Parameter(help="Weakest pulse that counts over the strongest.", lowest=0.01, highest=1.0)
+        float, Parameter("Weakest pulse that counts over the strongest.", lowest=0.01, highest=1.0)
     ] = 0.25,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,

@@ -15,18 +15,18 @@ def impedance(
     files: Files,
     *,
     branches: Annotated[
-        int | None, Parameter(help="Number of modes; as many as are significant by default.", lowest=1, highest=8)
+        int | None, Parameter("Number of modes; as many as are significant by default.", lowest=1, highest=8)
     ] = None,
     residual: Annotated[
-        Literal["log-complex", "log-magnitude", "linear-magnitude"], Parameter(help="Residual that the fit minimises.")
+        Literal["log-complex", "log-magnitude", "linear-magnitude"], Parameter("Residual that the fit minimises.")
     ] = "log-complex",
     series_resistance: Annotated[
         Number | None,
-        Parameter(help="Of the leads, such as 0.2ohm.", unit="ohm", quantity="series_resistance", kind="RESISTANCE"),
+        Parameter("Of the leads, such as 0.2ohm.", unit="ohm", quantity="series_resistance", kind="RESISTANCE"),
     ] = None,
-    sweep: Annotated[str | None, Parameter(help="Sweep of the file, such as memory.", kind="NAME")] = None,
+    sweep: Annotated[str | None, Parameter("Sweep of the file, such as memory.", kind="NAME")] = None,
     stack_of: Annotated[
-        OptionalRigSource, Parameter(help="Fit the stack of this rig's structure.", kind="RIG.toml", is_file=True)
+        OptionalRigSource, Parameter("Fit the stack of this rig's structure.", kind="RIG.toml", is_file=True)
     ] = None,
     test_sheet: TestSheet = None,
     progress: Watch = None,

@@ -18,13 +18,13 @@ from sonolube.report import (
     pin_on_disc_rows,
     read_pin_on_disc_sheet,
 )
+from sonolube.report.blocks import Block, Rows
 from sonolube.report.measured.sheet import Sheet
+from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
-from sonolube.tasks.measure.sheets import sheet_blocks
 from sonolube.tasks.own_tables import mapping_of
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.progress import stage
@@ -37,13 +37,13 @@ if TYPE_CHECKING:
 
 Files = Annotated[
     Sequence[InputFile] | InputFile,
-    Parameter(help="Files, or folders whose files are taken.", kind="FILES...", is_file=True),
+    Parameter("Files, or folders whose files are taken.", kind="FILES...", is_file=True),
 ]
-Group = Annotated[str | None, Parameter(help="Of the channels, in TDMS, HDF5 and MATLAB files.", kind="GROUP")]
-Channels = Annotated[Sequence[str], Parameter(help="To read, as labelled; may come again.", kind="LABEL")]
-Sections = Annotated[Sequence[str], Parameter(help="To read, such as a step; may come again.", kind="NUMBER|NAME")]
+Group = Annotated[str | None, Parameter("Of the channels, in TDMS, HDF5 and MATLAB files.", kind="GROUP")]
+Channels = Annotated[Sequence[str], Parameter("To read, as labelled; may come again.", kind="LABEL")]
+Sections = Annotated[Sequence[str], Parameter("To read, such as a step; may come again.", kind="NUMBER|NAME")]
 TestSheet = Annotated[
-    InputFile | None, Parameter(help="Conditions of the test, listed in its report.", kind="TEST.toml", is_file=True)
+    InputFile | None, Parameter("Conditions of the test, listed in its report.", kind="TEST.toml", is_file=True)
 ]
 Measure = Callable[[Path], Sheet]
 

@@ -36,32 +36,31 @@ def friction(
     group: Group = None,
     channel: Channels = (),
     section: Sections = (),
-    join: Annotated[bool, Parameter(help="The files are one test, in this order: measure it too.")] = False,
+    join: Annotated[bool, Parameter("The files are one test, in this order: measure it too.")] = False,
     without_vibration: Annotated[
-        Sequence[InputFile], Parameter(help="A test without vibration; may come again.", kind="FILE", is_file=True)
+        Sequence[InputFile], Parameter("A test without vibration; may come again.", kind="FILE", is_file=True)
     ] = (),
     sliding_speed: Annotated[
-        Number | None, Parameter(help="For the distance to the steady state.", unit="m/s", quantity="sliding_speed")
+        Number | None, Parameter("For the distance to the steady state.", unit="m/s", quantity="sliding_speed")
     ] = None,
-    window: Annotated[Number, Parameter(help="Duration of the windows.", unit="s")] = "2s",
+    window: Annotated[Number, Parameter("Duration of the windows.", unit="s")] = "2s",
     rotation_speed: Annotated[
         Number | None,
         Parameter(
-            help="Of the disc, to remove its wobble; without it found at voltage steps.",
+            "Of the disc, to remove its wobble; without it found at voltage steps.",
             unit="1/s",
             quantity="rotation_speed",
         ),
     ] = None,
     torque_constant: Annotated[
         Number | None,
-        Parameter(help="Of the motor, such as '0.5 N m/A'.", unit="N m/A", quantity="torque_constant", kind="QUANTITY"),
+        Parameter("Of the motor, such as '0.5 N m/A'.", unit="N m/A", quantity="torque_constant", kind="QUANTITY"),
     ] = None,
     idle_current: Annotated[
-        Number | None,
-        Parameter(help="Of the motor with the pin lifted.", unit="A", quantity="idle_current", kind="CURRENT"),
+        Number | None, Parameter("Of the motor with the pin lifted.", unit="A", quantity="idle_current", kind="CURRENT")
     ] = None,
     groove_diameter: Annotated[
-        Number | None, Parameter(help="Of the circle under the pin.", unit="m", quantity="groove_diameter")
+        Number | None, Parameter("Of the circle under the pin.", unit="m", quantity="groove_diameter")
     ] = None,
     test_sheet: TestSheet = None,
     progress: Watch = None,

@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, MeasurementReport, measurement_object
+from sonolube.report.blocks import Block
 from sonolube.report.measured.contact_stiffness import StiffnessSettings, contact_stiffness_sheet
 from sonolube.report.measured.sheet import Sheet
+from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.measure.sheets import sheet_blocks
 from sonolube.tasks.parameters import Number, OptionalRig, Parameter, Stop, Watch, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -23,49 +23,44 @@ if TYPE_CHECKING:
 
 @task
 def stiffness(
-    free: Annotated[InputFile, Parameter(help="Spectrum with the contact lifted.", kind="FREE", is_file=True)],
-    pressed: Annotated[
-        InputFile, Parameter(help="Spectrum under the load, at small drive.", kind="PRESSED", is_file=True)
-    ],
+    free: Annotated[InputFile, Parameter("Spectrum with the contact lifted.", kind="FREE", is_file=True)],
+    pressed: Annotated[InputFile, Parameter("Spectrum under the load, at small drive.", kind="PRESSED", is_file=True)],
     again: Annotated[
-        InputFile | None,
-        Parameter(help="Lifted again afterwards: drift enters the interval.", kind="[FREE2]", is_file=True),
+        InputFile | None, Parameter("Lifted again afterwards: drift enters the interval.", kind="[FREE2]", is_file=True)
     ] = None,
     *,
     rig: OptionalRig = None,
     load: Annotated[
-        Number | None,
-        Parameter(help="Normal load instead of the rig's, such as 40N.", unit="N", quantity="normal_load"),
+        Number | None, Parameter("Normal load instead of the rig's, such as 40N.", unit="N", quantity="normal_load")
     ] = None,
     mode_near: Annotated[
         Number | None,
         Parameter(
-            help="Free resonance to take, such as 154Hz; 0Hz for a floating mode; the strongest by default.", unit="Hz"
+            "Free resonance to take, such as 154Hz; 0Hz for a floating mode; the strongest by default.", unit="Hz"
         ),
     ] = None,
     pressed_near: Annotated[
-        Number | None,
-        Parameter(help="Pressed resonance to take; by default the nearest above the free one.", unit="Hz"),
+        Number | None, Parameter("Pressed resonance to take; by default the nearest above the free one.", unit="Hz")
     ] = None,
     modal_mass: Annotated[
         Number | None,
-        Parameter(help="Of the mode at the contact, instead of the rig's structure.", unit="kg", quantity="modal_mass"),
+        Parameter("Of the mode at the contact, instead of the rig's structure.", unit="kg", quantity="modal_mass"),
     ] = None,
     mass_uncertainty: Annotated[
-        Number | None, Parameter(help="Standard uncertainty of the modal mass, such as 10%.", unit="", kind="SHARE")
+        Number | None, Parameter("Standard uncertainty of the modal mass, such as 10%.", unit="", kind="SHARE")
     ] = None,
     large: Annotated[
         InputFile | None,
-        Parameter(help="Spectrum under the load at large drive, of constant amplitude.", kind="FILE", is_file=True),
+        Parameter("Spectrum under the load at large drive, of constant amplitude.", kind="FILE", is_file=True),
     ] = None,
     amplitude: Annotated[
         Number | None,
         Parameter(
-            help="At the contact at large drive, zero to peak, such as 2.5um.", unit="m", quantity="vibration_amplitude"
+            "At the contact at large drive, zero to peak, such as 2.5um.", unit="m", quantity="vibration_amplitude"
         ),
     ] = None,
     amplitude_uncertainty: Annotated[
-        Number | None, Parameter(help="Its standard uncertainty, such as 5%.", unit="", kind="SHARE")
+        Number | None, Parameter("Its standard uncertainty, such as 5%.", unit="", kind="SHARE")
     ] = None,
     progress: Watch = None,
     cancelled: Stop = None,

@@ -9,9 +9,9 @@ from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.task import in_si, shown, task
 
 Spacing = Annotated[
-    str | float | None, Parameter(help="Distance of pixels, for files that lack it; one or 'x,y'.", kind="LENGTH")
+    str | float | None, Parameter("Distance of pixels, for files that lack it; one or 'x,y'.", kind="LENGTH")
 ]
-LengthUnit = Annotated[str | None, Parameter(help="For files that lack it, such as um.", kind="UNIT")]
+LengthUnit = Annotated[str | None, Parameter("For files that lack it, such as um.", kind="UNIT")]
 
 
 @task
@@ -21,14 +21,14 @@ def surface(
     spacing: Spacing = None,
     length_unit: LengthUnit = None,
     form: Annotated[
-        int, Parameter(help="Degree of the form that is removed: 1 tilt, 2 curvature.", lowest=0, highest=12)
+        int, Parameter("Degree of the form that is removed: 1 tilt, 2 curvature.", lowest=0, highest=12)
     ] = 1,
-    robust: Annotated[bool, Parameter(help="Weight pixels far from the form less.")] = False,
+    robust: Annotated[bool, Parameter("Weight pixels far from the form less.")] = False,
     short_cutoff: Annotated[
-        Number | None, Parameter(help="Remove shorter waves, as noise.", unit="m", quantity="short_cutoff_length")
+        Number | None, Parameter("Remove shorter waves, as noise.", unit="m", quantity="short_cutoff_length")
     ] = None,
     long_cutoff: Annotated[
-        Number | None, Parameter(help="Remove longer waves, as waviness.", unit="m", quantity="long_cutoff_length")
+        Number | None, Parameter("Remove longer waves, as waviness.", unit="m", quantity="long_cutoff_length")
     ] = None,
     test_sheet: TestSheet = None,
     progress: Watch = None,

@@ -23,23 +23,22 @@ def groove(
     files: Files,
     *,
     groove_diameter: Annotated[
-        Number | None, Parameter(help="Of the ring that the scans lie on.", unit="m", quantity="groove_diameter")
+        Number | None, Parameter("Of the ring that the scans lie on.", unit="m", quantity="groove_diameter")
     ] = None,
     sliding_distance: Annotated[
-        Number | None, Parameter(help="Sliding distance on the ring.", unit="m", quantity="sliding_distance")
+        Number | None, Parameter("Sliding distance on the ring.", unit="m", quantity="sliding_distance")
     ] = None,
     without_vibration: Annotated[
-        Sequence[InputFile],
-        Parameter(help="Scan or folder of a ring worn without vibration.", kind="FILE", is_file=True),
+        Sequence[InputFile], Parameter("Scan or folder of a ring worn without vibration.", kind="FILE", is_file=True)
     ] = (),
     tip_radius: Annotated[
-        Number | None, Parameter(help="Of the pin, for ASTM G99's geometry.", unit="m", quantity="tip_radius")
+        Number | None, Parameter("Of the pin, for ASTM G99's geometry.", unit="m", quantity="tip_radius")
     ] = None,
     pin: Annotated[
-        Sequence[InputFile], Parameter(help="Scan of the pin's tip; may come again.", kind="FILE", is_file=True)
+        Sequence[InputFile], Parameter("Scan of the pin's tip; may come again.", kind="FILE", is_file=True)
     ] = (),
     track: Annotated[
-        int | None, Parameter(help="Of several tracks: from the left, or the innermost radius.", kind="N", lowest=1)
+        int | None, Parameter("Of several tracks: from the left, or the innermost radius.", kind="N", lowest=1)
     ] = None,
     spacing: Spacing = None,
     length_unit: LengthUnit = None,

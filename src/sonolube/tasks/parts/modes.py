@@ -1,7 +1,6 @@
 """Task `modes`: natural modes of a part by finite elements, with pictures, grids, shapes and animations."""
 
 import shlex
-import tomllib
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -16,7 +15,6 @@ from sonolube.models.fem.figures import ShapedSurface, mode_figure, shaped_surfa
 from sonolube.models.fem.mode_files import (
     SupportedBody,
     elastic_rows,
-    frequency_text,
     mode_animation,
     mode_title,
     modes_grid,
@@ -25,21 +23,31 @@ from sonolube.models.fem.mode_files import (
 )
 from sonolube.models.fem.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
 from sonolube.report import Drawing
-from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
+from sonolube.report.blocks import Block
+from sonolube.report.results.parts import natural_modes as results
+from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.number_table import number_table
 from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
-from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, Axis, Part, PartSizes, named_transducer, part_name
+from sonolube.tasks.parts.named_parts import (
+    ALL_TRANSDUCERS,
+    ELASTIC_PROPERTIES,
+    Axis,
+    Part,
+    PartSizes,
+    named_transducer,
+    part_name,
+)
 from sonolube.tasks.parts.supported_part import DEFAULT_MATERIAL, supported_part
 from sonolube.tasks.progress import stage
-from sonolube.tasks.task import in_si, is_given, refuse_unused, shown, task
+from sonolube.tasks.task import given_arguments, in_si, refuse_unused, shown, task
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+_CHOICES = ("count", "clamp", "tolerance", "contact", "body_mass", "body_stiffness", "body_damping")  # of the modes
 _BODY_UNITS = {"body_mass": "kg", "body_stiffness": "N/m", "body_damping": "N s/m"}
 
 
@@ -49,48 +57,43 @@ def modes(
     *,
     sizes: Sizes = None,
     material: Annotated[
-        str, Parameter(help="Material of the part; transducers have their own.", kind="NAME")
+        str, Parameter("Material of the part; transducers have their own.", kind="NAME")
     ] = DEFAULT_MATERIAL,
     youngs_modulus: Annotated[
         Number | None,
         Parameter(
-            help="Young's modulus instead of the material's.",
-            unit="Pa",
-            quantity="youngs_modulus",
-            option="--young-modulus",
+            "Young's modulus instead of the material's.", unit="Pa", quantity="youngs_modulus", option="--young-modulus"
         ),
     ] = None,
     poisson_ratio: Annotated[
         Number | None,
-        Parameter(help="Instead of the material's Poisson's ratio.", unit="", quantity="poisson_ratio", kind="RATIO"),
+        Parameter("Instead of the material's Poisson's ratio.", unit="", quantity="poisson_ratio", kind="RATIO"),
     ] = None,
     density: Annotated[
-        Number | None, Parameter(help="Density instead of the material's.", unit="kg/m3", quantity="density")
+        Number | None, Parameter("Density instead of the material's.", unit="kg/m3", quantity="density")
     ] = None,
-    count: Annotated[int, Parameter(help="Number of elastic modes.", kind="NUMBER")] = 6,
-    clamp: Annotated[Sequence[str], Parameter(help="A face held still, such as -x.", kind="FACE")] = (),
-    axis: Annotated[Axis | None, Parameter(help="The part's axis; its longest by default.")] = None,
-    tolerance: Annotated[
-        Number, Parameter(help="Largest relative error of a frequency.", unit="", kind="RATIO")
-    ] = 0.005,
+    count: Annotated[int, Parameter("Number of elastic modes.", kind="NUMBER")] = 6,
+    clamp: Annotated[Sequence[str], Parameter("A face held still, such as -x.", kind="FACE")] = (),
+    axis: Annotated[Axis | None, Parameter("The part's axis; its longest by default.")] = None,
+    tolerance: Annotated[Number, Parameter("Largest relative error of a frequency.", unit="", kind="RATIO")] = 0.005,
     points: Annotated[
         InputFile | None,
-        Parameter(help="Points x, y, z in mm at which to write the shapes.", kind="POINTS.csv", is_file=True),
+        Parameter("Points x, y, z in mm at which to write the shapes.", kind="POINTS.csv", is_file=True),
     ] = None,
-    toward: Annotated[Axis | None, Parameter(help="Component at the points; that of the axis by default.")] = None,
+    toward: Annotated[Axis | None, Parameter("Component at the points; that of the axis by default.")] = None,
     contact: Annotated[
         str | None,
-        Parameter(help="Write the modes for a rig file, with the contact at an output such as tip.", kind="OUTPUT"),
+        Parameter("Write the modes for a rig file, with the contact at an output such as tip.", kind="OUTPUT"),
     ] = None,
     body_mass: Annotated[
-        Number | None, Parameter(help="Of a body that rests on the contact; held where absent.", unit="kg")
+        Number | None, Parameter("Of a body that rests on the contact; held where absent.", unit="kg")
     ] = None,
     body_stiffness: Annotated[
-        Number, Parameter(help="Of the spring that holds that body; none where absent.", unit="N/m")
+        Number, Parameter("Of the spring that holds that body; none where absent.", unit="N/m")
     ] = "0N/m",
-    body_damping: Annotated[Number, Parameter(help="Of the damper beside it.", unit="N s/m")] = "0N s/m",
-    vtu: Annotated[bool, Parameter(help="Write the modes for ParaView too.")] = False,
-    animate: Annotated[bool, Parameter(help="Draw each mode as an animated GIF too.")] = False,
+    body_damping: Annotated[Number, Parameter("Of the damper beside it.", unit="N s/m")] = "0N s/m",
+    vtu: Annotated[bool, Parameter("Write the modes for ParaView too.")] = False,
+    animate: Annotated[bool, Parameter("Draw each mode as an animated GIF too.")] = False,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "ModesAnswer":
@@ -102,18 +105,8 @@ def modes(
     _refuse_unused(name, points=points, contact=contact, body_mass=body_mass)
     if contact is not None:
         _require_output(name, sizes or {}, contact)
-    given = {
-        "youngs_modulus": in_si("youngs_modulus", youngs_modulus),
-        "poisson_ratio": in_si("poisson_ratio", poisson_ratio),
-        "density": in_si("density", density),
-    }
-    supported = supported_part(
-        part,
-        sizes or {},
-        material=material,
-        properties={each: value for each, value in given.items() if value is not None},
-        clamp=clamp,
-    )
+    given = {name: in_si(name, value) for name, value in given_arguments(ELASTIC_PROPERTIES).items()}
+    supported = supported_part(part, sizes or {}, material=material, properties=given, clamp=clamp)
     body = _body(body_mass, body_stiffness, body_damping)
     scanned = None if points is None else _points_in_metres(points)
     with stage("meshing and solving") as advance:
@@ -122,19 +115,7 @@ def modes(
         if supported.transducer is not None and contact is not None:
             meshes = len(solved.found.nodes)
             advance("reduction", meshes, meshes + 1)
-            command = _command(
-                name,
-                sizes or {},
-                {
-                    "count": count,
-                    "clamp": clamp,
-                    "tolerance": tolerance,
-                    "contact": contact,
-                    "body_mass": body_mass,
-                    "body_stiffness": body_stiffness,
-                    "body_damping": body_damping,
-                },
-            )
+            command = _command(name, sizes or {}, _CHOICES)
             structure = structure_modes(solved.found, supported.transducer, contact=contact, body=body, command=command)
     return ModesAnswer(
         solved=solved,
@@ -188,15 +169,14 @@ def _points_in_metres(points: InputFile) -> Floats:
     return np.asarray(1e-3 * table)
 
 
-def _command(part: str, sizes: PartSizes, arguments: Mapping[str, Any]) -> str:
+def _command(part: str, sizes: PartSizes, names: Sequence[str]) -> str:
     """Command that computes the same modes again, without the options of its files."""
     words = ["sonolube", "modes", part]
     for name, size in sizes.items():
         words += ["--set", f"{name}={_typed(size, quantity(name).unit)}"]
-    for name, value in arguments.items():
-        if is_given(name) and value is not None:
-            for each in value if isinstance(value, list | tuple) else [value]:
-                words += [f"--{name.replace('_', '-')}", _typed(each, _BODY_UNITS.get(name, ""))]
+    for name, value in given_arguments(names).items():
+        for each in value if isinstance(value, list | tuple) else [value]:
+            words += [f"--{name.replace('_', '-')}", _typed(each, _BODY_UNITS.get(name, ""))]
     return " ".join(shlex.quote(word) if " " in word else word for word in words)
 
 
@@ -233,41 +213,11 @@ class ModesAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Name and natural frequency with its error of every elastic mode."""
-        found, rigid = self.found, self.found.modes.rigid_body_count
-        support = f"{rigid} rigid motions, " if rigid else "held, "
-        nodes = f"{found.nodes[-1]} nodes in the last of {len(found.nodes)} meshes"
-        return [
-            f"{self.part.name} of {self.part.material}: {support}{nodes}",
-            Rows([(self.names[row], self._frequency(row)) for row in self._rows()]),
-        ]
+        return results.modes_blocks(self.solved)
 
     def object(self) -> dict[str, Any]:
         """Number of rigid motions, nodes of the meshes, and name, frequency and error of every elastic mode."""
-        found = self.found
-        return {
-            "part": self.part.name,
-            "material": self.part.material,
-            "rigid_motions": found.modes.rigid_body_count,
-            "nodes": list(found.nodes),
-            **({} if self.structure is None else {"structure": tomllib.loads(self.structure)}),
-            "modes": [
-                {
-                    "name": self.names[row],
-                    "text": self._frequency(row),
-                    "uncertainty": {
-                        "value": float(found.natural_frequency[row] * found.frequency_error[row]),
-                        "unit": "Hz",
-                    },
-                    **si(
-                        {
-                            "natural_frequency": float(found.natural_frequency[row]),
-                            "frequency_error": float(found.frequency_error[row]),
-                        }
-                    ),
-                }
-                for row in self._rows()
-            ],
-        }
+        return results.modes_object(self.solved, self.structure)
 
     def assumptions(self) -> Mapping[str, str]:
         """Dimensions of a transducer that no source prints."""
@@ -315,13 +265,6 @@ class ModesAnswer(Answer):
     def _title(self, row: int) -> str:
         """Name and natural frequency of a mode."""
         return mode_title(self.found, self.names, row)
-
-    def _frequency(self, row: int) -> str:
-        """Natural frequency of a mode with its error."""
-        found = self.found
-        return frequency_text(
-            frequency=float(found.natural_frequency[row]), relative_error=float(found.frequency_error[row])
-        )
 
     def _file_name(self, row: int) -> str:
         """Name of the picture of a mode: part, number among the elastic modes, and name of the mode."""

@@ -27,8 +27,7 @@ from sonolube.units import to_si
 from sonolube.vocabulary import quantities
 
 Part = Annotated[
-    InputFile,
-    Parameter(help="A part such as block, a transducer such as stack, or a STEP file.", kind="PART", is_file=True),
+    InputFile, Parameter("A part such as block, a transducer such as stack, or a STEP file.", kind="PART", is_file=True)
 ]
 Axis = Literal["x", "y", "z"]
 PartSizes = Mapping[str, str | float]

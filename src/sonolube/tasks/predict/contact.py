@@ -5,10 +5,10 @@ from typing import Annotated
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.rig import contact_point
 from sonolube.tasks.parameters import Parameter, RestingRig, rig_of
-from sonolube.tasks.results.rig_record import RigRecord
+from sonolube.tasks.predict.rig_record import RigRecord
 from sonolube.tasks.task import task
 
-_STIFFNESS = Parameter(help=f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}.", kind="MODEL")
+_STIFFNESS = Parameter(f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}.", kind="MODEL")
 
 
 @task

@@ -9,7 +9,7 @@ from sonolube.report.results.measured_on_rig import measured_on
 from sonolube.rig import friction_point
 from sonolube.rig.simulation import friction_model_named
 from sonolube.tasks.parameters import Interval, Parameter, RigFile, rig_of
-from sonolube.tasks.results.rig_record import RigRecord
+from sonolube.tasks.predict.rig_record import RigRecord
 from sonolube.tasks.task import task
 
 
@@ -20,8 +20,7 @@ def _described(model: type[FrictionModel]) -> str:
 
 
 _MODEL = Parameter(
-    help=f"Friction model instead of the rig's own: {'; '.join(map(_described, FRICTION_MODELS.values()))}.",
-    kind="NAME",
+    f"Friction model instead of the rig's own: {'; '.join(map(_described, FRICTION_MODELS.values()))}.", kind="NAME"
 )
 
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
+from sonolube.report.blocks import Block, Table
 from sonolube.rig import Rig
 from sonolube.rig.new_rig.known_surface import KnownSurface
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text, rig_of_known
 from sonolube.rig.new_rig.stated_text import pin_shape, reader, speed_of, surface_of, vibration_of
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Number, Parameter
 from sonolube.tasks.task import shown, task
@@ -38,58 +38,55 @@ _ONE_OF = (
 @task
 def new(
     *,
-    pin: Annotated[str, Parameter(help="Material of the pin, or its class: 100Cr6, 304, steel.", kind="MATERIAL")],
-    disc: Annotated[str, Parameter(help="Material of the disc, or its class.", kind="MATERIAL")],
-    load: Annotated[Number, Parameter(help="Normal load.", unit="N")],
-    speed: Annotated[Number, Parameter(help="Sliding speed: 0.2m/s, or '100 rpm' with the track.", unit="m/s")],
-    frequency: Annotated[Number, Parameter(help="Frequency of the vibration.", unit="Hz")],
+    pin: Annotated[str, Parameter("Material of the pin, or its class: 100Cr6, 304, steel.", kind="MATERIAL")],
+    disc: Annotated[str, Parameter("Material of the disc, or its class.", kind="MATERIAL")],
+    load: Annotated[Number, Parameter("Normal load.", unit="N")],
+    speed: Annotated[Number, Parameter("Sliding speed: 0.2m/s, or '100 rpm' with the track.", unit="m/s")],
+    frequency: Annotated[Number, Parameter("Frequency of the vibration.", unit="Hz")],
     amplitude: Annotated[
-        Number | None, Parameter(help="Vibration amplitude normal to the contact, zero to peak.", unit="m")
+        Number | None, Parameter("Vibration amplitude normal to the contact, zero to peak.", unit="m")
     ] = None,
     actuator: Annotated[
-        str | None, Parameter(help="Actuator of `sonolube actuators`, in place of the amplitude.", kind="NAME")
+        str | None, Parameter("Actuator of `sonolube actuators`, in place of the amplitude.", kind="NAME")
     ] = None,
-    voltage: Annotated[Number | None, Parameter(help="Voltage of the actuator, peak to peak.", unit="V")] = None,
+    voltage: Annotated[Number | None, Parameter("Voltage of the actuator, peak to peak.", unit="V")] = None,
     shape: Annotated[
         str | None,
         Parameter(
-            help="End of the pin: 'flat 3mm' (its diameter, default), 'ball 5mm' (its radius), 'ball radius 5mm',"
+            "End of the pin: 'flat 3mm' (its diameter, default), 'ball 5mm' (its radius), 'ball radius 5mm',"
             " 'ball diameter 10mm'.",
             kind="SHAPE",
         ),
     ] = None,
     track_radius: Annotated[
-        Number | None, Parameter(help="Radius of the track on the disc, for a speed in rpm.", unit="m")
+        Number | None, Parameter("Radius of the track on the disc, for a speed in rpm.", unit="m")
     ] = None,
-    track_diameter: Annotated[Number | None, Parameter(help="Its diameter, in place of the radius.", unit="m")] = None,
+    track_diameter: Annotated[Number | None, Parameter("Its diameter, in place of the radius.", unit="m")] = None,
     finish: Annotated[
         str | None,
         Parameter(
-            help="Finish of pin and disc: 'ground' (default), N6, 'ground N6', 'Ra 0.4' (in um), 0.4um (as Ra),"
-            " 'Rz 3.2um'.",
+            "Finish of pin and disc: 'ground' (default), N6, 'ground N6', 'Ra 0.4' (in um), 0.4um (as Ra), 'Rz 3.2um'.",
             kind="FINISH",
         ),
     ] = None,
-    pin_finish: Annotated[str | None, Parameter(help="Finish of the pin.", kind="FINISH")] = None,
-    disc_finish: Annotated[str | None, Parameter(help="Finish of the disc.", kind="FINISH")] = None,
+    pin_finish: Annotated[str | None, Parameter("Finish of the pin.", kind="FINISH")] = None,
+    disc_finish: Annotated[str | None, Parameter("Finish of the disc.", kind="FINISH")] = None,
     scan: Annotated[
-        InputFile | None, Parameter(help="Scan of the disc, in place of its finish.", kind="FILE", is_file=True)
+        InputFile | None, Parameter("Scan of the disc, in place of its finish.", kind="FILE", is_file=True)
     ] = None,
     pin_scan: Annotated[
-        InputFile | None, Parameter(help="Scan of the pin, in place of its finish.", kind="FILE", is_file=True)
+        InputFile | None, Parameter("Scan of the pin, in place of its finish.", kind="FILE", is_file=True)
     ] = None,
     friction: Annotated[
         Number | None,
         Parameter(
-            help="Coefficient of dry friction, where it was measured; else the range of the pair.",
-            unit="",
-            kind="NUMBER",
+            "Coefficient of dry friction, where it was measured; else the range of the pair.", unit="", kind="NUMBER"
         ),
     ] = None,
     decay_length: Annotated[
         Number | None,
         Parameter(
-            help="Length over which the force of the worn contact falls by a factor of e, where it is known; else that "
+            "Length over which the force of the worn contact falls by a factor of e, where it is known; else that "
             "of published tests.",
             unit="m",
         ),
@@ -97,8 +94,7 @@ def new(
     stiffness: Annotated[
         Number | None,
         Parameter(
-            help="Measured normal stiffness of the contact under the load, such as 1.5MN/m, in place of the decay "
-            "length.",
+            "Measured normal stiffness of the contact under the load, such as 1.5MN/m, in place of the decay length.",
             unit="N/m",
             kind="STIFFNESS",
         ),

@@ -8,12 +8,12 @@ from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.predictive import DRAWS
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Table
 from sonolube.report.results import prediction as results
 from sonolube.report.results.measured_on_rig import Measurement, measured_on
 from sonolube.rig import Rig
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Table
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
 from sonolube.tasks.task import task
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Laboratory: TypeAlias = "Mapping[RigSource, RunsSource] | Sequence[tuple[RigSource, RunsSource]] | None"
 
 _LABORATORY = Parameter(
-    help="Another rig of your laboratory with its runs, which tell of the contact's decay length; may be repeated.",
+    "Another rig of your laboratory with its runs, which tell of the contact's decay length; may be repeated.",
     kind="RIG.toml=RUNS.csv",
     is_mapping=True,
 )
@@ -36,17 +36,16 @@ _MEASURE_HEADS = ["what would narrow it", "leaves of the interval"]
 def predict(
     rig: RigFile,
     *,
-    runs: Annotated[RunsSource, Parameter(help=runs_help("Own measured runs"), kind="RUNS.csv", is_file=True)] = None,
+    runs: Annotated[RunsSource, Parameter(runs_help("Own measured runs"), kind="RUNS.csv", is_file=True)] = None,
     mapping: MappedRuns = None,
     laboratory: Annotated[Laboratory, _LABORATORY] = None,
     pin: Pin = None,
     disc: Disc = None,
-    lubricant: Annotated[bool, Parameter(help="The contact is lubricated: a dry prediction does not hold.")] = False,
+    lubricant: Annotated[bool, Parameter("The contact is lubricated: a dry prediction does not hold.")] = False,
     draws: Annotated[
-        int,
-        Parameter(help="Equally probable outcomes, 4000 for two digits of the intervals.", lowest=100, highest=200_000),
+        int, Parameter("Equally probable outcomes, 4000 for two digits of the intervals.", lowest=100, highest=200_000)
     ] = DRAWS,
-    seed: Annotated[int, Parameter(help="Of the draws.", lowest=0)] = 0,
+    seed: Annotated[int, Parameter("Of the draws.", lowest=0)] = 0,
 ) -> "PredictionAnswer":
     """Friction and wear under vibration with 50, 80 and 95 % intervals, and what to measure next.
 

@@ -8,12 +8,12 @@ from sonolube.facts.materials import material
 from sonolube.models.friction import BoundaryLubricant
 from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results import regime as results
 from sonolube.rig import LubricationMap, LubricationPoint, Rig, lubrication_map, lubrication_point, wear_of_materials
 from sonolube.rig.datasets import labels
 from sonolube.rig.figures import lubrication_chart
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.blocks import Block, Rows, Table
 from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
 from sonolube.tasks.task import in_si, plausible, shown, task
 from sonolube.units import format_si
@@ -21,10 +21,10 @@ from sonolube.units import format_si
 if TYPE_CHECKING:
     import xarray as xr
 
-_FILM = Parameter(help="Coefficient of friction of the lubricant film.", unit="", kind="NUMBER")
-_PRESSURE = Parameter(help="Pressure at which asperities carry all the load.", unit="Pa")
+_FILM = Parameter("Coefficient of friction of the lubricant film.", unit="", kind="NUMBER")
+_PRESSURE = Parameter("Pressure at which asperities carry all the load.", unit="Pa")
 _GAIN = Parameter(
-    help="Least reduction of a lubricant's friction that is worth the power of vibration.", unit="", kind="SHARE"
+    "Least reduction of a lubricant's friction that is worth the power of vibration.", unit="", kind="SHARE"
 )
 
 
@@ -35,8 +35,8 @@ def regime(
     film_coefficient: Annotated[Number, _FILM],
     asperity_pressure: Annotated[Number, _PRESSURE],
     smallest_gain: Annotated[Number, _GAIN] = "0",
-    pin: Annotated[str | None, Parameter(help="Material of the pin, for its wear.", kind="MATERIAL")] = None,
-    disc: Annotated[str | None, Parameter(help="Material of the disc, for its wear.", kind="MATERIAL")] = None,
+    pin: Annotated[str | None, Parameter("Material of the pin, for its wear.", kind="MATERIAL")] = None,
+    disc: Annotated[str | None, Parameter("Material of the disc, for its wear.", kind="MATERIAL")] = None,
 ) -> "RegimeAnswer":
     """Lubrication regime: dry, vibrated, lubricated or both, and the kind of wear to expect.
 

@@ -7,12 +7,12 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import modes
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, structure_in_contact
 from sonolube.rig.figures import response_chart
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.rig.result_datasets import response_arrays
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.parameters import Number, Parameter, RestingRig, rig_of
 from sonolube.tasks.task import in_si, shown, task
 from sonolube.units import format_si
@@ -22,8 +22,8 @@ from sonolube.units import format_si
 def response(
     rig: RestingRig,
     *,
-    lowest: Annotated[Number, Parameter(help="Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
-    highest: Annotated[Number, Parameter(help="Highest frequency.", unit="Hz", option="--to")] = "100kHz",
+    lowest: Annotated[Number, Parameter("Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Parameter("Highest frequency.", unit="Hz", option="--to")] = "100kHz",
 ) -> "ResponseAnswer":
     """Linear response: tip amplitude per volt and electrical impedance over frequency.
 

@@ -6,8 +6,8 @@ from sonolube.report.results.measured_on_rig import measured_on
 from sonolube.rig.figures import simulation_chart
 from sonolube.rig.result_datasets import simulation_arrays
 from sonolube.tasks.parameters import RigFile, Stop, Watch, rig_of
+from sonolube.tasks.predict.rig_record import RigRecord
 from sonolube.tasks.progress import stage
-from sonolube.tasks.results.rig_record import RigRecord
 from sonolube.tasks.task import task
 
 

@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.rig import Rig, StartUp, resolved_vibration, start_up
 from sonolube.rig.figures import start_up_chart
 from sonolube.rig.labelled_arrays import LabelledArrays
 from sonolube.rig.result_datasets import start_up_arrays
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, task
@@ -22,7 +22,7 @@ _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "bea
 def transient(
     rig: RigFile,
     *,
-    duration: Annotated[Number, Parameter(help="Time that is integrated.", unit="s")] = "0.1s",
+    duration: Annotated[Number, Parameter("Time that is integrated.", unit="s")] = "0.1s",
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "StartUpAnswer":

@@ -2,7 +2,7 @@
 
 from sonolube.rig import wear_point
 from sonolube.tasks.parameters import RigFile, rig_of
-from sonolube.tasks.results.rig_record import RigRecord
+from sonolube.tasks.predict.rig_record import RigRecord
 from sonolube.tasks.task import task
 
 

@@ -5,11 +5,11 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from sonolube.report import Drawing
+from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.measured_on_rig import Measurement
 from sonolube.rig import Rig
 from sonolube.rig.datasets import result_quantities, result_texts
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.blocks import Block, Rows
 from sonolube.units import format_quantity, format_si
 from sonolube.vocabulary import quantities
 

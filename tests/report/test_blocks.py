@@ -3,7 +3,7 @@
 from hypothesis import given, strategies as st
 from pytest import mark
 
-from sonolube.tasks.blocks import Rows, Table, text_lines
+from sonolube.report.blocks import Rows, Table, text_lines
 from sonolube.text_layout import aligned, grid
 
 WORD = st.text("abcdefgh", min_size=1, max_size=9)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from html import escape
 
 from sonolube.text_layout import aligned, grid, wrapped
 
@@ -76,3 +77,26 @@ def text_lines(blocks: Iterable[Block], *, line_length: int | None = None) -> li
         else:
             lines += wrapped(block, line_length=line_length)
     return lines
+
+
+def block_html(block: Block) -> str:
+    """Block as HTML, all texts escaped.
+
+    Parameters
+    ----------
+    block : Block
+
+    Returns
+    -------
+    str
+    """
+    if isinstance(block, Rows):
+        rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in block.rows)
+        return f"<table><tbody>{rows}</tbody></table>"
+    if isinstance(block, Table):
+        heads = "".join(f"<th>{escape(head.strip())}</th>" for head in block.heads)
+        rows = "".join(f"<tr>{''.join(f'<td>{escape(cell.strip())}</td>' for cell in row)}</tr>" for row in block.rows)
+        return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
+    if isinstance(block, Verbatim):
+        return f"<pre>{escape(block.text)}</pre>"
+    return f"<p>{escape(block.strip())}</p>"

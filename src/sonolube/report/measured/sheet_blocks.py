@@ -1,7 +1,7 @@
 """Sheets of measured files as blocks of text."""
 
+from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.measured.sheet import Sheet
-from sonolube.tasks.blocks import Block, Rows, Table
 
 
 def sheet_blocks(sheet: Sheet) -> list[Block]:

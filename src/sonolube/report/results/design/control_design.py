@@ -1,0 +1,195 @@
+"""Friction control of a rig: controller, margins, step response, energy and stick-slip as facts, JSON and a table."""
+
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from sonolube.design.control import (
+    ControlDesign,
+    ControlEnergy,
+    ControlSettings,
+    StickSlipMotion,
+    capture_limit,
+    stick_slip as holder,
+)
+from sonolube.design.control.run_results import final_state, lost_resonance
+from sonolube.design.control.stick_slip import StickSlipSuppression
+from sonolube.report.page import PageTable
+from sonolube.report.results.rig_text import amplitude_object
+from sonolube.rig import AMPLITUDE, Rig, operating_caveats
+from sonolube.units import format_si
+from sonolube.vocabulary import si
+
+_LEAST_GAIN_MARGIN = 1.7  # lower limit of textbooks
+_NO_VOLTAGE = (
+    "the rig has no voltage: resonance, its tracking and warming, and electrical energy are those of the generator that"
+    " holds the amplitude, and are not computed"
+)
+_TABLE_ROWS = 12  # of the lookup table on the page
+
+_ENERGIES = ("amplifier_energy", "electrical_energy")  # of a voltage alone
+
+_MAXIMA = {"voltage": "voltage_maximum", "amplitude": "amplitude_maximum"}
+
+
+def control_object(
+    rig: Rig, settings: ControlSettings, study: ControlDesign, suppression: StickSlipSuppression | None
+) -> dict[str, Any]:
+    """Controller, margins, step response, energy and stick-slip, for JSON."""
+    process = study.controller.process
+    values = {
+        "friction_force": study.friction_force,
+        _MAXIMA[study.plant.quantity.word]: study.level_maximum,
+        "time_constant": study.mode.time_constant,
+        "dead_time": process.dead_time_samples * process.sample_interval,
+        "sample_interval": process.sample_interval,
+        "plant_gain": study.plant_gain,
+        **_fields(study.controller.gains, "proportional_gain", "integral_time"),
+        **_fields(study.margins, "gain_margin", "phase_margin", "delay_margin", "sensitivity_peak"),
+        **_fields(study.response, "rise_time", "settling_time", "overshoot", "tracking_error"),
+        **_fields(study.energy, *_ENERGIES, "saved_work"),
+    }
+    if study.run.electrical_energy is None:
+        values = {name: value for name, value in values.items() if name not in _ENERGIES}
+    content = {
+        "rig": rig.title,
+        "friction_model": rig.friction_model.name,
+        **amplitude_object(rig),
+        "feed_forward": settings.feed_forward,
+        "limit": study.limit,
+        **si(values),
+    }
+    if suppression is None:
+        return content
+    return content | {
+        "stick_slip": {
+            name: {
+                **si({"stick_slip_amplitude": motion.stick_slip_amplitude}),
+                "stick_fraction": motion.stick_fraction,
+                **si({"damping": damping}, unit="N s/m"),
+            }
+            for name, motion, damping in _motions(suppression)
+        }
+    }
+
+
+def facts(
+    settings: ControlSettings, study: ControlDesign, suppression: StickSlipSuppression | None
+) -> list[tuple[str, str]]:
+    """Target, drive, process, controller, margins, step response, energy, resonance and stick-slip."""
+    process, gains = study.controller.process, study.controller.gains
+    margins, response = study.margins, study.response
+    late = process.dead_time_samples * process.sample_interval
+    found = {
+        "target friction": f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
+        f"least within reach {study.plant.lowest_force:.3g} N",
+        "drive": _drive_text(study),
+        "process": f"vibration {format_si(study.mode.time_constant, 's')}, delay {format_si(late, 's')}, "
+        f"interval {format_si(process.sample_interval, 's')}",
+        "controller": f"K_c {gains.proportional_gain:.3g}, tau_I {format_si(gains.integral_time, 's')} (SIMC), "
+        f"feed-forward {settings.feed_forward}",
+        "margins": f"gain {margins.gain_margin:.2f} where real friction changes {study.plant_gain:.2f} times as "
+        f"expected, phase {degrees(margins.phase_margin):.1f} deg, delay {format_si(margins.delay_margin, 's')}, "
+        f"Ms {margins.sensitivity_peak:.2f}",
+        "step": f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
+        f"overshoot {100 * response.overshoot:.2g} %",
+        "tracking error": f"{format_si(response.tracking_error, 'N', scale=study.friction_force)} rms once settled",
+        "energy": _energy_text(study.energy),
+    }
+    if study.fixed_frequency_run is not None:
+        found["resonance"] = _resonance_text(study)
+    for name, motion, damping in _motions(suppression) if suppression else ():
+        swing = format_si(motion.stick_slip_amplitude, "N", scale=study.friction_force)
+        sticks = f"sticks {100 * motion.stick_fraction:.0f} % of the time"
+        found[f"stick-slip {name}"] = f"{swing}, {sticks}, damping of sliding {damping:.3g} N s/m"
+    return list(found.items())
+
+
+def caveats(rig: Rig, study: ControlDesign) -> list[str]:
+    """Those of the rig at its own operating point, a thin gain margin, and a resonance that tracking has lost."""
+    found = list(operating_caveats(rig))
+    if study.plant.quantity is AMPLITUDE:
+        found.append(_NO_VOLTAGE)
+    if study.margins.gain_margin < _LEAST_GAIN_MARGIN:
+        verdict = "is unstable" if study.margins.gain_margin < 1 else "is near instability"
+        cause = f"real friction changes {study.plant_gain:.3g} times as the controller expects"
+        found.append(f"the loop {verdict} at the target, where {cause}: ask for a slower closed loop")
+    if lost_resonance(study):
+        last = format_si(float(study.run.frequency[-1]), "Hz", digits=4)
+        edge = format_si(capture_limit(study.mode) - study.mode.frequency, "Hz")
+        found.append(
+            f"the drive ends at {last}, the end of its band, and has lost the resonance: it returns to it from up"
+            f" to {edge} above it; warm slower or keep the drive on"
+        )
+    return found
+
+
+def holder_text() -> str:
+    """Holder of the slider that stick-slip is computed with."""
+    return (
+        f"a holder of {format_si(holder.HOLDER_STIFFNESS, 'N/m')} and {1e3 * holder.HOLDER_MASS:g} g, damping"
+        f" ratio {holder.HOLDER_DAMPING_RATIO:g}; static friction {holder.STATIC_FRICTION_FACTOR:g} times that"
+        " of sliding, falling over the sliding speed"
+    )
+
+
+def _fields(record: Any, *names: str) -> dict[str, float | None]:
+    """Fields of a record by name."""
+    return {name: getattr(record, name) for name in names}
+
+
+def _motions(suppression: StickSlipSuppression) -> list[tuple[str, StickSlipMotion, float]]:
+    """Motion and damping without and with vibration."""
+    without, within = suppression.damping
+    return [("without", suppression.still, without), ("with", suppression.vibrating, within)]
+
+
+def lookup_table(study: ControlDesign) -> PageTable:
+    """Map from voltage or amplitude to friction at about a dozen points."""
+    plant, quantity = study.plant, study.plant.quantity
+    places = np.unique(np.linspace(0, plant.friction_force.size - 1, _TABLE_ROWS).round().astype(int))
+    rows = zip(plant.level[places], plant.friction_force[places], strict=True)
+    return PageTable(
+        title=f"Friction by the rig's model, at {places.size} of the map's {plant.level.size} {quantity.word}s",
+        heads=(f"{quantity.word}, {quantity.qualifier}", "friction"),
+        rows=tuple((format_si(float(level), quantity.unit), format_si(float(force), "N")) for level, force in rows),
+    )
+
+
+def _resonance_text(study: ControlDesign) -> str:
+    """Shift of the resonance, and final voltage and error with and without tracking."""
+    assert study.fixed_frequency_run is not None
+    shift = float(study.run.resonance_frequency[-1] - study.run.resonance_frequency[0])
+    tracked, fixed = (
+        f"{format_si(end.level, study.plant.quantity.unit)}"
+        f" and {format_si(end.tracking_error, 'N', scale=study.friction_force)} rms"
+        for end in (final_state(study.run), final_state(study.fixed_frequency_run))
+    )
+    moves = format_si(shift, "Hz", scale=study.mode.frequency)
+    return f"moves by {moves}; tracked {tracked}, at a fixed frequency {fixed}"
+
+
+def _drive_text(study: ControlDesign) -> str:
+    """Largest voltage or amplitude, and what limits it."""
+    quantity = study.plant.quantity
+    highest = quantity.text(study.level_maximum, digits=4)
+    if quantity is AMPLITUDE:
+        return f"amplitude up to {highest}, as the set point of a generator"
+    return f"up to {highest}, by the amplifier's {study.limit}"
+
+
+def _energy_text(energy: ControlEnergy) -> str:
+    """Energy of the amplifier and the motion, where there is a voltage, and work of friction saved."""
+    saved = f"work of friction saved {format_si(energy.saved_work, 'J')}"
+    if energy.electrical_energy is None:
+        return saved
+    amplifier = ""
+    if energy.amplifier_energy is not None:
+        amplifier = f"{format_si(energy.amplifier_energy, 'J')} for the capacitance alone (D 1.9), "
+    return f"amplifier {amplifier}heat of the motion {format_si(energy.electrical_energy, 'J')}, {saved}"
+
+
+def _time(seconds: float | None) -> str:
+    """Time, or "never" where it was not reached."""
+    return "never" if seconds is None else format_si(seconds, "s")

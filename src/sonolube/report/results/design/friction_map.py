@@ -1,0 +1,128 @@
+"""Map of friction reduction: its greatest value, ridge and measured runs as facts and tables of a page."""
+
+from typing import TYPE_CHECKING, Any
+
+from sonolube.design import map_layout
+from sonolube.design.gaussian_process import FEWEST_RUNS
+from sonolube.design.map_layouts import panels_text
+from sonolube.design.point_statistics import extreme_point, failure_counts
+from sonolube.report.blocks import Block, Rows
+from sonolube.report.page import Page, PageTable
+from sonolube.report.results.design.status_tables import status_tables
+from sonolube.report.results.design.uncertainty import in_sentence
+from sonolube.report.results.rig_text import amplitude_object, amplitude_rows, friction_model_text, rig_settings
+from sonolube.rig import AMPLITUDE, VOLTAGE, Rig
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity, si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_SETTINGS = ("sliding_speed", "normal_load", "frequency", VOLTAGE.name, AMPLITUDE.name, "actuator_power")
+
+
+def map_blocks(rig: Rig, mapped: "xr.Dataset") -> list[Block]:
+    """Greatest reduction, ridge, and points without a result."""
+    failures = [("without result", f"{count}: {reason}") for reason, count in _failures(mapped).items()]
+    return [
+        f"{rig.title}, {mapped['status'].size} points, {friction_model_text(rig)}",
+        Rows([*amplitude_rows(rig), *_facts(mapped), *failures]),
+    ]
+
+
+def map_object(rig: Rig, mapped: "xr.Dataset") -> dict[str, Any]:
+    """Greatest reduction with the point where it occurs, and the number of points without a result, for JSON."""
+    return {
+        "rig": rig.title,
+        "map": str(mapped.attrs["map"]),
+        "friction_model": rig.friction_model.name,
+        **amplitude_object(rig),
+        "same_panels": bool(panels_text(mapped)),
+        "points": int(mapped["status"].size),
+        "without_result": int(mapped["friction_reduction"].isnull().sum()),
+        "most_reduction": si(_greatest(mapped)),
+    }
+
+
+def map_page(rig: Rig, mapped: "xr.Dataset", runs: "xr.Dataset | None", interpolated: "xr.Dataset | None") -> Page:
+    """Page of a map: greatest reduction, ridge, measured runs, and statuses."""
+    across, up, panel = map_layout(mapped)
+    over = " and ".join(in_sentence(name).partition(",")[0] for name in (across, up))
+    return Page(
+        name="map",
+        title=f"Friction reduction over {over}: {rig.title}",
+        settings=rig_settings(rig),
+        facts=[("points", f"{mapped['status'].size}"), *_facts(mapped), *_run_facts(runs, interpolated)],
+        tables=[*_panel_tables(mapped, panel), *status_tables(mapped, _failures(mapped))],
+    )
+
+
+def _failures(mapped: "xr.Dataset") -> dict[str, int]:
+    """Number of points without a result, by the reason."""
+    return failure_counts(mapped, outcome="friction_reduction")
+
+
+def _greatest(mapped: "xr.Dataset") -> dict[str, float]:
+    """Greatest reduction and the quantities where it occurs; empty where no point has a result."""
+    point = extreme_point(mapped, outcome="friction_reduction", highest=True)
+    if point is None:
+        return {}
+    names = ("friction_reduction", *(name for name in _SETTINGS if name in mapped.coords))
+    return {name: float(point[name]) for name in names if point[name].ndim == 0}
+
+
+def _facts(mapped: "xr.Dataset") -> list[tuple[str, str]]:
+    """Greatest reduction, and the ridge where the map has one."""
+    found = [("panels", text)] if (text := panels_text(mapped)) else []
+    values = [format_si(value, quantity(name).unit) for name, value in _greatest(mapped).items()]
+    if values:
+        found.append(("most reduction", f"{values[0]} at {', '.join(values[1:])}"))
+    ridge = _ridge(mapped)
+    if ridge:
+        found.append(("ridge", f"{ridge}; beyond it doubling the power buys less than 5 %"))
+    return found
+
+
+def _run_facts(runs: "xr.Dataset | None", interpolated: "xr.Dataset | None") -> list[tuple[str, str]]:
+    """Number of measured runs, their scatter and their leave-one-out error."""
+    if runs is None:
+        return []
+    count = f"{runs.sizes['run']}"
+    if interpolated is None:
+        return [("measured runs", f"{count}; {FEWEST_RUNS} make a map of their own")]
+    scatter, error = (100 * float(interpolated.attrs[name]) for name in ("scatter", "leave_one_out_error"))
+    text = f"scatter {scatter:.2g} % about a smooth map, leave-one-out error {error:.2g} %"
+    return [("measured runs", f"{count}; {text}")]
+
+
+def caption(mapped: "xr.Dataset", *, has_runs: bool) -> str:
+    """Caption of the contours."""
+    text = "Friction reduction by the model."
+    if _ridge(mapped):
+        text += " Dashed: the power beyond which doubling it reduces friction by less than another 5 %."
+    return f"{text} Circles: measured runs, with their reductions in percent." if has_runs else text
+
+
+def _ridge(mapped: "xr.Dataset") -> str:
+    """Range of the sufficient power; empty where the map does not reach it."""
+    if "saturation_power" not in mapped or mapped["saturation_power"].isnull().all():
+        return ""
+    low, high = float(mapped["saturation_power"].min()), float(mapped["saturation_power"].max())
+    return f"{format_si(low, 'W')} to {format_si(high, 'W')}"
+
+
+def _panel_tables(mapped: "xr.Dataset", panel: str | None) -> list[PageTable]:
+    """Greatest reduction in each panel, and the ridge where the map has one; none where all panels are the same."""
+    if panel is None or panels_text(mapped):
+        return []
+    level = "actuator_power" if "actuator_power" in mapped.coords else AMPLITUDE.name
+    names = [name for name in ("friction_reduction", "sliding_speed", level) if name != panel]
+    rows = []
+    for index in range(mapped.sizes[panel]):
+        part = mapped.isel({panel: index})
+        texts = {name: format_si(value, quantity(name).unit) for name, value in _greatest(part).items()}
+        value = format_si(float(part[panel]), quantity(panel).unit)
+        rows.append((value, *(texts.get(name, "") for name in names), _ridge(part)))
+    heads = (quantity(panel).meaning, *(quantity(name).meaning for name in names), "Ridge")
+    columns = slice(None) if any(row[-1] for row in rows) else slice(-1)
+    return [PageTable(title="Most reduction", heads=heads[columns], rows=tuple(row[columns] for row in rows))]

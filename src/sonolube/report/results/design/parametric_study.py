@@ -1,0 +1,144 @@
+"""Parametric study of a rig over one quantity: rows of its main results, and objects for JSON."""
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sonolube.design.point_statistics import extreme_place, extreme_point
+from sonolube.rig import energy_balance, quantity_of_axis
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity, si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Named = Iterator[tuple[str, str]]
+
+OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
+"""Quantities that the answer of a sweep has of a point."""
+
+
+def _level_rows(study: "xr.Dataset") -> Named:
+    """Least friction, voltage or amplitude at which contact is lost, and power of the amplifier where it is known."""
+    quantity = quantity_of_axis(study.dims)
+    for best in _best_points(study):
+        yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, quantity.name)}"
+    lost = study[quantity.name].values[study["contact_loss_fraction"].values > 0]
+    yield "contact is lost", f"from {format_si(float(lost.min()), quantity.unit)}" if lost.size else "nowhere"
+    if "actuator_power" in study and not study["actuator_power"].isnull().all():
+        yield "amplifier", f"up to {format_si(float(study['actuator_power'].max()), 'W')}, D 1.9"
+
+
+def _speed_rows(study: "xr.Dataset") -> Named:
+    """Range of the friction ratio at each voltage or amplitude."""
+    quantity = quantity_of_axis(study.dims)
+    for index in range(study.sizes[quantity.name]):
+        curve = study.isel({quantity.name: index})
+        low, high = float(curve["friction_ratio"].min()), float(curve["friction_ratio"].max())
+        yield f"at {_text(curve, quantity.name)}", f"ratio {low:.3g} to {high:.3g}, slow to fast"
+
+
+def _frequency_rows(study: "xr.Dataset") -> Named:
+    """Least friction at each voltage."""
+    for best in _best_points(study):
+        at = f"{_text(best, 'frequency', digits=4)}, {_text(best, 'vibration_amplitude')}"
+        text = f"least friction ratio {_text(best, 'friction_ratio')} at {at}, {_text(best, 'actuator_power')}"
+        yield f"at {_text(best, 'voltage_peak_to_peak')}", text
+
+
+def _power_rows(study: "xr.Dataset") -> Named:
+    """Least power that the friction ratio takes, of the amplifier and dissipated."""
+    for name, label in (("actuator_power", "least power, D 1.9"), ("dissipated_power", "least dissipation")):
+        if not study[name].isnull().all():
+            least = study.isel(frequency=extreme_place(study, outcome=name) or 0)
+            at = f"{_text(least, 'frequency', digits=4)} and {_text(least, 'voltage_peak_to_peak')}"
+            yield label, f"{_text(least, name)} at {at} for friction ratio {_text(least, 'friction_ratio')}"
+
+
+def _waveform_rows(study: "xr.Dataset") -> Named:
+    """Friction ratio of each waveform, the least first."""
+    for index in study["friction_ratio"].values.argsort():
+        one = study.isel(waveform=int(index))
+        text = f"ratio {_text(one, 'friction_ratio')}, {_text(one, 'vibration_amplitude')}"
+        yield str(one["waveform"].values), text
+
+
+def _load_rows(study: "xr.Dataset") -> Named:
+    """Range of the friction ratio and, of a structure, of the natural frequency of the loading arm."""
+    ratios = study["friction_ratio"]
+    yield "friction ratio", f"{float(ratios.min()):.4g} to {float(ratios.max()):.4g}"
+    if "natural_frequency" in study:
+        arm = study["natural_frequency"]
+        yield "arm's frequency", f"{format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
+
+
+def _energy_rows(study: "xr.Dataset") -> Named:
+    """How the powers of the study compare, at its point of least friction."""
+    best = extreme_point(study, outcome="friction_ratio")
+    balance = None if best is None else power_balance(best)
+    if balance is not None:
+        yield "energy", balance
+
+
+def power_balance(point: "xr.Dataset") -> str | None:
+    """How the power of the amplifier and the dissipated power of a point compare; None where it has no power."""
+    if "actuator_power" not in point:
+        return None
+    return energy_balance(
+        actuator_power=float(point["actuator_power"]), dissipated_power=float(point["dissipated_power"])
+    )
+
+
+_ROWS: "dict[str, Callable[[xr.Dataset], Named]]" = {
+    "voltage": _level_rows,
+    "amplitude": _level_rows,
+    "speed": _speed_rows,
+    "frequency": _frequency_rows,
+    "power": _power_rows,
+    "waveform": _waveform_rows,
+    "load": _load_rows,
+}
+
+
+def rows(study: "xr.Dataset", of: str) -> list[tuple[str, str]]:
+    """Main results of a study over a quantity such as "voltage", and how its powers compare."""
+    return [*_ROWS[of](study), *_energy_rows(study)]
+
+
+def best_objects(study: "xr.Dataset") -> list[dict[str, Any]]:
+    """Point of least friction of each curve, for JSON."""
+    return list(map(_point_object, _best_points(study)))
+
+
+def _best_points(study: "xr.Dataset") -> "Iterator[xr.Dataset]":
+    """Point of least friction of each curve that has a result."""
+    dims = study["friction_ratio"].dims
+    curves = [study] if len(dims) == 1 else [study.isel({dims[0]: i}) for i in range(study.sizes[dims[0]])]
+    for curve in curves:
+        best = extreme_point(curve, outcome="friction_ratio")
+        if best is not None:
+            yield best
+
+
+def _point_object(point: "xr.Dataset") -> dict[str, Any]:
+    """Coordinates and outcomes of a point, for JSON."""
+    known = dict.fromkeys([*point.coords, *(name for name in OUTCOMES if name in point)])
+    names = [str(name) for name in known if point[name].ndim == 0 and not _missing(point, name)]
+    waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
+    balance = power_balance(point)
+    return (
+        waveform
+        | si({name: float(point[name]) for name in names if name != "waveform"})
+        | ({} if balance is None else {"energy_balance": balance})
+    )
+
+
+def _missing(point: "xr.Dataset", name: Any) -> bool:
+    """Whether a number of a point is not known, as heat of a sine that no structure gives."""
+    return bool(point[name].dtype.kind == "f" and np.isnan(point[name]))
+
+
+def _text(point: "xr.Dataset", name: str, *, digits: int = 3) -> str:
+    """Quantity of a point with its unit."""
+    return format_si(float(point[name]), quantity(name).unit, digits=digits)

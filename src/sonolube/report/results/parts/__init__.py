@@ -1,0 +1,1 @@
+"""Results of parts as text and JSON: natural modes, impedance spectra, horns."""

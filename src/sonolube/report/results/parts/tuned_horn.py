@@ -1,0 +1,83 @@
+"""Tuned horn: length, frequency, gain, node, stress and neighbouring modes as text and JSON."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from sonolube.design.horns.tuning import HornDesign, amplitude_limits, loaded_frequency
+from sonolube.facts.materials import Material
+from sonolube.report.blocks import Block, Rows
+from sonolube.units import format_si
+from sonolube.vocabulary import si
+
+_NEAREST = 3  # neighbouring modes printed
+_LIMITS = {"fatigue_strength": "fatigue limit", "yield_strength": "yield point"}
+_QUANTITIES = ("displacement_gain", "node_position", "face_uniformity", "face_asymmetry", "stress_per_displacement")
+
+
+def horn_blocks(design: HornDesign, material: Material, *, tool_mass: float, amplitude: float | None) -> list[Block]:
+    """Tuned size, frequency and what follows from the mode."""
+    mode, thin, limits = design.tuned.mode, design.body.thin, amplitude_limits(design, material=material)
+    sizes = ", ".join(f"{name} {format_si(value, 'm')}" for name, value in design.body.sizes.items())
+    near = [f"{name} {at / mode.frequency - 1:+.1%}" for name, at in design.neighbours[:_NEAREST]]
+    length = f"{1e3 * design.tuned.length:.2f} mm"
+    gain = f"{design.displacement_gain:.2f}"
+    if thin is not None:
+        length += f"  (thin bar {1e3 * thin.length:.2f} mm)"
+        gain += f"  (thin bar {thin.displacement_gain:.2f})"
+    error = mode.frequency * mode.frequency_error
+    loaded = loaded_frequency(design, tool_mass=tool_mass)
+    rows = [
+        (design.body.tuned_size, length),
+        ("total length", f"{1e3 * design.total_length:.2f} mm"),
+        ("frequency", f"{mode.frequency:.0f} Hz +-{error:.0f}  {mode.names[mode.row]}"),
+        ("trim", f"{1e-3 * design.tuned.frequency_per_length:+.1f} Hz/mm"),
+        ("neighbours", ", ".join(near) or "none below"),
+        ("gain", gain),
+        ("node", f"{1e3 * design.node_position:.1f} mm from the driven face"),
+        ("face", f"Umin/Umax {design.face_uniformity:.3f}, asymmetry {design.face_asymmetry:.2g}"),
+        ("peak stress", f"{1e-12 * design.stress_per_displacement:.2f} MPa per um of the working face"),
+        *_stress_rows(design, limits, amplitude),
+        *((_LIMITS[name], f"{1e6 * value:.0f} um, zero to peak") for name, value in limits.items()),
+        ("tool", f"{1e3 * tool_mass:g} g on the face: {loaded - mode.frequency:+.0f} Hz"),
+    ]
+    return [f"{design.body.name} of {material.name}" + (f": {sizes}" if sizes else ""), Rows(rows)]
+
+
+def horn_object(design: HornDesign, material: Material, *, tool_mass: float, amplitude: float | None) -> dict[str, Any]:
+    """Sizes, frequency, quantities of the mode, amplitudes allowed and neighbouring modes, for JSON."""
+    tuned, thin = design.tuned, design.body.thin
+    frequency = tuned.mode.frequency
+    return {
+        "part": design.body.name,
+        "material": material.name,
+        "mode": tuned.mode.names[tuned.mode.row],
+        "tuned_size": design.body.tuned_size,
+        "thin_bar_length": None if thin is None else {"value": thin.length, "unit": "m"},
+        "sizes": si(design.body.sizes, unit="m"),
+        **si({name: getattr(tuned, name) for name in ("length", "frequency_per_length")}),
+        **si({"total_length": design.total_length}, unit="m"),
+        **si({name: getattr(tuned.mode, name) for name in ("frequency", "frequency_error")}),
+        **si({name: getattr(design, name) for name in _QUANTITIES}),
+        **si({"tool_mass": tool_mass, "loaded_frequency": loaded_frequency(design, tool_mass=tool_mass)}),
+        **si({"stress_change": design.stress_change}, unit=""),
+        **(
+            {}
+            if amplitude is None
+            else si({"vibration_amplitude": amplitude, "peak_stress": design.stress_per_displacement * amplitude})
+        ),
+        "amplitude_limits": si(amplitude_limits(design, material=material), unit="m"),
+        "neighbours": [
+            {"name": name, **si({"frequency": at}), **si({"gap": at / frequency - 1}, unit="")}
+            for name, at in design.neighbours
+        ],
+        "nodes": tuned.mode.model.mesh.node_count,
+    }
+
+
+def _stress_rows(design: HornDesign, limits: Mapping[str, float], amplitude: float | None) -> list[tuple[str, str]]:
+    """Peak stress at the amplitude that was asked for, beside each strength."""
+    if amplitude is None:
+        return []
+    shares = [f"{amplitude / at:.0%} of the {_LIMITS[name]}" for name, at in limits.items()]
+    stress = f"{1e-6 * design.stress_per_displacement * amplitude:.0f} MPa"
+    return [(f"at {1e6 * amplitude:g} um", ", ".join([stress, *shares]))]
