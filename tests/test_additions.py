@@ -223,7 +223,7 @@ def test_a_task_is_one_file_and_one_line_for_terminal_and_python(copied_package:
         TASK,
         table=copied_package / "tasks" / "table.py",
         after="TASKS: Final = (\n",
-        line='    Task(_LOOKUP, "hello", "lookup.hello:hello"),',
+        line='    Task(LOOKUP, "hello", "lookup.hello:hello"),',
     )
     assert answer(folder, "hello", "1kHz")["circular_frequency"]["value"] == approx(6283.185307)
     assert "6283.19 rad/s" in run(folder, "-c", "from sonolube.cli import main; main(['hello', '1 kHz'])")

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from pytest import MonkeyPatch
 
-from sonolube.cli.lookup import doctor as command
 from sonolube.extras import EXTRAS
 from sonolube.reference_solutions.self_checks import SELF_CHECKS
+from sonolube.report.results import installation as command
 
 Program = Callable[..., Any]
 
