@@ -17,8 +17,25 @@ Quality = Annotated[float, Parameter("Quality factor, where the rig has no struc
 Coupling = Annotated[float, Parameter("Effective coupling, where it has none.", lowest=0.001, highest=0.999)]
 
 
-def sampling_and_duration(rate: Number, duration: Number) -> tuple[float, float]:
-    """Sampling rate and duration of the running task in SI, both positive."""
+def sampling_and_duration(rate: Number, *, duration: Number) -> tuple[float, float]:
+    """Sampling rate and duration of the running task in SI, both positive.
+
+    Parameters
+    ----------
+    rate : Number
+        Samples a second. [Hz]
+    duration : Number
+        Of the run. [s]
+
+    Returns
+    -------
+    float, float
+
+    Raises
+    ------
+    InvalidInput
+        If one is not positive.
+    """
     sampling, run_time = in_si("rate", rate), in_si("duration", duration)
     if sampling <= 0 or run_time <= 0:
         raise InvalidInput(f"{shown('rate')} {rate} and {shown('duration')} {duration} must be positive")

@@ -15,7 +15,17 @@ _QUANTITIES = ("displacement_gain", "node_position", "face_uniformity", "face_as
 
 
 def horn_blocks(design: HornDesign, material: Material, *, tool_mass: float, amplitude: float | None) -> list[Block]:
-    """Tuned size, frequency and what follows from the mode."""
+    """Tuned size, frequency and what follows from the mode.
+
+    Parameters
+    ----------
+    design : HornDesign
+    material : Material
+    tool_mass : float
+        Mass of the tool. [kg]
+    amplitude : float or None
+        Of the working face, at which stress is told. [m]
+    """
     mode, thin, limits = design.tuned.mode, design.body.thin, amplitude_limits(design, material=material)
     sizes = ", ".join(f"{name} {format_si(value, 'm')}" for name, value in design.body.sizes.items())
     near = [f"{name} {at / mode.frequency - 1:+.1%}" for name, at in design.neighbours[:_NEAREST]]
@@ -44,7 +54,17 @@ def horn_blocks(design: HornDesign, material: Material, *, tool_mass: float, amp
 
 
 def horn_object(design: HornDesign, material: Material, *, tool_mass: float, amplitude: float | None) -> dict[str, Any]:
-    """Sizes, frequency, quantities of the mode, amplitudes allowed and neighbouring modes, for JSON."""
+    """Sizes, frequency, quantities of the mode, amplitudes allowed and neighbouring modes, for JSON.
+
+    Parameters
+    ----------
+    design : HornDesign
+    material : Material
+    tool_mass : float
+        Mass of the tool. [kg]
+    amplitude : float or None
+        Of the working face, at which stress is told. [m]
+    """
     tuned, thin = design.tuned, design.body.thin
     frequency = tuned.mode.frequency
     return {
