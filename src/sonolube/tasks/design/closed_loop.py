@@ -17,24 +17,19 @@ Quality = Annotated[float, Parameter("Quality factor, where the rig has no struc
 Coupling = Annotated[float, Parameter("Effective coupling, where it has none.", lowest=0.001, highest=0.999)]
 
 
-def sampling_and_duration(rate: Number, *, duration: Number) -> tuple[float, float]:
+def sampling_and_duration(*, rate: Number, duration: Number) -> tuple[float, float]:
     """Sampling rate and duration of the running task in SI, both positive.
 
     Parameters
     ----------
-    rate : Number
-        Samples a second. [Hz]
-    duration : Number
+    rate : float or str
+        Of the controller, in Hz or with its unit.
+    duration : float or str
         Of the run. [s]
 
     Returns
     -------
-    float, float
-
-    Raises
-    ------
-    InvalidInput
-        If one is not positive.
+    tuple of two float
     """
     sampling, run_time = in_si("rate", rate), in_si("duration", duration)
     if sampling <= 0 or run_time <= 0:
@@ -43,7 +38,19 @@ def sampling_and_duration(rate: Number, *, duration: Number) -> tuple[float, flo
 
 
 def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[VibrationMode, dict[str, str]]:
-    """Resonance at the frequency of the drive of a rig without a structure, with what is assumed of it."""
+    """Resonance at the frequency of the drive of a rig without a structure, with what is assumed of it.
+
+    Parameters
+    ----------
+    rig : Rig
+    quality, coupling : float
+        Quality factor and effective coupling.
+
+    Returns
+    -------
+    VibrationMode
+    dict of str to str
+    """
     text = f"at the drive's frequency, quality factor {quality:g}, coupling {coupling:g}; not measured"
     return assumed_mode(rig, quality_factor=quality, coupling_factor=coupling), {"resonance": text}
 

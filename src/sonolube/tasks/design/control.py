@@ -155,7 +155,7 @@ def _assumed(rig: Rig, quality: float, coupling: float) -> tuple[VibrationMode |
 
 def _times(rate: Number, delay: Number, duration: Number) -> tuple[float, float, float]:
     """Sampling interval, delay and duration of the run, in s."""
-    sampling, run_time = loop.sampling_and_duration(rate, duration=duration)
+    sampling, run_time = loop.sampling_and_duration(rate=rate, duration=duration)
     dead_time = in_si("delay", delay)
     if dead_time > run_time:
         raise InvalidInput(f"{shown('delay')} {delay} must not exceed {shown('duration')} {duration}")

@@ -135,11 +135,15 @@ class HornAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Tuned size, frequency and what follows from the mode."""
-        return results.horn_blocks(self.design, self.material, tool_mass=self.tool_mass, amplitude=self.amplitude)
+        return results.horn_blocks(
+            self.design, self.material, tool_mass=self.tool_mass, vibration_amplitude=self.amplitude
+        )
 
     def object(self) -> dict[str, Any]:
         """Sizes, frequency, quantities of the mode, amplitudes allowed and neighbouring modes."""
-        return results.horn_object(self.design, self.material, tool_mass=self.tool_mass, amplitude=self.amplitude)
+        return results.horn_object(
+            self.design, self.material, tool_mass=self.tool_mass, vibration_amplitude=self.amplitude
+        )
 
     def caveats(self) -> Sequence[str]:
         """A peak stress that depends on the mesh."""

@@ -71,7 +71,7 @@ def hold(
     Example: sonolube lab hold examples/rigs/tribometer.toml --friction 0.7N --step-to 30mm/s
     """
     known, drive = _driven(rig_of(rig))
-    sampling_rate, run_time = loop.sampling_and_duration(rate, duration=duration)
+    sampling_rate, run_time = loop.sampling_and_duration(rate=rate, duration=duration)
     if known.structure is not None:
         refuse_unused("quality", "coupling", because="for a rig whose file has the table structure")
     file = device_file(device_map)

@@ -14,7 +14,9 @@ _LIMITS = {"fatigue_strength": "fatigue limit", "yield_strength": "yield point"}
 _QUANTITIES = ("displacement_gain", "node_position", "face_uniformity", "face_asymmetry", "stress_per_displacement")
 
 
-def horn_blocks(design: HornDesign, material: Material, *, tool_mass: float, amplitude: float | None) -> list[Block]:
+def horn_blocks(
+    design: HornDesign, material: Material, *, tool_mass: float, vibration_amplitude: float | None
+) -> list[Block]:
     """Tuned size, frequency and what follows from the mode.
 
     Parameters
@@ -22,9 +24,13 @@ def horn_blocks(design: HornDesign, material: Material, *, tool_mass: float, amp
     design : HornDesign
     material : Material
     tool_mass : float
-        Mass of the tool. [kg]
-    amplitude : float or None
-        Of the working face, at which stress is told. [m]
+        Of a tool on the working face. [kg]
+    vibration_amplitude : float or None
+        Of the working face, zero to peak, for the peak stress at it. [m]
+
+    Returns
+    -------
+    list of Block
     """
     mode, thin, limits = design.tuned.mode, design.body.thin, amplitude_limits(design, material=material)
     sizes = ", ".join(f"{name} {format_si(value, 'm')}" for name, value in design.body.sizes.items())
@@ -46,14 +52,16 @@ def horn_blocks(design: HornDesign, material: Material, *, tool_mass: float, amp
         ("node", f"{1e3 * design.node_position:.1f} mm from the driven face"),
         ("face", f"Umin/Umax {design.face_uniformity:.3f}, asymmetry {design.face_asymmetry:.2g}"),
         ("peak stress", f"{1e-12 * design.stress_per_displacement:.2f} MPa per um of the working face"),
-        *_stress_rows(design, limits, amplitude),
+        *_stress_rows(design, limits, vibration_amplitude),
         *((_LIMITS[name], f"{1e6 * value:.0f} um, zero to peak") for name, value in limits.items()),
         ("tool", f"{1e3 * tool_mass:g} g on the face: {loaded - mode.frequency:+.0f} Hz"),
     ]
     return [f"{design.body.name} of {material.name}" + (f": {sizes}" if sizes else ""), Rows(rows)]
 
 
-def horn_object(design: HornDesign, material: Material, *, tool_mass: float, amplitude: float | None) -> dict[str, Any]:
+def horn_object(
+    design: HornDesign, material: Material, *, tool_mass: float, vibration_amplitude: float | None
+) -> dict[str, Any]:
     """Sizes, frequency, quantities of the mode, amplitudes allowed and neighbouring modes, for JSON.
 
     Parameters
@@ -61,12 +69,17 @@ def horn_object(design: HornDesign, material: Material, *, tool_mass: float, amp
     design : HornDesign
     material : Material
     tool_mass : float
-        Mass of the tool. [kg]
-    amplitude : float or None
-        Of the working face, at which stress is told. [m]
+        Of a tool on the working face. [kg]
+    vibration_amplitude : float or None
+        Of the working face, zero to peak, for the peak stress at it. [m]
+
+    Returns
+    -------
+    dict
     """
     tuned, thin = design.tuned, design.body.thin
-    frequency = tuned.mode.frequency
+    frequency, at = tuned.mode.frequency, vibration_amplitude
+    peak = {} if at is None else {"vibration_amplitude": at, "peak_stress": design.stress_per_displacement * at}
     return {
         "part": design.body.name,
         "material": material.name,
@@ -80,11 +93,7 @@ def horn_object(design: HornDesign, material: Material, *, tool_mass: float, amp
         **si({name: getattr(design, name) for name in _QUANTITIES}),
         **si({"tool_mass": tool_mass, "loaded_frequency": loaded_frequency(design, tool_mass=tool_mass)}),
         **si({"stress_change": design.stress_change}, unit=""),
-        **(
-            {}
-            if amplitude is None
-            else si({"vibration_amplitude": amplitude, "peak_stress": design.stress_per_displacement * amplitude})
-        ),
+        **si(peak),
         "amplitude_limits": si(amplitude_limits(design, material=material), unit="m"),
         "neighbours": [
             {"name": name, **si({"frequency": at}), **si({"gap": at / frequency - 1}, unit="")}
@@ -94,10 +103,12 @@ def horn_object(design: HornDesign, material: Material, *, tool_mass: float, amp
     }
 
 
-def _stress_rows(design: HornDesign, limits: Mapping[str, float], amplitude: float | None) -> list[tuple[str, str]]:
+def _stress_rows(
+    design: HornDesign, limits: Mapping[str, float], vibration_amplitude: float | None
+) -> list[tuple[str, str]]:
     """Peak stress at the amplitude that was asked for, beside each strength."""
-    if amplitude is None:
+    if vibration_amplitude is None:
         return []
-    shares = [f"{amplitude / at:.0%} of the {_LIMITS[name]}" for name, at in limits.items()]
-    stress = f"{1e-6 * design.stress_per_displacement * amplitude:.0f} MPa"
-    return [(f"at {1e6 * amplitude:g} um", ", ".join([stress, *shares]))]
+    shares = [f"{vibration_amplitude / at:.0%} of the {_LIMITS[name]}" for name, at in limits.items()]
+    stress = f"{1e-6 * design.stress_per_displacement * vibration_amplitude:.0f} MPa"
+    return [(f"at {1e6 * vibration_amplitude:g} um", ", ".join([stress, *shares]))]
