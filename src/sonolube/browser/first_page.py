@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.browser.places import OPENED, Places
+from sonolube.files import write_atomically
 
 _RIG: Final = {"rig": {"name": OPENED, "changes": {}}}
 REQUESTS: Final[Mapping[str, Mapping[str, Any]]] = {"rig": _RIG, "task": {"task": "predict", "arguments": _RIG}}
@@ -40,4 +41,4 @@ def computed_answers() -> dict[str, Any]:
 
 if __name__ == "__main__":
     text = json.dumps(computed_answers(), ensure_ascii=False, separators=(",", ":"))
-    Path(str(files("sonolube.browser")), _FILE).write_text(text, encoding="utf-8")
+    write_atomically(Path(str(files("sonolube.browser")), _FILE), text)
