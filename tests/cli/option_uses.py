@@ -56,13 +56,16 @@ MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage
 EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--scheduler", "--chunk", "--backend", "--keep"}
 # Options of the place of files, which every run here gives, and of the form of text.
 PLACES = {"--out", "--json", "--help", "--brief"}
-# A run takes a minute; tests of these commands try them.
+# A run takes a minute, or needs a test of its own; tests of these commands try them.
 TESTED_ELSEWHERE = {
     *(("app", option) for option in ("--port", "--no-browser", "--host", "--token-file", "--allow-host")),
     ("reproduce", "--chapter"),
     ("uncertainty", "--identified"),
     ("identify rig", "--facts"),
     ("identify rig", "--seed"),
+    ("lab run", "--anyway"),
+    ("lab run", "--fact"),
+    ("lab recover", "--drop-blocks"),
 }
 
 

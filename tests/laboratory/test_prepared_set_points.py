@@ -97,7 +97,7 @@ def test_models_at_the_load_of_a_prompt_are_computed_before_the_virtual_motor_tu
     assert devices.attend is not None
     setting = DriveSetting(voltage_peak_to_peak=25.9, frequency=22e3, voltage_offset=12.95)
     devices.prepare(setting, 0.7)
-    devices.attend(Prompt(task="load", text="Hang 9 N.", normal_load="9 N"))
+    devices.attend(Prompt.model_validate({"task": "load", "text": "Hang 9 N.", "normal_load": "9 N"}))
     monkeypatch.setattr(FrictionDraw, "_computed", lambda *_: pytest.fail("computed while the motor turns"))
     for device in (devices.motor, devices.drive):
         device.connect()

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from pytest import approx
 from tests.cli.conftest import ROOT, Program
+from tests.cli.lab.test_run import SHORT
 from tests.laboratory.catalogue.test_catalogue import run_of
 from tests.laboratory.records.recorded import begun, block_of, recorded
 from tests.laboratory.records.test_recovery import unfinished
@@ -48,6 +49,24 @@ def test_recover_completes_killed_runs_and_leaves_others(tmp_path: Path, sonolub
     assert run.out.startswith(f"1 of 2 runs recovered\n  {killed.name}: interrupted, 30 samples\n")
     assert sonolube("lab", "recover", whole).out == "0 of 1 runs recovered\n"
     assert "holds no run" in sonolube("lab", "recover", whole / "raw").refusal
+
+
+def test_recover_drops_raw_blocks_that_the_recording_holds(tmp_path: Path, sonolube: Program) -> None:
+    whole = recorded(tmp_path)
+    before = sonolube("lab", "show", whole, "--json").answer["samples"]
+    assert list((whole / "raw").iterdir())
+    assert sonolube("lab", "recover", whole, "--drop-blocks").code == 0
+    assert not list((whole / "raw").iterdir())
+    assert sonolube("lab", "show", whole, "--json").answer["samples"] == before
+
+
+def test_facts_of_a_run_are_kept_with_it(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    (tmp_path / "short.toml").write_text(SHORT)
+    words = ("lab", "run", tmp_path / "short.toml", "--rig", rigs / "power_map.toml", "--out", tmp_path / "runs")
+    ran = sonolube(*words, "--fact", "operator=Jo", "--fact", "humidity=0.4", "--json").answer
+    shown = sonolube("lab", "show", ran["folder"]).out
+    assert "Jo" in shown
+    assert "0.4" in shown
 
 
 def test_recover_completes_a_run_that_is_named_itself(tmp_path: Path, sonolube: Program) -> None:
