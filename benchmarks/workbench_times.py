@@ -103,13 +103,13 @@ def workbench(folder: str) -> Iterator[tuple[str, psutil.Process, float]]:
 
 def start(browser: Browser, folder: str) -> dict[str, float]:
     """Seconds from the command to each state of the first page, and kilobytes that were transferred."""
+    page = browser.new_page()
+    sizes: list[float] = []
+    devtools = page.context.new_cdp_session(page)
+    devtools.send("Network.enable")
+    devtools.on("Network.loadingFinished", lambda event: sizes.append(event["encodedDataLength"]))
     with workbench(folder) as (link, _, begun):
         found = {"ready": time.perf_counter() - begun}
-        page = browser.new_page()
-        sizes: list[float] = []
-        devtools = page.context.new_cdp_session(page)
-        devtools.send("Network.enable")
-        devtools.on("Network.loadingFinished", lambda event: sizes.append(event["encodedDataLength"]))
         opened = time.perf_counter() - begun
         page.goto(link, wait_until="commit")
         page.wait_for_selector("[data-test^='chart:'] canvas")

@@ -1,11 +1,14 @@
 """The server of the workbench as a process: uploads, foreign requests, slow clients, killed workers, ends."""
 
+import asyncio
+import gzip
 import http.client
 import json
 import socket
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, suppress
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +16,7 @@ import psutil  # type: ignore[import-untyped]
 import pytest
 from tests.browser.workbench import Served, served
 
+from sonolube.browser.server import _listening
 from sonolube.cli import main
 
 RIG = {"name": "tribometer"}
@@ -109,6 +113,40 @@ OUTSIDE = (
 @pytest.mark.parametrize("path", OUTSIDE)
 def test_no_file_outside_the_pages_is_served(workbench: Served, path: str) -> None:
     assert ask(workbench, "GET", path)[0] == 404
+
+
+STATIC = files("sonolube.browser") / "static"
+
+
+@pytest.mark.parametrize(("name", "kind"), [("app.css", "text/css"), ("scripts/main.js", "text/javascript")])
+def test_a_file_of_the_pages_is_sent_compressed_and_not_again(workbench: Served, name: str, kind: str) -> None:
+    known = cookie(workbench)
+    packed: dict[str, Any] = {"accept-encoding": "gzip"}
+    status, headers, body = request(workbench, "GET", f"/static/{name}", cookie=known, **packed)
+    assert (status, headers["content-encoding"], headers["content-type"].split(";")[0]) == (200, "gzip", kind)
+    assert gzip.decompress(body) == STATIC.joinpath(name).read_bytes()
+    status, plain, content = request(workbench, "GET", f"/static/{name}", cookie=known)
+    assert (status, plain["content-encoding"], content) == (200, None, STATIC.joinpath(name).read_bytes())
+    again: dict[str, Any] = {"if-none-match": headers["etag"]}
+    assert request(workbench, "GET", f"/static/{name}", cookie=known, **again)[0::2] == (304, b"")
+
+
+def test_answers_are_sent_without_waiting_for_an_acknowledgement() -> None:
+    set_by_asyncio: list[int] = []
+
+    async def served_once(listening: socket.socket) -> None:
+        def accepted(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            own = writer.get_extra_info("socket")
+            set_by_asyncio.append(own.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        async with await asyncio.start_server(accepted, sock=listening):
+            reader, writer = await asyncio.open_connection(*listening.getsockname())
+            await reader.read()
+            writer.close()
+
+    asyncio.run(served_once(_listening("127.0.0.1", 0)))
+    assert set_by_asyncio == [1]
 
 
 def test_a_foreign_host_and_no_cookie_are_refused_by_the_server_itself(workbench: Served) -> None:

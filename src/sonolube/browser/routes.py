@@ -3,7 +3,6 @@
 import json
 from collections.abc import Awaitable, Callable, Mapping
 from importlib.resources import files
-from pathlib import Path
 from typing import Any, Final
 
 from starlette.applications import Starlette
@@ -11,13 +10,13 @@ from starlette.middleware import Middleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
-from starlette.routing import Mount, Route
-from starlette.staticfiles import StaticFiles
+from starlette.routing import Route
 
 from sonolube.browser.first_page import shipped_answer
 from sonolube.browser.jobs import KEPT_DAYS, Jobs
 from sonolube.browser.places import Places
 from sonolube.browser.pool import Pool
+from sonolube.browser.static_files import static_file
 from sonolube.browser.uploads import Uploads
 from sonolube.errors import InvalidInput, SonolubeError
 
@@ -46,7 +45,6 @@ class Workbench:
 
     def application(self) -> Starlette:
         """Application by ASGI, without the checks of `Guard`."""
-        static = Path(str(files("sonolube.browser"))) / "static"
         routes = [
             Route("/", self._page),
             Route("/api/start", self._start),
@@ -61,9 +59,9 @@ class Workbench:
             Route("/api/jobs/{id}/cancel", self._cancel_job, methods=["POST"]),
             Route("/api/jobs/{id}/result", self._job_result, methods=["GET"]),
             Route("/api/jobs/{id}/files/{name:path}", self._job_file, methods=["GET"]),
-            Mount("/static", StaticFiles(directory=static)),
+            Route("/static/{name:path}", static_file, methods=["GET"]),
         ]
-        return Starlette(routes=routes, middleware=[Middleware(GZipMiddleware, minimum_size=500)])
+        return Starlette(routes=routes, middleware=[Middleware(GZipMiddleware, minimum_size=500, compresslevel=4)])
 
     async def _page(self, request: Request) -> Response:
         """The one page; everything else is in its scripts."""
