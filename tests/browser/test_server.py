@@ -129,6 +129,8 @@ def test_a_file_of_the_pages_is_sent_compressed_and_not_again(workbench: Served,
     assert (status, plain["content-encoding"], content) == (200, None, STATIC.joinpath(name).read_bytes())
     again: dict[str, Any] = {"if-none-match": headers["etag"]}
     assert request(workbench, "GET", f"/static/{name}", cookie=known, **again)[0::2] == (304, b"")
+    older: dict[str, Any] = {"if-none-match": '"0123456789abcdef"'}
+    assert request(workbench, "GET", f"/static/{name}", cookie=known, **older)[0::2] == (200, content)
 
 
 def test_answers_are_sent_without_waiting_for_an_acknowledgement() -> None:

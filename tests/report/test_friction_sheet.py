@@ -7,7 +7,7 @@ import pytest
 from pytest import approx
 
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
-from sonolube.report.measured.sheet import Sheet
+from sonolube.report.measured.sheet import Column, Sheet, Table
 from sonolube.tasks.measure import friction
 
 RATE = 200.0  # Hz
@@ -112,3 +112,10 @@ def test_an_unforeseen_error_at_one_file_does_not_lose_the_others(
     ((name, reason),) = answer.refusals().items()
     assert name.endswith("b.csv")
     assert reason.startswith("ZeroDivisionError: float division by zero: a defect of sonolube")
+
+
+def test_columns_without_a_value_are_left_out_of_text_and_stay_in_the_record() -> None:
+    columns = (Column("a", "A", "N"), Column("b", "B"), Column("c", "C", "s"))
+    table = Table(name="t", title="T", columns=columns, rows=((1.0, None, 2.0), (None, float("nan"), 3.0)))
+    assert table.texts() == (["A", "C"], [["1 N", "2 s"], ["", "3 s"]])
+    assert [column.name for column in table.columns] == ["a", "b", "c"]

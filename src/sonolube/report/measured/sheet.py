@@ -104,10 +104,11 @@ class Table:
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
-    def texts(self) -> list[list[str]]:
-        """Return the rows as text, the quantities of a column with one prefix."""
+    def texts(self) -> tuple[list[str], list[list[str]]]:
+        """Return heads and rows as text, the quantities of a column with one prefix, without columns that are empty."""
         columns = [column.texts([row[place] for row in self.rows]) for place, column in enumerate(self.columns)]
-        return [list(row) for row in zip(*columns, strict=True)]
+        kept = [(column.label, cells) for column, cells in zip(self.columns, columns, strict=True) if any(cells)]
+        return [label for label, _ in kept], [list(row) for row in zip(*(cells for _, cells in kept), strict=True)]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

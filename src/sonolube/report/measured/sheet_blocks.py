@@ -9,5 +9,5 @@ def sheet_blocks(sheet: Sheet) -> list[Block]:
     blocks: list[Block] = [sheet.title, *(f"  {name}: {text}" for name, text in sheet.size().items())]
     blocks.append(Rows([(value.label, value.text) for value in sheet.values]))
     for table in sheet.tables:
-        blocks += ["", f"  {table.title}", Table([column.label for column in table.columns], table.texts())]
+        blocks += ["", f"  {table.title}", Table(*table.texts())]
     return [*blocks, *(f"  not found: {reason}" for reason in sheet.not_found)]
