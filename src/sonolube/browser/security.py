@@ -1,4 +1,4 @@
-"""Who may talk to the workbench: token and cookie, Host, Origin, sizes, and the headers of every answer."""
+"""Access to the workbench: token and cookie, Host, Origin, sizes, and the headers of every answer."""
 
 import hmac
 from collections.abc import Awaitable, Callable, Mapping, MutableMapping

@@ -1,4 +1,4 @@
-"""What a page gives to take away of a call: command line, Python, rig file, notebook, table, figure and report."""
+"""Forms in which a page gives a call to take away: command line, Python, rig file, notebook, table, figure and report."""
 
 import csv
 import io

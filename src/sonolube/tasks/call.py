@@ -8,7 +8,7 @@ from typing import Any, Union, get_args, get_origin
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 
 Mark = Parameter | RigParameter | DoorParameter
-"""What the annotation of an argument says of it."""
+"""Annotation of an argument of a task."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ Progress = Callable[[str, int, int], None]
 """Called with the stage and what is done in it, the number done and their total."""
 
 Cancelled = Callable[[], bool]
-"""Whether the task is to stop; asked at every report of progress."""
+"""Request to stop, which is looked at with every report of progress."""
 
 Observer = Callable[[str], AbstractContextManager[Advance]]
 """Opened for each stage, by its title."""

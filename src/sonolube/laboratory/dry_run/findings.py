@@ -16,7 +16,7 @@ STATIC_FRICTION_FACTOR = 1.35
 """Static over intrinsic sliding friction: 1.2 N before 0.89 N, D 4.1.2. []"""
 
 SAFETY = "software is no safety function: a rig needs an emergency stop of its own, in reach of who runs it"
-"""What every run on devices needs."""
+"""Caveat of every run on devices."""
 
 _TOLERANCE = 1 + 1e-9
 _LARGE = 1e9  # bytes, of which the operator is told

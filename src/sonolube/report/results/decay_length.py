@@ -1,4 +1,4 @@
-"""What sets the decay length of a contact: probabilities, changes and caveats as text, and the object for JSON."""
+"""Causes of the decay length of a contact: probabilities, changes and caveats as text, and the object for JSON."""
 
 from typing import Any
 
