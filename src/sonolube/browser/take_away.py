@@ -1,4 +1,4 @@
-"""Forms in which a page gives a call to take away: command line, Python, rig file, notebook, table, figure and report."""
+"""Forms in which a page gives a call to take away: command line, Python, rig file, notebook, table, figure, report."""
 
 import csv
 import io
