@@ -1,6 +1,6 @@
 """The collar with variable friction by finite elements: its resonance closed, open and clamped, and what a bolt does.
 
-Run: python examples/collar_resonance.py (needs sonolube[fem])
+Run: python examples/collar_resonance.py (needs netgen-mesher)
 """
 
 from dataclasses import replace

@@ -45,6 +45,7 @@ def test_every_extra_of_the_project_has_its_line_in_the_package() -> None:
         assert {module.lower().replace("_", "-") for module in extra.modules} - {"netgen", "serial"} <= (
             names(declared[name]) | names(declared["surfaces"])
         )
+        assert {each.lower() for each in extra.distributions.split()} == names(declared[name])
 
 
 def test_the_extra_all_has_every_other_that_a_usual_computer_can_use() -> None:
@@ -73,7 +74,7 @@ def test_every_package_that_is_imported_is_required_and_every_extra_is_used() ->
 def test_boundary_elements_without_their_library_name_the_command_that_installs_it(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ContactMechanics", None)
     flat = HeightMap(height=np.zeros((4, 4)), spacing_x=1e-6, spacing_y=1e-6)
-    with raises(MissingPackage, match=r"^boundary elements .* need ContactMechanics.*sonolube\[boundary-element\]'$"):
+    with raises(MissingPackage, match=r"^boundary elements .* need ContactMechanics.*ContactMechanics$"):
         boundary_element_contact(flat, normal_load=[1.0], effective_modulus=1e9)
 
 
@@ -91,9 +92,9 @@ def test_a_part_that_is_not_published_for_a_computer_says_so(monkeypatch: Monkey
     )
     assert EXTRAS["web"].obstacle == ""
     monkeypatch.setattr("sys.platform", "darwin")
-    assert str(missing_package("fem")).endswith("which is not installed: pip install 'sonolube[fem]'")
+    assert str(missing_package("fem")).endswith("which is not installed: pip install netgen-mesher")
 
 
 def test_the_error_of_a_missing_part_is_one_line_with_what_is_refused_and_another_way_out() -> None:
-    line = "plate.sur: Interactive maps need Plotly, which is not installed: pip install 'sonolube[web]', or take PNG"
+    line = "plate.sur: Interactive maps need Plotly, which is not installed: pip install plotly, or take PNG"
     assert str(missing_package("web", context="plate.sur", remedy="take PNG")) == line

@@ -14,7 +14,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from html import escape
 from importlib.resources import files
-from itertools import chain
+from inspect import ismodule
+from itertools import chain, groupby
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -23,7 +24,9 @@ from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+import sonolube
 from sonolube.cli import main
+from sonolube.cli.commands import COMMANDS, Command
 from sonolube.facts.materials import (
     DryFriction,
     Material,
@@ -61,6 +64,31 @@ def rig_keys() -> str:
     """Tables of a rig file with their keys, as sections."""
     schema = rig_schema()
     return "\n\n".join(_rig_table(name, table, schema) for name, table in _tables("", schema, schema))
+
+
+def all_commands() -> str:
+    """Commands by panel of the help, each with the first line of its help."""
+    lines = []
+    for panel, called in groupby(COMMANDS, key=lambda command: command.panel):
+        rows = [
+            [f"[`{each.name}`](#{each.name.replace(' ', '-')})", _plain(each.help.split("\n")[0])] for each in called
+        ]
+        lines.append(_grid([panel, "Answer"], rows))
+    return "\n\n".join(lines)
+
+
+def _first_line(command: Command) -> str:
+    """First line of the help of a command."""
+    return _plain(command.help.partition("\n")[0])
+
+
+def stable_names() -> str:
+    """Names of the package itself, and of its groups of tasks."""
+    groups = {name: getattr(sonolube, name) for name in sonolube.__all__}
+    members = [
+        f"`sl.{name}.{each}`" for name, group in groups.items() if ismodule(group) for each in sorted(group.__all__)
+    ]
+    return ", ".join([f"`sl.{name}`" for name, group in groups.items() if not ismodule(group)] + members)
 
 
 def example_rigs() -> str:
@@ -252,6 +280,8 @@ def blind_headline() -> str:
 TABLES: Mapping[str, Callable[[], str]] = {
     table.__name__: table
     for table in (
+        all_commands,
+        stable_names,
         rig_keys,
         example_rigs,
         errata_of_d,

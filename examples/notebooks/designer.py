@@ -5,7 +5,7 @@
 #
 # For the designer of a horn: its length by finite elements, its peak stress at 20 µm,
 # the impedance of the horn on a transducer, and the friction of its tip on steel.
-# Needs `pip install 'sonolube[fem]'`.
+# Needs `pip install netgen-mesher`.
 
 # %%
 import matplotlib.pyplot as plt

@@ -14,14 +14,16 @@ from sonolube.errors import MissingPackage
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Extra:
-    """One optional part of the installation, as in ``pip install 'sonolube[fem]'``.
+    """One optional part of the installation, an extra of the distribution.
 
     Parameters
     ----------
     name : str
-        As in the brackets.
+        Of the extra.
     package : str
         Package that it brings, as its users call it.
+    distributions : str
+        Names by which pip installs what it brings, separated by spaces.
     modules : tuple of str
         Modules that have to be found for the part to work.
     needed_by : str
@@ -32,6 +34,7 @@ class Extra:
 
     name: str
     package: str
+    distributions: str
     modules: tuple[str, ...]
     needed_by: str
     machines: tuple[str, ...] = ()
@@ -47,7 +50,7 @@ class Extra:
     @property
     def command(self) -> str:
         """Command that installs it."""
-        return f"pip install 'sonolube[{self.name}]'"
+        return f"pip install {self.distributions}"
 
     @property
     def is_installed(self) -> bool:
@@ -59,6 +62,7 @@ _ALL = (
     Extra(
         name="fem",
         package="netgen-mesher",
+        distributions="netgen-mesher",
         modules=("netgen",),
         needed_by="Bodies and their meshes, in modes, horn design and impedance compute,",
         machines=("x86_64", "AMD64"),
@@ -66,28 +70,46 @@ _ALL = (
     Extra(
         name="surfaces",
         package="SurfaceTopography",
+        distributions="SurfaceTopography",
         modules=("SurfaceTopography",),
         needed_by="Surface files of other formats than Wyko OPD, NanoFocus NMS, NPY and XYZ text",
     ),
     Extra(
         name="boundary-element",
         package="ContactMechanics",
+        distributions="ContactMechanics",
         modules=("ContactMechanics", "SurfaceTopography"),
         needed_by="Boundary elements on height maps",
     ),
     Extra(
         name="app",
         package="Starlette and uvicorn",
+        distributions="starlette tomlkit uvicorn",
         modules=("starlette", "uvicorn", "tomlkit"),
         needed_by="The workbench in the browser",
     ),
-    Extra(name="web", package="Plotly", modules=("plotly",), needed_by="Interactive maps"),
-    Extra(name="cluster", package="Dask", modules=("distributed",), needed_by="Sweeps on a cluster"),
-    Extra(name="gpu", package="numba-cuda", modules=("numba_cuda",), needed_by="Vibrations on an NVIDIA GPU"),
-    Extra(name="daqmx", package="nidaqmx", modules=("nidaqmx",), needed_by="Devices of NI-DAQmx"),
+    Extra(name="web", package="Plotly", distributions="plotly", modules=("plotly",), needed_by="Interactive maps"),
+    Extra(
+        name="cluster",
+        package="Dask",
+        distributions="dask distributed",
+        modules=("distributed",),
+        needed_by="Sweeps on a cluster",
+    ),
+    Extra(
+        name="gpu",
+        package="numba-cuda",
+        distributions="numba-cuda",
+        modules=("numba_cuda",),
+        needed_by="Vibrations on an NVIDIA GPU",
+    ),
+    Extra(
+        name="daqmx", package="nidaqmx", distributions="nidaqmx", modules=("nidaqmx",), needed_by="Devices of NI-DAQmx"
+    ),
     Extra(
         name="visa",
         package="pyvisa-py",
+        distributions="pyserial pyvisa pyvisa-py",
         modules=("pyvisa", "pyvisa_py", "serial"),
         needed_by="Function generators and motor controllers",
     ),

@@ -107,7 +107,7 @@ def test_an_interactive_map_is_self_contained_or_names_the_package_to_install() 
     try:
         import plotly  # noqa: F401
     except ImportError:
-        with raises(InvalidInput, match=r"pip install 'sonolube\[web\]'"):
+        with raises(InvalidInput, match=r"pip install plotly"):
             map_page(computed)
     else:
         page = map_page(computed)

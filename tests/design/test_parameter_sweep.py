@@ -177,7 +177,7 @@ def test_a_list_of_points_needs_equal_numbers_of_values() -> None:
 
 def test_a_cluster_without_dask_names_the_package_to_install(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with raises(InvalidInput, match=r"pip install 'sonolube\[cluster\]'"):
+    with raises(InvalidInput, match=r"pip install dask distributed"):
         sweep(small_plan(), scheduler="local")
 
 

@@ -49,7 +49,7 @@ def drive(sample_rate: float = 900e3) -> DaqmxDrive:
 
 def test_without_the_package_the_command_that_installs_it_is_named(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "nidaqmx", None)
-    with raises(MissingPackage, match=r"nidaqmx.*pip install 'sonolube\[daqmx\]'"):
+    with raises(MissingPackage, match=r"nidaqmx.*pip install nidaqmx"):
         acquisition().connect()
 
 

@@ -232,7 +232,7 @@ def test_the_simulated_generator_takes_long_forms_and_queues_errors() -> None:
 @pytest.mark.parametrize("module", ["pyvisa", "pyvisa_py", "serial"])
 def test_without_its_packages_the_command_that_installs_them_is_named(module: str, monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, module, None)
-    with raises(MissingPackage, match=r"pip install 'sonolube\[visa\]'"):
+    with raises(MissingPackage, match=r"pip install pyserial pyvisa pyvisa-py"):
         VisaConnection(name="generator", resource="TCPIP::127.0.0.1::1::SOCKET").open()
 
 

@@ -96,7 +96,7 @@ def test_other_formats_without_the_extra_are_refused_with_advice(tmp_path: Path,
         return real(name, *args, **kwargs)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with raises(InvalidInput, match=r"pip install 'sonolube\[surfaces\]'"):
+    with raises(InvalidInput, match=r"pip install SurfaceTopography"):
         read_height_map(tmp_path / "plate.sur")
 
 

@@ -116,5 +116,5 @@ def test_modes_for_a_rig_name_the_command_that_computes_them() -> None:
 def test_a_mesher_that_is_not_installed_is_named(monkeypatch: MonkeyPatch) -> None:
     for module in ("netgen", "netgen.occ", "netgen.meshing"):
         monkeypatch.setitem(sys.modules, module, None)
-    with raises(MissingPackage, match=r"^bodies and their meshes, .* not installed: pip install 'sonolube\[fem\]'$"):
+    with raises(MissingPackage, match=r"^bodies and their meshes, .* not installed: pip install netgen-mesher$"):
         sl.modes("cylinder", **BAR)

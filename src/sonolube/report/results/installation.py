@@ -70,7 +70,7 @@ class Installation:
             f"Python {platform.python_version()} on {platform.platform(terse=True)} {platform.machine()},"
             f" {os.cpu_count()} processor cores",
             "required packages",
-            Rows([(name, found or "missing: pip install sonolube") for name, found in self.packages.items()]),
+            Rows([(name, found or f"missing: pip install {name}") for name, found in self.packages.items()]),
             "optional parts",
             Rows([(name, self._extra(name)) for name in self.extras]),
             "processors and compiled code",

@@ -227,7 +227,7 @@ def test_stability_is_determined_beside_a_nearly_rigid_damper(simulated: dict[st
 @pytest.mark.skipif(numba.cuda.implementation != "Built-in", reason="numba-cuda is installed")
 def test_numba_without_numba_cuda_is_not_used_on_a_gpu(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(numba.cuda, "is_available", lambda: True)
-    assert _tried_gpu() == ("", "numba-cuda is missing: pip install 'sonolube[gpu]'")
+    assert _tried_gpu() == ("", "numba-cuda is missing: pip install numba-cuda")
 
 
 def errors_of_friction(count: int) -> tuple[float, float]:
