@@ -1,4 +1,4 @@
-"""Three closures, one rig
+"""Three friction models, one rig
 
 Friction ratio of the reference rig over the sliding speed by models that differ in what one asperity does
 within a period. Measurements at several speeds tell them apart.

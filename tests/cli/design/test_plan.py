@@ -78,7 +78,7 @@ def test_a_filled_table_updates_the_prediction_and_the_next_plan(
     second = sonolube("plan", POWER_MAP, *FEW, "--runs", table, "--out", tmp_path / "next", "--json").answer
     assert "repeats of the own runs" in second["scatter"]["source"]
     assert second["scatter"]["value"] == pytest.approx(0.02 / 0.89, rel=0.5)
-    assert second["closures"] != first["closures"]
+    assert second["friction_models"] != first["friction_models"]
 
 
 def test_a_table_with_results_is_not_replaced_by_an_empty_one(

@@ -17,9 +17,9 @@ from sonolube.tasks.answer import Answer, answer
 
 _CAPTION = (
     "Left: candidates over speed and amplitude, coloured by the information that the replicates at one of them are"
-    " expected to give about which closure holds; the points of the plan are numbered, the rig's own first, the"
+    " expected to give about which friction model holds; the points of the plan are numbered, the rig's own first, the"
     " others in the order of their gain."
-    " Right: predicted friction ratio at these points with its interval of 80 %, and the median of each closure."
+    " Right: predicted friction ratio at these points with its interval of 80 %, and the median of each model."
 )
 
 

@@ -99,7 +99,7 @@ class PredictionAnswer(Answer):
         ]
 
     def object(self) -> dict[str, Any]:
-        """Statement, quantities with median and intervals, inputs and weights of the closures."""
+        """Statement, quantities with median and intervals, inputs and weights of the friction models."""
         found = self.prediction
         shares = results.column(found, "interval_share_left")
         return {

@@ -61,7 +61,7 @@ def facts(plan: TestPlan) -> list[tuple[str, str]]:
         ),
         ("scatter", f"{100 * deviation:.2g} % of friction for one difference ({plan.scatter.source})"),
         (
-            "closures",
+            "friction models",
             f"{weights}; the plan is expected to give {plan.batch.information[-1]:.2f} of {plan.entropy:.2f} bit"
             " about which holds",
         ),
@@ -148,7 +148,7 @@ def plan_object(rig: Rig, plan: TestPlan) -> dict[str, Any]:
         "scatter": {"value": plan.question.comparison.deviation(plan.scatter), "source": plan.scatter.source},
         "replicates": plan.replicates,
         "duration": si({"duration": plan.duration})["duration"],
-        "closures": plan.weights,
+        "friction_models": plan.weights,
         "information": {"value": plan.batch.information[-1], "of": plan.entropy, "unit": "bit"},
         "points": [
             si(
