@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 
 _CAPTION = (
-    "Efficiency coefficient (equation 4.1 of the dissertation) of {runs} runs over sliding speed, with the line of least squares, the band of the"
+    "Efficiency coefficient (equation 4.1 of the dissertation) of {runs} runs over sliding speed, with the line of"
+    " least squares, the band of the"
     " line and that of one more run."
 )
 
@@ -39,7 +40,7 @@ def efficiency(
     speed: Annotated[Number | None, Parameter("Sliding speed of that target.", unit="m/s")] = None,
     level: Annotated[float, Parameter("Confidence level.", lowest=0.5, highest=0.9999)] = 0.95,
 ) -> "EfficiencyAnswer":
-    """Efficiency line from measured runs (the dissertation's equations 4.1 to 4.3), and the power that a friction takes.
+    """Efficiency line from measured runs by the dissertation's section 4.1, and the power that a friction takes.
 
     Example: sonolube efficiency examples/efficiency-runs.csv --rig examples/rigs/power_map.toml
     """

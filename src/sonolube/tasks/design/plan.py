@@ -62,7 +62,10 @@ def plan(
         Literal["day", "pair"], Parameter("What the runs of a block share: a day, or one pair of pin and disc.")
     ] = "day",
     running_in: Annotated[
-        Number | None, Parameter("Sliding until friction is steady; the longest of the dissertation's Table 2.3 by default.", unit="m")
+        Number | None,
+        Parameter(
+            "Sliding until friction is steady; the longest of the dissertation's Table 2.3 by default.", unit="m"
+        ),
     ] = None,
     measuring_time: Annotated[Number, Parameter("In steady friction, in each state.", unit="s")] = "12s",
     amplifier_voltage: Annotated[

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 _ASSUMED = {
     "horn": "ends tapered to 3/4 in over their last inch, handbook constants, by which both have the printed mode",
-    "contact": "springs of the contact of Table 3.1 with Mindlin's ratio, of the load of the dissertation's section 3.1.4; nothing is fitted",
+    "contact": "springs of the contact of Table 3.1 with Mindlin's ratio, of the load of the dissertation's section"
+    " 3.1.4; nothing is fitted",
     "elastic_loss": "loss factor 0.001",
 }
 
@@ -42,7 +43,7 @@ def face(
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "FaceAnswer":
-    """Friction of a block along the face of a Poisson horn: the transition and motor regions of the dissertation's Table 2.1.
+    """Friction of a block along the face of a Poisson horn: transition and motor regions of the dissertation's Table 2.1.
 
     Example: sonolube horn face aluminium
     """

@@ -20,7 +20,9 @@ def _described(model: type[FrictionModel]) -> str:
 
 
 _MODEL = Parameter(
-    f"Friction model instead of the rig's own (D is the dissertation): {'; '.join(map(_described, FRICTION_MODELS.values()))}.", kind="NAME"
+    "Friction model instead of the rig's own (D is the dissertation):"
+    f" {'; '.join(map(_described, FRICTION_MODELS.values()))}.",
+    kind="NAME",
 )
 
 
