@@ -339,9 +339,7 @@ def _caveats(plan: TestPlan, inputs: RigInputs, *, contradicted: bool) -> Iterat
     if contradicted:
         yield "the measured runs contradict every friction model; the plan tells models apart that are all in doubt"
     if np.unique(plan.candidates.normal_load).size > 1:
-        yield (
-            "friction models depend on the load by the separation only; to test the load itself, keep speed and amplitude"
-        )
+        yield "friction models depend on the load by the separation only; to test the load, keep speed and amplitude"
 
 
 def _listed(numbers: Sequence[int]) -> str:
