@@ -43,7 +43,7 @@ def face(
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "FaceAnswer":
-    """Friction of a block along the face of a Poisson horn: its transition and motor regions, as in Table 2.1 of the dissertation.
+    """Friction of a block along the face of a Poisson horn: its transition and motor regions.
 
     Example: sonolube horn face aluminium
     """
