@@ -23,7 +23,7 @@ _OVER = Parameter(
     kind="KEY=FIRST:LAST",
     is_mapping=True,
 )
-_ACTUATOR = Parameter("own, a name that `sonolube actuators` lists, or catalogue. May come again.", kind="NAME")
+_ACTUATOR = Parameter("own, a name that sonolube actuators lists, or catalogue. May come again.", kind="NAME")
 _CATALOGUE = Parameter("Further actuators, in the format of the built-in list.", kind="FILE.toml", is_file=True)
 
 

@@ -58,7 +58,7 @@ def compute(
     ground: Annotated[str | None, Parameter("Its grounded electrode; -z.", kind="FACE")] = None,
     measured: Annotated[
         InputFile | None,
-        Parameter("Spectrum to draw over it, as `measure impedance` reads it.", kind="FILE", is_file=True),
+        Parameter("Spectrum to draw over it, as sonolube measure impedance reads it.", kind="FILE", is_file=True),
     ] = None,
     tolerance: Annotated[
         Number, Parameter("Largest change of a coupled resonance from mesh to mesh.", unit="", kind="RATIO")

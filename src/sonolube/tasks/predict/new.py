@@ -47,7 +47,7 @@ def new(
         Number | None, Parameter("Vibration amplitude normal to the contact, zero to peak.", unit="m")
     ] = None,
     actuator: Annotated[
-        str | None, Parameter("Actuator of `sonolube actuators`, in place of the amplitude.", kind="NAME")
+        str | None, Parameter("Actuator by its name in sonolube actuators, in place of the amplitude.", kind="NAME")
     ] = None,
     voltage: Annotated[Number | None, Parameter("Voltage of the actuator, peak to peak.", unit="V")] = None,
     shape: Annotated[
