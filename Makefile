@@ -14,7 +14,7 @@ OUT := out
 export SURFALIZE_PYTHON ?= $(abspath $(wildcard $(RIVAL)/bin/python))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo app browser test lowest surfalize lint docs bench reliability lock clean
+.PHONY: help demo app browser quick test lowest surfalize lint docs bench reliability lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
@@ -34,6 +34,11 @@ test: $(VENV)/test ## lint and run every test, of types too
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(TEST)
+
+quick: $(VENV)/test ## check style and what a change most likely breaks, in less than a minute
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check --quiet .
+	$(TEST) -q @tests/quick.txt
 
 # warnings are of packages newer than the lowest, which the lowest ones call; the schema is written by the newest pydantic
 lowest: $(LOWEST)/installed ## run a part of the tests with the lowest versions that pyproject.toml allows
