@@ -17,6 +17,7 @@ _MEASURE: Final = "Measure"
 _COMPARE: Final = "Compare and identify"
 LAB: Final = "Laboratory"
 LOOKUP: Final = "Look up"
+_EXAMPLES: Final = "\n\nExamples\n--------\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +65,18 @@ class Task:
 
 
 def docstring(package: str, where: str) -> str:
-    """Docstring of a function below a package, such as "predict.friction:friction", whose module is not imported."""
+    """Docstring of a function, such as "predict.friction:friction", whose module is not imported; without Examples."""
     module, _, name = f"{package}.{where}".strip(".").partition(":")
     root, _, inner = module.partition(".")
     source = files(root).joinpath(f"{inner.replace('.', '/')}.py").read_text(encoding="utf-8")
     nodes = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef) and node.name == name)
-    return ast.get_docstring(next(nodes)) or ""
+    return split_examples(ast.get_docstring(next(nodes)) or "")[0]
+
+
+def split_examples(text: str) -> tuple[str, str]:
+    """Docstring without its section Examples, which is for Python only, and that section."""
+    before, heading, examples = text.partition(_EXAMPLES)
+    return before, f"{heading}{examples}".strip()
 
 
 TASKS: Final = (
