@@ -28,6 +28,19 @@ def vibration(
     """Vibration at the drive frequency: amplitude, amplitude per volt, operating shape, likeness to computed modes.
 
     Example: sonolube measure vibration tip.csv --frequency 22kHz --report tip.html
+
+    Examples
+    --------
+    >>> import io
+    >>> import numpy as np
+    >>> import sonolube as sl
+    >>> from sonolube.tasks.files import NamedBytes
+    >>> file, time = io.BytesIO(), np.arange(0, 0.1, 5e-5)
+    >>> columns = np.stack([time, 2.5 * np.sin(2 * np.pi * 1000 * time)], axis=1)
+    >>> np.savetxt(file, columns, delimiter=",", header="time (s),tip (um)", comments="")
+    >>> answer = sl.measure.vibration(NamedBytes("tip.csv", file.getvalue()), frequency="1kHz")
+    >>> round(1e6 * float(answer["vibration_amplitude"]), 3)
+    2.5
     """
     settings = VibrationSettings(
         frequency=in_si("frequency", frequency),

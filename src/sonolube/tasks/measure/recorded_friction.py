@@ -69,6 +69,19 @@ def friction(
     """Friction in recordings: level, fluctuation, running-in, steps of the voltage, stick-slip, work.
 
     Example: sonolube measure friction test.csv --sliding-speed 20.3mm/s --report test.html
+
+    Examples
+    --------
+    >>> import io
+    >>> import numpy as np
+    >>> import sonolube as sl
+    >>> from sonolube.tasks.files import NamedBytes
+    >>> file, time = io.BytesIO(), np.arange(0, 20, 0.01)
+    >>> columns = np.stack([time, 0.4 + 0.02 * np.cos(100 * np.pi * time)], axis=1)
+    >>> np.savetxt(file, columns, delimiter=",", header="time (s),friction_force (N)", comments="")
+    >>> answer = sl.measure.friction(NamedBytes("test.csv", file.getvalue()))  # or the path of a file
+    >>> round(float(answer["mean_force"]), 3), round(float(answer["friction_force_fluctuation"]), 3)
+    (0.4, 0.02)
     """
     settings = FrictionSettings(
         mapping=column_mapping(mapping, group=group, channels=channel, sections=section),
