@@ -1,11 +1,11 @@
 """Table of all tasks, one line each: panel of the help, name, module and function, and the files of its answer."""
 
-import ast
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Final
+
+from sonolube.tasks.docstrings import docstring
 
 if TYPE_CHECKING:
     from sonolube.tasks.answer import Answer
@@ -17,7 +17,6 @@ _MEASURE: Final = "Measure"
 _COMPARE: Final = "Compare and identify"
 LAB: Final = "Laboratory"
 LOOKUP: Final = "Look up"
-_EXAMPLES: Final = "\n\nExamples\n--------\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,21 +61,6 @@ class Task:
     def summary(self) -> str:
         """Docstring of the function, read from the source without importing the module."""
         return docstring("sonolube.tasks", self.where)
-
-
-def docstring(package: str, where: str) -> str:
-    """Docstring of a function, such as "predict.friction:friction", whose module is not imported; without Examples."""
-    module, _, name = f"{package}.{where}".strip(".").partition(":")
-    root, _, inner = module.partition(".")
-    source = files(root).joinpath(f"{inner.replace('.', '/')}.py").read_text(encoding="utf-8")
-    nodes = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef) and node.name == name)
-    return split_examples(ast.get_docstring(next(nodes)) or "")[0]
-
-
-def split_examples(text: str) -> tuple[str, str]:
-    """Docstring without its section Examples, which is for Python only, and that section."""
-    before, heading, examples = text.partition(_EXAMPLES)
-    return before, f"{heading}{examples}".strip()
 
 
 TASKS: Final = (

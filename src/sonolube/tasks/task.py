@@ -13,11 +13,11 @@ from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.former_names import moved_module
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.call import Call, Mark
+from sonolube.tasks.docstrings import split_examples
 from sonolube.tasks.files import private_files, with_names_only
 from sonolube.tasks.notebooks import cell_progress, is_in_notebook
 from sonolube.tasks.parameters import Number, Parameter, RigParameter
 from sonolube.tasks.progress import observed, watched
-from sonolube.tasks.table import split_examples
 from sonolube.units import temperature_difference_to_si, to_si
 
 P = ParamSpec("P")

@@ -356,13 +356,6 @@ def ratio_interval(numerator: ArrayLike, denominator: ArrayLike, *, confidence_l
     References
     ----------
     .. [1] E. C. Fieller, J. R. Stat. Soc. B 16, 175 (1954). doi:10.1111/j.2517-6161.1954.tb00159.x
-
-    Examples
-    --------
-    >>> from sonolube.measurement import ratio_interval
-    >>> ratio = ratio_interval([0.52, 0.55, 0.49, 0.57], [1.12, 1.08, 1.10, 1.15])
-    >>> round(ratio.ratio, 3), round(float(ratio.lower), 3), round(float(ratio.upper), 3)
-    (0.479, 0.432, 0.527)
     """
     x, y = _tests(numerator, "numerator"), _tests(denominator, "denominator")
     require_within(0.5, 0.9999, confidence_level=confidence_level)

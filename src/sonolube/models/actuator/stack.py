@@ -191,15 +191,6 @@ def blocked_force(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
     References
     ----------
     .. [1] D 3.42.
-
-    Examples
-    --------
-    >>> from sonolube.models.actuator import blocked_force, catalogue_actuator, catalogue_stack
-    >>> from sonolube.units import format_si
-    >>> actuator = catalogue_actuator("sa050510")  # 900 N at 180 V
-    >>> stack = catalogue_stack(actuator, frequency=22e3, mechanical_quality_factor=75.0)
-    >>> format_si(float(blocked_force(stack, stack_voltage=90.0)), "N")
-    '450 N'
     """
     return stack.charge_per_elongation * require_allowed_voltage(stack, stack_voltage=stack_voltage)
 

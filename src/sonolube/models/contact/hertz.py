@@ -32,14 +32,6 @@ class SphereOnFlat:
     References
     ----------
     .. [1] K. L. Johnson, Contact Mechanics (1985), chapters 3 and 4. doi:10.1017/CBO9781139171731
-
-    Examples
-    --------
-    >>> from sonolube.models.contact import SphereOnFlat, hertz_stiffness
-    >>> from sonolube.units import format_si
-    >>> ball = SphereOnFlat(tip_radius=5e-3, effective_modulus=60e9)
-    >>> format_si(float(hertz_stiffness(ball, normal_load=10.0)), "N/m")  # 2 E* a
-    '10.3 MN/m'
     """
 
     tip_radius: float
@@ -70,14 +62,6 @@ def hertz_contact_radius(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Flo
     Notes
     -----
     .. math:: a = \left( \frac{3 F_N R}{4 E^*} \right)^{1/3}
-
-    Examples
-    --------
-    >>> from sonolube.models.contact import SphereOnFlat, hertz_contact_radius
-    >>> from sonolube.units import format_si
-    >>> ball = SphereOnFlat(tip_radius=5e-3, effective_modulus=60e9)
-    >>> format_si(float(hertz_contact_radius(ball, normal_load=10.0)), "m")
-    '85.5 um'
     """
     load = require_non_negative(normal_load=normal_load)
     return np.cbrt(3 * load * sphere.tip_radius / (4 * sphere.effective_modulus))  # Johnson 4.22
@@ -104,14 +88,6 @@ def hertz_approach(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
     Notes
     -----
     .. math:: \delta = \frac{a^2}{R}
-
-    Examples
-    --------
-    >>> from sonolube.models.contact import SphereOnFlat, hertz_approach
-    >>> from sonolube.units import format_si
-    >>> ball = SphereOnFlat(tip_radius=5e-3, effective_modulus=60e9)
-    >>> format_si(float(hertz_approach(ball, normal_load=10.0)), "m")
-    '1.46 um'
     """
     return hertz_contact_radius(sphere, normal_load=normal_load) ** 2 / sphere.tip_radius  # Johnson 4.23
 
@@ -144,10 +120,9 @@ def hertz_peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floa
     Examples
     --------
     >>> from sonolube.models.contact import SphereOnFlat, hertz_peak_pressure
-    >>> from sonolube.units import format_si
     >>> ball = SphereOnFlat(tip_radius=5e-3, effective_modulus=60e9)
-    >>> format_si(float(hertz_peak_pressure(ball, normal_load=10.0)), "Pa")
-    '653 MPa'
+    >>> round(1e-6 * float(hertz_peak_pressure(ball, normal_load=10.0)))  # MPa
+    653
     """
     load = require_non_negative(normal_load=normal_load)
     R, E = sphere.tip_radius, sphere.effective_modulus
