@@ -128,6 +128,15 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
     References
     ----------
     .. [1] D 3.3
+
+    Examples
+    --------
+    >>> from sonolube.models.contact import separation
+    >>> from sonolube.rig import read_rig
+    >>> contact = read_rig("examples/rigs/tribometer.toml").contact
+    >>> gap = separation(contact, normal_load=[3.0, 6.0])
+    >>> round(1e6 * float(gap[0] - gap[1]), 3)  # decay length of 2 um times ln 2
+    1.386
     """
     load = require_positive(normal_load=normal_load)
     integrals = _integrals(contact)
@@ -220,15 +229,6 @@ def real_contact_area(contact: RoughContact, *, separation: ArrayLike) -> Floats
     References
     ----------
     .. [1] D 3.6
-
-    Examples
-    --------
-    >>> from sonolube.models.contact import real_contact_area, separation
-    >>> from sonolube.rig import read_rig
-    >>> contact = read_rig("examples/rigs/tribometer.toml").contact
-    >>> area = real_contact_area(contact, separation=separation(contact, normal_load=[3.0, 6.0]))
-    >>> round(1e12 * float(area[0])), round(float(area[1] / area[0]), 6)  # um2; in proportion to the load
-    (4981, 2.0)
     """
     integrals, h = integrals_at(contact, separation=separation)
     return integrals.area.value(h)

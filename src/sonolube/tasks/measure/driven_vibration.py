@@ -31,15 +31,12 @@ def vibration(
 
     Examples
     --------
-    >>> import io
-    >>> import numpy as np
+    >>> from math import pi, sin
     >>> import sonolube as sl
     >>> from sonolube.tasks.files import NamedBytes
-    >>> file, time = io.BytesIO(), np.arange(0, 0.1, 5e-5)
-    >>> columns = np.stack([time, 2.5 * np.sin(2 * np.pi * 1000 * time)], axis=1)
-    >>> np.savetxt(file, columns, delimiter=",", header="time (s),tip (um)", comments="")
-    >>> answer = sl.measure.vibration(NamedBytes("tip.csv", file.getvalue()), frequency="1kHz")
-    >>> round(1e6 * float(answer["vibration_amplitude"]), 3)
+    >>> rows = ["time (s),tip (um)", *(f"{k / 20e3},{2.5 * sin(2 * pi * k / 20)}" for k in range(2000))]
+    >>> file = NamedBytes("tip.csv", chr(10).join(rows).encode())  # or the path of a file
+    >>> round(1e6 * float(sl.measure.vibration(file, frequency="1kHz")["vibration_amplitude"]), 3)
     2.5
     """
     settings = VibrationSettings(

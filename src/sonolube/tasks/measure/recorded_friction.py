@@ -72,14 +72,11 @@ def friction(
 
     Examples
     --------
-    >>> import io
-    >>> import numpy as np
     >>> import sonolube as sl
     >>> from sonolube.tasks.files import NamedBytes
-    >>> file, time = io.BytesIO(), np.arange(0, 20, 0.01)
-    >>> columns = np.stack([time, 0.4 + 0.02 * np.cos(100 * np.pi * time)], axis=1)
-    >>> np.savetxt(file, columns, delimiter=",", header="time (s),friction_force (N)", comments="")
-    >>> answer = sl.measure.friction(NamedBytes("test.csv", file.getvalue()))  # or the path of a file
+    >>> rows = ["time (s),friction_force (N)", *(f"{k / 100},{0.4 + 0.02 * (-1) ** k}" for k in range(2000))]
+    >>> file = NamedBytes("test.csv", chr(10).join(rows).encode())  # or the path of a file
+    >>> answer = sl.measure.friction(file)
     >>> round(float(answer["mean_force"]), 3), round(float(answer["friction_force_fluctuation"]), 3)
     (0.4, 0.02)
     """

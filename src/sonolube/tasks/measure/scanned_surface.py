@@ -44,8 +44,8 @@ def surface(
     >>> import numpy as np
     >>> import sonolube as sl
     >>> from sonolube.tasks.files import NamedBytes
-    >>> file = io.BytesIO()
-    >>> np.save(file, 1e-6 * np.tile(np.cos(2 * np.pi * (np.arange(64) - 31.5) / 16), (64, 1)))
+    >>> file, x = io.BytesIO(), np.arange(64) - 31.5
+    >>> np.save(file, 1e-6 * np.tile(np.cos(2 * np.pi * x / 16), (64, 1)))
     >>> answer = sl.measure.surface(NamedBytes("plate.npy", file.getvalue()), spacing="1um")
     >>> round(1e6 * float(answer["rms_height"]), 3)  # of a cosine 1/sqrt(2)
     0.707
