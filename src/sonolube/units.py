@@ -66,6 +66,12 @@ def to_si(text: str, *, unit: str, name: str) -> float:
     Notes
     -----
     Rates in 1/s are in turns per second: 60 rpm and 360 deg/s are 1/s.
+
+    Examples
+    --------
+    >>> from sonolube.units import to_si
+    >>> to_si("8 um", unit="m", name="vibration_amplitude"), to_si("60 rpm", unit="1/s", name="rotation_speed")
+    (8e-06, 1.0)
     """
     parts = _number_and_unit(text)
     shown = _shortened(text)
@@ -113,6 +119,12 @@ def convert(value: float, *, from_unit: str, to_unit: str) -> float:
     ------
     InvalidInput
         If the units are unknown or of different kinds.
+
+    Examples
+    --------
+    >>> from sonolube.units import convert
+    >>> round(convert(0.0203, from_unit="m/s", to_unit="mm/s"), 6)
+    20.3
     """
     return _converted(value, from_unit, to_unit, name="value", text=f"{value} {from_unit}")
 
@@ -139,6 +151,12 @@ def format_si(value: float, unit: str, *, digits: int = 3, scale: float = 0.0) -
     Returns
     -------
     str
+
+    Examples
+    --------
+    >>> from sonolube.units import format_si
+    >>> format_si(2.5e-6, "m"), format_si(22e3, "Hz"), format_si(0.95e-12, "m2")
+    ('2.5 um', '22 kHz', '0.95 um2')
     """
     if abs(value) < _ROUNDING * abs(scale):
         value = 0.0
@@ -180,6 +198,12 @@ def format_quantity(value: float, name: str, *, digits: int = 3) -> str:
     Returns
     -------
     str
+
+    Examples
+    --------
+    >>> from sonolube.units import format_quantity
+    >>> format_quantity(2.57e-11, "wear_rate")
+    '0.0257 mm3/m'
     """
     known = quantities().get(name)
     if known is None or not known.text_unit:
@@ -203,6 +227,12 @@ def format_like(values: Sequence[float], unit: str, *, digits: int = 3) -> list[
     -------
     list of str
         A value below a thousandth of the largest has a prefix of its own.
+
+    Examples
+    --------
+    >>> from sonolube.units import format_like
+    >>> format_like([0.5e-6, 2.5e-6], "m")
+    ['0.5 um', '2.5 um']
     """
     largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     if not largest or not unit:

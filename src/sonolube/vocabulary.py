@@ -75,6 +75,12 @@ def quantity(name: str) -> Quantity:
     ------
     UnknownName
         If the vocabulary has no such quantity.
+
+    Examples
+    --------
+    >>> from sonolube.vocabulary import quantity
+    >>> quantity("sliding_speed").axis_label
+    'Sliding speed [m/s]'
     """
     try:
         return quantities()[name]
@@ -83,7 +89,14 @@ def quantity(name: str) -> Quantity:
 
 
 def unit_of(name: str) -> str:
-    """Return the SI unit of a name; empty for pure numbers and for names that are not in the vocabulary."""
+    """Return the SI unit of a name; empty for pure numbers and for names that are not in the vocabulary.
+
+    Examples
+    --------
+    >>> from sonolube.vocabulary import unit_of
+    >>> unit_of("wear_rate"), unit_of("friction_ratio")
+    ('m2', '')
+    """
     known = quantities().get(name)
     return known.unit if known else ""
 

@@ -97,6 +97,7 @@ def test_every_command_has_json_and_an_example_in_its_help(command: Command) -> 
     function = command.function
     assert f"Example: sonolube {command.name}" in (function.__doc__ or "")
     assert command.help == inspect.getdoc(function)
+    assert ">>>" not in command.help  # examples of Python
     assert ("json" in function.__annotations__) == (command.name not in SERVERS)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from sonolube.tasks.openapi import task_path, tasks_description
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
-from sonolube.tasks.table import TASKS, Task
+from sonolube.tasks.table import TASKS, Task, task_named
 from sonolube.tasks.task import marks_of
 from sonolube.vocabulary import quantity
 
@@ -169,3 +169,8 @@ def test_answers_have_caveats_and_assumptions_but_those_of_look_ups(document: di
     assert "properties" not in schemas["Listing"]
     response = operations(document)["/tasks/sweep"]["responses"]["200"]["content"]["application/json"]["schema"]
     assert len(response["anyOf"]) == 2
+
+
+def test_examples_of_python_are_left_out(document: dict[str, Any]) -> None:
+    assert ">>>" in (task_named("friction").function.__doc__ or "")
+    assert ">>>" not in json.dumps(document)

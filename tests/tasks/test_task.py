@@ -39,6 +39,11 @@ def stretched(
     """Length of a rod under strain.
 
     Example: sonolube stretched 1m
+
+    Examples
+    --------
+    >>> stretched("1 m").metres
+    1.1
     """
     if table is None:
         refuse_unused("note", because="without a table")
@@ -111,6 +116,12 @@ def test_bytes_with_a_name_stand_for_a_file_and_leave_nothing(tmp_path: Path) ->
 def test_the_docstring_lists_the_arguments_with_their_units() -> None:
     assert stretched.__doc__ is not None
     assert "length : float or str\n    At rest. [m]" in stretched.__doc__
+
+
+def test_the_docstring_ends_with_the_examples() -> None:
+    assert stretched.__doc__ is not None
+    assert stretched.__doc__.endswith('\n\nExamples\n--------\n>>> stretched("1 m").metres\n1.1')
+    assert stretched.__doc__.index("Parameters\n") < stretched.__doc__.index("Examples\n")
 
 
 def test_an_argument_without_a_meaning_is_a_mistake_of_the_task() -> None:

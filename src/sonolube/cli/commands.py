@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 
-from sonolube.tasks.table import LAB, LOOKUP, PREDICT, TASKS, Task, docstring
+from sonolube.tasks.docstrings import docstring
+from sonolube.tasks.table import LAB, LOOKUP, PREDICT, TASKS, Task
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,6 +36,14 @@ def saturation_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike
     .. math:: \mu_r(2P) - \mu_r(P) = 0.05
 
     with the friction reduction :math:`\mu_r` interpolated linearly over the power.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.design import saturation_power
+    >>> power = np.linspace(0, 10, 1001)
+    >>> round(float(saturation_power(friction_reduction=1 - np.exp(-power), actuator_power=power)), 2)
+    2.94
     """
     power = require_non_negative(actuator_power=actuator_power)
     rows = np.asarray(friction_reduction, dtype=np.float64)

@@ -132,6 +132,14 @@ def grid_plan(rig_file: str | Path | Rig, *, over: Mapping[str, ArrayLike], chan
     See Also
     --------
     list_plan, latin_hypercube_plan
+
+    Examples
+    --------
+    >>> from sonolube.design import grid_plan
+    >>> over = {"drive.voltage_peak_to_peak": [7.0, 14.0, 28.0], "contact.normal_load": [3.0, 5.0]}
+    >>> plan = grid_plan("examples/rigs/tribometer.toml", over=over)
+    >>> plan.shape, plan.points
+    ((2, 3), 6)
     """
     order = [key for key in over if key not in OPERATING_CONDITIONS] + [
         key for key in OPERATING_CONDITIONS if key in over

@@ -42,6 +42,13 @@ def read_runs(path: str | Path, *, mapping: RecordingMapping | Path | None = Non
     ------
     InvalidInput
         Naming the file, the line, the column and the cell, if the table cannot be read or holds no friction.
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> runs = sl.read_runs("examples/tribometer-runs.csv")
+    >>> runs["friction_force"].values.tolist()
+    [0.52, 0.91, 0.83, 0.67]
     """
     path = Path(path)
     given = read_mapping(mapping) if isinstance(mapping, Path) else mapping

@@ -127,6 +127,15 @@ def fit_temperature_response(
     Intervals are first-order, on a logarithmic scale for time constants, and widened by the statistical inefficiency of
     the residuals. A time constant longer than the record is reported in the caveats: the response is then nearly a
     straight line, which does not determine it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.measurement import fit_temperature_response
+    >>> time = np.linspace(0, 300, 61)
+    >>> found = fit_temperature_response(time=time, temperature=20.0 * (1 - np.exp(-time / 60)), exponentials=1)
+    >>> round(found.time_constants[0].value, 3), round(found.final_temperature.value, 3)
+    (60.0, 20.0)
     """
     require_within(0.5, 0.9999, confidence_level=confidence_level)
     if exponentials not in (None, 1, 2):
@@ -219,6 +228,12 @@ def heating_rate(*, time: ArrayLike, temperature: ArrayLike, start_time: float, 
     ------
     InvalidInput
         If the span holds fewer than two values.
+
+    Examples
+    --------
+    >>> from sonolube.measurement import heating_rate
+    >>> round(heating_rate(time=[0, 10, 20], temperature=[20.0, 22.0, 24.0], start_time=0, end_time=20), 3)
+    0.2
     """
     t, value = require_time_series(time=time, temperature=temperature)
     require_positive(duration=end_time - start_time)

@@ -106,6 +106,14 @@ def amplitude_per_volt(
     References
     ----------
     .. [1] D Table 4.1, figures 4.45 and 4.55.
+
+    Examples
+    --------
+    >>> from sonolube.measurement import amplitude_per_volt
+    >>> amplitude = [0.63e-6, 1.24e-6, 2.5e-6]
+    >>> found = amplitude_per_volt(voltage_peak_to_peak=[7.0, 14.0, 28.0], vibration_amplitude=amplitude)
+    >>> round(1e9 * found.amplitude_per_volt, 1), found.proportional  # nm/V
+    (89.2, True)
     """
     require_within(0.5, 0.9999, confidence_level=confidence_level)
     volts = require_positive(voltage_peak_to_peak=voltage_peak_to_peak)
@@ -247,6 +255,12 @@ def modal_assurance_criterion(first: ArrayLike, second: ArrayLike) -> Floats:
     References
     ----------
     .. [1] R. J. Allemang, Sound and Vibration 37(8), 14 (2003).
+
+    Examples
+    --------
+    >>> from sonolube.measurement import modal_assurance_criterion
+    >>> modal_assurance_criterion([1.0, 2.0, 3.0], [[2.0, 3.0], [4.0, 0.0], [6.0, -1.0]]).round(3).tolist()
+    [[1.0, 0.0]]
     """
     a, b = (_unit_shapes(name, value) for name, value in (("first", first), ("second", second)))
     if a.shape[0] != b.shape[0]:

@@ -59,6 +59,16 @@ class LivePrediction:
     ------
     InvalidInput
         If the number of draws is out of range, or as `at` does, also for a rig of the laboratory.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import sonolube as sl
+    >>> rig = sl.read_rig("examples/rigs/tribometer.toml")
+    >>> prediction = sl.LivePrediction(rig)
+    >>> weaker = prediction.at(rig.replace("drive.voltage_peak_to_peak", "14 V"))
+    >>> [round(float(np.median(each["friction_ratio"].values)), 1) for each in (prediction.first, weaker)]
+    [0.3, 0.6]
     """
 
     def __init__(

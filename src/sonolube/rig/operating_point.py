@@ -191,6 +191,13 @@ def contact_point(rig: Rig, *, tangential_stiffness_model: str = DEFAULT_TANGENT
         If there is no such model.
     OutsideRange
         If the surfaces would be pressed through each other, so that no separation is left.
+
+    Examples
+    --------
+    >>> from sonolube.rig import contact_point, read_rig
+    >>> point = contact_point(read_rig("examples/rigs/tribometer.toml"))
+    >>> round(1e12 * point.real_contact_area), round(point.contact_count)  # um2, asperities
+    (4981, 264)
     """
     model = TANGENTIAL_STIFFNESSES.named(tangential_stiffness_model)
     gap = rest_separation(rig)

@@ -137,6 +137,13 @@ class Rig:
         Which entries no source gives, and what was assumed instead and why.
     uncertainty : mapping of str to Distribution
         How uncertain entries are spread, by dotted key of the file.
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> rig = sl.read_rig("examples/rigs/tribometer.toml")
+    >>> round(rig.friction_coefficient * rig.normal_load, 3)  # friction force without vibration, in N
+    1.023
     """
 
     title: str
@@ -202,6 +209,13 @@ class Rig:
         See Also
         --------
         to_toml
+
+        Examples
+        --------
+        >>> import sonolube as sl
+        >>> rig = sl.read_rig("examples/rigs/tribometer.toml")
+        >>> rig.normal_load, rig.replace("contact.normal_load", "5 N").normal_load
+        (3.0, 5.0)
         """
         return self._file().replaced(key, value)
 

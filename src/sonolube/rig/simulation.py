@@ -148,6 +148,13 @@ def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
         If the surfaces would be pressed through each other, so that no separation is left.
     UnknownName
         If there is no such model.
+
+    Examples
+    --------
+    >>> from sonolube.rig import friction_point, read_rig
+    >>> rig = read_rig("examples/rigs/tribometer.toml")
+    >>> round(friction_point(rig).friction_ratio, 2), round(friction_point(rig, model="kinematic").friction_ratio, 2)
+    (0.35, 0.16)
     """
     rest_separation(rig)
     chosen = rig if model is None else replace(rig, friction_model=friction_model_named(rig, model))
@@ -192,6 +199,13 @@ def wear_point(rig: Rig, *, model: str | None = None) -> WearPoint:
     References
     ----------
     .. [1] D 3.26 to 3.29 as they were evaluated, for the default model.
+
+    Examples
+    --------
+    >>> from sonolube.rig import read_rig, wear_point
+    >>> point = wear_point(read_rig("examples/rigs/tribometer.toml"))
+    >>> round(point.wear_reduction, 2)
+    0.47
     """
     rest_separation(rig)
     name = wear_model_of(rig) if model is None else model

@@ -51,6 +51,13 @@ def plot(result: "Answer | xr.Dataset", *, title: str | None = None, style: str 
         If the result has no figure.
     UnknownName
         If it has none of that title.
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> figure = sl.plot(sl.response("examples/rigs/tribometer.toml"))
+    >>> figure.axes[-1].get_xlabel()
+    'Frequency [kHz]'
     """
     if isinstance(result, Answer):
         return result.plot(title, style=style)

@@ -1,11 +1,11 @@
 """Table of all tasks, one line each: panel of the help, name, module and function, and the files of its answer."""
 
-import ast
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Final
+
+from sonolube.tasks.docstrings import docstring
 
 if TYPE_CHECKING:
     from sonolube.tasks.answer import Answer
@@ -61,15 +61,6 @@ class Task:
     def summary(self) -> str:
         """Docstring of the function, read from the source without importing the module."""
         return docstring("sonolube.tasks", self.where)
-
-
-def docstring(package: str, where: str) -> str:
-    """Docstring of a function below a package, such as "predict.friction:friction", whose module is not imported."""
-    module, _, name = f"{package}.{where}".strip(".").partition(":")
-    root, _, inner = module.partition(".")
-    source = files(root).joinpath(f"{inner.replace('.', '/')}.py").read_text(encoding="utf-8")
-    nodes = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef) and node.name == name)
-    return ast.get_docstring(next(nodes)) or ""
 
 
 TASKS: Final = (

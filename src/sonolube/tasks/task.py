@@ -13,6 +13,7 @@ from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.former_names import moved_module
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.call import Call, Mark
+from sonolube.tasks.docstrings import split_examples
 from sonolube.tasks.files import private_files, with_names_only
 from sonolube.tasks.notebooks import cell_progress, is_in_notebook
 from sonolube.tasks.parameters import Number, Parameter, RigParameter
@@ -251,8 +252,9 @@ def _require_within(mark: Parameter, name: str, number: float, given: Number) ->
 
 
 def _described(text: str, arguments: Mapping[str, Argument], marks: Mapping[str, Mark]) -> str:
-    """Docstring with a section of parameters."""
-    lines = [cleandoc(text), "", "Parameters", "----------"]
+    """Docstring with a section of parameters, before its examples."""
+    before, examples = split_examples(cleandoc(text))
+    lines = [before, "", "Parameters", "----------"]
     for name, argument in arguments.items():
         mark = marks[name]
         default = "" if argument.default is Argument.empty else f", default {argument.default!r}"
@@ -260,7 +262,7 @@ def _described(text: str, arguments: Mapping[str, Argument], marks: Mapping[str,
         help_text = mark.help if isinstance(mark, Parameter) else _DOORS.get(name, _RIG)
         unit = f" [{mark.unit}]" if isinstance(mark, Parameter) and mark.unit is not None else ""
         lines.append(f"    {help_text}{unit}")
-    return "\n".join([*lines, ""])
+    return "\n".join([*lines, "", examples] if examples else [*lines, ""])
 
 
 def _kind(argument: Argument, mark: Mark) -> str:

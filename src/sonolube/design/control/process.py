@@ -145,6 +145,13 @@ def simc_gains(process: Process, *, closed_loop_time: float | None = None) -> PI
     References
     ----------
     .. [1] S. Skogestad, J. Process Control 13, 291 (2003). doi:10.1016/S0959-1524(02)00062-8
+
+    Examples
+    --------
+    >>> from sonolube.design.control import Process, simc_gains
+    >>> gains = simc_gains(Process(time_constant=2e-3, dead_time=1e-3, sample_interval=0.2e-3))
+    >>> round(gains.proportional_gain, 3), round(1e3 * gains.integral_time, 3)
+    (0.955, 2.102)
     """
     theta = process.effective_dead_time
     tau_c = theta if closed_loop_time is None else float(require_positive(closed_loop_time=closed_loop_time))
@@ -204,6 +211,14 @@ def stability_margins(process: Process, gains: PIGains) -> StabilityMargins:
     -----
     The response extends to half the sampling rate and includes hold and dead time, so that the margins are those of
     the loop as it runs.
+
+    Examples
+    --------
+    >>> from sonolube.design.control import Process, simc_gains, stability_margins
+    >>> process = Process(time_constant=2e-3, dead_time=1e-3, sample_interval=0.2e-3)
+    >>> margins = stability_margins(process, simc_gains(process))
+    >>> round(margins.gain_margin, 2), round(margins.sensitivity_peak, 2)
+    (3.13, 1.59)
     """
     nyquist = 0.5 / process.sample_interval
     lowest = 1e-4 / (process.time_constant + process.effective_dead_time + gains.integral_time)

@@ -29,6 +29,13 @@ def material(name: str) -> Material:
     ------
     UnknownName
         If the catalogue has no such material, with the closest name.
+
+    Examples
+    --------
+    >>> from sonolube.facts.materials import material
+    >>> steel = material("AISI 316")
+    >>> steel.name, steel.properties["density"].value
+    ('stainless_steel_316', 8000.0)
     """
     try:
         return _known()[_names_by_key()[_key(name)]]

@@ -62,6 +62,13 @@ def yield_strength_from_hardness(*, hardness: float) -> YieldStrengthEstimate:
     ----------
     .. [1] D. Tabor, J. Inst. Met. 79, 1 (1951).
     .. [2] E. J. Pavlina and C. J. Van Tyne, J. Mater. Eng. Perform. 17, 888 (2008). doi:10.1007/s11665-008-9225-5
+
+    Examples
+    --------
+    >>> from sonolube.facts.materials import yield_strength_from_hardness
+    >>> from sonolube.units import format_si
+    >>> format_si(yield_strength_from_hardness(hardness=1.2e9).yield_strength, "Pa")  # a third
+    '400 MPa'
     """
     pressure = float(require_positive(hardness=hardness))
     return YieldStrengthEstimate(

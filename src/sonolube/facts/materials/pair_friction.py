@@ -74,6 +74,13 @@ def dry_friction(first: str, second: str) -> DryFriction:
     ------
     UnknownName
         If the catalogue has no such material.
+
+    Examples
+    --------
+    >>> from sonolube.facts.materials import dry_friction
+    >>> friction = dry_friction("100Cr6", "aluminium_2024")
+    >>> friction.low, friction.high
+    (0.3, 0.65)
     """
     one, other = material(first), material(second)
     known = [(_specificity(pair, one, other), pair) for pair in dry_friction_pairs()]

@@ -231,6 +231,12 @@ def piezo_ceramic(name: str) -> PiezoCeramic:
         If no piezoelectric ceramic has this name.
     MissingProperty
         If no complete set of its constants is published; its scalar properties are still available from `material`.
+
+    Examples
+    --------
+    >>> from sonolube.facts.materials import coupling_factors, piezo_ceramic
+    >>> round(coupling_factors(piezo_ceramic("pzt4"))["coupling_factor_33"], 2)
+    0.68
     """
     table = read_property_file("piezo.toml")
     try:

@@ -52,6 +52,14 @@ def efficiency_coefficient(
     References
     ----------
     .. [1] D 4.1.
+
+    Examples
+    --------
+    >>> from sonolube.facts.metrics import efficiency_coefficient
+    >>> friction = {"intrinsic_friction_force": 1.0, "reduced_friction_force": 0.4, "sliding_speed": 0.1}
+    >>> coefficient = efficiency_coefficient(**friction, nominal_area=1e-6, normal_load=3.0, actuator_power=2.0)
+    >>> round(1e9 * float(coefficient), 3)  # mW mm2/(N W)
+    10.0
     """
     saved = require_finite(intrinsic_friction_force=intrinsic_friction_force) - require_finite(
         reduced_friction_force=reduced_friction_force

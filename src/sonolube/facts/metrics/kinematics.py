@@ -28,6 +28,13 @@ def peak_vibration_velocity(*, frequency: ArrayLike, vibration_amplitude: ArrayL
     Notes
     -----
     .. math:: v_1 = 2\pi f a
+
+    Examples
+    --------
+    >>> from sonolube.facts.metrics import peak_vibration_velocity
+    >>> from sonolube.units import format_si
+    >>> format_si(float(peak_vibration_velocity(frequency=22e3, vibration_amplitude=2.5e-6)), "m/s")
+    '346 mm/s'
     """
     f = require_positive(frequency=frequency)
     return 2 * np.pi * f * require_non_negative(vibration_amplitude=vibration_amplitude)
@@ -139,6 +146,13 @@ def linear_speed(*, rotation_speed: ArrayLike, groove_diameter: ArrayLike) -> Fl
     Notes
     -----
     .. math:: v_r = \pi D_g n
+
+    Examples
+    --------
+    >>> from sonolube.facts.metrics import linear_speed
+    >>> from sonolube.units import format_si
+    >>> format_si(float(linear_speed(rotation_speed=1.0, groove_diameter=50e-3)), "m/s")  # 60 rpm
+    '157 mm/s'
     """
     return (
         np.pi * require_non_negative(rotation_speed=rotation_speed) * require_positive(groove_diameter=groove_diameter)
@@ -167,5 +181,11 @@ def sliding_distance(*, revolutions: ArrayLike, groove_diameter: ArrayLike) -> F
     Notes
     -----
     .. math:: D = \pi D_g N
+
+    Examples
+    --------
+    >>> from sonolube.facts.metrics import sliding_distance
+    >>> round(float(sliding_distance(revolutions=1000, groove_diameter=50e-3)), 1)  # m
+    157.1
     """
     return np.pi * require_non_negative(revolutions=revolutions) * require_positive(groove_diameter=groove_diameter)

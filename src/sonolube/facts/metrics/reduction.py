@@ -36,6 +36,12 @@ def friction_reduction(*, intrinsic_friction_force: ArrayLike, reduced_friction_
     References
     ----------
     .. [1] D 2.1.
+
+    Examples
+    --------
+    >>> from sonolube.facts.metrics import friction_reduction
+    >>> round(float(friction_reduction(intrinsic_friction_force=1.0, reduced_friction_force=0.35)), 3)
+    0.65
     """
     intrinsic = require_positive(intrinsic_friction_force=intrinsic_friction_force)
     reduced = require_finite(reduced_friction_force=reduced_friction_force)
@@ -72,6 +78,12 @@ def wear_reduction(*, intrinsic_wear_rate: ArrayLike, reduced_wear_rate: ArrayLi
     References
     ----------
     .. [1] D 2.3.
+
+    Examples
+    --------
+    >>> from sonolube.facts.metrics import wear_reduction
+    >>> round(float(wear_reduction(intrinsic_wear_rate=2.237e-11, reduced_wear_rate=1.214e-11)), 3)  # D Table 2.5
+    0.457
     """
     intrinsic = require_positive(intrinsic_wear_rate=intrinsic_wear_rate)
     return (intrinsic - require_non_negative(reduced_wear_rate=reduced_wear_rate)) / intrinsic
@@ -103,5 +115,12 @@ def wear_rate(*, wear_volume: ArrayLike, sliding_distance: ArrayLike) -> Floats:
     References
     ----------
     .. [1] D 2.2.
+
+    Examples
+    --------
+    >>> from sonolube.facts.metrics import wear_rate
+    >>> from sonolube.units import format_quantity
+    >>> format_quantity(float(wear_rate(wear_volume=7.5e-9, sliding_distance=300.0)), "wear_rate")
+    '0.025 mm3/m'
     """
     return require_non_negative(wear_volume=wear_volume) / require_positive(sliding_distance=sliding_distance)

@@ -11,7 +11,14 @@ _FOLDER: Final = Path(__file__).parent / "dissertation"
 
 
 def protocol_names() -> tuple[str, ...]:
-    """Names of the protocols that come with the package, such as map_test, in alphabetical order."""
+    """Names of the protocols that come with the package, such as map_test, in alphabetical order.
+
+    Examples
+    --------
+    >>> from sonolube.facts.protocol import duration, protocol_by_name_or_file, protocol_names
+    >>> "map_test" in protocol_names(), duration(protocol_by_name_or_file("map_test"))
+    (True, 32.5)
+    """
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
 
 

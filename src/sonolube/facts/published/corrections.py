@@ -84,6 +84,12 @@ def erratum(id: str) -> Erratum:  # noqa: A002 - the field's own word
     ------
     UnknownName
         If no erratum has that number.
+
+    Examples
+    --------
+    >>> from sonolube.facts.published import erratum
+    >>> erratum("E17").location
+    'Table 4.2'
     """
     known = {entry.id: entry for entry in errata()}
     if id not in known:

@@ -65,6 +65,13 @@ def parse_printed(text: str, unit: str = "", scale: float = 1.0, *, quantity: st
     InvalidInput
         If the text has another form, the limits of a range are in falling order, or the unit is not one of the
         quantity.
+
+    Examples
+    --------
+    >>> from sonolube.facts.published import parse_printed
+    >>> speed = parse_printed("20.3", "mm/s", quantity="sliding_speed")
+    >>> round(speed.low, 6), round(speed.high, 6)
+    (0.02025, 0.02035)
     """
     match = _PRINTED.fullmatch(text)
     if match is None:

@@ -129,6 +129,12 @@ def table(id: str) -> Table:  # noqa: A002 - the field's own word
     ------
     UnknownName
         If no table has that number.
+
+    Examples
+    --------
+    >>> from sonolube.facts.published import table
+    >>> table("2.5").title
+    'Wear rates, number of contacts and friction reduction at three speeds'
     """
     if id not in table_ids():
         raise UnknownName.among(table_ids(), kind="table", name=id)

@@ -56,6 +56,14 @@ def propagate_rounding(function: Callable[..., float], *inputs: PrintedNumber | 
 
     with the printed values x and the half-widths h of their rounding intervals. The corners of the box of inputs bound
     a function that is monotonic in each input.
+
+    Examples
+    --------
+    >>> from sonolube.facts.published import parse_printed, propagate_rounding
+    >>> forces = [parse_printed(text, "N", quantity="friction_force") for text in ("1.02", "0.36")]
+    >>> reduction = propagate_rounding(lambda without, under: 1 - under / without, *forces)
+    >>> round(reduction.low, 3), round(reduction.high, 3)  # 1 - 0.365/1.015, 1 - 0.355/1.025
+    (0.64, 0.654)
     """
     numbers = [published_number(number) if isinstance(number, str) else number for number in inputs]
     intervals = [

@@ -95,6 +95,13 @@ def published_number(id: str) -> PrintedNumber:  # noqa: A002 - the field's own 
     Returns
     -------
     PrintedNumber
+
+    Examples
+    --------
+    >>> from sonolube.facts.published import published_number
+    >>> number = published_number("table-2.5-wear-reduction-1")
+    >>> number.text, number.value
+    ('45.76', 0.4576)
     """
     return _table_cell(id).number if id.startswith("table-") else statement(id).number
 

@@ -42,6 +42,13 @@ def equivalent_stiffness_ratio(*, vibration_amplitude: ArrayLike, decay_length: 
               = \frac{2 I_1(\beta)}{\beta I_0(\beta)}, \qquad k_n = \frac{F_N}{l} ,
 
     which is :math:`1 - \beta^2/8` for small and :math:`2/\beta` for large amplitudes.
+
+    Examples
+    --------
+    >>> from sonolube.measurement import equivalent_stiffness_ratio
+    >>> ratio = equivalent_stiffness_ratio(vibration_amplitude=[0.2e-6, 2e-6], decay_length=2e-6)
+    >>> ratio.round(3).tolist()  # 1 - beta^2/8, and 2 I1(1)/I0(1)
+    [0.999, 0.893]
     """
     from scipy.special import i0e, i1e
 
@@ -69,6 +76,14 @@ def decay_length_from_ratio(stiffness_ratio: float, *, vibration_amplitude: floa
     ------
     OutsideRange
         If the ratio is not between 0 and 1: a contact whose force decays exponentially softens under vibration.
+
+    Examples
+    --------
+    >>> from sonolube.measurement import decay_length_from_ratio, equivalent_stiffness_ratio
+    >>> from sonolube.units import format_si
+    >>> ratio = equivalent_stiffness_ratio(vibration_amplitude=2.5e-6, decay_length=2e-6)
+    >>> format_si(decay_length_from_ratio(float(ratio), vibration_amplitude=2.5e-6), "m")
+    '2 um'
     """
     from scipy.optimize import brentq
 

@@ -76,6 +76,15 @@ def estimate_stick_slip(
     References
     ----------
     .. [1] D 2.3.2 to 2.3.4, figure 2.17.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.measurement import estimate_stick_slip
+    >>> time = np.arange(0, 10, 1e-3)
+    >>> found = estimate_stick_slip(time=time, friction_force=1.0 + 0.2 * (2.0 * time % 1.0))
+    >>> round(found.stick_slip_frequency, 3), round(found.stick_slip_amplitude, 2)
+    (2.0, 0.2)
     """
     t, f = require_time_series(time=time, friction_force=friction_force)
     if minimum_drop is not None:

@@ -179,6 +179,16 @@ def friction_at_voltage_steps(
     References
     ----------
     .. [1] D 2.1, D 4.1.2, figure 4.3 and Table 4.2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.measurement import friction_at_voltage_steps
+    >>> time = np.arange(0, 90, 0.1)
+    >>> voltage = np.where((time > 30) & (time < 60), 28.0, 0.0)
+    >>> steps = friction_at_voltage_steps(time=time, friction_force=1.0 - voltage / 56, voltage_peak_to_peak=voltage)
+    >>> [(step.voltage_peak_to_peak, round(step.friction_force, 3)) for step in steps]
+    [(0.0, 1.0), (28.0, 0.5), (0.0, 1.0)]
     """
     t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
     v = None if sliding_speed is None else require_time_series(time=time, sliding_speed=sliding_speed)[1]

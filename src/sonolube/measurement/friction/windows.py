@@ -102,6 +102,15 @@ def window_statistics(
     References
     ----------
     .. [1] D 2.3.2 and 2.3.3: windows of 2 s at 400 Hz; their RMS is that of the variation, not of the force.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.measurement import window_statistics
+    >>> time = np.arange(0, 10, 0.01)
+    >>> found = window_statistics(np.where(time < 5, 1.0, 0.4), time=time, window_duration=5.0)
+    >>> found.mean.round(3).tolist()
+    [1.0, 0.4]
     """
     require_positive(window_duration=window_duration)
     t, x = require_time_series(time=time, **{channel or "signal": signal})

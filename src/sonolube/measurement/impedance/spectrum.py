@@ -36,6 +36,17 @@ class ImpedanceSpectrum:
     ------
     InvalidInput
         If the shapes differ, a frequency is not positive or does not increase, or an impedance is zero or not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.identification.circuit_fit import fit_circuit
+    >>> from sonolube.measurement import ImpedanceSpectrum
+    >>> s = 2j * np.pi * np.linspace(15e3, 30e3, 400)
+    >>> admittance = 1e-8 * s + 1 / (20 + 0.1 * s + 1 / (6e-10 * s))
+    >>> fit = fit_circuit(ImpedanceSpectrum(frequency=s.imag / (2 * np.pi), impedance=1 / admittance))
+    >>> fit.resonances.series_frequency.round().tolist()  # 1/(2 pi sqrt(0.1 H 0.6 nF))
+    [20547.0]
     """
 
     frequency: Floats

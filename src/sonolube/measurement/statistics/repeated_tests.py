@@ -164,6 +164,13 @@ def mean_estimate(tests: ArrayLike, *, confidence_level: float = 0.95) -> MeanEs
     Notes
     -----
     .. math:: \bar x \pm t_{n-1}\, \frac{s}{\sqrt{n}}
+
+    Examples
+    --------
+    >>> from sonolube.measurement import mean_estimate
+    >>> friction = mean_estimate([0.52, 0.55, 0.49])
+    >>> round(friction.mean, 3), round(friction.lower, 3), round(friction.upper, 3)  # 0.52 -+ 4.303 0.03/sqrt(3)
+    (0.52, 0.445, 0.595)
     """
     x = _tests(tests, "tests")
     require_within(0.5, 0.9999, confidence_level=confidence_level)
@@ -212,6 +219,13 @@ def compare_means(first: ArrayLike, second: ArrayLike, *, confidence_level: floa
     References
     ----------
     .. [1] B. L. Welch, Biometrika 34, 28 (1947). doi:10.1093/biomet/34.1-2.28
+
+    Examples
+    --------
+    >>> from sonolube.measurement import compare_means
+    >>> change = compare_means([1.12, 1.08, 1.10, 1.15], [0.52, 0.55, 0.49, 0.57])
+    >>> round(change.difference, 3), round(change.permutation_p, 4)  # 2 of 70 permutations
+    (-0.58, 0.0286)
     """
     a, b = _tests(first, "first"), _tests(second, "second")
     require_within(0.5, 0.9999, confidence_level=confidence_level)

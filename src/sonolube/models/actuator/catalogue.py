@@ -149,6 +149,12 @@ def catalogue_actuator(name: str) -> CatalogueActuator:
     ------
     UnknownName
         If there is no such actuator.
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import catalogue_actuator
+    >>> catalogue_actuator("sa050510").title
+    'PiezoDrive SA050510, 5 mm x 5 mm x 10 mm'
     """
     try:
         return _built_in()[name]

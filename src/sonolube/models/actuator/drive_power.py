@@ -43,6 +43,13 @@ def linear_amplifier_power(
     References
     ----------
     .. [1] D 1.9.
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import linear_amplifier_power
+    >>> drive = {"voltage_maximum": 28.0, "voltage_peak_to_peak": 28.0, "frequency": 22e3}
+    >>> round(float(linear_amplifier_power(capacitance=360e-9, **drive)), 2)
+    6.21
     """
     C, f = require_positive(capacitance=capacitance), require_positive(frequency=frequency)  # noqa: N806
     U_max = require_non_negative(voltage_maximum=voltage_maximum)  # noqa: N806
@@ -105,6 +112,12 @@ def power_factor(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
     .. math::
 
         \lambda = \frac{\sum_n \mathrm{Re}\, Y_n |V_n|^2}{\sqrt{\sum_n |V_n|^2 \sum_n |Y_n V_n|^2}}
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import power_factor
+    >>> round(float(power_factor(admittance=[3e-3 + 4e-3j], voltage_amplitude=[14.0])), 3)  # cosine of the phase
+    0.6
     """
     y = np.atleast_1d(require_finite_complex(admittance=admittance))
     volts = np.atleast_1d(require_finite_complex(voltage_amplitude=voltage_amplitude))
@@ -138,6 +151,13 @@ def peak_current(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
     -----
     For a square or sawtooth voltage on a capacitance it grows with the number of harmonics, and is limited in practice
     by the amplifier.
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import peak_current
+    >>> from sonolube.units import format_si
+    >>> format_si(float(peak_current(admittance=[3e-3 + 4e-3j], voltage_amplitude=[14.0])), "A")
+    '70 mA'
     """
     y = require_finite_complex(admittance=admittance)
     current = np.atleast_1d(y * require_finite_complex(voltage_amplitude=voltage_amplitude))

@@ -145,6 +145,14 @@ def circuit_resonances(circuit: ButterworthVanDyke) -> CircuitResonances:
     these
 
     .. math:: Q_i = \frac{1}{R_i}\sqrt{\frac{L_i}{C_i}}, \qquad k_i = \sqrt{1 - (f_s/f_p)^2}
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_resonances
+    >>> branch = MotionalBranch(resistance=50.0, inductance=50e-3, capacitance=1e-9)
+    >>> found = circuit_resonances(ButterworthVanDyke(parallel_capacitance=4e-9, branches=(branch,)))
+    >>> found.series_frequency.round().tolist(), found.parallel_frequency.round().tolist()  # fp/fs: root of 1 + 1/4
+    ([22508.0], [25165.0])
     """
     modes = sorted(circuit.branches, key=lambda branch: -branch.inductance * branch.capacitance)
     inductance = np.array([branch.inductance for branch in modes])

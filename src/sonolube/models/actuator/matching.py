@@ -79,6 +79,14 @@ def parallel_inductor(*, admittance: complex, frequency: float) -> MatchingNetwo
     Notes
     -----
     .. math:: L_p = \frac{1}{\omega\, \mathrm{Im}\, Y}
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import parallel_inductor
+    >>> from sonolube.units import format_si
+    >>> network = parallel_inductor(admittance=2e-3 + 0.05j, frequency=22e3)
+    >>> format_si(network.shunt_inductance, "H")
+    '145 uH'
     """
     y, omega = _capacitive(admittance, frequency)
     return MatchingNetwork(**_shunt(-y.imag, omega))

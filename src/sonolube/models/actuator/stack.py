@@ -153,6 +153,15 @@ def free_stroke(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
     Notes
     -----
     .. math:: e = N d_{33} V
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import catalogue_actuator, catalogue_stack, free_stroke
+    >>> from sonolube.units import format_si
+    >>> actuator = catalogue_actuator("sa050510")  # 14 um at 180 V
+    >>> stack = catalogue_stack(actuator, frequency=22e3, mechanical_quality_factor=75.0)
+    >>> format_si(float(free_stroke(stack, stack_voltage=90.0)), "m")
+    '7 um'
     """
     return stack.free_stroke_per_volt * require_allowed_voltage(stack, stack_voltage=stack_voltage)
 

@@ -159,6 +159,14 @@ def thin_stepped_horn(
     References
     ----------
     .. [1] L. G. Merkulov, Sov. Phys. Acoust. 3, 246 (1957).
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import thin_stepped_horn
+    >>> radii = {"radius": 20e-3, "end_radius": 10e-3}
+    >>> horn = thin_stepped_horn(**radii, end_length=62.5e-3, frequency=20e3, wave_speed=5000.0)
+    >>> round(horn.displacement_gain, 3), round(1e3 * horn.length, 3)  # two quarter waves: (20/10)^2
+    (4.0, 62.5)
     """
     n = _ratio(radius, end_radius)
     k = _wavenumber(frequency, wave_speed)

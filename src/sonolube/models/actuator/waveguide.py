@@ -278,6 +278,13 @@ def free_bar_frequency(*, length: ArrayLike, wave_speed: ArrayLike, mode: int = 
     References
     ----------
     .. [1] D 3.20, which admits every n although the condition above it, cos(omega L/2c) = 0, holds for odd n alone.
+
+    Examples
+    --------
+    >>> from sonolube.models.actuator import free_bar_frequency
+    >>> from sonolube.units import format_si
+    >>> format_si(float(free_bar_frequency(length=0.125, wave_speed=5000.0)), "Hz")  # half a wavelength
+    '20 kHz'
     """
     _require_odd(mode)
     return mode * require_positive(wave_speed=wave_speed) / (2 * require_positive(length=length))

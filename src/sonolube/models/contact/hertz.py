@@ -116,6 +116,13 @@ def hertz_peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floa
 
     1.5 times the mean pressure. D 2.4.2 states twice the nominal stress at the centre of the round tip, by finite
     elements: more than an elastic sphere gives on its own contact circle; the nominal area there must be larger.
+
+    Examples
+    --------
+    >>> from sonolube.models.contact import SphereOnFlat, hertz_peak_pressure
+    >>> ball = SphereOnFlat(tip_radius=5e-3, effective_modulus=60e9)
+    >>> round(1e-6 * float(hertz_peak_pressure(ball, normal_load=10.0)))  # MPa
+    653
     """
     load = require_non_negative(normal_load=normal_load)
     R, E = sphere.tip_radius, sphere.effective_modulus

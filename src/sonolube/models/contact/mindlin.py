@@ -40,6 +40,15 @@ def mindlin_tangential_stiffness(contact: RoughContact, *, separation: ArrayLike
     References
     ----------
     .. [1] R. D. Mindlin, J. Appl. Mech. 16, 259 (1949).
+
+    Examples
+    --------
+    >>> from sonolube.models.contact import mindlin_tangential_stiffness, normal_stiffness
+    >>> from sonolube.rig import read_rig
+    >>> contact = read_rig("examples/rigs/tribometer.toml").contact
+    >>> tangential = mindlin_tangential_stiffness(contact, separation=15e-6)
+    >>> round(float(tangential / normal_stiffness(contact, separation=15e-6)), 3)  # (2 - 2 nu)/(2 - nu), nu = 0.33
+    0.802
     """
     d = require_positive(separation=separation)
     return contact.pair.mindlin_ratio * normal_stiffness(contact, separation=d)

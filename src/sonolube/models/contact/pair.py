@@ -131,6 +131,16 @@ def contact_pair(*, softer: ElasticBody, harder: ElasticBody, yield_strength: fl
     ------
     InvalidInput
         If the yield strength is not positive.
+
+    Examples
+    --------
+    >>> from sonolube.models.contact import ElasticBody, contact_pair
+    >>> from sonolube.units import format_si
+    >>> aluminium = ElasticBody(youngs_modulus=73e9, poisson_ratio=0.33)
+    >>> steel = ElasticBody(youngs_modulus=193e9, poisson_ratio=0.29)
+    >>> pair = contact_pair(softer=aluminium, harder=steel, yield_strength=410e6)
+    >>> format_si(pair.effective_modulus, "Pa")
+    '59 GPa'
     """
     effective_modulus = 1 / sum((1 - body.poisson_ratio**2) / body.youngs_modulus for body in (softer, harder))
     effective_shear_modulus = 1 / sum((2 - body.poisson_ratio) / body.shear_modulus for body in (softer, harder))

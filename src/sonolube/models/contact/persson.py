@@ -112,6 +112,13 @@ def persson_area_fraction(
     References
     ----------
     .. [1] B. N. J. Persson, J. Chem. Phys. 115, 3840 (2001). doi:10.1063/1.1388626
+
+    Examples
+    --------
+    >>> from sonolube.models.contact import persson_area_fraction
+    >>> fraction = persson_area_fraction(nominal_pressure=1e6, effective_modulus=60e9, rms_gradient=0.1)
+    >>> round(1e4 * float(fraction), 2)  # 1e4 sqrt(8/pi) p/(E* h')
+    2.66
     """
     p = require_positive(nominal_pressure=nominal_pressure)
     E = require_positive(effective_modulus=effective_modulus)

@@ -128,6 +128,15 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
     References
     ----------
     .. [1] D 3.3
+
+    Examples
+    --------
+    >>> from sonolube.models.contact import separation
+    >>> from sonolube.rig import read_rig
+    >>> contact = read_rig("examples/rigs/tribometer.toml").contact
+    >>> gap = separation(contact, normal_load=[3.0, 6.0])
+    >>> round(1e6 * float(gap[0] - gap[1]), 3)  # decay length of 2 um times ln 2
+    1.386
     """
     load = require_positive(normal_load=normal_load)
     integrals = _integrals(contact)
@@ -279,6 +288,15 @@ def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     --------
     sonolube.models.contact.decay_length : Force over stiffness.
     sonolube.models.contact.mindlin_tangential_stiffness : Tangential stiffness in proportion to this one.
+
+    Examples
+    --------
+    >>> from sonolube.models.contact import normal_stiffness, separation
+    >>> from sonolube.rig import read_rig
+    >>> contact = read_rig("examples/rigs/tribometer.toml").contact
+    >>> stiffness = normal_stiffness(contact, separation=separation(contact, normal_load=3.0))
+    >>> round(1e-6 * float(stiffness), 3)  # 3 N over a decay length of 2 um, in N/um
+    1.5
     """
     integrals, h = integrals_at(contact, separation=separation)
     return integrals.force.value(h) * integrals.force.decay_rate(h) / contact.height_scale

@@ -54,6 +54,13 @@ def squeeze_number(
     Notes
     -----
     .. math:: \sigma = \frac{12 \mu \omega R^2}{p_a h^2}
+
+    Examples
+    --------
+    >>> from sonolube.models.contact import squeeze_number
+    >>> air = {"viscosity": 1.8e-5, "ambient_pressure": 101e3}
+    >>> round(float(squeeze_number(face_radius=5e-3, film_thickness=10e-6, frequency=20e3, **air)), 1)
+    67.2
     """
     R, h = require_positive(face_radius=face_radius), require_positive(film_thickness=film_thickness)
     omega = 2 * math.pi * require_positive(frequency=frequency)

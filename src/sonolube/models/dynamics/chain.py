@@ -259,6 +259,14 @@ def modal_structure(
     ------
     InvalidInput
         If shapes disagree, a frequency or ratio is negative, or a value not finite.
+
+    Examples
+    --------
+    >>> from sonolube.models.dynamics import modal_structure, resonance_frequencies
+    >>> mode = {"frequencies": [20e3], "damping_ratios": [0.01], "drive_participation": [10.0]}
+    >>> transducer = modal_structure(**mode, contact_participation=[1.0], clamped_capacitance=4e-9)
+    >>> resonance_frequencies(transducer).mechanical_quality_factor.round(3).tolist()  # 1/(2 zeta)
+    [50.0]
     """
     omega = 2 * np.pi * require_non_negative(frequencies=frequencies)
     if omega.ndim != 1:

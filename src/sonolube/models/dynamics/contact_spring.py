@@ -46,6 +46,14 @@ def contact_resonances(structure: Structure, *, normal_stiffness: ArrayLike) -> 
 
     those to which a resonance curve is fitted whatever the damping. Pairs are numbered from the highest frequency
     downwards, since at a soft contact the lowest modes do not oscillate.
+
+    Examples
+    --------
+    >>> from sonolube.models.dynamics import contact_resonances
+    >>> from sonolube.rig import read_rig
+    >>> tribometer = read_rig("examples/rigs/tribometer.toml").structure
+    >>> contact_resonances(tribometer, normal_stiffness=[0.0, 1.5e6]).round(0).tolist()  # free, and pressed
+    [[0.0, 153.0, 21997.0], [100.0, 168.0, 22005.0]]
     """
     stiffness = require_non_negative(normal_stiffness=normal_stiffness)
     found = np.zeros((stiffness.size, structure.coordinates))
@@ -93,6 +101,15 @@ def stiffness_at_resonance(structure: Structure, *, mode: int, frequency: float)
     contact and frequency :math:`f_0` moves by
 
     .. math:: f - f_0 = \frac{k_n}{8\pi^2 m f_0} .
+
+    Examples
+    --------
+    >>> from sonolube.models.dynamics import contact_resonances, stiffness_at_resonance
+    >>> from sonolube.rig import read_rig
+    >>> tribometer = read_rig("examples/rigs/tribometer.toml").structure
+    >>> pressed = contact_resonances(tribometer, normal_stiffness=1.5e6)
+    >>> round(1e-6 * stiffness_at_resonance(tribometer, mode=1, frequency=float(pressed[1])), 3)
+    1.5
     """
     target = float(require_positive(frequency=frequency))
     if not 0 <= mode < structure.coordinates:

@@ -73,6 +73,14 @@ def modes(structure: Structure) -> Modes:
 
     The damping ratios are exact for modal (classical) damping and otherwise correct to first order in the damping;
     `poles` are exact for any damping.
+
+    Examples
+    --------
+    >>> from sonolube.models.dynamics import modes
+    >>> from sonolube.rig import read_rig
+    >>> tribometer = read_rig("examples/rigs/tribometer.toml").structure
+    >>> modes(tribometer).natural_frequency.round().tolist()  # rigid body, arm, transducer
+    [0.0, 154.0, 21998.0]
     """
     squares, shapes = _generalised_eigh(structure.stiffness_matrix, structure.mass_matrix)
     rigid = squares <= _RIGID * squares[-1]
@@ -211,5 +219,13 @@ def resonance_frequencies(structure: Structure) -> CircuitResonances:
     ------
     InvalidInput
         If the clamped capacitance is zero.
+
+    Examples
+    --------
+    >>> from sonolube.models.dynamics import resonance_frequencies
+    >>> from sonolube.rig import read_rig
+    >>> found = resonance_frequencies(read_rig("examples/rigs/tribometer.toml").structure)
+    >>> found.series_frequency.round().tolist(), found.parallel_frequency.round().tolist()
+    ([154.0, 21998.0], [154.0, 28850.0])
     """
     return circuit_resonances(equivalent_circuit(structure))

@@ -117,6 +117,16 @@ def steady_state(
     ----------
     .. [1] T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56, 149 (1989), on alternating frequency-time transforms.
        doi:10.1115/1.3176036
+
+    Examples
+    --------
+    >>> from sonolube.models.dynamics import ExponentialGap, steady_state
+    >>> from sonolube.rig import read_rig
+    >>> tribometer = read_rig("examples/rigs/tribometer.toml").structure
+    >>> contact = ExponentialGap(decay_length=2e-6)
+    >>> states = steady_state(tribometer, contact, normal_load=3.0, frequency=22e3, voltage_amplitude=[7.0, 14.0])
+    >>> (1e6 * states.vibration_amplitude).round(2).tolist(), states.contact_loss_fraction.tolist()
+    ([1.25, 2.5], [0.0, 0.0])
     """
     states, _ = solve_steady_states(
         structure,

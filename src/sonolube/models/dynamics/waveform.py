@@ -120,6 +120,13 @@ def waveform_value(waveform: Waveform, *, phase: ArrayLike) -> Floats:
     ------
     InvalidInput
         If a phase is not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.models.dynamics import WAVEFORMS, waveform_value
+    >>> waveform_value(WAVEFORMS["square"], phase=[0.5 * np.pi, 1.5 * np.pi]).tolist()
+    [0.5, -0.5]
     """
     theta = require_finite(phase=phase)
     if isinstance(waveform, Sine):

@@ -100,6 +100,13 @@ def hersey_number(*, dynamic_viscosity: ArrayLike, sliding_speed: ArrayLike, nom
     Notes
     -----
     .. math:: He = \frac{\eta v}{p}
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import hersey_number
+    >>> from sonolube.units import format_si
+    >>> format_si(float(hersey_number(dynamic_viscosity=0.1, sliding_speed=0.02, nominal_pressure=1e6)), "m")
+    '2 nm'
     """
     eta = require_positive(dynamic_viscosity=dynamic_viscosity)
     return eta * require_non_negative(sliding_speed=sliding_speed) / require_positive(nominal_pressure=nominal_pressure)
@@ -228,6 +235,13 @@ def asperity_load_fraction(lubricant: BoundaryLubricant, *, nominal_pressure: Ar
     Notes
     -----
     .. math:: \alpha = \min(p/p_1,\, 1)
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import BoundaryLubricant, asperity_load_fraction
+    >>> lubricant = BoundaryLubricant(film_coefficient=0.05, full_asperity_pressure=10e6)
+    >>> asperity_load_fraction(lubricant, nominal_pressure=[1e6, 5e6, 20e6]).tolist()
+    [0.1, 0.5, 1.0]
     """
     return np.minimum(require_positive(nominal_pressure=nominal_pressure) / lubricant.full_asperity_pressure, 1.0)
 

@@ -41,6 +41,13 @@ def acoustic_intensity(
     Notes
     -----
     .. math:: I = \tfrac12\, \rho c\, (2 \pi f a)^2
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import acoustic_intensity
+    >>> wave = {"frequency": 20e3, "vibration_amplitude": 1e-6}
+    >>> round(1e-4 * float(acoustic_intensity(density=2700.0, wave_speed=5100.0, **wave)), 1)  # W/cm2
+    10.9
     """
     impedance = require_positive(density=density) * require_positive(wave_speed=wave_speed)
     velocity = 2 * np.pi * require_positive(frequency=frequency)

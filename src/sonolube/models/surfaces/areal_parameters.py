@@ -120,6 +120,15 @@ def height_parameters(surface: HeightMap) -> HeightParameters:
     References
     ----------
     .. [1] ISO 25178-2:2021, Geometrical product specifications, surface texture: areal, part 2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.models.surfaces import HeightMap, height_parameters
+    >>> wave = np.tile(1e-6 * np.sin(2 * np.pi * np.arange(64) / 64), (64, 1))
+    >>> found = height_parameters(HeightMap(height=wave, spacing_x=1e-6, spacing_y=1e-6))
+    >>> round(1e6 * found.rms_height, 4), round(found.kurtosis, 3)  # of a sine 1/sqrt(2) and 1.5
+    (0.7071, 1.5)
     """
     _require_area(surface)
     z = np.ascontiguousarray(surface.height)

@@ -204,6 +204,15 @@ def nayak_summit_statistics(moments: SpectralMoments) -> SummitStatistics:
     ----------
     .. [1] P. R. Nayak, J. Lubr. Technol. 93, 398 (1971). doi:10.1115/1.3451608
     .. [2] J. I. McCool, Wear 107, 37 (1986). doi:10.1016/0043-1648(86)90045-1
+
+    Examples
+    --------
+    >>> from sonolube.models.surfaces import SpectralMoments, nayak_summit_statistics
+    >>> q, l = 1e-6, 10e-6  # rms height and correlation length
+    >>> slope, curvature = 2 * (q / l) ** 2, 12 * (q / l**2) ** 2
+    >>> moments = SpectralMoments(height_variance=q**2, slope_variance=slope, curvature_variance=curvature)
+    >>> round(1e-9 * nayak_summit_statistics(moments).summit_density, 3)  # 1/(pi sqrt(3) l^2), in 1e9/m2
+    1.838
     """
     m0, m2, m4, alpha = moments.height_variance, moments.slope_variance, moments.curvature_variance, moments.bandwidth
     if not alpha > 1:

@@ -107,6 +107,14 @@ def surface_finish(text: str) -> SurfaceFinish:
         If it is neither a process nor a grade, with the closest name.
     InvalidInput
         If it is empty, or has two grades.
+
+    Examples
+    --------
+    >>> from sonolube.models.surfaces import surface_finish
+    >>> from sonolube.units import format_si
+    >>> finish = surface_finish("N6")
+    >>> format_si(finish.roughness_average_low, "m"), format_si(finish.roughness_average_high, "m")
+    ('400 nm', '800 nm')
     """
     words = text.split()
     grades = [word.upper() for word in words if word.upper() in _grades()]
@@ -148,6 +156,13 @@ def rms_height_from_roughness_average(*, arithmetic_mean_height: float) -> RmsHe
     .. math:: R_q = \sqrt{\pi/2}\,R_a
 
     for Gaussian heights, :math:`\pi/(2\sqrt2) = 1.11` for a sine, and more for heights with rare deep scratches.
+
+    Examples
+    --------
+    >>> from sonolube.models.surfaces import rms_height_from_roughness_average
+    >>> from sonolube.units import format_si
+    >>> format_si(rms_height_from_roughness_average(arithmetic_mean_height=0.4e-6).rms_height, "m")
+    '501 nm'
     """
     height = float(require_positive(arithmetic_mean_height=arithmetic_mean_height))
     least, typical, largest = _RMS_PER_AVERAGE

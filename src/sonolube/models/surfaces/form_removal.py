@@ -107,6 +107,15 @@ def remove_form(
     Notes
     -----
     Heights are subtracted and the surface is not rotated: accurate to 0.1 % for tilts up to 2.5 degrees.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.models.surfaces import HeightMap, remove_form
+    >>> plane = 1e-6 * np.add.outer(np.arange(5.0), np.arange(4.0))
+    >>> level = remove_form(HeightMap(height=plane, spacing_x=1e-6, spacing_y=1e-6))
+    >>> bool(abs(level.height).max() < 1e-15)
+    True
     """
     form = fit_form(surface, degree=degree, robust=robust, reference=reference)
     return surface.with_height(surface.height - form.height)

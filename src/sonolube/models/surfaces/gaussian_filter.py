@@ -74,6 +74,15 @@ def low_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robust
     .. [1] ISO 16610-61:2015 and ISO 16610-71:2014, areal Gaussian and robust Gaussian regression filters.
     .. [2] S. Brinkmann et al., Int. J. Mach. Tools Manuf. 41, 2153 (2001). doi:10.1016/S0890-6955(01)00082-7
     .. [3] D 4.1.3, where waviness and roughness of plates are separated.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.models.surfaces import HeightMap, low_pass
+    >>> wave = np.tile(1e-6 * np.cos(2 * np.pi * np.arange(400) / 100), (200, 1))
+    >>> smooth = low_pass(HeightMap(height=wave, spacing_x=1e-6, spacing_y=1e-6), cutoff_length=100e-6)
+    >>> round(1e6 * float(smooth.height[100, 200]), 2)  # half the amplitude at the cutoff
+    0.5
     """
     widths = _widths(order, cutoff_length, spacing_x=surface.spacing_x, spacing_y=surface.spacing_y)
     return surface.with_height(_smooth(surface.height, widths, order=order, robust=robust))
@@ -102,6 +111,15 @@ def high_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robus
     ------
     InvalidInput
         As `low_pass`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.models.surfaces import HeightMap, high_pass
+    >>> wave = np.tile(1e-6 * np.cos(2 * np.pi * np.arange(400) / 100), (200, 1))
+    >>> rough = high_pass(HeightMap(height=wave, spacing_x=1e-6, spacing_y=1e-6), cutoff_length=50e-6)
+    >>> round(1e6 * float(rough.height[100, 200]), 2)  # 1 - 2^(-1/4) at twice the cutoff
+    0.16
     """
     waviness = low_pass(surface, cutoff_length=cutoff_length, order=order, robust=robust)
     return surface.with_height(surface.height - waviness.height)

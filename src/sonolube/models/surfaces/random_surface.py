@@ -215,6 +215,15 @@ def gaussian_surface(
     Notes
     -----
     The Fourier transform of white noise is multiplied by the square root of the spectral density.
+
+    Examples
+    --------
+    >>> from sonolube.models.surfaces import GaussianCorrelationSpectrum, gaussian_surface
+    >>> spectrum = GaussianCorrelationSpectrum(correlation_length=10e-6)
+    >>> grid = {"shape": (256, 256), "spacing_x": 2e-6, "spacing_y": 2e-6}
+    >>> surface = gaussian_surface(rms_height=1e-6, spectrum=spectrum, **grid, seed=1)
+    >>> round(1e6 * float(surface.height.std()), 1)
+    1.0
     """
     require_positive(rms_height=rms_height, spacing_x=spacing_x, spacing_y=spacing_y)
     rows, columns = shape

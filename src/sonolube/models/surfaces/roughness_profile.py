@@ -127,6 +127,15 @@ def profile_parameters(*, height: ArrayLike, spacing: float, section_length: flo
     References
     ----------
     .. [1] ISO 21920-2:2021, Geometrical product specifications, surface texture: profile, part 2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sonolube.models.surfaces import profile_parameters
+    >>> wave = 1e-6 * np.sin(2 * np.pi * np.arange(500) / 50)
+    >>> found = profile_parameters(height=wave, spacing=1e-6)
+    >>> round(1e6 * found.arithmetic_mean_height, 2), round(1e6 * found.mean_profile_element_spacing, 3)  # 2/pi; 50 um
+    (0.64, 50.0)
     """
     require_positive(spacing=spacing)
     z = np.asarray(height)

@@ -145,6 +145,13 @@ def half_space_rise(solid: ThermalSolid, *, heat_flux: ArrayLike, time: ArrayLik
     References
     ----------
     .. [1] H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., Oxford (1959), section 2.9.
+
+    Examples
+    --------
+    >>> from sonolube.models.thermal import ThermalSolid, half_space_rise
+    >>> steel = ThermalSolid(thermal_conductivity=16.0, density=8000.0, specific_heat_capacity=500.0)
+    >>> half_space_rise(steel, heat_flux=1e5, time=[1.0, 4.0]).round(1).tolist()  # with the root of the time
+    [14.1, 28.2]
     """
     q = require_non_negative(heat_flux=heat_flux)
     diffusion_length = 2 * np.sqrt(solid.thermal_diffusivity * require_non_negative(time=time))
@@ -183,6 +190,13 @@ def lumped_rise(
     For bodies whose internal conductance is far above that to their surroundings (small Biot number):
 
     .. math:: \Delta T = \frac{Q}{G} \left( 1 - e^{-G t/C} \right) .
+
+    Examples
+    --------
+    >>> from sonolube.models.thermal import lumped_rise
+    >>> rise = lumped_rise(heat_rate=1.0, thermal_conductance=0.05, heat_capacity=1.5, time=[30.0, 3600.0])
+    >>> rise.round(2).tolist()  # 1 - 1/e of the final 20 K after one time constant
+    [12.64, 20.0]
     """
     q = require_non_negative(heat_rate=heat_rate)
     g = require_positive(thermal_conductance=thermal_conductance)

@@ -93,6 +93,13 @@ def frictional_heat_rate(*, friction_force: ArrayLike, sliding_speed: ArrayLike)
 
     the power supplied by the drive of the sliding. The power that the actuator supplies comes on top:
     `contact_temperature_history` takes it as `vibration_heat_rate`.
+
+    Examples
+    --------
+    >>> from sonolube.models.thermal import frictional_heat_rate
+    >>> from sonolube.units import format_si
+    >>> format_si(float(frictional_heat_rate(friction_force=1.0, sliding_speed=20e-3)), "W")
+    '20 mW'
     """
     return require_non_negative(friction_force=friction_force) * require_non_negative(sliding_speed=sliding_speed)
 

@@ -105,6 +105,12 @@ def adiabatic_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike
     .. math:: Q = \frac{C\,\Delta T}{t}
 
     The body loses no heat meanwhile, so the result is a lower bound of the heat generated.
+
+    Examples
+    --------
+    >>> from sonolube.models.thermal import adiabatic_heat_rate
+    >>> float(adiabatic_heat_rate(heat_capacity=1.5, temperature_rise=40.0, duration=60.0))  # W
+    1.0
     """
     capacity = require_positive(heat_capacity=heat_capacity)
     rise = require_non_negative(temperature_rise=temperature_rise)

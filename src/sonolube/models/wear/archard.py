@@ -65,6 +65,14 @@ def archard_wear_rate(law: ArchardWear, *, normal_load: ArrayLike) -> Floats:
     References
     ----------
     .. [1] D 1.6.
+
+    Examples
+    --------
+    >>> from sonolube.models.wear import ArchardWear, archard_wear_rate
+    >>> from sonolube.units import format_quantity
+    >>> law = ArchardWear(wear_coefficient=1e-4, hardness=1e9)
+    >>> format_quantity(float(archard_wear_rate(law, normal_load=10.0)), "wear_rate")  # 1e-4 10 N/1 GPa
+    '0.001 mm3/m'
     """
     load = require_non_negative(normal_load=normal_load)
     return law.wear_coefficient * load / law.hardness  # D 1.6

@@ -27,6 +27,13 @@ def specific_wear_rate(*, wear_rate: ArrayLike, normal_load: ArrayLike) -> Float
     Notes
     -----
     .. math:: k = \frac{W}{F_N}
+
+    Examples
+    --------
+    >>> from sonolube.models.wear import specific_wear_rate
+    >>> rate = specific_wear_rate(wear_rate=2.4e-11, normal_load=3.0)
+    >>> round(1e9 * float(rate), 6)  # mm3/(N m)
+    0.008
     """
     return require_non_negative(wear_rate=wear_rate) / require_positive(normal_load=normal_load)
 
@@ -49,6 +56,13 @@ def mass_loss(*, wear_volume: ArrayLike, density: ArrayLike) -> Floats:
     ------
     InvalidInput
         If a volume is negative, a density not positive, or a value not finite.
+
+    Examples
+    --------
+    >>> from sonolube.models.wear import mass_loss
+    >>> from sonolube.units import format_si
+    >>> format_si(float(mass_loss(wear_volume=2e-9, density=2700.0)), "kg")  # 2 mm3 of aluminium
+    '5.4 mg'
     """
     return require_non_negative(wear_volume=wear_volume) * require_positive(density=density)
 
@@ -71,5 +85,11 @@ def vibration_contact_count(*, frequency: ArrayLike, duration: ArrayLike) -> Flo
     ------
     InvalidInput
         If a frequency is not positive, a duration negative, or a value not finite.
+
+    Examples
+    --------
+    >>> from sonolube.models.wear import vibration_contact_count
+    >>> f"{float(vibration_contact_count(frequency=22e3, duration=4 * 3600)):.3g}"  # as in D Table 2.5
+    '3.17e+08'
     """
     return require_positive(frequency=frequency) * require_non_negative(duration=duration)

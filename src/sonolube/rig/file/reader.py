@@ -45,6 +45,13 @@ def read_rig(path: str | Path, *, changes: Sequence[str] = ()) -> Rig:
     ------
     InvalidInput
         In one line that names the file, the key and the value.
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> rig = sl.read_rig("examples/rigs/tribometer.toml")
+    >>> rig.normal_load, rig.drive.voltage_peak_to_peak
+    (3.0, 28.0)
     """
     return rig_of_file(path, rig_content(path, changes=changes), changes=changes)
 

@@ -34,6 +34,12 @@ def literature(
     """Earlier studies the dissertation reviews, as a list, a table and a map over speed and pressure, with your rig.
 
     Example: sonolube literature examples/rigs/tribometer.toml
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> [study.study for study in sl.literature().studies[:2]]
+    ['Mason', 'Littmann et al.']
     """
     known = optional_rig(rig)
     point = outside = None

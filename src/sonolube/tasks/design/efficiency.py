@@ -43,6 +43,14 @@ def efficiency(
     """Efficiency line from measured runs by the dissertation's section 4.1, and the power that a friction takes.
 
     Example: sonolube efficiency examples/efficiency-runs.csv --rig examples/rigs/power_map.toml
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.efficiency("examples/efficiency-runs.csv", rig="examples/rigs/power_map.toml")
+    >>> line = answer["efficiency_coefficient"]
+    >>> round(1e9 * float(line.interp(sliding_speed=0.1)), 2)  # mW mm2/(N W) at 100 mm/s
+    0.38
     """
     if target_friction is None:
         refuse_unused("speed", because=f"without {shown('target_friction')}, whose power is at this speed")

@@ -74,6 +74,13 @@ def map(  # noqa: A001 - the command's name
     """Map of friction reduction: over sliding speed or frequency, and stress, power, voltage or vibration amplitude.
 
     Example: sonolube map examples/rigs/power_map.toml --kind velocity-power
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.map("examples/rigs/power_map.toml", kind="velocity-power")
+    >>> round(float(answer["friction_reduction"].max()), 2)
+    0.95
     """
     known = rig_of(rig)
     refuse_replaced(known, over or {})

@@ -82,6 +82,13 @@ def sweep(
     """Sweep: the rig over any of its parameters, or over one quantity; with a status for each point.
 
     Example: sonolube sweep examples/rigs/tribometer.toml --over drive.voltage_peak_to_peak=2V:28V:27
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.sweep("examples/rigs/tribometer.toml", over={"drive.voltage_peak_to_peak": "14V:28V:2"})
+    >>> answer["friction_ratio"].values.round(2).tolist()
+    [0.66, 0.35]
     """
     known = rig_of(rig)
     if (of is None) == (not over):

@@ -46,6 +46,13 @@ def face(
     """Friction of a block along the face of a Poisson horn: its transition and motor regions.
 
     Example: sonolube horn face aluminium
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> ratio = sl.horn.face("aluminium")["friction_ratio"]
+    >>> round(float(ratio.min()), 2), round(float(ratio.max()), 2)  # negative where the horn drives the block
+    (-0.35, 0.68)
     """
     at, height, speed = _positive(frequency=frequency, amplitude=amplitude, sliding_speed=sliding_speed)
     with stage("solving"):

@@ -18,6 +18,13 @@ def actuators(
     """Actuators one can buy, with the numbers of their data sheets and where these were read.
 
     Example: sonolube actuators sa050510
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.units import format_si
+    >>> format_si(sl.actuators("sa050510")["stroke"].item(), "m")
+    '14 um'
     """
     every = [catalogue_actuator(each) for each in (catalogue_names() if name is None else (name,))]
     objects = {each.name: results.actuator_object(each) for each in every}

@@ -26,6 +26,13 @@ def example(
     """Example files, such as rigs: list them, or write one with its path in the help texts below the current folder.
 
     Example: sonolube example tribometer
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.example("tribometer")
+    >>> list(answer.files())
+    ['examples/rigs/tribometer.toml']
     """
     known = example_files()
     if name is None or name == _ALL:

@@ -32,6 +32,13 @@ def mapping(
     """Quantity and unit of each column of a table, by headings and answers to questions, as a file for --mapping.
 
     Example: sonolube mapping examples/tribometer-runs.csv
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.mapping("examples/tribometer-runs.csv")
+    >>> answer.object()["columns"]["sliding_speed [mm/s]"]
+    {'quantity': 'sliding_speed', 'unit': 'mm/s'}
     """
     path = file_path(file)
     table, _ = run_text(path)

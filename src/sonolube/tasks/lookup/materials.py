@@ -18,6 +18,13 @@ def materials(
     """Materials, piezo ceramics and classes of materials, each property with its source.
 
     Example: sonolube materials aluminium_2024
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.units import format_si
+    >>> format_si(sl.materials("aluminium_2024")["youngs_modulus"].item(), "Pa")
+    '73 GPa'
     """
     every = [material(each) for each in ((*material_names(), *material_classes()) if name is None else (name,))]
     objects = {each.name: results.material_object(each) for each in every}

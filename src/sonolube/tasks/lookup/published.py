@@ -17,6 +17,12 @@ def published(
     """Published data of the dissertation, with the corrections of single cells.
 
     Example: sonolube published 2.5
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> sl.published("2.5")["wear_reduction"].values.tolist()  # at three speeds
+    [0.4576, 0.4818, 0.4863]
     """
     if table is None:
         titles = {each: data.table(each).title for each in data.table_ids()}

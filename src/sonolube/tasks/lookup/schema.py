@@ -24,6 +24,12 @@ def schema(
     """JSON schema of rig files, protocols or device maps, or OpenAPI of the tasks; the same with and without --json.
 
     Example: sonolube schema > rig.schema.json
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> sorted(sl.schema("rig").object()["required"])
+    ['contact', 'friction', 'sliding', 'source', 'title']
     """
     content = _SCHEMAS[kind]()
     return Listing(parts=[Verbatim(dumps(content, indent=2))], content=content)

@@ -28,6 +28,16 @@ def vibration(
     """Vibration at the drive frequency: amplitude, amplitude per volt, operating shape, likeness to computed modes.
 
     Example: sonolube measure vibration tip.csv --frequency 22kHz --report tip.html
+
+    Examples
+    --------
+    >>> from math import pi, sin
+    >>> import sonolube as sl
+    >>> from sonolube.tasks.files import NamedBytes
+    >>> rows = ["time (s),tip (um)", *(f"{k / 20e3},{2.5 * sin(2 * pi * k / 20)}" for k in range(2000))]
+    >>> file = NamedBytes("tip.csv", chr(10).join(rows).encode())  # or the path of a file
+    >>> round(1e6 * float(sl.measure.vibration(file, frequency="1kHz")["vibration_amplitude"]), 3)
+    2.5
     """
     settings = VibrationSettings(
         frequency=in_si("frequency", frequency),

@@ -27,6 +27,17 @@ def rotation(
     """Rotation from a Hall probe: speed of the disc and of the pin on it, missing pulses repaired.
 
     Example: sonolube measure rotation hall.csv --groove-diameter 50mm --magnets 2 --report hall.html
+
+    Examples
+    --------
+    >>> from math import exp
+    >>> import sonolube as sl
+    >>> from sonolube.tasks.files import NamedBytes
+    >>> pulses = (f"{k / 200},{exp(-(((k % 250 - 125) / 6) ** 2))}" for k in range(4000))
+    >>> file = NamedBytes("hall.csv", chr(10).join(["time (s),magnetic_flux_density (mT)", *pulses]).encode())
+    >>> answer = sl.measure.rotation(file, groove_diameter="50mm")
+    >>> round(float(answer["rotation_speed"]), 3), round(float(answer["sliding_speed"]), 3)  # pi 50 mm 0.8/s
+    (0.8, 0.126)
     """
     settings = RotationSettings(
         groove_diameter=in_si("groove_diameter", groove_diameter),

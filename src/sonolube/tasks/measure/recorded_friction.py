@@ -69,6 +69,16 @@ def friction(
     """Friction in recordings: level, fluctuation, running-in, steps of the voltage, stick-slip, work.
 
     Example: sonolube measure friction test.csv --sliding-speed 20.3mm/s --report test.html
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.tasks.files import NamedBytes
+    >>> rows = ["time (s),friction_force (N)", *(f"{k / 100},{0.4 + 0.02 * (-1) ** k}" for k in range(2000))]
+    >>> file = NamedBytes("test.csv", chr(10).join(rows).encode())  # or the path of a file
+    >>> answer = sl.measure.friction(file)
+    >>> round(float(answer["mean_force"]), 3), round(float(answer["friction_force_fluctuation"]), 3)
+    (0.4, 0.02)
     """
     settings = FrictionSettings(
         mapping=column_mapping(mapping, group=group, channels=channel, sections=section),

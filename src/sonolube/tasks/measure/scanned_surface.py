@@ -37,6 +37,18 @@ def surface(
     """Surfaces: parameters of ISO 25178-2 and of profiles, spectra, and summits for the contact models.
 
     Example: sonolube measure surface plate.opd --long-cutoff 25um --report plate.html
+
+    Examples
+    --------
+    >>> import io
+    >>> import numpy as np
+    >>> import sonolube as sl
+    >>> from sonolube.tasks.files import NamedBytes
+    >>> file, x = io.BytesIO(), np.arange(64) - 31.5
+    >>> np.save(file, 1e-6 * np.tile(np.cos(2 * np.pi * x / 16), (64, 1)))
+    >>> answer = sl.measure.surface(NamedBytes("plate.npy", file.getvalue()), spacing="1um")
+    >>> round(1e6 * float(answer["rms_height"]), 3)  # of a cosine 1/sqrt(2)
+    0.707
     """
     spacing_x, spacing_y = spacings(spacing, name=shown("spacing"))
     settings = SurfaceSettings(

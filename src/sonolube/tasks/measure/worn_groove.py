@@ -49,6 +49,18 @@ def groove(
     """Wear grooves in scans: width, depth, volume, pile-up; wear of the ring and its reduction by vibration.
 
     Example: sonolube measure groove ring --groove-diameter 50mm --sliding-distance 292m --report ring.html
+
+    Examples
+    --------
+    >>> import io
+    >>> import numpy as np
+    >>> import sonolube as sl
+    >>> from sonolube.tasks.files import NamedBytes
+    >>> file, x = io.BytesIO(), 8e-6 * np.arange(160)
+    >>> np.save(file, np.tile(-3e-6 * np.exp(-(((x - x.mean()) / 120e-6) ** 2)), (120, 1)))
+    >>> answer = sl.measure.groove(NamedBytes("groove.npy", file.getvalue()), spacing="8um")
+    >>> round(1e6 * float(answer["groove_depth"]), 1)
+    3.0
     """
     spacing_x, spacing_y = spacings(spacing, name=shown("spacing"))
     settings = SurfaceSettings(spacing_x=spacing_x, spacing_y=spacing_y, length_unit=length_unit)

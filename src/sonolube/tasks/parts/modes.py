@@ -100,6 +100,14 @@ def modes(
     """Natural modes of a part: frequencies with their errors, names and pictures.
 
     Example: sonolube modes block --set length=127mm --set width=60.96mm --set thickness=25.4mm
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.units import format_si
+    >>> answer = sl.modes("block", sizes={"length": "20mm", "width": "5mm", "thickness": "5mm"})
+    >>> format_si(float(answer["natural_frequency"].sel(mode="axial 1")), "Hz")  # half a wavelength on 20 mm of steel
+    '124 kHz'
     """
     name = part_name(part)
     _refuse_unused(name, points=points, contact=contact, body_mass=body_mass)

@@ -18,6 +18,14 @@ def contact(
     """Contact of the rig at rest: separation, real area, stiffness.
 
     Example: sonolube contact examples/rigs/poisson_al_steel.toml --load 40N
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.units import format_si
+    >>> answer = sl.contact("examples/rigs/tribometer.toml")
+    >>> format_si(float(answer["normal_stiffness"]), "N/m")  # 3 N over a decay length of 2 um
+    '1.5 MN/m'
     """
     known = rig_of(rig)
     return RigRecord(rig=known, result=contact_point(known, tangential_stiffness_model=tangential_stiffness))

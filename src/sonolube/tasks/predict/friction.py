@@ -31,6 +31,15 @@ def friction(rig: RigFile, *, model: Annotated[str | None, _MODEL] = None, inter
     """Friction of the rig with and without vibration.
 
     Example: sonolube friction examples/rigs/collar.toml --set drive.voltage_peak_to_peak=14V
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.friction("examples/rigs/tribometer.toml")
+    >>> round(float(answer["friction_ratio"]), 2)
+    0.35
+    >>> round(float(answer["friction_force"]), 2)  # in N
+    0.36
     """
     known = rig_of(rig)
     result = friction_point(known, model=model)

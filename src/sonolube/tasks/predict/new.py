@@ -103,6 +103,15 @@ def new(
     """A first rig file from what is known before a test: asks on a terminal for what the options leave out.
 
     Example: sonolube new rig.toml --pin m50 --disc m50 --load 5N --speed 0.2m/s --frequency 20kHz --amplitude 3um
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.new(pin="100Cr6", disc="2024", load="3N", speed="20mm/s", frequency="22kHz", amplitude="2.5um")
+    >>> round(answer.rig.friction_coefficient, 3)  # middle of the range of dry steel on aluminium
+    0.475
+    >>> round(float(sl.friction(answer.rig)["friction_ratio"]), 2)
+    0.26
     """
     every = {"amplitude": amplitude, "actuator": actuator, "voltage": voltage, "pin_finish": pin_finish}
     refuse_two_of_one(every | {"pin_scan": pin_scan, "disc_finish": disc_finish, "scan": scan})

@@ -50,6 +50,13 @@ def predict(
     """Friction and wear under vibration with 50, 80 and 95 % intervals, and what to measure next.
 
     Example: sonolube predict examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.predict("examples/rigs/tribometer.toml", seed=1)
+    >>> round(float(answer["friction_ratio"].median()), 1)
+    0.3
     """
     known = rig_of(rig)
     result = LivePrediction(

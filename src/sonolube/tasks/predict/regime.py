@@ -41,6 +41,14 @@ def regime(
     """Lubrication regime: dry, vibrated, lubricated or both, and the kind of wear to expect.
 
     Example: sonolube regime examples/rigs/tribometer.toml --film-coefficient 0.25 --asperity-pressure 10MPa
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.regime("examples/rigs/tribometer.toml", film_coefficient=0.25, asperity_pressure="10MPa")
+    >>> coefficient = answer["friction_coefficient"]
+    >>> str(coefficient.idxmin().item()), round(float(coefficient.min()), 2)
+    ('ultrasonic', 0.12)
     """
     if (pin is None) != (disc is None):
         raise InvalidInput(f"{shown('pin')} and {shown('disc')} belong together: give both or neither")

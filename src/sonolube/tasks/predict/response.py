@@ -28,6 +28,14 @@ def response(
     """Linear response: tip amplitude per volt and electrical impedance over frequency.
 
     Example: sonolube response examples/rigs/tribometer.toml --from 15kHz --to 35kHz
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.units import format_si
+    >>> answer = sl.response("examples/rigs/tribometer.toml", lowest="15kHz", highest="35kHz")
+    >>> format_si(float(answer["amplitude_per_volt"].idxmax()), "Hz")  # the resonance
+    '22 kHz'
     """
     low, high = in_si("lowest", lowest), in_si("highest", highest)
     if not 0 < low < high:

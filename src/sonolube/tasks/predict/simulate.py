@@ -16,6 +16,14 @@ def simulate(rig: RigFile, *, progress: Watch = None, cancelled: Stop = None) ->
     """Multi-scale model: drive, structure and contact in one steady vibration, and the friction and wear under it.
 
     Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.units import format_si
+    >>> answer = sl.simulate("examples/rigs/tribometer.toml")
+    >>> format_si(float(answer["mean_displacement"]), "m", digits=2)
+    '720 nm'
     """
     known = rig_of(rig)
     with stage("simulating"):

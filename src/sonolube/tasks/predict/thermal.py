@@ -43,6 +43,14 @@ def thermal(
     """Heat of friction and vibration: flash, bulk and their share in each body.
 
     Example: sonolube thermal examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.units import format_si
+    >>> answer = sl.thermal("examples/rigs/tribometer.toml", pin="stainless_steel_316", disc="aluminium_2024")
+    >>> format_si(float(answer["frictional_heat_rate"]), "W", digits=2)  # 0.36 N at 20.3 mm/s
+    '7.3 mW'
     """
     known = rig_of(rig)
     levels = vibration_heat.split(",") if isinstance(vibration_heat, str) else [vibration_heat]

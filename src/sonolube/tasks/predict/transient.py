@@ -29,6 +29,14 @@ def transient(
     """Start-up from rest: settling of the tip's vibration, step by step.
 
     Example: sonolube transient examples/rigs/tribometer.toml --duration 0.06s
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.units import format_si
+    >>> answer = sl.transient("examples/rigs/tribometer.toml", duration="20ms")
+    >>> format_si(answer.object()["settling_time"]["value"], "s", digits=2)
+    '1.2 ms'
     """
     known = rig_of(rig)
     with stage("marching"):

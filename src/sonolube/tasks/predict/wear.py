@@ -11,6 +11,13 @@ def wear(rig: RigFile) -> RigRecord:
     """Wear of the rig's softer body with and without vibration.
 
     Example: sonolube wear examples/rigs/tribometer.toml
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.wear("examples/rigs/tribometer.toml")
+    >>> round(float(answer["wear_reduction"]), 2)
+    0.47
     """
     known = rig_of(rig)
     return RigRecord(rig=known, result=wear_point(known))

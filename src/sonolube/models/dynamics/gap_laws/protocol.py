@@ -93,6 +93,13 @@ def force_decay_length(gap_law: GapLaw, load: Floats | float) -> Floats:
     Notes
     -----
     .. math:: l = \frac{F_N}{-F'(0)}
+
+    Examples
+    --------
+    >>> from sonolube.models.dynamics import HertzGap, force_decay_length
+    >>> ball = HertzGap(tip_radius=5e-3, effective_modulus=60e9)
+    >>> round(1e6 * float(force_decay_length(ball, 10.0)), 2)  # two thirds of the approach of 1.46 um
+    0.97
     """
     rest = np.zeros(np.shape(load))
     with np.errstate(divide="ignore"):

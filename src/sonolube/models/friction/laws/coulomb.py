@@ -59,6 +59,13 @@ def coulomb_friction(law: CoulombFriction, *, normal_load: ArrayLike, relative_v
     References
     ----------
     .. [1] D 1.2.
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import CoulombFriction, coulomb_friction
+    >>> law = CoulombFriction(friction_coefficient=0.25)
+    >>> coulomb_friction(law, normal_load=4.0, relative_velocity=[-0.02, 0.0, 0.02]).tolist()
+    [-1.0, 0.0, 1.0]
     """
     load = require_non_negative(normal_load=normal_load)
     velocity = require_finite(relative_velocity=relative_velocity)
@@ -87,6 +94,12 @@ def friction_coefficient(*, friction_force: ArrayLike, normal_load: ArrayLike) -
     References
     ----------
     .. [1] D 1.1.
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import friction_coefficient
+    >>> round(float(friction_coefficient(friction_force=1.023, normal_load=3.0)), 3)
+    0.341
     """
     force = require_finite(friction_force=friction_force)
     return force / require_positive(normal_load=normal_load)

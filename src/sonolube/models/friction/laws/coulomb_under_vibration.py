@@ -48,6 +48,13 @@ def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: Ar
     ----------
     .. [1] W. Littmann, H. Storck, J. Wallaschek, Arch. Appl. Mech. 71, 549 (2001). doi:10.1007/s004190100160
     .. [2] V. C. Kumar, I. M. Hutchings, Tribol. Int. 37, 833 (2004). doi:10.1016/j.triboint.2004.05.003
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import parallel_vibration_ratio
+    >>> ratio = parallel_vibration_ratio(sliding_speed=[0.1, 0.2, 0.3], vibration_velocity=0.2)
+    >>> ratio.round(4).tolist()  # 2/pi arcsin 1/2, and no reduction from the peak velocity on
+    [0.3333, 1.0, 1.0]
     """
     v_r, v_1 = _speeds(sliding_speed, vibration_velocity)
     return 2 / np.pi * np.arcsin(np.minimum(v_r / np.maximum(v_1, v_r), 1.0))
@@ -87,6 +94,13 @@ def transverse_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: 
     References
     ----------
     .. [1] V. C. Kumar, I. M. Hutchings, Tribol. Int. 37, 833 (2004). doi:10.1016/j.triboint.2004.05.003
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import parallel_vibration_ratio, transverse_vibration_ratio
+    >>> speeds = {"sliding_speed": 0.1, "vibration_velocity": 0.2}
+    >>> round(float(parallel_vibration_ratio(**speeds)), 3), round(float(transverse_vibration_ratio(**speeds)), 3)
+    (0.333, 0.643)
     """
     return oblique_vibration_ratio(
         sliding_speed=sliding_speed, vibration_velocity=vibration_velocity, vibration_direction=np.pi / 2

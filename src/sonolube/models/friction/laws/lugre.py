@@ -121,6 +121,15 @@ def lugre_steady_friction(law: LuGreFriction, *, relative_velocity: ArrayLike) -
     References
     ----------
     .. [1] D 1.4 and 1.5, with the modulus of v that D omits.
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import LuGreFriction, lugre_steady_friction
+    >>> forces = {"coulomb_friction_force": 1.0, "static_friction_force": 1.5, "stribeck_velocity": 1e-3}
+    >>> bristles = {"bristle_stiffness": 1e5, "bristle_damping": 300.0, "viscous_coefficient": 0.4}
+    >>> force = lugre_steady_friction(LuGreFriction(**forces, **bristles), relative_velocity=[1e-6, 1e-3, 0.1])
+    >>> force.round(3).tolist()  # static, Stribeck velocity (1 + 0.5/e), Coulomb with viscous
+    [1.5, 1.184, 1.04]
     """
     v = require_finite(relative_velocity=relative_velocity)
     return law.bristle_stiffness * _steady_deflection(law, v) * np.sign(v) + law.viscous_coefficient * v

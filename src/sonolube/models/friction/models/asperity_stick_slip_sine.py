@@ -115,6 +115,14 @@ def sine_stick_slip_ratio(
     --------
     AsperityStickSlip : The same for any motion of the gap.
     batched_stick_slip_ratio : Tabulated, for very many points.
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import sine_stick_slip_ratio
+    >>> vibrated = {"vibration_amplitude": 2.5e-6, "frequency": 22e3, "decay_length": 2e-6, "memory_length": 1.5e-6}
+    >>> ratio = sine_stick_slip_ratio(sliding_speed=[1e-6, 0.02, 0.26], **vibrated)
+    >>> ratio.round(2).tolist()  # from exp(-1.25)/I0(1.25) to 1 at 0.26 m/s
+    [0.2, 0.35, 1.0]
     """
     length, a, f, v_r, D_c = np.broadcast_arrays(
         require_positive(decay_length=decay_length),

@@ -69,6 +69,15 @@ def normal_oscillation_ratio(
     ----------
     .. [1] M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017), who give the system.
        doi:10.1007/s40544-016-0136-4
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import SpringContact, normal_oscillation_ratio
+    >>> contact = SpringContact(friction_coefficient=0.3, mindlin_ratio=0.8)
+    >>> vibrated = {"approach": 2e-6, "normal_amplitude": 1e-6, "frequency": 20e3}
+    >>> ratio = normal_oscillation_ratio(contact, sliding_speed=[1e-6, 0.02, 0.05], **vibrated)
+    >>> ratio.round(2).tolist()  # from 1 - a/u to 1 beyond the critical speed of 0.047 m/s
+    [0.5, 0.86, 1.0]
     """
     u, a = require_contact(approach=approach, normal_amplitude=normal_amplitude)
     omega = 2 * np.pi * require_positive(frequency=frequency)

@@ -55,6 +55,14 @@ class SpringContact:
     ----------
     .. [1] V. L. Popov and M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction, Springer
        (2015). doi:10.1007/978-3-642-53876-6
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import SpringContact, longitudinal_static_ratio
+    >>> contact = SpringContact(friction_coefficient=0.3, mindlin_ratio=0.8)
+    >>> ratio = longitudinal_static_ratio(contact, approach=2e-6, in_plane_amplitude=[0.0, 0.3e-6])
+    >>> ratio.round(3).tolist()  # 1 - 0.8 (0.3 um)/(0.3 2 um)
+    [1.0, 0.6]
     """
 
     friction_coefficient: float
@@ -106,6 +114,13 @@ def critical_speed(contact: SpringContact, *, frequency: ArrayLike, normal_ampli
     References
     ----------
     .. [1] M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017). doi:10.1007/s40544-016-0136-4
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import SpringContact, critical_speed
+    >>> contact = SpringContact(friction_coefficient=0.3, mindlin_ratio=0.8)
+    >>> round(float(critical_speed(contact, frequency=20e3, normal_amplitude=1e-6)), 4)  # 0.3 (2 pi 20 kHz) 1 um/0.8
+    0.0471
     """
     omega = 2 * np.pi * require_positive(frequency=frequency)
     return contact.slip_per_approach * omega * require_non_negative(normal_amplitude=normal_amplitude)

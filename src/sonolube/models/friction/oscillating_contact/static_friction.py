@@ -51,6 +51,14 @@ def normal_static_ratio(contact: SpringContact, *, approach: ArrayLike, normal_a
     References
     ----------
     .. [1] R. Teidelt, J. Starcevic and V. L. Popov, Tribol. Lett. 48, 51 (2012). doi:10.1007/s11249-012-9937-4
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import SpringContact, normal_static_ratio
+    >>> contact = SpringContact(friction_coefficient=0.3, mindlin_ratio=0.8)
+    >>> ratio = normal_static_ratio(contact, approach=2e-6, normal_amplitude=[0.0, 0.5e-6, 2e-6])
+    >>> ratio.round(3).tolist()  # 1 - a/u
+    [1.0, 0.75, 0.0]
     """
     u, a = require_contact(approach=approach, normal_amplitude=normal_amplitude)
     ratio: Floats = mean_normal_forces(contact, u - a, np.zeros_like(a)) / mean_normal_forces(contact, u, a)

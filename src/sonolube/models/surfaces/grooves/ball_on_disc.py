@@ -62,6 +62,14 @@ def disc_volume_loss(*, groove_diameter: ArrayLike, groove_width: ArrayLike, tip
     References
     ----------
     .. [1] ASTM G99-17, 9.1.2.1.
+
+    Examples
+    --------
+    >>> from sonolube.models.surfaces import disc_volume_loss
+    >>> from sonolube.units import format_si
+    >>> volume = disc_volume_loss(groove_diameter=50e-3, groove_width=0.5e-3, tip_radius=5e-3)
+    >>> format_si(float(volume), "m3")  # about pi D d^3/(12 r)
+    '0.327 mm3'
     """
     d, r = _within_ball(tip_radius, groove_width=groove_width)
     ring = np.pi * require_positive(groove_diameter=groove_diameter)
