@@ -5,7 +5,7 @@ the program never polls single samples.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from sonolube.errors import SonolubeError
@@ -188,6 +188,8 @@ class Devices:
         Watchdog or enable line of the rig.
     attend : callable or None
         Takes a prompt after it was confirmed: of simulated devices the time passes, and load and lubricant change.
+    further : mapping of str to Acquisition
+        Acquisitions with a clock and a sample rate of their own, by name; their channels state the rate.
     """
 
     acquisition: Acquisition
@@ -200,6 +202,13 @@ class Devices:
     resources: tuple[str, ...] = ()
     guard: OutputGuard | None = None
     attend: Callable[[Prompt], None] | None = None
+    further: Mapping[str, Acquisition] = field(default_factory=dict)
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        """Channels of all acquisitions, by name."""
+        further = (each.channels for each in self.further.values())
+        return {name: channel for known in (self.acquisition.channels, *further) for name, channel in known.items()}
 
 
 def connect_devices(devices: Devices) -> None:

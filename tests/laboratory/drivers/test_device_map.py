@@ -108,7 +108,7 @@ def test_all_faults_are_told_at_once_with_their_keys(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (('driver = "scpi"', 'driver = "gpib"'), "drive: driver must be scpi or daqmx"),
+        (('driver = "scpi"', 'driver = "gpib"'), "drive: driver must be scpi, daqmx or scpi_commands, got .gpib"),
         (('driver = "line"\n', ""), "motor: driver is missing"),
         (('input = "ai1"', 'input = "ai0"'), "input ai0 stands twice"),
         (('gain = "20 V/V"', 'gain = "20 V/V"\ncalibration = "x.csv"'), "needs either gain or calibration"),

@@ -67,7 +67,7 @@ def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
 def _beyond(device_map: DeviceMap, points: Sequence[SetPoint]) -> Iterator[tuple[str, str, float, str]]:
     """Step, kind, value and text of frequencies and sample rates beyond the devices of a map."""
     highest = device_map.frequency_maximum
-    total = device_map.entries.acquisition.sample_rate_maximum
+    total = device_map.entries.acquisition.total_rate_maximum
     for point in points:
         place, frequency, rate = f"step {point.step}", point.frequency, point.sample_rate
         if frequency is not None and frequency > highest * (1 + 1e-9) and point.kind in _DRIVING:
