@@ -169,9 +169,7 @@ def _reason(kind: str, message: str) -> str:
 def _read_calibrations(entries: MapEntries, folder: Path, files: dict[str, str]) -> list[str]:
     """Add the texts of calibrations to the files, and return what is wrong with them."""
     faults = []
-    named = {"acquisition": entries.acquisition}
-    named |= {f"acquisitions.{name}": entry for name, entry in entries.acquisitions.items()}
-    for section, entry in named.items():
+    for section, entry in entries.all_inputs.items():
         for key, name in entry.files_beside.items():
             try:
                 _read_beside(entry, key, folder / name, files)

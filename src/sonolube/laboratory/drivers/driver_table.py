@@ -110,10 +110,7 @@ DRIVERS: Final[Mapping[str, DriverTable]] = MappingProxyType(
         "motor": DriverTable(
             "motor",
             MotorEntry,
-            {
-                "line": f"{_HERE}.line_motor_entry:LineMotorEntry",
-                "daqmx": f"{_HERE}.daqmx_entries:DaqmxMotorEntry",
-            },
+            {"line": f"{_HERE}.line_motor_entry:LineMotorEntry", "daqmx": f"{_HERE}.daqmx_entries:DaqmxMotorEntry"},
         ),
         "guard": DriverTable("guard", GuardEntry, {"daqmx": f"{_HERE}.daqmx_entries:DaqmxGuardEntry"}),
     }

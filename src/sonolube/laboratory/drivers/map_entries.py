@@ -89,8 +89,8 @@ class MapEntries(Table):
             Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,29}$")],
             Annotated[AcquisitionEntry, OfDriver("acquisition")],
         ],
-        Field(max_length=16),
-    ] = {}
+        Field(default_factory=dict, max_length=16),
+    ]
     drive: Annotated[DriveEntry, OfDriver("drive")]
     motor: Annotated[MotorEntry, OfDriver("motor")]
     guard: Annotated[GuardEntry, OfDriver("guard")] | None = None
@@ -101,6 +101,11 @@ class MapEntries(Table):
         yield from (self.acquisition, *self.acquisitions.values(), self.drive, self.motor)
         if self.guard is not None:
             yield self.guard
+
+    @property
+    def all_inputs(self) -> dict[str, AcquisitionEntry]:
+        """Acquisitions by their keys."""
+        return {"acquisition": self.acquisition} | {f"acquisitions.{key}": e for key, e in self.acquisitions.items()}
 
     @property
     def guarded(self) -> tuple[str, ...]:
@@ -131,9 +136,8 @@ class MapEntries(Table):
 
     @model_validator(mode="after")
     def _require_different_channels(self) -> Self:
-        all_of = {"acquisition": self.acquisition} | {f"acquisitions.{name}": e for name, e in self.acquisitions.items()}
         places, devices = dict[str, str](), dict[str, str]()
-        for place, entry in all_of.items():
+        for place, entry in self.all_inputs.items():
             other = devices.setdefault(entry.reserved_as, place)
             if other != place:
                 raise ValueError(f"{place}: {entry.where} is that of {other} too; one device has one clock")

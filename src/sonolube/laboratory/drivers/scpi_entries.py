@@ -1,4 +1,4 @@
-"""Sections of a device map that tell the commands of an instrument by SCPI: a source of the drive, and slow channels."""
+"""Sections of a device map that tell the commands of an instrument by SCPI: a source of the drive, slow channels."""
 
 import re
 from collections.abc import Mapping, Sequence

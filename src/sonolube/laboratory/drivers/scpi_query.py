@@ -1,4 +1,4 @@
-"""Slow channels of instruments by SCPI: queries in a steady period, such as those of a data logger with thermocouples."""
+"""Slow channels of instruments by SCPI: queries in a steady period, such as those of a logger with thermocouples."""
 
 import time
 from collections.abc import Mapping, Sequence

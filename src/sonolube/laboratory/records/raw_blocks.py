@@ -1,27 +1,29 @@
 r"""Raw blocks of a recording: a file to which blocks are appended as they come, with counters and checksums.
 
 The header is the mark ``SNLBLK1\n``, the length of a text (4 bytes), that text (JSON: sample rate, channels with
-quantity, unit and range, time of the begin), and its CRC-32 (4 bytes). Each record is the mark ``\xb5BLK``, sequence
-number and first sample (8 bytes each), number of samples (4 bytes), CRC-32 of the samples and CRC-32 of all before it
-(4 bytes each), then the samples, channel beside channel, as 64-bit floats. All numbers are little-endian.
+quantity, unit and range, time of the begin, and the clock where it is not that of the run), and its CRC-32 (4 bytes).
+Each record is the mark ``\xb5BLK``, sequence number and first sample (8 bytes each), number of samples (4 bytes),
+CRC-32 of the samples and CRC-32 of all before it (4 bytes each), then the samples, channel beside channel, as 64-bit floats. All numbers are little-endian.
 """
 
 import json
 import struct
 import zlib
 from collections import deque
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from math import ceil
 from os import SEEK_END
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.records.run_folder import CLOCK_NAME
+from sonolube.vocabulary import quantities
 
 _MAGIC: Final = b"SNLBLK1\n"
 _MARK: Final = b"\xb5BLK"
@@ -51,6 +53,31 @@ class Gap:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class PartClock:
+    """Clock of a part of the recording that is not the clock of the run.
+
+    Parameters
+    ----------
+    name : str
+        Of the acquisition, as the device map calls it.
+    part : int
+        Of the recording beside which this one was taken, from 1.
+    offset : float
+        Time of the first sample on the time axis of that part. [s]
+    uncertainty : float
+        Greatest error of the offset, which the times of two blocks tell. [s]
+    first_sample : int
+        By the counter of its hardware.
+    """
+
+    name: str
+    part: int
+    offset: float
+    uncertainty: float
+    first_sample: int = 0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class RawPart:
     """Contents of a file of raw blocks.
 
@@ -77,6 +104,8 @@ class RawPart:
         Length up to the end of the last whole record; what follows is the rest of a block that was not finished.
     blocks : int
         Whole records.
+    clock : PartClock or None
+        Where it is not that of the run.
     """
 
     channels: tuple[Channel, ...]
@@ -90,6 +119,7 @@ class RawPart:
     damaged: int = 0
     whole_bytes: int = 0
     blocks: int = 0
+    clock: PartClock | None = None
 
     @property
     def duration(self) -> float:
@@ -97,7 +127,9 @@ class RawPart:
         return (self.samples + self.missing) / self.sample_rate
 
 
-def raw_header(channels: Sequence[Channel], *, sample_rate: float, begun: float) -> bytes:
+def raw_header(
+    channels: Sequence[Channel], *, sample_rate: float, begun: float, clock: PartClock | None = None
+) -> bytes:
     """Header of a file of raw blocks.
 
     Parameters
@@ -108,6 +140,8 @@ def raw_header(channels: Sequence[Channel], *, sample_rate: float, begun: float)
         [Hz]
     begun : float
         Time of the first sample, in s since 1970.
+    clock : PartClock, optional
+        Where it is not that of the run.
 
     Returns
     -------
@@ -134,6 +168,8 @@ def raw_header(channels: Sequence[Channel], *, sample_rate: float, begun: float)
         for channel in channels
     ]
     content = {"payload": "<f8", "sample_rate": float(sample_rate), "begun": begun, "channels": listed}
+    if clock is not None:
+        content["clock"] = asdict(clock)
     text = json.dumps(content, allow_nan=False).encode()
     return _MAGIC + _LENGTH.pack(len(text)) + text + _LENGTH.pack(zlib.crc32(text))
 
@@ -332,16 +368,31 @@ def _header(stream: BinaryIO, path: Path) -> RawPart:
                 quantity=str(each["quantity"]),
                 lowest=-np.inf if each["lowest"] is None else float(each["lowest"]),
                 highest=np.inf if each["highest"] is None else float(each["highest"]),
+                free_unit="" if each["quantity"] in quantities() else str(each.get("unit") or ""),
             )
             for each in content["channels"]
         )
         rate, begun = float(content["sample_rate"]), float(content["begun"])
+        clock = _part_clock(content["clock"]) if "clock" in content else None
         if content["payload"] != "<f8" or not channels or not 0 < rate < np.inf:
             raise ValueError
     except (ValueError, TypeError, KeyError, LookupError, struct.error, RecursionError):
         raise InvalidInput(f"{path}: is no file of raw blocks, or its header is damaged") from None
     end = stream.tell()
-    return RawPart(channels=channels, sample_rate=rate, begun=begun, header_bytes=end, whole_bytes=end)
+    return RawPart(channels=channels, sample_rate=rate, begun=begun, header_bytes=end, whole_bytes=end, clock=clock)
+
+
+def _part_clock(content: Mapping[str, Any]) -> PartClock:
+    """Clock of a header; raises ValueError where it is none."""
+    if not CLOCK_NAME.fullmatch(content["name"]):
+        raise ValueError
+    return PartClock(
+        name=content["name"],
+        part=int(content["part"]),
+        offset=float(content["offset"]),
+        uncertainty=float(content["uncertainty"]),
+        first_sample=int(content["first_sample"]),
+    )
 
 
 def _finite_or_none(value: float) -> float | None:
