@@ -29,6 +29,10 @@ CHANNEL_QUANTITIES: Final[Mapping[str, str]] = MappingProxyType(
 """Quantity of the vocabulary that each channel of a protocol measures; recordings are named by the quantity."""
 
 
+BLOCK_DURATION: Final = 0.05
+"""Longest time between two looks at the limits, and at requests to pause or stop. [s]"""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Channel:
     """Channel of an acquisition.
@@ -61,6 +65,11 @@ class Channel:
     def unit(self) -> str:
         """SI unit of the samples."""
         return self.free_unit or unit_of(self.quantity)
+
+    @property
+    def is_watched_at_rest(self) -> bool:
+        """Whether its limits hold while motor and drive are off and people work at the rig."""
+        return self.quantity == "temperature" or self.limit < np.inf
 
     @property
     def is_standard(self) -> bool:

@@ -164,6 +164,36 @@ class OutputGuard(Protocol):
         """Release the hardware with the outputs disabled; harmless where that was done before."""
 
 
+class Recorder(Protocol):
+    """Record of a run, as `sonolube.laboratory.records` keeps it."""
+
+    def begin(self, channels: Sequence[Channel], *, sample_rate: float) -> None:
+        """Begin a recording without gaps."""
+
+    def append(self, block: Block) -> None:
+        """Keep a block."""
+
+    def end(self) -> None:
+        """End the recording."""
+
+    def begin_beside(
+        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+    ) -> None:
+        """Begin a recording of another clock, whose first sample was taken some time ago, beside that of the run."""
+
+    def append_beside(self, clock: str, block: Block) -> None:
+        """Keep a block of another clock."""
+
+    def end_beside(self, clock: str) -> None:
+        """End the recording of another clock."""
+
+    def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
+        """Keep what happened."""
+
+    def finish(self, outcome: str, *, reason: str = "") -> object:
+        """Close the record."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Devices:
     """Devices of one rig.

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from importlib.metadata import EntryPoint, entry_points
 from inspect import isabstract
 from types import MappingProxyType
-from typing import Final
+from typing import Final, cast
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.drivers.entry import AcquisitionEntry, DriveEntry, DriverEntry, GuardEntry, MotorEntry
@@ -38,7 +38,7 @@ class DriverTable(VariantTable[type[DriverEntry]]):
         Module and attribute of those of sonolube.
     """
 
-    def __init__(self, role: str, base: type[DriverEntry], places: Mapping[str, str]) -> None:
+    def __init__(self, role: str, base: type, places: Mapping[str, str]) -> None:
         super().__init__(f"driver of the {role}", places)
         self.role, self._base = role, base
 
@@ -85,7 +85,7 @@ class DriverTable(VariantTable[type[DriverEntry]]):
             ) from None
         if not (isinstance(found, type) and issubclass(found, self._base)) or isabstract(found):
             raise InvalidInput(f"{place} is no complete {self._base.__name__}; mend or remove the package")
-        return found
+        return cast(type[DriverEntry], found)
 
 
 DRIVERS: Final[Mapping[str, DriverTable]] = MappingProxyType(

@@ -3,7 +3,8 @@ r"""Raw blocks of a recording: a file to which blocks are appended as they come,
 The header is the mark ``SNLBLK1\n``, the length of a text (4 bytes), that text (JSON: sample rate, channels with
 quantity, unit and range, time of the begin, and the clock where it is not that of the run), and its CRC-32 (4 bytes).
 Each record is the mark ``\xb5BLK``, sequence number and first sample (8 bytes each), number of samples (4 bytes),
-CRC-32 of the samples and CRC-32 of all before it (4 bytes each), then the samples, channel beside channel, as 64-bit floats. All numbers are little-endian.
+CRC-32 of the samples and CRC-32 of all before it (4 bytes each), then the samples, channel beside channel, as 64-bit
+floats. All numbers are little-endian.
 """
 
 import json

@@ -91,8 +91,8 @@ class RecordedPart:
     def variables(self) -> Mapping[str, str]:
         """Quantity of each variable by its name: that of the quantity; that of the channel where several share it.
 
-        A channel whose name is its own keeps it. Set points follow what was measured. The voltage that was set is `voltage_peak_to_peak` too where none was
-        measured.
+        A channel whose name is its own keeps it. Set points follow what was measured. The voltage that was set is
+        `voltage_peak_to_peak` too where none was measured.
         """
         measured = [channel.quantity for channel in self.raw.channels]
         names = {

@@ -1,6 +1,6 @@
 """Recorder of a run: every block is on its way to the disk when `append` returns, every event is a document."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from functools import partial
 from pathlib import Path
@@ -243,8 +243,9 @@ class RunRecorder:
         if outcome not in EXIT_STATUS:
             raise InvalidInput(f"outcome must be one of {', '.join(EXIT_STATUS)}, got {outcome!r}")
         with self._locks:
-            beside = (partial(self.end_beside, clock) for clock in [*self._beside])
-            for close in (*beside, self.end, self._write_recordings):
+            beside = [partial(self.end_beside, clock) for clock in self._beside]
+            closing: list[Callable[[], object]] = [*beside, self.end, self._write_recordings]
+            for close in closing:
                 with suppress(InvalidInput):  # the reason is kept, and the run failed
                     close()
             remove_file(self.folder / RESERVE)
