@@ -128,7 +128,12 @@ class VisaConnection:
         self.write(text)
         heard = ""
         for _ in range(_MOST_STALE):
-            heard = self.read()
+            try:
+                heard = self.read()
+            except DeviceLost:
+                if not heard:
+                    raise
+                break  # it has answered, but not as expected
             if is_answer(heard):
                 return
         raise DeviceError(f"{self.name}: answers {heard[:80]!r} to {text!r}; expected {expected!r}")
