@@ -259,7 +259,10 @@ def test_all_faults_of_a_section_of_another_package_are_told_with_their_keys(pac
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
-        ("broken", r"driver drive\.broken of the package acme-lab cannot be loaded \(OSError: no library libacme\.so\)"),
+        (
+            "broken",
+            r"driver drive\.broken of the package acme-lab cannot be loaded \(OSError: no library libacme\.so\)",
+        ),
         ("absent", r"driver drive\.absent of the package acme-lab cannot be loaded \(AttributeError: "),
         ("unfinished", r"driver drive\.unfinished of the package acme-lab is no complete DriveEntry; mend"),
     ],

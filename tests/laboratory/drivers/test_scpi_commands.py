@@ -1,4 +1,4 @@
-"""Generators and loggers whose commands a device map tells: the shipped maps on strict simulators of the instruments."""
+"""Generators and loggers whose commands a device map tells: the shipped maps on strict simulators."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -231,10 +231,7 @@ CHANGES = [
     (('"OUTP1:IMP INF"', '"OUTP1:IMP {load}"'), "must hold no braces but"),
     (('on = "1", off = "0"', 'on = "1", off = "1"'), "drive.state: on and off must differ"),
     (('error = { query = "SYST:ERR?", none = "0" }\n', ""), None),
-    (
-        ('error = { query = "SYST:ERR?", none = "0" }\n\n[drive.waveforms]', "\n[drive.waveforms]"),
-        None,
-    ),
+    (('error = { query = "SYST:ERR?", none = "0" }\n\n[drive.waveforms]', "\n[drive.waveforms]"), None),
     (('identity = "TEKTRONIX,AFG3*"\n', ""), "drive.identity: missing"),
 ]
 
