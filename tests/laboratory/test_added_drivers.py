@@ -10,7 +10,8 @@ from pytest import MonkeyPatch, approx, raises
 from tests.cli.conftest import Program, sonolube as program
 
 from sonolube.errors import InvalidInput
-from sonolube.laboratory.drivers import DRIVERS, known_drivers, read_device_map
+from sonolube.laboratory.drivers import known_drivers, read_device_map
+from sonolube.laboratory.drivers.driver_table import DRIVERS
 from sonolube.laboratory.records import read_run
 
 sonolube = program
@@ -281,7 +282,7 @@ def test_a_driver_that_two_packages_add_is_refused_and_one_of_sonolube_is_not_re
 ) -> None:
     points = "[sonolube.drivers]\ndrive.acme = other:Drive\ndrive.scpi = other:Drive\n"
     install(packages, name="other-lab", points=points)
-    with raises(InvalidInput, match="packages? acme-lab and other-lab: several packages add it"):
+    with raises(InvalidInput, match="package acme-lab and other-lab: several packages add it"):
         read_device_map(written(tmp_path, MAP))
     assert DRIVERS["drive"]["scpi"].__module__.startswith("sonolube.")
     assert list(DRIVERS["drive"]).count("scpi") == 1

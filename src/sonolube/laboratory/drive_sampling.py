@@ -30,7 +30,7 @@ class DriveSampling:
     is_sine : bool
         Whether the drive is a sine throughout.
     frequency_maximum : float
-        Of the drive where it is higher. [Hz]
+        Of the drive where it is higher, in Hz.
     """
 
     sample_rate: float

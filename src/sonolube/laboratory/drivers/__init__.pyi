@@ -6,7 +6,7 @@ from .device_map import (
     device_map_schema as device_map_schema,
     read_device_map as read_device_map,
 )
-from .driver_table import DRIVERS as DRIVERS, DriverTable as DriverTable, known_drivers as known_drivers
+from .driver_table import DriverTable as DriverTable, known_drivers as known_drivers
 from .entry import (
     AcquisitionEntry as AcquisitionEntry,
     ChannelEntry as ChannelEntry,

@@ -51,7 +51,7 @@ class AnalogueInput:
     limit : float
         Greatest magnitude that the rig stands, in SI.
     sample_rate : float or None
-        Of inputs with a clock of their own; in Hz.
+        Of inputs with a clock of their own. [Hz]
     """
 
     name: str

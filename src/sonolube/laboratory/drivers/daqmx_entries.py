@@ -87,7 +87,7 @@ class DaqmxAcquisitionEntry(AcquisitionEntry):
     sample_rate_maximum : float
         Of all channels together, in Hz.
     sample_rate : float or None
-        Of each channel, below `acquisitions`; in Hz.
+        Of each channel, below `acquisitions`. [Hz]
     channels : tuple of AnalogueInputEntry
     """
 

@@ -157,7 +157,7 @@ class AcquisitionEntry(DriverEntry):
     ----------
     driver : str
     sample_rate : float or None
-        Of each channel where the clock is one of several, thus below `acquisitions`; in Hz.
+        Of each channel where the clock is one of several, thus below `acquisitions`. [Hz]
     description : str
     """
 

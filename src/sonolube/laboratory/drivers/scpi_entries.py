@@ -102,8 +102,10 @@ class ReadbackEntry(Table):
 
     Parameters
     ----------
-    frequency, amplitude, offset : ReplyEntry or None
-        In Hz and V.
+    frequency : ReplyEntry or None
+        [Hz]
+    amplitude, offset : ReplyEntry or None
+        In V.
     """
 
     frequency: ReplyEntry | None = None
@@ -182,8 +184,10 @@ class ScpiSourceEntry(_LineEntry, DriveEntry):
         Sent once while the output is off: high impedance, peak-to-peak unit, no modulation, limits by {highest} and
         {lowest}.
     waveforms : WaveformEntry
-    frequency, amplitude, offset : str
-        Amplitude is peak to peak.
+    frequency : str
+        Command with a number in Hz. [Hz]
+    amplitude, offset : str
+        Commands with a number in V; amplitude is peak to peak.
     amplitude_minimum : float
         Peak to peak, that the output gives, in V.
     on, off : str
@@ -304,7 +308,7 @@ class ScpiQueryEntry(_LineEntry, AcquisitionEntry):
         Sent once after connecting.
     error : ErrorEntry or None
     period : float
-        Time between two queries, longer than all of their answers take; in s.
+        Time between two queries, longer than all of their answers take. [s]
     channels : tuple of QueriedChannelEntry
     description : str
     """

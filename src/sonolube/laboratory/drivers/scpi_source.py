@@ -35,8 +35,10 @@ class SourceCommands:
         Sent once while the output is off; `{highest}` and `{lowest}` stand for the limits of the output, in V.
     waveforms : mapping of str to str
         Commands by waveform.
-    frequency, amplitude, offset : str
-        Amplitude is peak to peak.
+    frequency : str
+        Command with a number in Hz. [Hz]
+    amplitude, offset : str
+        Commands with a number in V; amplitude is peak to peak.
     amplitude_minimum : float
         Peak to peak, that the output gives, in V.
     errors : ErrorQueue or None

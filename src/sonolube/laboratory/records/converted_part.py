@@ -12,7 +12,7 @@ import numpy as np
 from sonolube.errors import InvalidInput
 from sonolube.files import locked_folder, remove_file
 from sonolube.laboratory.records.documents import read_documents
-from sonolube.laboratory.records.raw_blocks import PartClock
+from sonolube.laboratory.records.part_clock import PartClock, part_clock
 from sonolube.laboratory.records.recorded_part import Floats, RecordedPart, recorded_part
 from sonolube.laboratory.records.run_folder import (
     PURPOSE,
@@ -127,13 +127,7 @@ def _clock(attributes: Mapping[str, Any]) -> PartClock | None:
     """Clock of a part by the attributes of its file; None for that of the run."""
     if "clock_name" not in attributes:
         return None
-    return PartClock(
-        name=str(attributes["clock_name"]),
-        part=int(attributes["clock_part"]),
-        offset=float(attributes["clock_offset"]),
-        uncertainty=float(attributes["clock_uncertainty"]),
-        first_sample=int(attributes["clock_first_sample"]),
-    )
+    return part_clock({name: attributes[f"clock_{name}"] for name in PartClock.__slots__})
 
 
 def drop_raw_blocks(folder: Path) -> tuple[str, ...]:

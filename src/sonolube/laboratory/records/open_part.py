@@ -8,7 +8,8 @@ from sonolube.errors import InvalidInput
 from sonolube.growing_files import AppendedFile
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import DocumentLog, ReadDocuments
-from sonolube.laboratory.records.raw_blocks import PartClock, raw_header, raw_record
+from sonolube.laboratory.records.part_clock import PartClock
+from sonolube.laboratory.records.raw_blocks import raw_header, raw_record
 from sonolube.laboratory.records.run_folder import raw_path
 
 NoteGap = Callable[[int, Mapping[str, str | float]], None]

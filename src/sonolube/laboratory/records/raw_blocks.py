@@ -11,19 +11,19 @@ import json
 import struct
 import zlib
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import ceil
 from os import SEEK_END
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import BinaryIO, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
-from sonolube.laboratory.records.run_folder import CLOCK_NAME
+from sonolube.laboratory.records.part_clock import PartClock, part_clock
 from sonolube.vocabulary import quantities
 
 _MAGIC: Final = b"SNLBLK1\n"
@@ -51,31 +51,6 @@ class Gap:
 
     sample: int
     missing: int
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PartClock:
-    """Clock of a part of the recording that is not the clock of the run.
-
-    Parameters
-    ----------
-    name : str
-        Of the acquisition, as the device map calls it.
-    part : int
-        Of the recording beside which this one was taken, from 1.
-    offset : float
-        Time of the first sample on the time axis of that part. [s]
-    uncertainty : float
-        Greatest error of the offset, which the times of two blocks tell. [s]
-    first_sample : int
-        By the counter of its hardware.
-    """
-
-    name: str
-    part: int
-    offset: float
-    uncertainty: float
-    first_sample: int = 0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -374,26 +349,13 @@ def _header(stream: BinaryIO, path: Path) -> RawPart:
             for each in content["channels"]
         )
         rate, begun = float(content["sample_rate"]), float(content["begun"])
-        clock = _part_clock(content["clock"]) if "clock" in content else None
+        clock = part_clock(content["clock"]) if "clock" in content else None
         if content["payload"] != "<f8" or not channels or not 0 < rate < np.inf:
             raise ValueError
     except (ValueError, TypeError, KeyError, LookupError, struct.error, RecursionError):
         raise InvalidInput(f"{path}: is no file of raw blocks, or its header is damaged") from None
     end = stream.tell()
     return RawPart(channels=channels, sample_rate=rate, begun=begun, header_bytes=end, whole_bytes=end, clock=clock)
-
-
-def _part_clock(content: Mapping[str, Any]) -> PartClock:
-    """Clock of a header; raises ValueError where it is none."""
-    if not CLOCK_NAME.fullmatch(content["name"]):
-        raise ValueError
-    return PartClock(
-        name=content["name"],
-        part=int(content["part"]),
-        offset=float(content["offset"]),
-        uncertainty=float(content["uncertainty"]),
-        first_sample=int(content["first_sample"]),
-    )
 
 
 def _finite_or_none(value: float) -> float | None:

@@ -13,7 +13,7 @@ from typing import Any, Final, Protocol as Interface, Self
 import numpy as np
 
 from sonolube.files import unfinished_file
-from sonolube.laboratory.records.raw_blocks import PartClock
+from sonolube.laboratory.records.part_clock import PartClock
 from sonolube.laboratory.records.recorded_part import Floats
 from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts
 from sonolube.vocabulary import quantities, unit_of
