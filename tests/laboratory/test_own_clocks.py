@@ -386,3 +386,10 @@ def test_begin_gives_up_where_a_device_does_not_start(release: Event, monkeypatc
         clocks.begin(lambda: None)
     with raises(DeviceError, match="slow inputs: did not return"):
         clocks.end()
+
+
+def test_a_clock_that_is_slower_than_a_recording_is_said_to_have_given_nothing(tmp_path: Path) -> None:
+    folder = recorded(tmp_path, inputs(rate=0.5))
+    found = read_run(folder)
+    assert found.clocks == {}
+    assert "clock slow gave no sample of pin_temperature, emission in a part" in found.caveats

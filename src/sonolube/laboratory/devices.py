@@ -6,11 +6,14 @@ the program never polls single samples.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Final, Protocol
 
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel
+
+SILENT: Final = "clock silent"
+"""Kind of the note that an acquisition with a clock of its own gave no sample while it was to be recorded."""
 
 
 class DeviceError(SonolubeError):

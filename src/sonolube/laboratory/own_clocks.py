@@ -17,7 +17,7 @@ import numpy as np
 from sonolube.errors import SonolubeError
 from sonolube.laboratory import supervision
 from sonolube.laboratory.block import BLOCK_DURATION, Block, Channel
-from sonolube.laboratory.devices import Acquisition, DeviceError, Devices, Recorder, SamplesLost
+from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, SamplesLost
 from sonolube.laboratory.ending import RunEnded
 from sonolube.laboratory.interlocks import Interlock, first_trip
 from sonolube.laboratory.run_control import RunControl
@@ -221,7 +221,9 @@ class _Reader:
             )
 
     def end_recording(self, recorder: Recorder) -> None:
-        """Record no more."""
+        """Record no more; that nothing was recorded is noted."""
+        if self._recorded and not self._is_begun:
+            recorder.note(SILENT, clock=self.clock, channels=", ".join(self._recorded))
         self.record([])
         if self._is_begun:
             self._is_begun = False

@@ -11,6 +11,7 @@ from .recorder import RunRecorder as RunRecorder, new_run as new_run
 from .recovery import Recovery as Recovery, recover_run as recover_run
 from .run import (
     Note as Note,
+    RecordedChannel as RecordedChannel,
     Run as Run,
     RunSummary as RunSummary,
     read_run as read_run,

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.files import is_locked
+from sonolube.laboratory.block import CHANNEL_QUANTITIES
+from sonolube.laboratory.devices import SILENT
 from sonolube.laboratory.records.documents import (
     EXIT_STATUS,
     ReadDocuments,
@@ -101,6 +103,35 @@ class RunSummary:
         return datetime.fromtimestamp(self.begun, UTC).strftime("%Y-%m-%d %H:%M:%S")
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RecordedChannel:
+    """Channel of a run.
+
+    Parameters
+    ----------
+    name : str
+        As protocols call it.
+    quantity : str
+        Of the vocabulary, or a free one.
+    unit : str
+        Of SI; empty for pure numbers.
+    clock : str
+        Name of its clock; empty for that of the run.
+    """
+
+    name: str
+    quantity: str
+    unit: str
+    clock: str
+
+    @property
+    def described(self) -> str:
+        """Name, with quantity, unit and clock where the name does not tell them."""
+        told = [] if CHANNEL_QUANTITIES.get(self.name) == self.quantity else [self.quantity, self.unit or "1"]
+        told += [f"clock {self.clock}"] if self.clock else []
+        return f"{self.name} ({', '.join(told)})" if told else self.name
+
+
 @dataclass(frozen=True, kw_only=True)
 class Run:
     """A run with its record.
@@ -150,6 +181,23 @@ class Run:
             path = recording_path(self.folder, part, clock)
             if path.is_file():
                 found[clock] = (*found.get(clock, ()), path)
+        return found
+
+    @property
+    def channels(self) -> dict[str, RecordedChannel]:
+        """Channels of all parts by name, as they were begun."""
+        clocks = {part_name(part): clock for part, clock in part_clocks(self._documents).items()}
+        found: dict[str, RecordedChannel] = {}
+        for each in self._documents.of("descriptor"):
+            stream = str(each.get("name"))
+            for name, key in each["data_keys"].items() if stream.startswith(part_name(0)[:-1]) else ():
+                told = key if isinstance(key, dict) else {}
+                found[str(name)] = RecordedChannel(
+                    name=str(name),
+                    quantity=str(told.get("source", name)),
+                    unit=str(told.get("units") or ""),
+                    clock=clocks.get(stream, ""),
+                )
         return found
 
     @property
@@ -379,6 +427,8 @@ def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: R
     gone = (part for part in numbered_parts(documents) if not raw_path(folder, part).is_file())
     missing = (recording_path(folder, part, clocks.get(part, "")).name for part in gone)
     found += [f"{name} is missing" for name in missing if name in known.recordings and not (folder / name).is_file()]
+    silent = [note_of(event).facts for event in documents.of("event") if event["data"]["kind"] == SILENT]
+    found += [f"clock {facts.get('clock')} gave no sample of {facts.get('channels')} in a part" for facts in silent]
     jumps = sum(event["data"]["kind"] == "clock jump" for event in documents.of("event"))
     if jumps:
         found.append(f"the clock of the computer was set {jumps} times during the run; times are by sample counters")
