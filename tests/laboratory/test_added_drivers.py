@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -134,6 +135,18 @@ class AcmeMotor(MotorEntry):
         return Output("motor")
 
 
+class Needy(AcmeDrive):
+    extras = ("abacus",)
+    driver: Literal["needy"]
+
+
+class Hollow(AcmeDrive):
+    driver: Literal["hollow"]
+
+    def new_device(self):
+        raise OSError("no library libacme.so")
+
+
 class Unfinished(DriveEntry):
     driver: Literal["unfinished"]
 '''
@@ -142,6 +155,8 @@ acquisition.acme = acme_lab:AcmeInputs
 drive.acme = acme_lab:AcmeDrive
 motor.acme = acme_lab:AcmeMotor
 drive.unfinished = acme_lab:Unfinished
+drive.needy = acme_lab:Needy
+drive.hollow = acme_lab:Hollow
 drive.absent = acme_lab:Absent
 drive.broken = acme_broken:Drive
 """
@@ -265,6 +280,7 @@ def test_all_faults_of_a_section_of_another_package_are_told_with_their_keys(pac
             r"driver drive\.broken of the package acme-lab cannot be loaded \(OSError: no library libacme\.so\)",
         ),
         ("absent", r"driver drive\.absent of the package acme-lab cannot be loaded \(AttributeError: "),
+        ("needy", r"driver drive\.needy of the package acme-lab needs 'abacus', which is no optional part"),
         ("unfinished", r"driver drive\.unfinished of the package acme-lab is no complete DriveEntry; mend"),
     ],
 )
@@ -275,6 +291,31 @@ def test_a_broken_driver_is_one_line_that_names_its_package(
     with raises(InvalidInput, match=reason) as refusal:
         read_device_map(path)
     assert "\n" not in str(refusal.value)
+
+
+def test_a_driver_that_cannot_make_its_device_is_one_line(packages: Path, tmp_path: Path) -> None:
+    read = read_device_map(written(tmp_path, MAP.replace('[drive]\ndriver = "acme"', '[drive]\ndriver = "hollow"')))
+    with raises(InvalidInput, match=r"driver hollow \(acme_lab\.Hollow\) cannot make its device \(OSError: no library"):
+        read.devices()
+
+
+@pytest.mark.parametrize("broken", ["drive", "turn", "connect"])
+def test_a_driver_of_another_package_that_raises_ends_the_run_with_outputs_off(
+    broken: str, sonolube: Program, packages: Path, tmp_path: Path
+) -> None:
+    before, _, after = ACME.partition("class Output:")
+    head, _, body = after.partition(f"    def {broken}(self")
+    signature, _, rest = body.partition("\n")
+    fault = "        raise ZeroDivisionError('driver')\n"
+    (packages / "acme_lab.py").write_text(f"{before}class Output:{head}    def {broken}(self{signature}\n{fault}{rest}")
+    (tmp_path / "short.toml").write_text(PROTOCOL)
+    words = ("lab", "run", tmp_path / "short.toml", "--device", written(tmp_path, MAP), "--out", tmp_path / "runs")
+    with suppress(ZeroDivisionError):  # the fault of a driver is shown as it is
+        sonolube(*words, "--json")
+    lines = (packages / "log.txt").read_text().splitlines()
+    assert {"drive off", "motor off", "drive close", "motor close", "inputs close"} <= set(lines)
+    (folder,) = (tmp_path / "runs").iterdir()
+    assert read_run(folder).summary.outcome == "failed"
 
 
 def test_a_driver_that_two_packages_add_is_refused_and_one_of_sonolube_is_not_replaced(
@@ -291,7 +332,8 @@ def test_a_driver_that_two_packages_add_is_refused_and_one_of_sonolube_is_not_re
 def test_packages_are_looked_up_when_a_map_names_a_driver_that_sonolube_does_not_have(packages: Path) -> None:
     assert known_drivers()["drive"] == (
         *("scpi", "daqmx", "scpi_commands"),
-        *("absent (acme-lab)", "acme (acme-lab)", "broken (acme-lab)", "unfinished (acme-lab)"),
+        *("absent (acme-lab)", "acme (acme-lab)", "broken (acme-lab)", "hollow (acme-lab)", "needy (acme-lab)"),
+        "unfinished (acme-lab)",
     )
     assert "acme_lab" not in sys.modules
     example = Path(__file__).parents[2] / "examples" / "lab" / "devices.toml"

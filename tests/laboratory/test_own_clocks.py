@@ -28,7 +28,7 @@ from sonolube.laboratory import (
     run_protocol,
     supervision,
 )
-from sonolube.laboratory.records import drop_raw_blocks, export_run, new_run, read_run, recover_run
+from sonolube.laboratory.records import RunObserver, drop_raw_blocks, export_run, new_run, read_run, recover_run
 from sonolube.laboratory.run_plan import RunPlan
 from sonolube.measurement import read_recording
 from sonolube.measurement.file_selection import selected_files
@@ -393,3 +393,23 @@ def test_a_clock_that_is_slower_than_a_recording_is_said_to_have_given_nothing(t
     found = read_run(folder)
     assert found.clocks == {}
     assert "clock slow gave no sample of pin_temperature, emission in a part" in found.caveats
+
+
+def test_a_run_at_work_is_watched_at_all_clocks(tmp_path: Path) -> None:
+    recorder = new_run(tmp_path, title="Two clocks", protocol="")
+    force = Channel(name="friction_force", quantity="friction_force")
+    recorder.note("prepared", state="running", protocol_time=0.0)
+    recorder.begin([force], sample_rate=RATE)
+    recorder.append(Block(first_sample=0, sample_rate=RATE, values=np.full((4, 1), 2.0)))
+    recorder.begin_beside("slow", [temperature()], sample_rate=SLOW, first=7, ago=0.1, uncertainty=0.05)
+    recorder.append_beside("slow", Block(first_sample=7, sample_rate=SLOW, values=np.full((2, 1), 300.0)))
+    seen = RunObserver(recorder.folder).look()
+    assert seen.means == {"friction_force": (2.0, "N"), "pin_temperature": (300.0, "K")}
+    with raises(InvalidInput, match="block begins at sample 8, but 9 was expected"):
+        recorder.append_beside("slow", Block(first_sample=8, sample_rate=SLOW, values=np.zeros((1, 1))))
+    with raises(InvalidInput, match="no part of the recording has begun"):
+        recorder.append_beside("other", Block(first_sample=0, sample_rate=SLOW, values=np.zeros((1, 1))))
+    with raises(InvalidInput, match="needs one of the run, and no other of its own"):
+        recorder.begin_beside("slow", [temperature()], sample_rate=SLOW, first=0, ago=0.0, uncertainty=0.05)
+    assert recorder.finish("completed").outcome == "completed"
+    assert read_run(recorder.folder).dataset(clock="slow").sizes["time"] == 2

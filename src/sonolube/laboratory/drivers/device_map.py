@@ -1,16 +1,17 @@
 """Device maps: which hardware a rig has, how it is wired, and what it stands; TOML with all faults told at once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from pydantic import ValidationError
 
-from sonolube.errors import InvalidInput, SeveralFaults
+from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError
 from sonolube.laboratory.devices import Acquisition, Devices, OutputGuard
-from sonolube.laboratory.drivers.entry import AcquisitionEntry
+from sonolube.laboratory.drivers.entry import AcquisitionEntry, DriverEntry
 from sonolube.laboratory.drivers.map_entries import MapEntries
 from sonolube.toml_text import text_of, toml_content
 from sonolube.units import format_si
@@ -18,6 +19,8 @@ from sonolube.units import format_si
 _KIND: Final = "a device map"
 _MOST_FAULTS: Final = 20
 _LONGEST_FAULT: Final = 300  # characters
+
+_Device = TypeVar("_Device")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,12 +54,17 @@ class DeviceMap:
         Returns
         -------
         Devices
+
+        Raises
+        ------
+        InvalidInput
+            If a driver, such as one of another package, cannot make its device.
         """
         entries = self.entries
         return Devices(
-            acquisition=entries.acquisition.new_device(self.files),
-            drive=entries.drive.new_device(),
-            motor=entries.motor.new_device(),
+            acquisition=_made(entries.acquisition, partial(entries.acquisition.new_device, self.files)),
+            drive=_made(entries.drive, entries.drive.new_device),
+            motor=_made(entries.motor, entries.motor.new_device),
             description=MappingProxyType(self._description()),
             groove_diameter=entries.motor.groove_diameter,
             resources=tuple(dict.fromkeys(part.reserved_as for part in entries.parts if part.reserved_as)),
@@ -67,11 +75,12 @@ class DeviceMap:
     def _guard(self) -> OutputGuard | None:
         """Watchdog and enable line."""
         guard = self.entries.guard
-        return None if guard is None else guard.new_device(self.entries.guarded)
+        return None if guard is None else _made(guard, partial(guard.new_device, self.entries.guarded))
 
     def _further(self) -> dict[str, Acquisition]:
         """Acquisitions with clocks of their own."""
-        return {name: entry.new_device(self.files) for name, entry in self.entries.acquisitions.items()}
+        further = self.entries.acquisitions.items()
+        return {name: _made(entry, partial(entry.new_device, self.files)) for name, entry in further}
 
     def _description(self) -> dict[str, str]:
         """Kind, serial number and settings of each device."""
@@ -93,6 +102,20 @@ class DeviceMap:
             told[f"acquisition {name}"] = f"{entry.described}; {format_si(entry.own_rate or 0.0, 'Hz')}, own clock"
             told[f"acquisition {name} hardware"] = entry.description
         return {key: text for key, text in told.items() if text}
+
+
+def _made(entry: DriverEntry, make: Callable[[], _Device]) -> _Device:
+    """Device of a section."""
+    try:
+        return make()
+    except SonolubeError:
+        raise
+    except Exception as failure:  # whatever a driver of another package raises
+        told = (str(failure).strip().splitlines() or [""])[0][:120]
+        name = f"{type(entry).__module__}.{type(entry).__name__}"
+        raise InvalidInput(
+            f"driver {entry.driver} ({name}) cannot make its device ({type(failure).__name__}: {told})"
+        ) from None
 
 
 def read_device_map(path: str | Path) -> DeviceMap:

@@ -16,6 +16,7 @@ from types import MappingProxyType
 from typing import Final, cast
 
 from sonolube.errors import InvalidInput
+from sonolube.extras import EXTRAS
 from sonolube.laboratory.drivers.entry import AcquisitionEntry, DriveEntry, DriverEntry, GuardEntry, MotorEntry
 from sonolube.variants import VariantTable
 
@@ -85,6 +86,9 @@ class DriverTable(VariantTable[type[DriverEntry]]):
             ) from None
         if not (isinstance(found, type) and issubclass(found, self._base)) or isabstract(found):
             raise InvalidInput(f"{place} is no complete {self._base.__name__}; mend or remove the package")
+        unknown = [name for name in found.extras if name not in EXTRAS]
+        if unknown:
+            raise InvalidInput(f"{place} needs {unknown[0]!r}, which is no optional part of sonolube; mend the package")
         return cast(type[DriverEntry], found)
 
 
