@@ -86,10 +86,11 @@ class DriverTable(VariantTable[type[DriverEntry]]):
             ) from None
         if not (isinstance(found, type) and issubclass(found, self._base)) or isabstract(found):
             raise InvalidInput(f"{place} is no complete {self._base.__name__}; mend or remove the package")
-        unknown = [name for name in found.extras if name not in EXTRAS]
+        driver = cast(type[DriverEntry], found)
+        unknown = [name for name in driver.extras if name not in EXTRAS]
         if unknown:
             raise InvalidInput(f"{place} needs {unknown[0]!r}, which is no optional part of sonolube; mend the package")
-        return cast(type[DriverEntry], found)
+        return driver
 
 
 DRIVERS: Final[Mapping[str, DriverTable]] = MappingProxyType(

@@ -7,11 +7,11 @@ from .raw_blocks import (
     read_raw_blocks as read_raw_blocks,
     scan_raw as scan_raw,
 )
+from .recorded_channels import RecordedChannel as RecordedChannel
 from .recorder import RunRecorder as RunRecorder, new_run as new_run
 from .recovery import Recovery as Recovery, recover_run as recover_run
 from .run import (
     Note as Note,
-    RecordedChannel as RecordedChannel,
     Run as Run,
     RunSummary as RunSummary,
     read_run as read_run,

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.files import is_locked
-from sonolube.laboratory.block import CHANNEL_QUANTITIES
 from sonolube.laboratory.devices import SILENT
 from sonolube.laboratory.records.documents import (
     EXIT_STATUS,
@@ -20,6 +19,7 @@ from sonolube.laboratory.records.documents import (
     part_name,
     read_documents,
 )
+from sonolube.laboratory.records.recorded_channels import RecordedChannel, recorded_channels
 from sonolube.laboratory.records.run_folder import (
     DOCUMENTS,
     LATEST,
@@ -103,35 +103,6 @@ class RunSummary:
         return datetime.fromtimestamp(self.begun, UTC).strftime("%Y-%m-%d %H:%M:%S")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RecordedChannel:
-    """Channel of a run.
-
-    Parameters
-    ----------
-    name : str
-        As protocols call it.
-    quantity : str
-        Of the vocabulary, or a free one.
-    unit : str
-        Of SI; empty for pure numbers.
-    clock : str
-        Name of its clock; empty for that of the run.
-    """
-
-    name: str
-    quantity: str
-    unit: str
-    clock: str
-
-    @property
-    def described(self) -> str:
-        """Name, with quantity, unit and clock where the name does not tell them."""
-        told = [] if CHANNEL_QUANTITIES.get(self.name) == self.quantity else [self.quantity, self.unit or "1"]
-        told += [f"clock {self.clock}"] if self.clock else []
-        return f"{self.name} ({', '.join(told)})" if told else self.name
-
-
 @dataclass(frozen=True, kw_only=True)
 class Run:
     """A run with its record.
@@ -186,19 +157,7 @@ class Run:
     @property
     def channels(self) -> dict[str, RecordedChannel]:
         """Channels of all parts by name, as they were begun."""
-        clocks = {part_name(part): clock for part, clock in part_clocks(self._documents).items()}
-        found: dict[str, RecordedChannel] = {}
-        for each in self._documents.of("descriptor"):
-            stream = str(each.get("name"))
-            for name, key in each["data_keys"].items() if stream.startswith(part_name(0)[:-1]) else ():
-                told = key if isinstance(key, dict) else {}
-                found[str(name)] = RecordedChannel(
-                    name=str(name),
-                    quantity=str(told.get("source", name)),
-                    unit=str(told.get("units") or ""),
-                    clock=clocks.get(stream, ""),
-                )
-        return found
+        return recorded_channels(self._documents)
 
     @property
     def part_channels(self) -> dict[Path, tuple[str, ...]]:
