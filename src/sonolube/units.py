@@ -129,6 +129,26 @@ def convert(value: float, *, from_unit: str, to_unit: str) -> float:
     return _converted(value, from_unit, to_unit, name="value", text=f"{value} {from_unit}")
 
 
+def require_si_unit(unit: str, *, name: str) -> str:
+    """Return a unit that is one of SI without a prefix, such as m/s2; empty for pure numbers.
+
+    Raises
+    ------
+    InvalidInput
+        If it is unknown, or has a factor, such as mm/s or %.
+    """
+    import pint
+
+    try:
+        base = _registry().Quantity(1.0, _unit(unit)).to_base_units() if unit else None
+        is_si = base is None or math.isclose(float(base.magnitude), 1.0, rel_tol=1e-12)
+    except (pint.PintError, InvalidInput, ValueError, TypeError, ArithmeticError, AssertionError):
+        raise InvalidInput(f"{name} {_shortened(unit)!r} is no unit") from None
+    if not is_si or "degree_Celsius" in str(_unit(unit) if unit else ""):
+        raise InvalidInput(f"{name} {unit!r} is no unit of SI; expected such as m/s for mm/s")
+    return unit
+
+
 def unit_description(unit: str) -> str:
     """Return the kind of quantity of an SI unit with an example, such as "a force, such as 40N"."""
     return _KINDS.get(unit, f"a value in {unit}")

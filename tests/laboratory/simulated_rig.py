@@ -121,6 +121,9 @@ class MemoryRecord:
     outcome: str = ""
     reason: str = ""
     is_open: bool = False
+    beside: dict[str, list[Block]] = field(default_factory=dict)
+    rates_beside: dict[str, float] = field(default_factory=dict)
+    open_beside: set[str] = field(default_factory=set)
 
     def begin(self, channels: Sequence[Channel], *, sample_rate: float) -> None:
         assert not self.is_open
@@ -136,6 +139,22 @@ class MemoryRecord:
     def end(self) -> None:
         assert self.is_open
         self.is_open = False
+
+    def begin_beside(
+        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+    ) -> None:
+        assert self.is_open
+        assert clock not in self.open_beside
+        assert uncertainty > 0
+        self.open_beside.add(clock)
+        self.rates_beside[clock] = sample_rate
+
+    def append_beside(self, clock: str, block: Block) -> None:
+        assert clock in self.open_beside
+        self.beside.setdefault(clock, []).append(block)
+
+    def end_beside(self, clock: str) -> None:
+        self.open_beside.remove(clock)
 
     def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
         self.notes.append((kind, dict(facts)))

@@ -14,7 +14,7 @@ from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 
 from sonolube.facts.protocol import protocol_from
 from sonolube.laboratory import reservation, run_protocol
-from sonolube.laboratory.drivers.readiness import first_block
+from sonolube.laboratory.drivers.readiness import first_readings
 from sonolube.laboratory.drivers.resources import daqmx_resource, visa_resource
 from sonolube.laboratory.reservation import DeviceInUse, require_free, reserved
 
@@ -135,7 +135,7 @@ def test_the_devices_of_a_map_are_reserved_until_the_run_has_ended(kind: str, tm
             run_protocol(WAITING, rig.devices, record, operator=lambda _: True)
             assert "is in use by another run" in record.reason
             with raises(DeviceInUse):
-                first_block(rig.devices, sample_rate=1e3)
+                first_readings(rig.devices, sample_rate=1e3)
             assert rig.rotation_speed() > 0  # what another run has set goes on
         record = MemoryRecord()
         run_protocol(WAITING, rig.devices, record, operator=lambda _: True)

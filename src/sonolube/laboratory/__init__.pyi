@@ -1,4 +1,9 @@
-from .block import CHANNEL_QUANTITIES as CHANNEL_QUANTITIES, Block as Block, Channel as Channel
+from .block import (
+    BLOCK_DURATION as BLOCK_DURATION,
+    CHANNEL_QUANTITIES as CHANNEL_QUANTITIES,
+    Block as Block,
+    Channel as Channel,
+)
 from .devices import (
     Acquisition as Acquisition,
     DeviceError as DeviceError,
@@ -7,14 +12,16 @@ from .devices import (
     DriveSetting as DriveSetting,
     DriveSource as DriveSource,
     Motor as Motor,
+    Recorder as Recorder,
     SamplesLost as SamplesLost,
     connect_devices as connect_devices,
     switch_outputs_off as switch_outputs_off,
 )
 from .interlocks import Interlock as Interlock, Trip as Trip, first_trip as first_trip, interlocks_for as interlocks_for
+from .own_clocks import OwnClocks as OwnClocks
 from .run_control import RunControl as RunControl
 from .runner import RunResult as RunResult, run_protocol as run_protocol
-from .sampling import BLOCK_DURATION as BLOCK_DURATION, Recorder as Recorder, Sampling as Sampling
+from .sampling import Sampling as Sampling
 from .set_points import impossibilities as impossibilities, require_possible as require_possible
 from .states import (
     OUTCOMES as OUTCOMES,

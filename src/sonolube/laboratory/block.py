@@ -29,6 +29,10 @@ CHANNEL_QUANTITIES: Final[Mapping[str, str]] = MappingProxyType(
 """Quantity of the vocabulary that each channel of a protocol measures; recordings are named by the quantity."""
 
 
+BLOCK_DURATION: Final = 0.05
+"""Longest time between two looks at the limits, and at requests to pause or stop. [s]"""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Channel:
     """Channel of an acquisition.
@@ -38,20 +42,39 @@ class Channel:
     name : str
         As protocols name it, such as gaussmeter.
     quantity : str
-        Of the vocabulary, whose SI unit the samples have.
+        Of the vocabulary, whose SI unit the samples have, or a free one.
     lowest, highest : float
         Range of sensor and input, in SI; samples at an end of it are saturated.
+    free_unit : str
+        SI unit of a free quantity; empty for those of the vocabulary and for pure numbers.
+    limit : float
+        Greatest magnitude that the rig stands, in SI, beyond which every run ends.
+    sample_rate : float or None
+        That of an acquisition with a clock of its own; None where the protocol tells it. [Hz]
     """
 
     name: str
     quantity: str
     lowest: float = -np.inf
     highest: float = np.inf
+    free_unit: str = ""
+    limit: float = np.inf
+    sample_rate: float | None = None
 
     @property
     def unit(self) -> str:
         """SI unit of the samples."""
-        return unit_of(self.quantity)
+        return self.free_unit or unit_of(self.quantity)
+
+    @property
+    def is_watched_at_rest(self) -> bool:
+        """Whether its limits hold while motor and drive are off and people work at the rig."""
+        return self.quantity == "temperature" or self.limit < np.inf
+
+    @property
+    def is_standard(self) -> bool:
+        """Whether it has one of the names that every rig uses for the quantity."""
+        return CHANNEL_QUANTITIES.get(self.name) == self.quantity
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

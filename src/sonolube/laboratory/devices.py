@@ -5,12 +5,15 @@ the program never polls single samples.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, field
+from typing import Final, Protocol
 
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel
+
+SILENT: Final = "clock silent"
+"""Kind of the note that an acquisition with a clock of its own gave no sample while it was to be recorded."""
 
 
 class DeviceError(SonolubeError):
@@ -164,6 +167,36 @@ class OutputGuard(Protocol):
         """Release the hardware with the outputs disabled; harmless where that was done before."""
 
 
+class Recorder(Protocol):
+    """Record of a run, as `sonolube.laboratory.records` keeps it."""
+
+    def begin(self, channels: Sequence[Channel], *, sample_rate: float) -> None:
+        """Begin a recording without gaps."""
+
+    def append(self, block: Block) -> None:
+        """Keep a block."""
+
+    def end(self) -> None:
+        """End the recording."""
+
+    def begin_beside(
+        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+    ) -> None:
+        """Begin a recording of another clock, whose first sample was taken some time ago, beside that of the run."""
+
+    def append_beside(self, clock: str, block: Block) -> None:
+        """Keep a block of another clock."""
+
+    def end_beside(self, clock: str) -> None:
+        """End the recording of another clock."""
+
+    def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
+        """Keep what happened."""
+
+    def finish(self, outcome: str, *, reason: str = "") -> object:
+        """Close the record."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Devices:
     """Devices of one rig.
@@ -188,6 +221,8 @@ class Devices:
         Watchdog or enable line of the rig.
     attend : callable or None
         Takes a prompt after it was confirmed: of simulated devices the time passes, and load and lubricant change.
+    further : mapping of str to Acquisition
+        Acquisitions with a clock and a sample rate of their own, by name; their channels state the rate.
     """
 
     acquisition: Acquisition
@@ -200,6 +235,13 @@ class Devices:
     resources: tuple[str, ...] = ()
     guard: OutputGuard | None = None
     attend: Callable[[Prompt], None] | None = None
+    further: Mapping[str, Acquisition] = field(default_factory=dict)
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        """Channels of all acquisitions, by name."""
+        further = (each.channels for each in self.further.values())
+        return {name: channel for known in (self.acquisition.channels, *further) for name, channel in known.items()}
 
 
 def connect_devices(devices: Devices) -> None:

@@ -1,10 +1,11 @@
 """Sampling of the drive: whether channels of voltage and current are sampled often enough to show its peaks."""
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 from sonolube.facts.protocol import Protocol, SetPoint, flattened
+from sonolube.laboratory.block import Channel
 from sonolube.units import format_si
 
 SAMPLES_PER_PERIOD: Final = 5
@@ -28,16 +29,54 @@ class DriveSampling:
         Of the drive. [Hz]
     is_sine : bool
         Whether the drive is a sine throughout.
+    frequency_maximum : float
+        Of the drive where it is higher, in Hz.
     """
 
     sample_rate: float
     frequency: float
     is_sine: bool = True
+    frequency_maximum: float = 0.0
 
     @property
     def is_resolved(self) -> bool:
         """Whether a period of the drive has at least five samples."""
         return self.sample_rate >= SAMPLES_PER_PERIOD * self.frequency * (1 - 1e-9)
+
+    def of(self, channel: Channel | None) -> "DriveSampling":
+        """Sampling by a channel, which may have a sample rate of its own; this one for None.
+
+        Parameters
+        ----------
+        channel : Channel or None
+
+        Returns
+        -------
+        DriveSampling
+        """
+        if channel is None or channel.sample_rate is None:
+            return self
+        highest = max(self.frequency, self.frequency_maximum)
+        return replace(self, sample_rate=channel.sample_rate, frequency=highest)
+
+    def caveat_of(self, names: Iterable[str], channels: Mapping[str, Channel]) -> str:
+        """What channels do not show, as `caveat`, each at its own rate.
+
+        Parameters
+        ----------
+        names : iterable of str
+            Recorded or watched.
+        channels : mapping of str to Channel
+            Of the devices.
+
+        Returns
+        -------
+        str
+        """
+        by_rate: dict[DriveSampling, list[str]] = {}
+        for name in names:
+            by_rate.setdefault(self.of(channels.get(name)), []).append(name)
+        return "; ".join(filter(None, (sampling.caveat(them) for sampling, them in by_rate.items())))
 
     def caveat(self, channels: Iterable[str]) -> str:
         """What the channels voltage and current among others do not show, in one line; empty where they show it.
@@ -75,7 +114,8 @@ def drive_sampling(protocol: Protocol) -> DriveSampling | None:
         return None
     rate, frequency = min(driven, key=lambda each: each[0] / each[1])
     is_sine = all(point.waveform == "sine" for point in points if point.frequency is not None)
-    return DriveSampling(sample_rate=rate, frequency=frequency, is_sine=is_sine)
+    highest = max(each for _, each in driven)
+    return DriveSampling(sample_rate=rate, frequency=frequency, is_sine=is_sine, frequency_maximum=highest)
 
 
 def recorded_channels(protocol: Protocol) -> tuple[str, ...]:

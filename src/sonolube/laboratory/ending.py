@@ -58,10 +58,25 @@ def release_devices(devices: Devices, *before: Callable[[], object]) -> list[str
     list of str
         What has failed.
     """
+    return tried(*before, devices.drive.close, devices.motor.close, devices.acquisition.close)
+
+
+def tried(*calls: Callable[[], object]) -> list[str]:
+    """Make calls, each whatever becomes of the others; never raises.
+
+    Parameters
+    ----------
+    *calls : callable
+
+    Returns
+    -------
+    list of str
+        What has failed.
+    """
     failures = []
-    for close in (*before, devices.drive.close, devices.motor.close, devices.acquisition.close):
+    for call in calls:
         try:
-            close()
+            call()
         except Exception as failure:  # whatever a driver raises, the others must be released
             failures.append(str(failure))
     return failures

@@ -83,16 +83,40 @@ def interlocks_for(
     """
     found, faults = [], []
     for name, watched in _WATCHED.items():
-        limit, present = getattr(limits, name), [channels[each] for each in watched if each in channels]
+        limit, present = getattr(limits, name), _watching(channels, watched)
         if limit is None or (not present and name in _SET_POINTS):
             continue
         locks = [Interlock(each, limit / _PEAK_OVER_RMS if each.name == "current_rms" else limit) for each in present]
         fault = _fault(name, watched[0], locks, drive)
         faults += [fault] if fault else []
         found += locks
+    for channel in channels.values():
+        if channel.limit < np.inf:
+            lock = Interlock(channel, channel.limit)
+            faults += [_beyond_range(f"limit of channel {channel.name}", lock)] if _is_beyond_range(lock) else []
+            found.append(lock)
     if faults:
         raise InvalidInput(faults[0]) if len(faults) == 1 else SeveralFaults(faults)
     return tuple(found)
+
+
+def _watching(channels: Mapping[str, Channel], watched: Sequence[str]) -> list[Channel]:
+    """Channels that a limit holds: those of these names, and of temperatures all."""
+    named = [channels[each] for each in watched if each in channels]
+    of_kind = [each for each in channels.values() if each.quantity in watched and each.quantity == "temperature"]
+    return [*named, *(each for each in of_kind if each not in named)]
+
+
+def _is_beyond_range(lock: Interlock) -> bool:
+    """Whether a limit lies beyond the range of its channel, which would be saturated before."""
+    return lock.limit > max(abs(lock.channel.lowest), abs(lock.channel.highest))
+
+
+def _beyond_range(name: str, lock: Interlock) -> str:
+    """Fault of a limit beyond the range of its channel."""
+    channel = lock.channel
+    held, reach = format_si(lock.limit, channel.unit), format_si(channel.highest, channel.unit)
+    return f"{name} of {held} lies beyond the range of channel {channel.name}, {reach}"
 
 
 def _fault(name: str, watched: str, locks: Sequence[Interlock], drive: DriveSampling | None) -> str:
@@ -100,16 +124,14 @@ def _fault(name: str, watched: str, locks: Sequence[Interlock], drive: DriveSamp
     if not locks:
         return f"limits.{name} cannot be watched: no device has a channel {watched}; add one, or leave the limit out"
     for lock in locks:
-        channel = lock.channel
-        if lock.limit > max(abs(channel.lowest), abs(channel.highest)):
-            held, reach = format_si(lock.limit, channel.unit), format_si(channel.highest, channel.unit)
-            return f"limits.{name} of {held} lies beyond the range of channel {channel.name}, {reach}"
-    if name != "current_maximum" or drive is None or drive.is_resolved:
+        if _is_beyond_range(lock):
+            return _beyond_range(f"limits.{name}", lock)
+    measured = {lock.channel.name: lock.channel for lock in locks}
+    if name != "current_maximum" or drive is None or drive.of(measured.get("current")).is_resolved:
         return ""
-    measured = {lock.channel.name for lock in locks}
     if "current_peak" in measured or ("current_rms" in measured and drive.is_sine):
         return ""
-    reason = drive.caveat(["current"])
+    reason = drive.of(measured.get("current")).caveat(["current"])
     if "current_rms" in measured:
         reason += "; of other waves than a sine, current_rms tells no peak"
     needed = format_si(SAMPLES_PER_PERIOD * drive.frequency, "Hz")

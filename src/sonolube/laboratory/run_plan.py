@@ -61,8 +61,9 @@ class RunPlan:
         drive = self.drive or drive_sampling(self.protocol)
         if drive is None:
             return ""
-        locks = interlocks_for(self.protocol.limits, devices.acquisition.channels, drive)
-        return drive.caveat([*recorded_channels(self.protocol), *(lock.channel.name for lock in locks)])
+        locks = interlocks_for(self.protocol.limits, devices.channels, drive)
+        names = [*recorded_channels(self.protocol), *(lock.channel.name for lock in locks)]
+        return drive.caveat_of(names, devices.channels)
 
 
 def begin_record(

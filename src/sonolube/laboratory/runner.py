@@ -11,16 +11,25 @@ from typing import Final
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.interruption import asked_by_signal, undone_at_signal
+from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.checked_quantity import SETTLING, SPEED_CHANNEL, SPEEDS, CheckedValue, speed_checks, speed_of
-from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, connect_devices, switch_outputs_off
+from sonolube.laboratory.devices import (
+    DeviceError,
+    Devices,
+    DriveSetting,
+    Recorder,
+    connect_devices,
+    switch_outputs_off,
+)
 from sonolube.laboratory.drive_sampling import drive_sampling, idle_rate
-from sonolube.laboratory.ending import RunEnded, ending, release_devices
+from sonolube.laboratory.ending import RunEnded, ending, release_devices, tried
 from sonolube.laboratory.interlocks import Trip, interlocks_for, set_point_trip
+from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.run_control import RunControl
-from sonolube.laboratory.sampling import BLOCK_DURATION, Recorder, Sampling
+from sonolube.laboratory.sampling import Sampling
 from sonolube.laboratory.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
-from sonolube.laboratory.standing_rig import StandingRig
+from sonolube.laboratory.standing_rig import StandingRig, off_bounds
 from sonolube.laboratory.states import Event, RunState, State, after
 from sonolube.laboratory.supervision import Supervisor
 from sonolube.units import format_si
@@ -113,11 +122,12 @@ class _Run:
         self._points = flattened(protocol)
         self._point = self._points[0]
         self._diameter = groove_diameter(protocol, devices)
-        locks = interlocks_for(protocol.limits, devices.acquisition.channels, drive_sampling(protocol))
+        locks = interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))
         rate = idle_rate(self._points)
         self._standing = StandingRig(self._devices, locks, protocol.limits, sample_rate=rate)
         measured = [SPEED_CHANNEL] if speed_checks(protocol) else []
-        self._sampling = Sampling(self._devices.acquisition, recorder, locks, also=measured)
+        self._clocks = OwnClocks(devices, locks, off_bounds(devices, protocol.limits))
+        self._sampling = Sampling(self._devices.acquisition, recorder, locks, beside=self._clocks, also=measured)
         self._present, self._is_connected = RunState(), False
         self._drive: DriveSetting | None = None
         self._turns = 0.0
@@ -130,6 +140,7 @@ class _Run:
                 self._happens(Event.START)
                 held.enter_context(reserved(self._devices.resources))
                 self._prepare(advance)
+                self._clocks.begin(self._end_if_asked)
                 self._is_connected = True
                 connect_devices(self._devices)
                 self._happens(Event.PREPARED)
@@ -253,7 +264,7 @@ class _Run:
     def _ask(self, prompt: Prompt) -> None:
         """Ask the operator with motor and drive off, while the clock stands."""
         self._pause(f"{prompt.task}: {prompt.text}")
-        with self._standing.watched(self._control):
+        with self._standing.watched(self._control), self._clocks.watched(self._control):
             is_confirmed = self._operator(prompt)
         if self._control.stop_reason:
             asked = (
@@ -280,7 +291,7 @@ class _Run:
         """Hold the run while a pause is wanted."""
         self._pause("on request")
         wait = Signal()
-        with self._standing.watched(self._control):
+        with self._standing.watched(self._control), self._clocks.watched(self._control):
             while self._control.is_paused and not self._control.stop_reason:
                 wait.wait(_POLL)
         self._end_if_asked()
@@ -339,7 +350,7 @@ class _Run:
 
     def _checked(self, check: Check) -> CheckedValue:
         """Value of a checked quantity, as measured; of a speed that nothing measures, as it is set."""
-        is_speed, measures_speed = check.quantity in SPEEDS, SPEED_CHANNEL in self._devices.acquisition.channels
+        is_speed, measures_speed = check.quantity in SPEEDS, SPEED_CHANNEL in self._devices.channels
         if is_speed and not measures_speed:
             return speed_of(check, rotation_speed=self._turns, groove_diameter=self._diameter, is_set=True)
         value, trip = self._sampling.measure(SPEED_CHANNEL if is_speed else check.quantity)
@@ -360,7 +371,8 @@ class _Run:
     def _close(self) -> RunResult:
         """Switch everything off, release the devices and close the record."""
         failures = self.switch_off()
-        released = release_devices(self._devices, self._sampling.stop) if self._is_connected else []
+        before = self._sampling.stop, self._clocks.end
+        released = release_devices(self._devices, *before) if self._is_connected else tried(*before)
         for reason in released:
             self._note("device error", reason=reason)
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))

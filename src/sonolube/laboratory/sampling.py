@@ -1,35 +1,13 @@
 """Sampling of a run: blocks held to the sample counter and to the limits, recorded where a step says so."""
 
 from collections.abc import Sequence
-from typing import Final, Protocol as Interface
 
 import numpy as np
 
-from sonolube.laboratory.block import Block, Channel
-from sonolube.laboratory.devices import Acquisition, SamplesLost
+from sonolube.laboratory.block import BLOCK_DURATION, Block
+from sonolube.laboratory.devices import Acquisition, Recorder, SamplesLost
 from sonolube.laboratory.interlocks import Interlock, Trip, first_trip
-
-BLOCK_DURATION: Final = 0.05
-"""Longest time between two looks at the limits, and at requests to pause or stop. [s]"""
-
-
-class Recorder(Interface):
-    """Record of a run, as `sonolube.laboratory.records` keeps it."""
-
-    def begin(self, channels: Sequence[Channel], *, sample_rate: float) -> None:
-        """Begin a recording without gaps."""
-
-    def append(self, block: Block) -> None:
-        """Keep a block."""
-
-    def end(self) -> None:
-        """End the recording."""
-
-    def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
-        """Keep what happened."""
-
-    def finish(self, outcome: str, *, reason: str = "") -> object:
-        """Close the record."""
+from sonolube.laboratory.own_clocks import OwnClocks
 
 
 class Sampling:
@@ -40,15 +18,25 @@ class Sampling:
     acquisition : Acquisition
     recorder : Recorder
     locks : sequence of Interlock
+        Those of other acquisitions are left to `beside`.
+    beside : OwnClocks
+        Acquisitions with clocks of their own, which were begun.
     also : sequence of str
         Channels that are sampled with them where the acquisition has them.
     """
 
     def __init__(
-        self, acquisition: Acquisition, recorder: Recorder, locks: Sequence[Interlock], *, also: Sequence[str] = ()
+        self,
+        acquisition: Acquisition,
+        recorder: Recorder,
+        locks: Sequence[Interlock],
+        *,
+        beside: OwnClocks,
+        also: Sequence[str] = (),
     ) -> None:
-        self._acquisition, self._recorder, self._locks = acquisition, recorder, locks
-        self._watched = [lock.channel.name for lock in locks]
+        self._acquisition, self._recorder, self._beside = acquisition, recorder, beside
+        self._locks = [lock for lock in locks if lock.channel.name in acquisition.channels]
+        self._watched = [lock.channel.name for lock in self._locks]
         self._watched += [name for name in also if name in acquisition.channels and name not in self._watched]
         self._names: list[str] = []
         self._recorded = 0  # of them, the first ones
@@ -78,9 +66,10 @@ class Sampling:
         sample_rate : float
             [Hz]
         """
-        watched = [name for name in self._watched if name not in channels]
-        self._names = [*channels, *watched] or [next(iter(self._acquisition.channels))]
-        self._recorded = len(channels)
+        own = self._own(channels)
+        watched = [name for name in self._watched if name not in own]
+        self._names = [*own, *watched] or [next(iter(self._acquisition.channels))]
+        self._recorded = len(own)
         self.rate = self._acquisition.start(self._names, sample_rate=sample_rate)
         self.sample, self._origin = 0, self.time
 
@@ -100,18 +89,21 @@ class Sampling:
         sample_rate : float
             [Hz]
         """
-        as_it_runs = self._names[: self._recorded] == list(channels) and bool(np.isclose(self.rate, sample_rate))
+        own = self._own(channels)
+        as_it_runs = self._names[: self._recorded] == own and bool(np.isclose(self.rate, sample_rate))
         if not as_it_runs:
             self.stop()
             self.start(channels, sample_rate=sample_rate)
-        found = [self._acquisition.channels[name] for name in channels]
+        found = [self._acquisition.channels[name] for name in own]
         self._recorder.begin(found, sample_rate=self.rate)
         self._recording = True
+        self._beside.record(channels)
 
     def end_recording(self) -> None:
         """Record no more."""
         if self._recording:
             self._recording = False
+            self._beside.end_recording(self._recorder)
             self._recorder.end()
 
     def read_until(self, time: float) -> Trip | None:
@@ -134,7 +126,7 @@ class Sampling:
             In SI; None where the channel is not sampled.
         Trip or None
         """
-        if channel not in self._names:
+        if self.mean(channel) is None and channel not in self._names:
             return None, None
         count = max(1, round(BLOCK_DURATION * self.rate))
         trip = self._take(count)
@@ -143,9 +135,15 @@ class Sampling:
 
     def mean(self, channel: str) -> float | None:
         """Mean of a channel over the latest block, in SI; None where it is not sampled."""
-        if self._latest is None or channel not in self._names:
+        if channel not in self._names:
+            return self._beside.mean(channel)
+        if self._latest is None:
             return None
         return float(np.mean(self._latest.values[:, self._names.index(channel)]))
+
+    def _own(self, channels: Sequence[str]) -> list[str]:
+        """Those of channels that the acquisition has."""
+        return [name for name in channels if name in self._acquisition.channels]
 
     def _take(self, count: int) -> Trip | None:
         """Read samples, hold them to the counter and to the limits, and record them."""
@@ -157,4 +155,7 @@ class Sampling:
         if self._recording:
             values = block.values[:, : self._recorded]
             self._recorder.append(Block(first_sample=block.first_sample, sample_rate=self.rate, values=values))
-        return first_trip(block, self._names, self._locks)
+        trip = first_trip(block, self._names, self._locks)
+        if trip is None:
+            self._beside.keep(self._recorder)
+        return trip

@@ -48,7 +48,7 @@ def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
     """
     faults: dict[tuple[str, str], tuple[float, str]] = {}
     try:
-        interlocks_for(protocol.limits, devices.acquisition.channels, drive_sampling(protocol))
+        interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))
     except InvalidInput as refusal:
         unwatched = refusal.faults if isinstance(refusal, SeveralFaults) else (str(refusal),)
         faults |= {("", text): (0.0, text) for text in unwatched}
@@ -131,8 +131,10 @@ def _faults(
     if turns > fastest * _ROUNDING and (before is None or turns != rotation_speed(before, diameter)):
         wanted, most = format_si(turns, "1/s"), format_si(fastest, "1/s")
         yield "speed", turns, f"{place}: needs {wanted}; {motor.name} turns at most at {most}"
-    channels = devices.acquisition.channels
+    channels = devices.channels
     missing = [name for name in point.channels if name not in channels]
     if missing and point.kind == "acquire":
         names = f"channel {missing[0]}" if len(missing) == 1 else f"channels {', '.join(missing)}"
         yield "channels", 0.0, f"{place}: {devices.acquisition.name} has no {names}; it has {', '.join(channels)}"
+    elif point.kind == "acquire" and all(name not in devices.acquisition.channels for name in point.channels):
+        yield ("channels", 0.0, f"{place}: records no channel of {devices.acquisition.name}; add one")

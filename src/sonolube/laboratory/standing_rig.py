@@ -19,7 +19,8 @@ _BLOCK: Final = 0.05  # s
 _OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
 _OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
 _STILL_SHARE: Final = 0.01  # of the speed of the motor, below which the disc counts as at rest
-_SETTLING: Final = {"drive": 1.0, "motor": 10.0}  # s, in which amplifier and disc come to rest
+SETTLING: Final = {"drive": 1.0, "motor": 10.0}
+"""Time in which amplifier and disc come to rest. [s]"""
 
 
 class StandingRig:
@@ -39,17 +40,8 @@ class StandingRig:
     def __init__(self, devices: Devices, locks: Sequence[Interlock], limits: Limits, *, sample_rate: float) -> None:
         self._acquisition = devices.acquisition
         channels = {} if devices.simulated else devices.acquisition.channels
-        volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
-        turns = _STILL_SHARE * devices.motor.rotation_speed_maximum
-        at_rest = {
-            "voltage": ("drive", volts),
-            "voltage_peak_to_peak": ("drive", 2 * volts),
-            "rotation_speed": ("motor", turns),
-        }
-        self._off = [
-            (what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels
-        ]
-        self._always = [lock for lock in locks if lock.channel.name == "temperature" and lock.channel.name in channels]
+        self._off = [(what, lock) for what, lock in off_bounds(devices, limits) if lock.channel.name in channels]
+        self._always = [lock for lock in locks if lock.channel.is_watched_at_rest and lock.channel.name in channels]
         self._names = [lock.channel.name for lock in (*self._always, *(lock for _, lock in self._off))]
         self._wanted_rate, self._rate, self._time = min(sample_rate, IDLE_RATE), 0.0, 0.0
         self._failure: SonolubeError | None = None
@@ -106,12 +98,34 @@ class StandingRig:
             return trip.reason
         for what, lock in self._off:
             trip = first_trip(block, self._names, [lock])
-            if trip is not None and self._time > _SETTLING[what]:
-                return _still_on(what, lock, trip)
+            if trip is not None and self._time > SETTLING[what]:
+                return still_on(what, lock, trip)
         return None
 
 
-def _still_on(what: str, lock: Interlock, trip: Trip) -> str:
+def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
+    """Bounds of channels that show whether motor or drive are off, with what is off within them.
+
+    Parameters
+    ----------
+    devices : Devices
+    limits : Limits
+
+    Returns
+    -------
+    list of (str, Interlock)
+    """
+    channels = devices.channels
+    volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
+    at_rest = {
+        "voltage": ("drive", volts),
+        "voltage_peak_to_peak": ("drive", 2 * volts),
+        "rotation_speed": ("motor", _STILL_SHARE * devices.motor.rotation_speed_maximum),
+    }
+    return [(what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels]
+
+
+def still_on(what: str, lock: Interlock, trip: Trip) -> str:
     """Why an output that was switched off counts as on."""
     most = format_si(lock.limit, lock.channel.unit)
     return f"the {what} was switched off, but {trip.reason.partition(';')[0]} (off is up to {most}): cut the power"

@@ -17,7 +17,8 @@ def selected_files(given: Iterable[Path]) -> list[Path]:
     Parameters
     ----------
     given : iterable of Path
-        Of a folder all files but hidden ones are taken; of a run of the laboratory its recordings.
+        Of a folder all files but hidden ones are taken; of a run of the laboratory its recordings by the clock of the
+        run.
 
     Returns
     -------
@@ -40,7 +41,7 @@ def selected_files(given: Iterable[Path]) -> list[Path]:
             continue
         inside = [each for each in path.iterdir() if each.is_file() and not each.name.startswith(".")]
         if path / "documents.jsonl" in inside:  # the folder of a run of the laboratory
-            inside = [each for each in inside if each.suffix == ".nc"]
+            inside = [each for each in inside if each.suffix == ".nc" and not each.name.startswith("clock-")]
         inside.sort(key=_by_numbers)
         if not inside:
             raise InvalidInput(f"{path}: holds no file")

@@ -118,7 +118,7 @@ TASKS: Final = (
     Task(LAB, "lab virtual", "lab.protocol_run:virtual"),
     Task(LAB, "lab hold", "lab.friction_hold:hold"),
     Task(LAB, "lab runs", "lab.run_list:runs"),
-    Task(LAB, "lab show", "lab.shown_run:show", "{run}-channels.*", writes_on_request=True),
+    Task(LAB, "lab show", "lab.shown_run:show", "{run}-channels.* {run}-channels-*", writes_on_request=True),
     Task(LAB, "lab recover", "lab.recovery:recover"),
     Task(LAB, "lab export", "lab.recording_export:export", "{run}.* {run}-*"),
     Task(LAB, "lab check", "lab.device_check:check"),

@@ -153,7 +153,7 @@ def test_a_call_of_the_driver_that_hangs_leaves_outputs_at_0_volt_and_the_line_l
     [
         ('[guard]\ndriver = "daqmx"\n', "guard: needs watchdog_timeout, enable_line or both"),
         ('[guard]\ndriver = "daqmx"\nenable_line = "Dev1/line0"\n', "guard.enable_line"),
-        ('[guard]\ndriver = "relay"\nenable_line = "Dev1/port0/line0"\n', "guard.driver"),
+        ('[guard]\ndriver = "relay"\nenable_line = "Dev1/port0/line0"\n', "guard: driver must be daqmx, got 'relay'"),
     ],
 )
 def test_a_guard_that_guards_nothing_is_refused(guard: str, reason: str, tmp_path: Path) -> None:

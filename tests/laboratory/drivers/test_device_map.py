@@ -108,7 +108,7 @@ def test_all_faults_are_told_at_once_with_their_keys(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (('driver = "scpi"', 'driver = "gpib"'), "drive: driver must be scpi or daqmx"),
+        (('driver = "scpi"', 'driver = "gpib"'), "drive: driver must be scpi, daqmx or scpi_commands, got .gpib"),
         (('driver = "line"\n', ""), "motor: driver is missing"),
         (('input = "ai1"', 'input = "ai0"'), "input ai0 stands twice"),
         (('gain = "20 V/V"', 'gain = "20 V/V"\ncalibration = "x.csv"'), "needs either gain or calibration"),
@@ -154,6 +154,100 @@ def test_the_example_follows_the_schema_and_a_faulty_map_does_not() -> None:
     del content["motor"]["speed_command"]
     content["acquisition"]["channels"][0]["input"] = 3
     assert len(list(schema_faults(schema, content, schema))) >= 2
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in EXAMPLE.parent.glob("*.toml")))
+def test_every_shipped_map_is_read_and_follows_the_schema(name: str) -> None:
+    path = EXAMPLE.parent / name
+    assert read_device_map(path).devices().channels
+    schema = json.loads(json.dumps(device_map_schema()))
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    assert list(schema_faults(schema, content, schema)) == []
+
+
+def with_channel(folder: Path, lines: str) -> Path:
+    """Example with a further channel."""
+    return written(folder, ("[drive]", f"[[acquisition.channels]]\n{lines}\n\n[drive]"))
+
+
+@pytest.mark.parametrize(
+    ("lines", "unit", "quantity"),
+    [
+        ('name = "pin_temperature"\nquantity = "temperature"\ngain = "100 K/V"', "K", "temperature"),
+        ('name = "emission"\nquantity = "acoustic_emission"\nunit = "V"\ngain = "2 V/V"', "V", "acoustic_emission"),
+        (
+            'name = "vibrometer"\nquantity = "surface_velocity"\nunit = "m/s"\ngain = "25 mm/s/V"',
+            "m/s",
+            "surface_velocity",
+        ),
+        ('name = "humidity"\nquantity = "humidity"\nunit = ""\ngain = "10 %/V"', "", "humidity"),
+    ],
+)
+def test_a_channel_of_any_name_has_its_quantity_and_unit(lines: str, unit: str, quantity: str, tmp_path: Path) -> None:
+    channels = read_device_map(with_channel(tmp_path, f'input = "ai9"\n{lines}')).devices().channels
+    channel = channels[list(channels)[-1]]
+    assert (channel.unit, channel.quantity, channel.limit) == (unit, quantity, np.inf)
+
+
+@pytest.mark.parametrize(
+    ("lines", "reason"),
+    [
+        ('name = "noise"\ngain = "1 V/V"', "unknown channel 'noise'.*any other name needs its quantity"),
+        ('name = "a"\nquantity = "noise"\ngain = "1 V/V"', "noise is not in the vocabulary and needs its unit"),
+        ('name = "a"\nquantity = "noise"\nunit = "mm/s"\ngain = "1 mm/s/V"', "'mm/s' is no unit of SI"),
+        ('name = "a"\nquantity = "noise"\nunit = "furlong/x"\ngain = "1 V/V"', "is no unit"),
+        ('name = "a"\nquantity = "temperature"\nunit = "K"\ngain = "1 K/V"', "unit belongs to free quantities"),
+        ('name = "a"\nquantity = "temperature"\ngain = "1 N/V"', "gain 1 N/V"),
+        ('name = "a"\nquantity = "temperature"\ngain = "1 K/V"\nlimit = "5 N"', "limit 5 N"),
+        ('name = "displacement"\nquantity = "temperature"\ngain = "1 K/V"', "choose another name"),
+        ('name = "frequency_set"\nquantity = "temperature"\ngain = "1 K/V"', "choose another name"),
+        ('name = "voltage"\ngain = "1 V/V"', "name voltage stands twice among the channels"),
+    ],
+)
+def test_a_channel_whose_meaning_is_unclear_is_refused(lines: str, reason: str, tmp_path: Path) -> None:
+    with raises(InvalidInput, match=reason):
+        read_device_map(with_channel(tmp_path, f'input = "ai9"\n{lines}'))
+
+
+SECOND = """[acquisitions.slow]
+driver = "daqmx"
+device = "Dev2"
+sample_rate_maximum = "100 Hz"
+sample_rate = "10 Hz"
+
+[[acquisitions.slow.channels]]
+name = "pin_temperature"
+quantity = "temperature"
+input = "ai0"
+gain = "100 K/V"
+
+[drive]"""
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (('sample_rate = "10 Hz"\n', ""), "acquisitions.slow: needs sample_rate, which no protocol tells"),
+        (('sample_rate = "10 Hz"', 'sample_rate = "1 kHz"'), "sample_rate is at most 100 Hz with 1 channels"),
+        (('"Dev2"', '"dev1"'), "acquisitions.slow: dev1 is that of acquisition too; one device has one clock"),
+        (('"pin_temperature"', '"temperature"'), "name temperature is one of acquisition too"),
+        (("acquisitions.slow", "acquisitions.Slow-1"), "acquisitions"),
+        (
+            ('gain = "100 K/V"', 'calibration = "absent.csv"'),
+            r"acquisitions.slow.channels\[1\].calibration: absent.csv",
+        ),
+    ],
+)
+def test_clocks_that_cannot_be_are_refused(change: tuple[str, str], reason: str, tmp_path: Path) -> None:
+    assert read_device_map(written(tmp_path, ("[drive]", SECOND))).devices().further["slow"].channels
+    with raises(InvalidInput, match=reason):
+        read_device_map(written(tmp_path, ("[drive]", SECOND.replace(*change))))
+
+
+def test_an_acquisition_with_a_rate_of_its_own_has_not_the_clock_of_protocols(tmp_path: Path) -> None:
+    path = written(tmp_path, ('device = "Dev1"', 'device = "Dev1"\nsample_rate = "10 Hz"'))
+    with raises(InvalidInput, match="one of its own belongs below acquisitions"):
+        read_device_map(path)
 
 
 def test_what_a_protocol_asks_beyond_the_devices_is_told_by_its_step(tmp_path: Path) -> None:

@@ -16,16 +16,17 @@ from sonolube.laboratory.devices import (
     DeviceError,
     Devices,
     DriveSetting,
+    Recorder,
     SamplesLost,
     connect_devices,
     switch_outputs_off,
 )
-from sonolube.laboratory.ending import RunEnded, ending, release_devices
+from sonolube.laboratory.ending import RunEnded, ending, release_devices, tried
 from sonolube.laboratory.interlocks import first_trip, interlocks_for, set_point_trip
+from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.runner import Advance
-from sonolube.laboratory.sampling import Recorder
 from sonolube.laboratory.states import Event, RunState, State, after
 from sonolube.laboratory.supervision import Supervisor
 from sonolube.units import format_si
@@ -85,7 +86,9 @@ class _Loop:
         self._supervisor = Supervisor(devices)
         self._hold, self._devices, self._recorder, self._control = hold, self._supervisor.devices, recorder, control
         channels = devices.acquisition.channels
-        self._locks = interlocks_for(hold.limits, channels, hold.drive_sampling)
+        locks = interlocks_for(hold.limits, devices.channels, hold.drive_sampling)
+        self._clocks = OwnClocks(devices, locks)
+        self._locks = [lock for lock in locks if lock.channel.name in channels]
         self._names = list(recorded_channels(hold, channels))
         self._present, self._is_recording = RunState(), False
         self._is_connected = False
@@ -99,6 +102,7 @@ class _Loop:
             try:
                 self._happens(Event.START)
                 held.enter_context(reserved(self._devices.resources))
+                self._clocks.begin(self._end_if_asked)
                 self._is_connected = True
                 connect_devices(self._devices)
                 self._happens(Event.PREPARED)
@@ -201,10 +205,10 @@ class _Loop:
 
     def _measure(self) -> tuple[float, float]:
         """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""
-        if self._control.stop_reason:
-            raise RunEnded(Event.STOP, self._control.stop_reason)
+        self._end_if_asked()
         block = self._devices.acquisition.read(self._count)
         self._keep(block)
+        self._clocks.look()
         trip = first_trip(block, self._names, self._locks)
         if trip is not None:
             raise RunEnded(Event.TRIP, trip.reason)
@@ -214,6 +218,11 @@ class _Loop:
         if not np.isfinite(mean):
             raise RunEnded(Event.TRIP, f"channel {_FRICTION} gives no number")
         return mean, float(np.std(samples))
+
+    def _end_if_asked(self) -> None:
+        """End the loop where that is wanted."""
+        if self._control.stop_reason:
+            raise RunEnded(Event.STOP, self._control.stop_reason)
 
     def _keep(self, block: Block) -> None:
         """Hold a block to the counter, and record it."""
@@ -235,8 +244,8 @@ class _Loop:
         """Switch everything off, release the devices and close the record."""
         devices = self._devices
         failures = switch_outputs_off(devices) if self._is_connected else []
-        before = self._end_recording, devices.acquisition.stop
-        for reason in release_devices(devices, *before) if self._is_connected else []:
+        before = self._end_recording, devices.acquisition.stop, self._clocks.end
+        for reason in release_devices(devices, *before) if self._is_connected else tried(self._clocks.end):
             self._happens(Event.DEVICE_ERROR, reason)
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
         if self._recorder is not None:
@@ -279,7 +288,7 @@ def require_holdable(hold: FrictionHold, devices: Devices) -> None:
     InvalidInput
         Naming what is asked for, and the device or limit that forbids it.
     """
-    interlocks_for(hold.limits, devices.acquisition.channels, hold.drive_sampling)
+    interlocks_for(hold.limits, devices.channels, hold.drive_sampling)
     if _FRICTION not in devices.acquisition.channels:
         raise InvalidInput(f"{devices.acquisition.name} has no channel {_FRICTION}, which the loop needs")
     reached = format_si(hold.voltage_maximum, "V")

@@ -44,6 +44,14 @@ class AnalogueInput:
         Voltage to quantity.
     wiring : str
         Key of `WIRINGS`.
+    quantity : str
+        That of the name by default.
+    free_unit : str
+        SI unit of a quantity that is not in the vocabulary.
+    limit : float
+        Greatest magnitude that the rig stands, in SI.
+    sample_rate : float or None
+        Of inputs with a clock of their own. [Hz]
     """
 
     name: str
@@ -51,12 +59,24 @@ class AnalogueInput:
     voltage_range: float
     scale: SensorScale
     wiring: str = "default"
+    quantity: str = ""
+    free_unit: str = ""
+    limit: float = np.inf
+    sample_rate: float | None = None
 
     @property
     def channel(self) -> Channel:
         """Channel with the range of sensor and input."""
         lowest, highest = self.scale.reach(self.voltage_range)
-        return Channel(name=self.name, quantity=quantity_of(self.name), lowest=lowest, highest=highest)
+        return Channel(
+            name=self.name,
+            quantity=self.quantity or quantity_of(self.name),
+            lowest=lowest,
+            highest=highest,
+            free_unit=self.free_unit,
+            limit=self.limit,
+            sample_rate=self.sample_rate,
+        )
 
 
 class DaqmxAcquisition:

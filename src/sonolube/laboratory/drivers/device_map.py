@@ -1,40 +1,26 @@
 """Device maps: which hardware a rig has, how it is wired, and what it stands; TOML with all faults told at once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from pydantic import ValidationError
 
-from sonolube.errors import InvalidInput, SeveralFaults
-from sonolube.laboratory.devices import Devices, DriveSource, Motor
-from sonolube.laboratory.drivers.daqmx_acquisition import AnalogueInput, DaqmxAcquisition
-from sonolube.laboratory.drivers.daqmx_guard import DaqmxGuard
-from sonolube.laboratory.drivers.daqmx_output import SAMPLES_PER_PERIOD, DaqmxDrive, DaqmxMotor
-from sonolube.laboratory.drivers.entries import (
-    TERMINATIONS,
-    ChannelEntry,
-    DaqmxDriveEntry,
-    DaqmxMotorEntry,
-    ExchangeEntry,
-    GeneratorEntry,
-    LineMotorEntry,
-    MapEntries,
-)
-from sonolube.laboratory.drivers.function_generator import FunctionGenerator
-from sonolube.laboratory.drivers.line_motor import Exchange, LineMotor, LineProtocol
-from sonolube.laboratory.drivers.output_limits import DriveLimits
-from sonolube.laboratory.drivers.resources import daqmx_resource, visa_resource
-from sonolube.laboratory.drivers.sensor_scale import SensorScale, tabulated_scale
-from sonolube.laboratory.drivers.visa_connection import VisaConnection
+from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError
+from sonolube.laboratory.devices import Acquisition, Devices, OutputGuard
+from sonolube.laboratory.drivers.entry import AcquisitionEntry, DriverEntry
+from sonolube.laboratory.drivers.map_entries import MapEntries
 from sonolube.toml_text import text_of, toml_content
 from sonolube.units import format_si
 
 _KIND: Final = "a device map"
 _MOST_FAULTS: Final = 20
 _LONGEST_FAULT: Final = 300  # characters
+
+_Device = TypeVar("_Device")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,14 +41,12 @@ class DeviceMap:
     @property
     def extras(self) -> tuple[str, ...]:
         """Optional parts of the installation that it needs, as in `EXTRAS`."""
-        entries = self.entries
-        parts = (entries.acquisition, entries.drive, entries.motor, entries.guard)
-        return tuple(sorted({_EXTRA_OF[part.driver] for part in parts if part is not None}))
+        return tuple(sorted({extra for part in self.entries.parts for extra in part.extras}))
 
     @property
     def frequency_maximum(self) -> float:
         """Of the drive. [Hz]"""
-        return self._drive_limits.frequency_maximum
+        return self.entries.drive.highest_frequency
 
     def devices(self) -> Devices:
         """Devices of the rig; nothing is connected yet.
@@ -70,125 +54,68 @@ class DeviceMap:
         Returns
         -------
         Devices
+
+        Raises
+        ------
+        InvalidInput
+            If a driver, such as one of another package, cannot make its device.
         """
+        entries = self.entries
         return Devices(
-            acquisition=self._acquisition(),
-            drive=self._drive(),
-            motor=self._motor(),
+            acquisition=_made(entries.acquisition, partial(entries.acquisition.new_device, self.files)),
+            drive=_made(entries.drive, entries.drive.new_device),
+            motor=_made(entries.motor, entries.motor.new_device),
             description=MappingProxyType(self._description()),
-            groove_diameter=self.entries.motor.groove_diameter,
-            resources=self._resources(),
+            groove_diameter=entries.motor.groove_diameter,
+            resources=tuple(dict.fromkeys(part.reserved_as for part in entries.parts if part.reserved_as)),
             guard=self._guard(),
+            further=MappingProxyType(self._further()),
         )
 
-    def _acquisition(self) -> DaqmxAcquisition:
-        """Analogue inputs."""
-        entry = self.entries.acquisition
-        inputs = [
-            AnalogueInput(
-                name=each.name,
-                terminal=f"{entry.device}/{each.input}",
-                voltage_range=each.input_range,
-                scale=_scale(each, self.files),
-                wiring=each.wiring,
-            )
-            for each in entry.channels
-        ]
-        return DaqmxAcquisition(device=entry.device, inputs=inputs, sample_rate_maximum=entry.sample_rate_maximum)
-
-    def _drive(self) -> DriveSource:
-        """Source of the drive voltage."""
-        entry, limits = self.entries.drive, self._drive_limits
-        if isinstance(entry, DaqmxDriveEntry):
-            return DaqmxDrive(terminal=entry.output, sample_rate=entry.sample_rate, limits=limits)
-        line = VisaConnection(
-            name=f"function generator {entry.resource}", resource=entry.resource, library=entry.visa_library
-        )
-        return FunctionGenerator(line, output=entry.output, limits=limits)
-
-    def _motor(self) -> Motor:
-        """Motor of the disc."""
-        entry = self.entries.motor
-        if isinstance(entry, DaqmxMotorEntry):
-            return DaqmxMotor(
-                terminal=entry.output,
-                rotation_speed_maximum=entry.rotation_speed_maximum,
-                voltage_at_maximum=entry.voltage_at_maximum,
-            )
-        line = VisaConnection(
-            name=f"motor {entry.resource}",
-            resource=entry.resource,
-            library=entry.visa_library,
-            termination=TERMINATIONS[entry.termination],
-            baud_rate=entry.baud_rate,
-        )
-        return LineMotor(line, protocol=_line_protocol(entry), rotation_speed_maximum=entry.rotation_speed_maximum)
-
-    @property
-    def _drive_limits(self) -> DriveLimits:
-        """What amplifier, output and actuator stand."""
-        entry = self.entries.drive
-        highest = entry.frequency_maximum
-        if isinstance(entry, DaqmxDriveEntry):
-            highest = min(highest, entry.sample_rate / SAMPLES_PER_PERIOD)
-        return DriveLimits(
-            amplifier_gain=entry.amplifier_gain,
-            actuator_voltage=entry.voltage_maximum,
-            output_voltage=entry.output_maximum,
-            frequency_maximum=highest,
-        )
-
-    def _described_guard(self) -> str:
-        """Watchdog and enable line in words; empty without."""
-        entry = self.entries.guard
-        if entry is None:
-            return ""
-        timeout, line = entry.watchdog_timeout, entry.enable_line
-        watchdog = "" if timeout is None else f"watchdog of {format_si(timeout, 's')}"
-        return "; ".join(filter(None, (watchdog, line and f"enable line {line}")))
-
-    def _guard(self) -> DaqmxGuard | None:
+    def _guard(self) -> OutputGuard | None:
         """Watchdog and enable line."""
-        entry = self.entries.guard
-        if entry is None:
-            return None
-        return DaqmxGuard(outputs=self.entries.guarded_outputs, timeout=entry.watchdog_timeout, line=entry.enable_line)
+        guard = self.entries.guard
+        return None if guard is None else _made(guard, partial(guard.new_device, self.entries.guarded))
 
-    def _resources(self) -> tuple[str, ...]:
-        """Canonical names of the hardware."""
-        drive, motor = self.entries.drive, self.entries.motor
-        named = [
-            daqmx_resource(self.entries.acquisition.device),
-            visa_resource(drive.resource) if isinstance(drive, GeneratorEntry) else daqmx_resource(drive.output),
-            visa_resource(motor.resource) if isinstance(motor, LineMotorEntry) else daqmx_resource(motor.output),
-        ]
-        if self.entries.guard is not None and self.entries.guard.enable_line is not None:
-            named.append(daqmx_resource(self.entries.guard.enable_line))
-        return tuple(dict.fromkeys(named))
+    def _further(self) -> dict[str, Acquisition]:
+        """Acquisitions with clocks of their own."""
+        further = self.entries.acquisitions.items()
+        return {name: _made(entry, partial(entry.new_device, self.files)) for name, entry in further}
 
     def _description(self) -> dict[str, str]:
         """Kind, serial number and settings of each device."""
         entries = self.entries
         drive, motor = entries.drive, entries.motor
-        place = drive.resource if isinstance(drive, GeneratorEntry) else drive.output
-        where = motor.resource if isinstance(motor, LineMotorEntry) else motor.output
         gain, most = f"{drive.amplifier_gain:g}", format_si(drive.voltage_maximum, "V")
-        channels = (
-            f"{each.name} {each.input} {each.calibration or each.gain} +-{format_si(each.input_range, 'V')}"
-            for each in entries.acquisition.channels
-        )
         told = {
             "rig": entries.title,
-            "acquisition": f"NI-DAQmx {entries.acquisition.device}: {'; '.join(channels)}",
+            "acquisition": entries.acquisition.described,
             "acquisition hardware": entries.acquisition.description,
-            "drive": f"{drive.driver} {place}, amplifier {gain} V/V, at most {most} at the actuator",
+            "drive": f"{drive.driver} {drive.where}, amplifier {gain} V/V, at most {most} at the actuator",
             "drive hardware": drive.description,
             "amplifier": drive.amplifier,
-            "motor": f"{motor.driver} {where}, at most {format_si(motor.rotation_speed_maximum, '1/s')}",
+            "motor": f"{motor.driver} {motor.where}, at most {format_si(motor.rotation_speed_maximum, '1/s')}",
             "motor hardware": motor.description,
-            "guard": self._described_guard(),
+            "guard": "" if entries.guard is None else entries.guard.described,
         }
+        for name, entry in entries.acquisitions.items():
+            told[f"acquisition {name}"] = f"{entry.described}; {format_si(entry.own_rate or 0.0, 'Hz')}, own clock"
+            told[f"acquisition {name} hardware"] = entry.description
         return {key: text for key, text in told.items() if text}
+
+
+def _made(entry: DriverEntry, make: Callable[[], _Device]) -> _Device:
+    """Device of a section."""
+    try:
+        return make()
+    except SonolubeError:
+        raise
+    except Exception as failure:  # whatever a driver of another package raises
+        told = (str(failure).strip().splitlines() or [""])[0][:120]
+        name = f"{type(entry).__module__}.{type(entry).__name__}"
+        raise InvalidInput(
+            f"driver {entry.driver} ({name}) cannot make its device ({type(failure).__name__}: {told})"
+        ) from None
 
 
 def read_device_map(path: str | Path) -> DeviceMap:
@@ -233,9 +160,6 @@ def device_map_schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "sonolube device map"} | content
 
 
-_EXTRA_OF: Final = {"daqmx": "daqmx", "scpi": "visa", "line": "visa"}
-
-
 def _entries(content: Mapping[str, Any]) -> MapEntries:
     """Sections of a file; refuses with all faults."""
     try:
@@ -255,64 +179,32 @@ def _told(faults: Sequence[str], keys: Sequence[str] = ()) -> SeveralFaults:
 
 def _place(parts: Sequence[str | int]) -> str:
     """Key of a fault, such as "acquisition.channels[2].gain: "; channels count from 1."""
-    keys = ""
-    for number, part in enumerate(parts):
-        if isinstance(part, int):
-            keys += f"[{part + 1}]"
-        elif not (number == 1 and part in _EXTRA_OF):  # the tag by which the driver was found
-            keys += f".{part}"
+    keys = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in parts)
     return f"{keys.removeprefix('.')}: ".removeprefix(": ")
 
 
 def _reason(kind: str, message: str) -> str:
     """Reason of a fault in plain words."""
-    known = {
-        "extra_forbidden": "unknown key",
-        "missing": "missing",
-        "union_tag_not_found": "driver is missing: scpi or daqmx for the drive, line or daqmx for the motor",
-        "union_tag_invalid": "driver must be scpi or daqmx for the drive, line or daqmx for the motor",
-    }
+    known = {"extra_forbidden": "unknown key", "missing": "missing"}
     return known.get(kind, message.removeprefix("Value error, ").strip())
 
 
 def _read_calibrations(entries: MapEntries, folder: Path, files: dict[str, str]) -> list[str]:
     """Add the texts of calibrations to the files, and return what is wrong with them."""
     faults = []
-    for number, channel in enumerate(entries.acquisition.channels, start=1):
-        if channel.calibration is None:
-            continue
-        try:
-            if Path(channel.calibration).name != channel.calibration or channel.calibration in ("..", "."):
-                raise InvalidInput("must be the name of a file beside the map")
-            files.setdefault(channel.calibration, text_of(folder / channel.calibration, kind="a calibration"))
-            _scale(channel, files)
-        except InvalidInput as refusal:
-            faults.append(f"acquisition.channels[{number}].calibration: {channel.calibration}: {refusal}")
+    for section, entry in entries.all_inputs.items():
+        for key, name in entry.files_beside.items():
+            try:
+                _read_beside(entry, key, folder / name, files)
+            except InvalidInput as refusal:
+                faults.append(f"{section}.{key}: {name}: {refusal}")
     return faults
 
 
-def _scale(channel: ChannelEntry, files: Mapping[str, str]) -> SensorScale:
-    """Scale of the sensor of a channel."""
-    if channel.calibration is None:
-        return channel.linear_scale
-    return tabulated_scale(files[channel.calibration], quantity=channel.quantity)
-
-
-def _line_protocol(entry: LineMotorEntry) -> LineProtocol:
-    """How the controller of a motor is spoken to."""
-    query = None
-    if entry.query is not None and entry.query_answer is not None:
-        query = Exchange(command=entry.query, answer=entry.query_answer)
-    return LineProtocol(
-        speed=Exchange(command=entry.speed_command, answer=entry.speed_answer),
-        stop=Exchange(command=entry.stop_command, answer=entry.stop_answer),
-        speed_unit=entry.speed_unit,
-        at_connect=tuple(_exchange(each) for each in entry.at_connect),
-        query=query,
-        decimals=entry.decimals,
-    )
-
-
-def _exchange(entry: ExchangeEntry) -> Exchange:
-    """A command and its answer."""
-    return Exchange(command=entry.command, answer=entry.answer)
+def _read_beside(entry: AcquisitionEntry, key: str, path: Path, files: dict[str, str]) -> None:
+    """Add the text of a file beside the map to the files, held to what its key needs."""
+    name = entry.files_beside[key]
+    if Path(name).name != name or name in ("..", "."):
+        raise InvalidInput("must be the name of a file beside the map")
+    files.setdefault(name, text_of(path, kind="a calibration"))
+    entry.check_file(key, files[name])

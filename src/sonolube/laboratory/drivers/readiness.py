@@ -8,7 +8,6 @@ from pathlib import Path
 from sonolube.errors import InvalidInput
 from sonolube.extras import EXTRAS
 from sonolube.facts.protocol import Protocol, SetPoint, flattened
-from sonolube.laboratory.block import Block
 from sonolube.laboratory.devices import DeviceError, Devices
 from sonolube.laboratory.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
 from sonolube.laboratory.drivers.device_map import DeviceMap, read_device_map
@@ -67,30 +66,34 @@ def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
 def _beyond(device_map: DeviceMap, points: Sequence[SetPoint]) -> Iterator[tuple[str, str, float, str]]:
     """Step, kind, value and text of frequencies and sample rates beyond the devices of a map."""
     highest = device_map.frequency_maximum
-    total = device_map.entries.acquisition.sample_rate_maximum
+    further = device_map.entries.acquisitions.values()
+    beside = {each.name for entry in further for each in entry.channel_entries}
+    total = device_map.entries.acquisition.total_rate_maximum
     for point in points:
         place, frequency, rate = f"step {point.step}", point.frequency, point.sample_rate
         if frequency is not None and frequency > highest * (1 + 1e-9) and point.kind in _DRIVING:
             wanted, most = format_si(frequency, "Hz"), format_si(highest, "Hz")
             yield point.step, "frequency", frequency, f"{place}: drives at {wanted}; the drive gives at most {most}"
-        if rate is not None and rate * len(point.channels) > total * (1 + 1e-9) and point.kind == "acquire":
-            wanted = f"{len(point.channels)} channels at {format_si(rate, 'Hz')}"
+        count = sum(name not in beside for name in point.channels)
+        if rate is not None and rate * count > total * (1 + 1e-9) and point.kind == "acquire":
+            wanted = f"{count} channels at {format_si(rate, 'Hz')}"
             text = f"{place}: records {wanted}; the device takes {format_si(total, 'Hz')} in all"
             yield point.step, "rate", rate, text
 
 
-def first_block(devices: Devices, *, sample_rate: float) -> Block:
+def first_readings(devices: Devices, *, sample_rate: float) -> dict[str, float]:
     """Connect all devices, read one block of all channels with motor and drive off, and release the devices.
 
     Parameters
     ----------
     devices : Devices
     sample_rate : float
-        Of each channel. [Hz]
+        Of each channel that has no rate of its own. [Hz]
 
     Returns
     -------
-    Block
+    dict of str to float
+        Mean of each channel in SI.
 
     Raises
     ------
@@ -99,13 +102,19 @@ def first_block(devices: Devices, *, sample_rate: float) -> Block:
     """
     with reserved(devices.resources), ExitStack() as after:
         guarded = () if devices.guard is None else (devices.guard,)
-        for device in (devices.acquisition, *guarded, devices.drive, devices.motor):
+        inputs = (devices.acquisition, *devices.further.values())
+        for device in (*inputs, *guarded, devices.drive, devices.motor):
             after.callback(device.close)
             device.connect()
         devices.drive.off()
         devices.motor.off()
-        rate = devices.acquisition.start(list(devices.acquisition.channels), sample_rate=sample_rate)
-        return devices.acquisition.read(max(ceil(BLOCK_DURATION * rate), 1))
+        means: dict[str, float] = {}
+        for each in inputs:
+            names = list(each.channels)
+            rate = each.start(names, sample_rate=each.channels[names[0]].sample_rate or sample_rate)
+            values = each.read(max(ceil(BLOCK_DURATION * rate), 1)).values.mean(axis=0)
+            means |= {name: float(mean) for name, mean in zip(names, values, strict=True)}
+        return means
 
 
 def _has_daqmx_driver() -> bool:

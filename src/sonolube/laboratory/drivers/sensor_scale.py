@@ -76,7 +76,7 @@ class TabulatedScale:
         return float(ends.min()), float(ends.max())
 
 
-def tabulated_scale(text: str, *, quantity: str) -> TabulatedScale:
+def tabulated_scale(text: str, *, quantity: str, unit: str | None = None) -> TabulatedScale:
     """Scale of the text of a calibration file.
 
     Parameters
@@ -84,7 +84,8 @@ def tabulated_scale(text: str, *, quantity: str) -> TabulatedScale:
     text : str
         Comma-separated, first the line "voltage,QUANTITY", then a pair a line, each with its unit: "0.5 V,10.2 N".
     quantity : str
-        Of the vocabulary.
+    unit : str, optional
+        SI unit; that of the vocabulary by default.
 
     Returns
     -------
@@ -100,7 +101,8 @@ def tabulated_scale(text: str, *, quantity: str) -> TabulatedScale:
         raise InvalidInput(f"line 1: expected voltage,{quantity}")
     if not 3 <= len(rows) <= _MOST_POINTS:
         raise InvalidInput(f"{len(rows) - 1} points; expected 2 to {_MOST_POINTS - 1}")
-    points = np.array([_point(row, quantity, line) for line, row in enumerate(rows[1:], start=2)])
+    si_unit = unit_of(quantity) if unit is None else unit
+    points = np.array([_point(row, si_unit, line) for line, row in enumerate(rows[1:], start=2)])
     voltages, readings = points[:, 0], points[:, 1]
     if not (np.diff(voltages) > 0).all():
         raise InvalidInput("the voltages must increase from line to line")
@@ -109,9 +111,9 @@ def tabulated_scale(text: str, *, quantity: str) -> TabulatedScale:
     return TabulatedScale(voltages=voltages, readings=readings)
 
 
-def _point(row: list[str], quantity: str, line: int) -> tuple[float, float]:
+def _point(row: list[str], unit: str, line: int) -> tuple[float, float]:
     """Voltage and reading of a line."""
     if len(row) != 2:
         raise InvalidInput(f"line {line}: expected a voltage and a reading, got {len(row)} cells")
     place = f"line {line}:"
-    return to_si(row[0], unit="V", name=place), to_si(row[1], unit=unit_of(quantity), name=place)
+    return to_si(row[0], unit="V", name=place), to_si(row[1], unit=unit, name=place)

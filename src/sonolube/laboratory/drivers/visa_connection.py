@@ -10,6 +10,9 @@ from sonolube.laboratory.devices import DeviceError, DeviceLost
 TIMEOUT: Final = 2.0
 """Time within which an instrument must answer. [s]"""
 
+TERMINATIONS: Final = {"CR": "\r", "LF": "\n", "CRLF": "\r\n"}
+"""Ends of a line, by name."""
+
 _MOST_STALE: Final = 8  # answers to earlier commands that are passed over
 
 _Result = TypeVar("_Result")
@@ -118,13 +121,22 @@ class VisaConnection:
         DeviceError
             If others come.
         """
+        self.ask_until(text, lambda heard: heard in answers, expected=answers[0])
+
+    def ask_until(self, text: str, is_answer: Callable[[str], bool], *, expected: str) -> None:
+        """Send a line until an answer has come that is one, as `ask_for`; `expected` stands in the error."""
         self.write(text)
         heard = ""
         for _ in range(_MOST_STALE):
-            heard = self.read()
-            if heard in answers:
+            try:
+                heard = self.read()
+            except DeviceLost:
+                if not heard:
+                    raise
+                break  # it has answered, but not as expected
+            if is_answer(heard):
                 return
-        raise DeviceError(f"{self.name}: answers {heard[:80]!r} to {text!r}; expected {answers[0]!r}")
+        raise DeviceError(f"{self.name}: answers {heard[:80]!r} to {text!r}; expected {expected!r}")
 
     def close(self) -> None:
         """Close the connection; harmless where it is closed or lost."""

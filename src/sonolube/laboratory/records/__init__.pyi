@@ -7,6 +7,7 @@ from .raw_blocks import (
     read_raw_blocks as read_raw_blocks,
     scan_raw as scan_raw,
 )
+from .recorded_channels import RecordedChannel as RecordedChannel
 from .recorder import RunRecorder as RunRecorder, new_run as new_run
 from .recovery import Recovery as Recovery, recover_run as recover_run
 from .run import (

@@ -12,6 +12,7 @@ import numpy as np
 from sonolube.errors import InvalidInput
 from sonolube.files import locked_folder, remove_file
 from sonolube.laboratory.records.documents import read_documents
+from sonolube.laboratory.records.part_clock import PartClock, part_clock
 from sonolube.laboratory.records.recorded_part import Floats, RecordedPart, recorded_part
 from sonolube.laboratory.records.run_folder import (
     PURPOSE,
@@ -23,6 +24,7 @@ from sonolube.laboratory.records.run_folder import (
     recording_path,
 )
 from sonolube.laboratory.records.set_point_steps import SET_POINT_CHANNELS
+from sonolube.vocabulary import quantities
 
 _ROWS: Final = 1 << 17
 
@@ -43,6 +45,10 @@ class ConvertedPart:
         In s since 1970.
     variables : mapping of str to str
         Quantity of each variable by its name.
+    units : mapping of str to str
+        SI unit of each variable of a free quantity, by its name.
+    clock : PartClock or None
+        Where it is not that of the run.
     set_points : tuple of str
         Names of those that hold set points.
     lubricants : tuple of str
@@ -55,6 +61,8 @@ class ConvertedPart:
     sample_rate: float
     begun: float
     variables: Mapping[str, str]
+    units: Mapping[str, str]
+    clock: PartClock | None
     set_points: tuple[str, ...]
     lubricants: tuple[str, ...]
     caveats: list[str]
@@ -93,10 +101,12 @@ def converted_part(path: Path) -> ConvertedPart:
             time = file["time"]
             rate, samples = float(attributes["sample_rate"]), int(time.shape[0])
             spanned = round(float(time[-1]) * rate) + 1 if samples else 0
-            quantities = {name: str(variable.attrs.get("quantity", name)) for name, variable in file.variables.items()}
+            measured = {name: str(variable.attrs.get("quantity", name)) for name, variable in file.variables.items()}
+            units = {name: str(file[name].attrs["units"]) for name, of in measured.items() if of not in quantities()}
+            clock = _clock(attributes)
     except (OSError, KeyError, ValueError) as failure:
         raise InvalidInput(f"{path}: is no recording of a run: {failure}") from None
-    quantities.pop("time")
+    measured.pop("time")
     begun = datetime.strptime(str(attributes["begun"]), "%Y-%m-%d %H:%M:%S.%f").replace(tzinfo=UTC)
     return ConvertedPart(
         path=path,
@@ -104,11 +114,20 @@ def converted_part(path: Path) -> ConvertedPart:
         missing=spanned - samples,
         sample_rate=rate,
         begun=begun.timestamp(),
-        variables=quantities,
-        set_points=tuple(name for name in quantities if name in SET_POINT_CHANNELS),
+        variables=measured,
+        units={name: "" if unit == "1" else unit for name, unit in units.items()},
+        clock=clock,
+        set_points=tuple(name for name in measured if name in SET_POINT_CHANNELS),
         lubricants=tuple(json.loads(str(attributes.get("lubricants", "[]")))),
         caveats=str(attributes.get("caveats", "")).splitlines(),
     )
+
+
+def _clock(attributes: Mapping[str, Any]) -> PartClock | None:
+    """Clock of a part by the attributes of its file; None for that of the run."""
+    if "clock_name" not in attributes:
+        return None
+    return part_clock({name: attributes[f"clock_{name}"] for name in PartClock.__slots__})
 
 
 def drop_raw_blocks(folder: Path) -> tuple[str, ...]:
@@ -145,7 +164,7 @@ def drop_raw_blocks(folder: Path) -> tuple[str, ...]:
 
 def _require_converted(folder: Path, number: int, part: RecordedPart, known: RunFacts) -> None:
     """Raise unless the recording of a part holds every sample of its raw blocks, bit for bit, and none is damaged."""
-    path = recording_path(folder, number)
+    path = recording_path(folder, number, part.clock_name)
     if not part.samples:
         return
     if not path.is_file() or path.name not in known.recordings:

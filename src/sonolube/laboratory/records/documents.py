@@ -9,7 +9,7 @@ from uuid import uuid4
 
 from sonolube.growing_files import AppendedFile
 from sonolube.laboratory.block import Channel
-from sonolube.laboratory.records.run_folder import DOCUMENTS, RunFacts, raw_path
+from sonolube.laboratory.records.run_folder import CLOCK_NAME, DOCUMENTS, RunFacts, raw_path
 
 Document = dict[str, Any]
 
@@ -135,8 +135,8 @@ class DocumentLog:
         )
         self._counts[_NOTES] = number
 
-    def part(self, part: int, channels: Sequence[Channel], *, sample_rate: float, time: float) -> None:
-        """Write the description of a part of the recording, and where its blocks are."""
+    def part(self, part: int, channels: Sequence[Channel], *, sample_rate: float, time: float, clock: str = "") -> None:
+        """Write the description of a part of the recording, and where its blocks are; its clock, if not the run's."""
         name = part_name(part)
         uid = str(uuid4())
         keys: dict[str, dict[str, Any]] = {
@@ -152,9 +152,9 @@ class DocumentLog:
         }
         self._describe(name, uid, time, keys)
         for column, channel in enumerate(channels):
-            self._locate(part, f"{uid}-{column}", column, channel.name, sample_rate)
+            self._locate(part, f"{uid}-{column}", column, channel.name, sample_rate, clock)
 
-    def end_part(self, earlier: ReadDocuments, part: int, *, samples: int, sample_rate: float) -> None:
+    def end_part(self, earlier: ReadDocuments, part: int, *, samples: int, sample_rate: float, clock: str = "") -> None:
         """Write how many samples of a part there are, and where, unless `earlier` tells it already."""
         name = part_name(part)
         described = [each for each in earlier.of("descriptor") if each.get("name") == name]
@@ -165,7 +165,7 @@ class DocumentLog:
         for column, channel in enumerate(described[0]["data_keys"]):
             resource = f"{uid}-{column}"
             if resource not in known:
-                self._locate(part, resource, column, channel, sample_rate)
+                self._locate(part, resource, column, channel, sample_rate, clock)
             if f"{resource}/0" not in known:
                 self._count(uid, resource, samples)
         self._counts[name] = samples
@@ -189,10 +189,11 @@ class DocumentLog:
         """Close the file."""
         self._file.close()
 
-    def _locate(self, part: int, uid: str, column: int, channel: str, sample_rate: float) -> None:
+    def _locate(self, part: int, uid: str, column: int, channel: str, sample_rate: float, clock: str) -> None:
         """Write where the samples of a channel are."""
         path = raw_path(self._folder, part)
         place = {"file": path.relative_to(self._folder).as_posix(), "column": column, "sample_rate": sample_rate}
+        place |= {"part": part, "clock": clock} if clock else {}
         self._write(
             "stream_resource",
             {
@@ -252,6 +253,18 @@ def numbered_parts(read: ReadDocuments) -> list[int]:
     return sorted(int(number) for number in numbers if number.isascii() and number.isdecimal() and len(number) < 10)
 
 
+def part_clocks(read: ReadDocuments) -> dict[int, str]:
+    """Names of the clocks of those parts of the recording that have another clock than the run."""
+    found = (resource["parameters"] for resource in read.of("stream_resource"))
+    return {each["part"]: each["clock"] for each in found if "clock" in each}
+
+
+def main_parts(read: ReadDocuments) -> list[int]:
+    """Numbers of the parts that the clock of the run timed, ascending."""
+    others = part_clocks(read)
+    return [part for part in numbered_parts(read) if part not in others]
+
+
 def _document(line: bytes) -> tuple[str, Document] | None:
     """Name and document of a line; None where it is damaged."""
     if not line.endswith(b"\n"):
@@ -275,12 +288,18 @@ def _has_what_is_read(name: str, document: Document) -> bool:
         if name == "stream_datum":
             return isinstance(stop := document["indices"]["stop"], int) and 0 <= stop < _MOST_SAMPLES
         if name == "stream_resource":
-            return isinstance(document["parameters"], dict)
+            place = document["parameters"]
+            return isinstance(place, dict) and ("clock" not in place or _names_clock(place))
         if name == "descriptor":
             return isinstance(document["data_keys"], dict)
         return name != "stop" or isinstance(document["exit_status"], str)
     except (KeyError, TypeError):
         return False
+
+
+def _names_clock(place: Mapping[str, Any]) -> bool:
+    """Whether a place of samples names part and clock."""
+    return isinstance(place["part"], int) and CLOCK_NAME.fullmatch(place["clock"]) is not None
 
 
 def _key(name: str) -> str:

@@ -7,7 +7,7 @@ from typing import Final
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.laboratory.records.converted_part import converted_part
-from sonolube.laboratory.records.documents import numbered_parts, read_documents
+from sonolube.laboratory.records.documents import numbered_parts, part_clocks, read_documents
 from sonolube.laboratory.records.recorded_part import recorded_part
 from sonolube.laboratory.records.recording_files import (
     PartOfRecording,
@@ -59,14 +59,17 @@ def export_run(folder: Path, *, file_format: str, out: Path) -> list[Path]:
     parts: dict[int, PartOfRecording] = {
         number: recorded_part(folder, number, documents, facts=known.facts) for number in blocks
     }
+    clocks = part_clocks(documents)
     for number in numbered_parts(documents):
-        if number not in blocks and recording_path(folder, number).is_file():
-            parts[number] = converted_part(recording_path(folder, number))
+        path = recording_path(folder, number, clocks.get(number, ""))
+        if number not in blocks and path.is_file():
+            parts[number] = converted_part(path)
     filled = [(number, parts[number]) for number in sorted(parts) if parts[number].samples]
     if not filled:
         raise InvalidInput(f"{folder}: has no recording to export")
     name = folder.resolve().name
+    of_clock = {number: "" if part.clock is None else f"-{part.clock.name}" for number, part in filled}
     return [
-        write(part, known, out / (f"{name}{ending}" if number == 1 else f"{name}-{number}{ending}"))
+        write(part, known, out / (f"{name}{ending}" if number == 1 else f"{name}-{number}{of_clock[number]}{ending}"))
         for number, part in filled
     ]

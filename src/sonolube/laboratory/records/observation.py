@@ -14,7 +14,7 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import SetPoint, flattened, read_protocol
 from sonolube.files import is_locked
 from sonolube.laboratory.block import Block
-from sonolube.laboratory.records.documents import ReadDocuments, numbered_parts, part_name, read_documents
+from sonolube.laboratory.records.documents import ReadDocuments, main_parts, part_clocks, part_name, read_documents
 from sonolube.laboratory.records.raw_blocks import RawPart, latest_samples
 from sonolube.laboratory.records.run import RUNNING, UNFINISHED, Note, note_of, run_folders, run_summary
 from sonolube.laboratory.records.run_folder import DOCUMENTS, PROTOCOL, RUN, RunFacts, raw_path, read_run_facts
@@ -179,7 +179,7 @@ class RunObserver:
             protocol_time=at,
             duration=self._times[-1] if self._times else None,
             set_points=self._present_set_points(point),
-            means={} if part is None or latest is None else _means(part, latest),
+            means={} if part is None or latest is None else _means(part, latest) | self._means_beside(documents),
             trips=tuple(told.trips),
             gaps=told.gaps,
             silence=max(now - _last_written(folder, documents), 0.0),
@@ -194,17 +194,28 @@ class RunObserver:
 
     def _latest(self, documents: ReadDocuments) -> tuple[RawPart | None, Block | None]:
         """Last samples of the part that is being recorded; None where none is, or nothing of it is whole."""
-        parts = numbered_parts(documents)
-        if not parts:
-            return None, None
+        parts = main_parts(documents)
+        return self._latest_of(parts[-1], documents) if parts else (None, None)
+
+    def _latest_of(self, part: int, documents: ReadDocuments) -> tuple[RawPart | None, Block | None]:
+        """Last samples of a part; None where it has ended, or nothing of it is whole."""
         described = {str(each.get("name")): str(each.get("uid")) for each in documents.of("descriptor")}
-        uid = described[part_name(parts[-1])]
+        uid = described[part_name(part)]
         if any(datum.get("descriptor") == uid for datum in documents.of("stream_datum")):
             return None, None
         try:
-            return latest_samples(raw_path(self._folder, parts[-1]), duration=MEAN_DURATION)
+            return latest_samples(raw_path(self._folder, part), duration=MEAN_DURATION)
         except InvalidInput:
             return None, None  # its header is being written
+
+    def _means_beside(self, documents: ReadDocuments) -> dict[str, tuple[float | None, str]]:
+        """Means of the channels of other clocks."""
+        last = {clock: part for part, clock in sorted(part_clocks(documents).items())}
+        found: dict[str, tuple[float | None, str]] = {}
+        for number in last.values():
+            part, latest = self._latest_of(number, documents)
+            found |= {} if part is None or latest is None else _means(part, latest)
+        return found
 
     def _time(self, latest: Block | None, now: float, *, is_running: bool) -> float:
         """Time into the protocol: by the sample counter, else by the clock on the wall up to the next set point."""
@@ -274,7 +285,7 @@ def _means(part: RawPart, latest: Block) -> dict[str, tuple[float | None, str]]:
 
 def _last_written(folder: Path, documents: ReadDocuments) -> float:
     """Time at which a block or a document was written last, in s since 1970."""
-    paths = (folder / RUN, folder / DOCUMENTS, *(raw_path(folder, part) for part in numbered_parts(documents)[-1:]))
+    paths = (folder / RUN, folder / DOCUMENTS, *(raw_path(folder, part) for part in main_parts(documents)[-1:]))
     return max((path.stat().st_mtime for path in paths if path.is_file()), default=0.0)
 
 

@@ -1,9 +1,10 @@
 r"""Raw blocks of a recording: a file to which blocks are appended as they come, with counters and checksums.
 
 The header is the mark ``SNLBLK1\n``, the length of a text (4 bytes), that text (JSON: sample rate, channels with
-quantity, unit and range, time of the begin), and its CRC-32 (4 bytes). Each record is the mark ``\xb5BLK``, sequence
-number and first sample (8 bytes each), number of samples (4 bytes), CRC-32 of the samples and CRC-32 of all before it
-(4 bytes each), then the samples, channel beside channel, as 64-bit floats. All numbers are little-endian.
+quantity, unit and range, time of the begin, and the clock where it is not that of the run), and its CRC-32 (4 bytes).
+Each record is the mark ``\xb5BLK``, sequence number and first sample (8 bytes each), number of samples (4 bytes),
+CRC-32 of the samples and CRC-32 of all before it (4 bytes each), then the samples, channel beside channel, as 64-bit
+floats. All numbers are little-endian.
 """
 
 import json
@@ -11,7 +12,7 @@ import struct
 import zlib
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from math import ceil
 from os import SEEK_END
 from pathlib import Path
@@ -22,6 +23,8 @@ from numpy.typing import NDArray
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.records.part_clock import PartClock, part_clock
+from sonolube.vocabulary import quantities
 
 _MAGIC: Final = b"SNLBLK1\n"
 _MARK: Final = b"\xb5BLK"
@@ -77,6 +80,8 @@ class RawPart:
         Length up to the end of the last whole record; what follows is the rest of a block that was not finished.
     blocks : int
         Whole records.
+    clock : PartClock or None
+        Where it is not that of the run.
     """
 
     channels: tuple[Channel, ...]
@@ -90,6 +95,7 @@ class RawPart:
     damaged: int = 0
     whole_bytes: int = 0
     blocks: int = 0
+    clock: PartClock | None = None
 
     @property
     def duration(self) -> float:
@@ -97,7 +103,9 @@ class RawPart:
         return (self.samples + self.missing) / self.sample_rate
 
 
-def raw_header(channels: Sequence[Channel], *, sample_rate: float, begun: float) -> bytes:
+def raw_header(
+    channels: Sequence[Channel], *, sample_rate: float, begun: float, clock: PartClock | None = None
+) -> bytes:
     """Header of a file of raw blocks.
 
     Parameters
@@ -108,6 +116,8 @@ def raw_header(channels: Sequence[Channel], *, sample_rate: float, begun: float)
         [Hz]
     begun : float
         Time of the first sample, in s since 1970.
+    clock : PartClock, optional
+        Where it is not that of the run.
 
     Returns
     -------
@@ -134,6 +144,8 @@ def raw_header(channels: Sequence[Channel], *, sample_rate: float, begun: float)
         for channel in channels
     ]
     content = {"payload": "<f8", "sample_rate": float(sample_rate), "begun": begun, "channels": listed}
+    if clock is not None:
+        content["clock"] = asdict(clock)
     text = json.dumps(content, allow_nan=False).encode()
     return _MAGIC + _LENGTH.pack(len(text)) + text + _LENGTH.pack(zlib.crc32(text))
 
@@ -332,16 +344,18 @@ def _header(stream: BinaryIO, path: Path) -> RawPart:
                 quantity=str(each["quantity"]),
                 lowest=-np.inf if each["lowest"] is None else float(each["lowest"]),
                 highest=np.inf if each["highest"] is None else float(each["highest"]),
+                free_unit="" if each["quantity"] in quantities() else str(each.get("unit") or ""),
             )
             for each in content["channels"]
         )
         rate, begun = float(content["sample_rate"]), float(content["begun"])
+        clock = part_clock(content["clock"]) if "clock" in content else None
         if content["payload"] != "<f8" or not channels or not 0 < rate < np.inf:
             raise ValueError
     except (ValueError, TypeError, KeyError, LookupError, struct.error, RecursionError):
         raise InvalidInput(f"{path}: is no file of raw blocks, or its header is damaged") from None
     end = stream.tell()
-    return RawPart(channels=channels, sample_rate=rate, begun=begun, header_bytes=end, whole_bytes=end)
+    return RawPart(channels=channels, sample_rate=rate, begun=begun, header_bytes=end, whole_bytes=end, clock=clock)
 
 
 def _finite_or_none(value: float) -> float | None:

@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 
 from sonolube.laboratory.block import Block
 from sonolube.laboratory.records.documents import ReadDocuments
+from sonolube.laboratory.records.part_clock import PartClock
 from sonolube.laboratory.records.raw_blocks import RawPart, read_raw_blocks, scan_raw
 from sonolube.laboratory.records.run_folder import Facts, raw_path
 from sonolube.laboratory.records.set_point_steps import SetPointSteps, set_point_steps
+from sonolube.units import format_si
+from sonolube.vocabulary import quantities
 
 Floats = NDArray[np.float64]
 
@@ -60,6 +63,22 @@ class RecordedPart:
         return self.raw.begun
 
     @property
+    def clock(self) -> PartClock | None:
+        """Clock, where it is not that of the run."""
+        return self.raw.clock
+
+    @property
+    def clock_name(self) -> str:
+        """Its name; empty for the clock of the run."""
+        return "" if self.raw.clock is None else self.raw.clock.name
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """SI unit of each variable of a free quantity, by its name."""
+        free = {channel.name: channel.free_unit for channel in self.raw.channels}
+        return {name: free.get(name, "") for name, of in self.variables.items() if of not in quantities()}
+
+    @property
     def set_points(self) -> tuple[str, ...]:
         """Names of the variables that hold set points."""
         return tuple(name for name in self.variables if name in self.steps.names)
@@ -71,14 +90,16 @@ class RecordedPart:
 
     @property
     def variables(self) -> Mapping[str, str]:
-        """Quantity of each variable by its name: that of the quantity, that of the channel where several share it.
+        """Quantity of each variable by its name: that of the quantity; that of the channel where several share it.
 
-        Set points follow what was measured. The voltage that was set is `voltage_peak_to_peak` too where none was
-        measured.
+        A channel whose name is its own keeps it. Set points follow what was measured. The voltage that was set is
+        `voltage_peak_to_peak` too where none was measured.
         """
-        quantities = [channel.quantity for channel in self.raw.channels]
+        measured = [channel.quantity for channel in self.raw.channels]
         names = {
-            channel.quantity if quantities.count(channel.quantity) == 1 else channel.name: channel.quantity
+            channel.quantity
+            if channel.is_standard and measured.count(channel.quantity) == 1
+            else channel.name: channel.quantity
             for channel in self.raw.channels
         }
         set_points = {name: name for name in self.steps.names if name not in names}
@@ -102,6 +123,8 @@ class RecordedPart:
             found.append(f"the raw blocks are damaged at {self.raw.damaged} places, whose samples are left out")
         if self._tells_voltage:
             found.append("voltage_peak_to_peak is the voltage that was set, not measured")
+        if self.raw.clock is not None:
+            found.append(clock_caveat(self.raw.clock))
         return found
 
     def pieces(self) -> Iterator[tuple[Floats, list[Floats]]]:
@@ -125,6 +148,15 @@ class RecordedPart:
         beside = list(self.variables)[len(columns) :]
         columns += [self.steps.at(_SET_VOLTAGE if name == _VOLTAGE else name, numbers) for name in beside]
         return (numbers - self.raw.first_sample) / self.raw.sample_rate, columns
+
+
+def clock_caveat(clock: PartClock) -> str:
+    """What a clock of its own means for the times of a part, in one line."""
+    offset, within = f"{clock.offset:.4g}", format_si(clock.uncertainty, "s", digits=2)
+    return (
+        f"clock {clock.name}: time 0 is {offset} s after that of part {clock.part} of the recording, within {within};"
+        " the clocks drift apart, and set points are placed by the clock of the computer"
+    )
 
 
 def recorded_part(
@@ -155,5 +187,6 @@ def recorded_part(
     """
     path = raw_path(folder, part)
     found = scan_raw(path) if raw is None else raw
-    steps = set_point_steps(documents, part, first_sample=found.first_sample, facts=facts)
+    own = None if found.clock is None else (found.begun, found.sample_rate)
+    steps = set_point_steps(documents, part, first_sample=found.first_sample, facts=facts, own_clock=own)
     return RecordedPart(path=path, raw=found, steps=steps)

@@ -1,21 +1,24 @@
 """Recorder of a run: every block is on its way to the disk when `append` returns, every event is a document."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
 from sonolube.files import locked_folder, remove_file
-from sonolube.growing_files import AppendedFile
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
-from sonolube.laboratory.records.raw_blocks import raw_header, raw_record
+from sonolube.laboratory.records.open_part import OpenPart
+from sonolube.laboratory.records.part_clock import PartClock
+from sonolube.laboratory.records.raw_blocks import raw_header
 from sonolube.laboratory.records.recorded_part import recorded_part
 from sonolube.laboratory.records.recording_files import write_netcdf_recording
 from sonolube.laboratory.records.run import RunSummary, run_summary
 from sonolube.laboratory.records.run_clock import RunClock
 from sonolube.laboratory.records.run_folder import (
+    CLOCK_NAME,
     PROTOCOL,
     PURPOSE,
     RESERVE,
@@ -25,7 +28,6 @@ from sonolube.laboratory.records.run_folder import (
     keep_digests,
     make_run_folder,
     raw_parts,
-    raw_path,
     recording_path,
 )
 
@@ -87,12 +89,9 @@ class RunRecorder:
         self._known, self._clock, self._locks = known, clock, locks
         self._log = DocumentLog(folder)
         self._log.start(known)
-        self._part = self._blocks = 0
-        self._file: AppendedFile | None = None
-        self._channels: tuple[Channel, ...] = ()
-        self._rate = 0.0
-        self._samples = 0
-        self._next: int | None = None
+        self._parts: list[OpenPart] = []  # also those that were ended
+        self._main: OpenPart | None = None
+        self._beside: dict[str, OpenPart] = {}
         self._failure = ""
         self._summary: RunSummary | None = None
 
@@ -111,22 +110,41 @@ class RunRecorder:
             If a part is being recorded, the channels are no channels, or the disk is full.
         """
         self._require_running()
-        if self._file is not None:
+        if self._main is not None:
             raise InvalidInput("a part of the recording has begun already; end it first")
-        now = self._clock.now()
-        header = raw_header(channels, sample_rate=sample_rate, begun=now)
-        self._part += 1
-        file = AppendedFile(raw_path(self.folder, self._part))
-        try:
-            file.append(header)
-            self._log.part(self._part, channels, sample_rate=sample_rate, time=now)
-        except InvalidInput as failure:
-            self._fail(failure)
-            with suppress(InvalidInput):
-                file.close()
-            raise
-        self._file, self._channels, self._rate = file, tuple(channels), sample_rate
-        self._blocks, self._samples, self._next = 0, 0, None
+        self._main = self._begun(channels, sample_rate=sample_rate, begun=self._clock.now())
+
+    def begin_beside(
+        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+    ) -> None:
+        """Begin a part whose samples another clock times, beside the one that is being recorded.
+
+        Parameters
+        ----------
+        clock : str
+            Name of its acquisition.
+        channels : sequence of Channel
+        sample_rate : float
+            [Hz]
+        first : int
+            Its first sample, by its own counter.
+        ago : float
+            Time since that sample, in s.
+        uncertainty : float
+            Of that time, in s.
+
+        Raises
+        ------
+        InvalidInput
+            As `begin`; if no part is being recorded beside it, or the name of the clock is no plain one.
+        """
+        self._require_running()
+        if self._main is None or clock in self._beside or not CLOCK_NAME.fullmatch(clock):
+            raise InvalidInput(f"a part of the clock {clock!r} needs one of the run, and no other of its own")
+        begun = self._clock.now() - ago
+        offset = begun - self._main.begun
+        told = PartClock(name=clock, part=self._main.number, offset=offset, uncertainty=uncertainty, first_sample=first)
+        self._beside[clock] = self._begun(channels, sample_rate=sample_rate, begun=begun, clock=told)
 
     def append(self, block: Block) -> None:
         """Keep a block; it is in the hands of the operating system when this returns.
@@ -141,25 +159,12 @@ class RunRecorder:
         InvalidInput
             If the disk is full, the shape is wrong, or the sample counter goes back. What was kept before stays.
         """
-        if self._file is None:
-            raise InvalidInput("no part of the recording has begun; begin it before blocks are appended")
-        if block.values.ndim != 2 or block.values.shape[1] != len(self._channels) or not block.samples:
-            raise InvalidInput(
-                f"block has the shape {block.values.shape}, but {len(self._channels)} channels are recorded"
-            )
-        if block.first_sample < (self._next or 0):
-            raise InvalidInput(f"block begins at sample {block.first_sample}, but {self._next} was expected")
-        try:
-            if self._next is not None and block.first_sample > self._next:
-                self._note("gap", self._next, {"missing": block.first_sample - self._next})
-            self._file.append(raw_record(block, sequence=self._blocks))
-        except InvalidInput as failure:
-            self._fail(failure)
-            raise
-        self._blocks += 1
-        self._samples += block.samples
-        self._next = block.next_sample
+        self._append(self._main, block, {})
         self._watch_clock(block.first_sample)
+
+    def append_beside(self, clock: str, block: Block) -> None:
+        """Keep a block of another clock, as `append`."""
+        self._append(self._beside.get(clock), block, {"clock": clock})
 
     def end(self) -> None:
         """End the part of the recording; harmless where none has begun.
@@ -169,15 +174,12 @@ class RunRecorder:
         InvalidInput
             If the disk is full.
         """
-        if self._file is None:
-            return
-        file, self._file = self._file, None
-        try:
-            file.close()
-            self._describe_part()
-        except InvalidInput as failure:
-            self._fail(failure)
-            raise
+        main, self._main = self._main, None
+        self._end(main)
+
+    def end_beside(self, clock: str) -> None:
+        """End the part of another clock, as `end`."""
+        self._end(self._beside.pop(clock, None))
 
     def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
         """Keep what happened: set points, states, prompts, trips.
@@ -242,33 +244,68 @@ class RunRecorder:
         if outcome not in EXIT_STATUS:
             raise InvalidInput(f"outcome must be one of {', '.join(EXIT_STATUS)}, got {outcome!r}")
         with self._locks:
-            for close in (self.end, self._write_recordings):
+            beside = [partial(self.end_beside, clock) for clock in self._beside]
+            closing: list[Callable[[], object]] = [*beside, self.end, self._write_recordings]
+            for close in closing:
                 with suppress(InvalidInput):  # the reason is kept, and the run failed
                     close()
             remove_file(self.folder / RESERVE)
             ended = "failed" if self._failure else outcome
             why = "; ".join(dict.fromkeys(filter(None, (reason, self._failure))))
             with suppress(InvalidInput):  # without a last document, a run counts as unfinished and can be recovered
-                self._describe_part()
+                for part in self._parts:
+                    part.describe(read_documents(self.folder))
                 self._log.stop(ended, reason=why, time=self._clock.now())
                 self._log.close()
         self._summary = run_summary(self.folder)
         return self._summary
 
-    def _describe_part(self) -> None:
-        """Write how many samples the latest part has, unless that is written."""
-        earlier = read_documents(self.folder)
-        self._log.end_part(earlier, self._part, samples=self._samples, sample_rate=self._rate)
+    def _begun(
+        self, channels: Sequence[Channel], *, sample_rate: float, begun: float, clock: PartClock | None = None
+    ) -> OpenPart:
+        """Part that has begun."""
+        number = len(self._parts) + 1
+        raw_header(channels, sample_rate=sample_rate, begun=begun)  # refuses what is no part, which is no failure
+        try:
+            part = OpenPart(self.folder, number, channels, self._log, sample_rate=sample_rate, begun=begun, clock=clock)
+        except InvalidInput as failure:
+            self._fail(failure)
+            raise
+        self._parts.append(part)
+        return part
+
+    def _append(self, part: OpenPart | None, block: Block, told: Mapping[str, str | float]) -> None:
+        """Keep a block of a part."""
+        if part is None:
+            raise InvalidInput("no part of the recording has begun; begin it before blocks are appended")
+        part.require_fitting(block)
+        try:
+            part.append(block, lambda first, facts: self._note("gap", first, {**facts, **told}))
+        except InvalidInput as failure:
+            self._fail(failure)
+            raise
+
+    def _end(self, part: OpenPart | None) -> None:
+        """End a part; harmless where there is none."""
+        if part is None:
+            return
+        try:
+            part.close()
+            part.describe(read_documents(self.folder))
+        except InvalidInput as failure:
+            self._fail(failure)
+            raise
 
     def _write_recordings(self) -> None:
         """Write all parts as netCDF."""
-        documents = read_documents(self.folder)
+        documents, paths = read_documents(self.folder), list[Path]()
         try:
             for number in raw_parts(self.folder):
                 part = recorded_part(self.folder, number, documents, facts=self._known.facts)
+                paths.append(recording_path(self.folder, number, part.clock_name))
                 if part.raw.samples:
-                    write_netcdf_recording(part, self._known, recording_path(self.folder, number))
-            self._known = keep_digests(self.folder, self._known, raw_parts(self.folder))
+                    write_netcdf_recording(part, self._known, paths[-1])
+            self._known = keep_digests(self.folder, self._known, paths)
         except InvalidInput as failure:
             self._fail(failure)
             raise

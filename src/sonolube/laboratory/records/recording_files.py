@@ -4,6 +4,7 @@ import io
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
+from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
@@ -12,9 +13,10 @@ from typing import Any, Final, Protocol as Interface, Self
 import numpy as np
 
 from sonolube.files import unfinished_file
+from sonolube.laboratory.records.part_clock import PartClock
 from sonolube.laboratory.records.recorded_part import Floats
 from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts
-from sonolube.vocabulary import quantity
+from sonolube.vocabulary import quantities, unit_of
 
 _PACKED: Final[Mapping[str, Any]] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 _ROWS: Final = 1 << 16  # of a chunk of set points
@@ -44,6 +46,14 @@ class PartOfRecording(Interface):
     @property
     def variables(self) -> Mapping[str, str]:
         """Quantity of each variable by its name."""
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """SI unit of each variable of a free quantity, by its name."""
+
+    @property
+    def clock(self) -> PartClock | None:
+        """Clock, where it is not that of the run."""
 
     @property
     def set_points(self) -> tuple[str, ...]:
@@ -91,13 +101,12 @@ def write_tdms_recording(part: PartOfRecording, known: RunFacts, path: Path) -> 
     """Write a part of a recording as TDMS, as `write_netcdf_recording`; with a channel `time` where samples lack."""
     from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
-    quantities = part.variables
     root = RootObject(properties={"name": known.title, "DateTime": _start(part)})
     with unfinished_file(path) as file, TdmsWriter(file) as writer:
         for time, columns in part.pieces():
-            named = dict(zip(quantities, columns, strict=True)) | ({"time": time} if part.missing else {})
+            named = dict(zip(part.variables, columns, strict=True)) | ({"time": time} if part.missing else {})
             channels = [
-                ChannelObject("recording", name, values, properties=_waveform(part, quantities.get(name, "time")))
+                ChannelObject("recording", name, values, properties=_waveform(part, name))
                 for name, values in named.items()
             ]
             writer.write_segment([root, GroupObject("recording"), *channels])
@@ -108,7 +117,7 @@ def write_tdms_recording(part: PartOfRecording, known: RunFacts, path: Path) -> 
 
 def write_csv_recording(part: PartOfRecording, known: RunFacts, path: Path) -> Path:
     """Write a part of a recording as CSV with the units in its first line, as `write_netcdf_recording`."""
-    heads = ["time [s]", *(f"{name} [{quantity(of).unit or '1'}]" for name, of in part.variables.items())]
+    heads = ["time [s]", *(f"{name} [{_unit(part, name) or '1'}]" for name in part.variables)]
     with unfinished_file(path) as file:
         file.write((",".join(heads) + "\n").encode())
         for time, columns in part.pieces():
@@ -134,11 +143,13 @@ class _NetCdfRecording:
             self._file.dimensions = {"time": self._part.samples}
             self._file.attrs.update(_attributes(self._part, self._known))
             for name, of in {"time": "time", **self._part.variables}.items():
-                known = quantity(of)
+                known = quantities().get(of)
+                meaning = of.replace("_", " ") if known is None else known.meaning
                 packed = _PACKED if name in self._part.set_points else {}
                 chunks = (max(1, min(_ROWS, self._part.samples)),) if packed else None
                 variable = self._file.create_variable(name, ("time",), np.float64, chunks=chunks, **packed)
-                variable.attrs.update({"units": known.unit or "1", "long_name": known.meaning, "quantity": of})
+                unit = _unit(self._part, name) or "1"
+                variable.attrs.update({"units": unit, "long_name": meaning, "quantity": of})
             self._open = stack.pop_all()
         return self
 
@@ -173,6 +184,8 @@ def _attributes(part: PartOfRecording, known: RunFacts) -> dict[str, str | float
         "begun": _start(part).astype(datetime).strftime("%Y-%m-%d %H:%M:%S.%f"),
         "facts": json.dumps(dict(known.facts)),
     }
+    if part.clock is not None:
+        found |= {f"clock_{key}": value for key, value in asdict(part.clock).items()}
     if part.lubricants:
         found["lubricants"] = json.dumps(part.lubricants)
     caveats = [*part.caveats]
@@ -181,12 +194,17 @@ def _attributes(part: PartOfRecording, known: RunFacts) -> dict[str, str | float
     return found | ({"caveats": "\n".join(caveats)} if caveats else {})
 
 
-def _waveform(part: PartOfRecording, of: str) -> Mapping[str, Any]:
+def _waveform(part: PartOfRecording, name: str) -> Mapping[str, Any]:
     """Properties of a channel of TDMS."""
-    common = {"unit_string": quantity(of).unit or "1"}
+    common = {"unit_string": _unit(part, name) or "1"}
     if part.missing:
         return common
     return common | {"wf_start_time": _start(part), "wf_start_offset": 0.0, "wf_increment": 1 / part.sample_rate}
+
+
+def _unit(part: PartOfRecording, name: str) -> str:
+    """SI unit of a variable, or of the time; empty for pure numbers."""
+    return part.units[name] if name in part.units else unit_of(part.variables.get(name, "time"))
 
 
 def _start(part: PartOfRecording) -> np.datetime64:

@@ -137,9 +137,10 @@ def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -
             log.start(known)
         described = {str(each.get("name")) for each in earlier.of("descriptor")}
         for number, part in parts.items():
+            rate, clock = part.sample_rate, "" if part.clock is None else part.clock.name
             if f"recording-{number}" not in described:
-                log.part(number, part.channels, sample_rate=part.sample_rate, time=part.begun)
-            log.end_part(read_documents(folder), number, samples=part.samples, sample_rate=part.sample_rate)
+                log.part(number, part.channels, sample_rate=rate, time=part.begun, clock=clock)
+            log.end_part(read_documents(folder), number, samples=part.samples, sample_rate=rate, clock=clock)
         last = max((part.begun + part.duration for part in parts.values()), default=known.begun)
         log.stop("interrupted", reason="the program ended before the run", time=last)
     finally:
@@ -149,14 +150,15 @@ def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -
 
 def _write_missing(folder: Path, known: RunFacts, parts: dict[int, RawPart], done: list[str]) -> None:
     """Write the parts of the recording that were not written."""
-    documents = read_documents(folder)
+    documents, paths = read_documents(folder), list[Path]()
     for number, raw in parts.items():
-        path = recording_path(folder, number)
+        path = recording_path(folder, number, "" if raw.clock is None else raw.clock.name)
+        paths.append(path)
         if raw.samples and not path.is_file():
             part = recorded_part(folder, number, documents, facts=known.facts, raw=raw)
             write_netcdf_recording(part, known, path)
             done.append(f"{path.name} written")
-    keep_digests(folder, known, parts)
+    keep_digests(folder, known, paths)
 
 
 def _set_aside(path: Path, length: int) -> str:

@@ -7,9 +7,19 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, UnknownName
 from sonolube.files import is_locked
-from sonolube.laboratory.records.documents import EXIT_STATUS, ReadDocuments, numbered_parts, part_name, read_documents
+from sonolube.laboratory.devices import SILENT
+from sonolube.laboratory.records.documents import (
+    EXIT_STATUS,
+    ReadDocuments,
+    main_parts,
+    numbered_parts,
+    part_clocks,
+    part_name,
+    read_documents,
+)
+from sonolube.laboratory.records.recorded_channels import RecordedChannel, recorded_channels
 from sonolube.laboratory.records.run_folder import (
     DOCUMENTS,
     LATEST,
@@ -128,30 +138,47 @@ class Run:
 
     @property
     def recordings(self) -> tuple[Path, ...]:
-        """Files of the recording, one a part, that exist."""
+        """Files of the recording, one a part, that exist; without those of other clocks than that of the run."""
         if self.known.referenced:
             return tuple(map(Path, self.known.referenced))
-        paths = (recording_path(self.folder, part) for part in numbered_parts(self._documents))
+        paths = (recording_path(self.folder, part) for part in main_parts(self._documents))
         return tuple(path for path in paths if path.is_file())
+
+    @property
+    def clocks(self) -> dict[str, tuple[Path, ...]]:
+        """Files of the parts of other clocks that exist, by the names of the clocks."""
+        found: dict[str, tuple[Path, ...]] = {}
+        for part, clock in sorted(part_clocks(self._documents).items()):
+            path = recording_path(self.folder, part, clock)
+            if path.is_file():
+                found[clock] = (*found.get(clock, ()), path)
+        return found
+
+    @property
+    def channels(self) -> dict[str, RecordedChannel]:
+        """Channels of all parts by name, as they were begun."""
+        return recorded_channels(self._documents)
 
     @property
     def part_channels(self) -> dict[Path, tuple[str, ...]]:
         """Channels of each part of the recording, as the protocol names them, by its file."""
         named = {str(each.get("name")): each for each in self._documents.of("descriptor")}
         found = {}
-        for part in numbered_parts(self._documents):
+        for part in main_parts(self._documents):
             path = recording_path(self.folder, part)
             if path.is_file():
                 found[path] = tuple(map(str, named[part_name(part)]["data_keys"]))
         return found
 
-    def dataset(self, part: int | None = None) -> "xr.Dataset":
+    def dataset(self, part: int | None = None, *, clock: str = "") -> "xr.Dataset":
         """Recording in SI over `time`, its variables named by their quantities.
 
         Parameters
         ----------
         part : int, optional
             Of a recording with pauses, from 1; all parts on one axis of time by default.
+        clock : str
+            Of `clocks`; that of the run by default.
 
         Returns
         -------
@@ -162,11 +189,15 @@ class Run:
         ------
         InvalidInput
             If the run has no such recording, or its parts have different channels.
+        UnknownName
+            If the run has no such clock.
         """
         from sonolube.measurement.recordings.joined_recording import join_recordings
         from sonolube.measurement.recordings.reader import read_recording
 
-        paths = self.recordings
+        if clock and clock not in self.clocks:
+            raise UnknownName.among(self.clocks, kind="clock", name=clock)
+        paths = self.clocks[clock] if clock else self.recordings
         if not paths:
             raise InvalidInput(f"{self.folder}: has no recording; sonolube lab recover writes what a killed run left")
         if part is not None and not 1 <= part <= len(paths):
@@ -269,10 +300,12 @@ def _summary(folder: Path, known: RunFacts, documents: ReadDocuments) -> RunSumm
     channels: dict[str, None] = {}
     samples, duration = 0, 0.0
     counts, rates = _parts(documents)
+    main = set(map(part_name, main_parts(documents)))
+    timed = {str(each["uid"]) for each in documents.of("descriptor") if str(each.get("name")) in main}
     for descriptor in documents.of("descriptor"):
         if str(descriptor.get("name")).startswith(part_name(0)[:-1]):
             channels |= dict.fromkeys(map(str, descriptor["data_keys"]))
-    for uid, count in counts.items():
+    for uid, count in ((uid, count) for uid, count in counts.items() if uid in timed):
         samples += count
         duration += count / rates[uid] if rates.get(uid, 0) > 0 else 0.0
     return RunSummary(
@@ -329,6 +362,7 @@ def note_of(event: Mapping[str, Any]) -> Note:
 
 def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: RunSummary) -> list[str]:
     """What speaks against the record of a run."""
+    clocks = part_clocks(documents)
     found = [f"{name} is missing or was changed since the run began" for name in changed_files(folder, known)]
     found += [f"{name} was changed after the run wrote it" for name in changed_recordings(folder, known)]
     if UNRESOLVED in known.facts:
@@ -345,11 +379,15 @@ def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: R
         found += [
             f"part {part} of the recording is in raw blocks only; sonolube lab recover writes it"
             for part in numbered_parts(documents)
-            if raw_path(folder, part).is_file() and not recording_path(folder, part).is_file() and summary.samples
+            if raw_path(folder, part).is_file()
+            and not recording_path(folder, part, clocks.get(part, "")).is_file()
+            and summary.samples
         ]
     gone = (part for part in numbered_parts(documents) if not raw_path(folder, part).is_file())
-    missing = (recording_path(folder, part).name for part in gone)
+    missing = (recording_path(folder, part, clocks.get(part, "")).name for part in gone)
     found += [f"{name} is missing" for name in missing if name in known.recordings and not (folder / name).is_file()]
+    silent = [note_of(event).facts for event in documents.of("event") if event["data"]["kind"] == SILENT]
+    found += [f"clock {facts.get('clock')} gave no sample of {facts.get('channels')} in a part" for facts in silent]
     jumps = sum(event["data"]["kind"] == "clock jump" for event in documents.of("event"))
     if jumps:
         found.append(f"the clock of the computer was set {jumps} times during the run; times are by sample counters")

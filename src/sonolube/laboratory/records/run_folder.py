@@ -33,6 +33,9 @@ Facts = Mapping[str, Fact]
 LATEST: Final = 1e11
 """Time in s since 1970 beyond which no run began."""
 
+CLOCK_NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,29}")
+"""Names of clocks, which are part of the names of files."""
+
 _FORMAT: Final = 1
 _LARGEST_NUMBER: Final = 1e300
 _RESERVED_BYTES: Final = 1 << 16
@@ -76,8 +79,10 @@ def raw_path(folder: Path, part: int) -> Path:
     return folder / "raw" / f"blocks-{part}.bin"
 
 
-def recording_path(folder: Path, part: int) -> Path:
-    """File of a part of the recording, from 1, as netCDF."""
+def recording_path(folder: Path, part: int, clock: str = "") -> Path:
+    """File of a part of the recording, from 1, as netCDF; of another clock than that of the run by its name."""
+    if clock:
+        return folder / f"clock-{clock}-{part}.nc"
     return folder / ("recording.nc" if part == 1 else f"recording-{part}.nc")
 
 
@@ -155,14 +160,15 @@ def write_run_facts(folder: Path, known: RunFacts) -> None:
     write_atomically(folder / RUN, json.dumps(content, indent=1, allow_nan=False, default=dict) + "\n")
 
 
-def keep_digests(folder: Path, known: RunFacts, parts: Iterable[int]) -> RunFacts:
+def keep_digests(folder: Path, known: RunFacts, paths: Iterable[Path]) -> RunFacts:
     """Keep the SHA-256 of parts of the recording that have none yet in run.json.
 
     Parameters
     ----------
     folder : Path
     known : RunFacts
-    parts : iterable of int
+    paths : iterable of Path
+        Of the parts.
 
     Returns
     -------
@@ -173,7 +179,6 @@ def keep_digests(folder: Path, known: RunFacts, parts: Iterable[int]) -> RunFact
     InvalidInput
         If run.json cannot be written.
     """
-    paths = (recording_path(folder, part) for part in parts)
     found = {path.name: _digest_of(path) for path in paths if path.name not in known.recordings and path.is_file()}
     if not found:
         return known

@@ -3,13 +3,14 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import ceil
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.laboratory.records.documents import ReadDocuments, part_name
-from sonolube.laboratory.records.run_folder import Facts
+from sonolube.laboratory.records.run_folder import LATEST, Facts
 
 SET_POINT_CHANNELS: Final = (
     *("sliding_speed_set", "motor_on", "voltage_peak_to_peak_set", "frequency_set"),
@@ -54,7 +55,14 @@ class SetPointSteps:
         return values[np.maximum(np.searchsorted(self.samples, numbers, side="right") - 1, 0)]
 
 
-def set_point_steps(documents: ReadDocuments, part: int, *, first_sample: int, facts: Facts) -> SetPointSteps:
+def set_point_steps(
+    documents: ReadDocuments,
+    part: int,
+    *,
+    first_sample: int,
+    facts: Facts,
+    own_clock: tuple[float, float] | None = None,
+) -> SetPointSteps:
     """Set points of a part of a recording, those before it at its first sample.
 
     Parameters
@@ -66,6 +74,9 @@ def set_point_steps(documents: ReadDocuments, part: int, *, first_sample: int, f
     first_sample : int
     facts : mapping of str to str, float, int or bool
         Of the run, of which normal_load, in N, is the load until a note tells another.
+    own_clock : tuple of float, optional
+        Begin in s since 1970 and sample rate in Hz of a part whose counter is not that of the notes: its set points
+        are placed by the times of the notes.
 
     Returns
     -------
@@ -80,8 +91,16 @@ def set_point_steps(documents: ReadDocuments, part: int, *, first_sample: int, f
         elif name == "stream_datum" and uid and document.get("descriptor") == uid:
             break  # the part has ended
         elif name == "event":
-            found.take(document["data"])
+            found.take(document["data"] if own_clock is None else _timed(document, first_sample, *own_clock))
     return found.steps(part)
+
+
+def _timed(document: Mapping[str, Any], first_sample: int, begun: float, sample_rate: float) -> Mapping[str, Any]:
+    """Data of a note with the sample of another clock at its time."""
+    time = document.get("time")
+    if not isinstance(time, _NUMBER) or abs(time) > LATEST:
+        return {**document["data"], "sample": None}
+    return {**document["data"], "sample": first_sample + max(ceil((time - begun) * sample_rate), 0)}
 
 
 class _Steps:

@@ -27,7 +27,7 @@ def run_blocks(result: RunResult, run: Run, *, simulated: bool) -> list[Block]:
         ("outcome", summary.outcome + (f": {summary.reason}" if summary.reason else "")),
         ("motor and drive", off_text(is_off=result.state is State.SAFE)),
         ("recorded", f"{format_si(summary.duration, 's')}, {summary.samples} samples of each channel"),
-        ("channels", ", ".join(summary.channels)),
+        ("channels", ", ".join(each.described for each in run.channels.values())),
         *(() if mean is None else (("mean friction", format_si(mean, "N", digits=3)),)),
         ("record", str(summary.folder)),
     ]
@@ -46,6 +46,7 @@ def run_object(result: RunResult, run: Run, *, simulated: bool) -> dict[str, Any
         "simulated": simulated,
         "folder": str(summary.folder),
         "recordings": [str(path) for path in run.recordings],
+        "clocks": {clock: [str(path) for path in paths] for clock, paths in run.clocks.items()},
         "samples": summary.samples,
         **si({"duration": summary.duration}, unit="s"),
         "tags": run.facts.get("tags", ""),

@@ -11,6 +11,7 @@ from typing import Any
 
 import sonolube
 from sonolube.extras import EXTRAS, installed_version, required_packages
+from sonolube.laboratory.drivers import known_drivers
 from sonolube.models.dynamics.backend import device_name, gpu_obstacle
 from sonolube.models.dynamics.warm_up import compiled_code_folder, is_compiled
 from sonolube.reference_solutions.self_checks import SELF_CHECKS
@@ -40,6 +41,8 @@ class Installation:
     cache_was_warm : bool
     programs : mapping of str to str
         Path of each other program; empty where there is none.
+    drivers : mapping of str to tuple of str
+        Names of the drivers of devices by their roles, with the package of those that others add.
     checks : sequence of mapping
         Outcomes of the self-checks.
     """
@@ -51,6 +54,7 @@ class Installation:
     cache_folder: Path
     cache_was_warm: bool
     programs: Mapping[str, str]
+    drivers: Mapping[str, tuple[str, ...]]
     checks: Sequence[Mapping[str, Any]]
 
     @property
@@ -77,6 +81,8 @@ class Installation:
             Rows([("GPU", self.gpu or f"none: {self.gpu_obstacle}"), ("compiled code", self._cache())]),
             "other programs",
             Rows([(name, self._program(name)) for name in self.programs]),
+            "drivers of devices",
+            Rows([(role, ", ".join(names)) for role, names in self.drivers.items()]),
             "self-check",
             Rows([(str(each["title"]), _verdict(each)) for each in self.checks]),
             self._verdict(),
@@ -107,6 +113,7 @@ class Installation:
                 "warm": self.cache_was_warm,
             },
             "programs": {name: path or None for name, path in self.programs.items()},
+            "drivers": {role: list(names) for role, names in self.drivers.items()},
             "checks": [dict(each) for each in self.checks],
             "healthy": self.healthy,
         }
@@ -161,6 +168,7 @@ def installation(advance: Callable[[str, int, int], None]) -> Installation:
         cache_folder=compiled_code_folder(),
         cache_was_warm=warm,
         programs={name: _found(names) for name, (names, _, _) in _PROGRAMS.items()},
+        drivers=known_drivers(),
         checks=tuple(outcomes),
     )
 

@@ -23,7 +23,8 @@ def run_rows(run: Run) -> list[tuple[str, str]]:
     return [
         ("begun", f"{summary.begun_text} UTC"),
         ("outcome", summary.outcome + (f": {summary.reason}" if summary.reason else "")),
-        ("channels", ", ".join(summary.channels) or "none"),
+        ("channels", ", ".join(each.described for each in run.channels.values()) or "none"),
+        *((f"clock {clock}", ", ".join(path.name for path in paths)) for clock, paths in run.clocks.items()),
         ("recorded", f"{summary.samples} samples, {format_si(summary.duration, 's')}, gaps: {summary.gaps}"),
         *((name, str(value)) for name, value in known.facts.items()),
         *((f"version of {name}", value) for name, value in known.versions.items()),
@@ -61,7 +62,9 @@ def run_object(run: Run) -> dict[str, Any]:
         "facts": dict(known.facts),
         "versions": dict(known.versions),
         "sha256": dict(known.files),
+        "quantities": {each.name: {"quantity": each.quantity, "unit": each.unit} for each in run.channels.values()},
         "recordings": [str(path) for path in run.recordings],
+        "clocks": {clock: [str(path) for path in paths] for clock, paths in run.clocks.items()},
         "events": notes,
     }
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import protocol_by_name_or_file
-from sonolube.laboratory.drivers import DeviceMap, first_block, missing_parts, read_device_map, unfulfilled
+from sonolube.laboratory.drivers import DeviceMap, first_readings, missing_parts, read_device_map, unfulfilled
 from sonolube.laboratory.dry_run.findings import SAFETY
 from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer
@@ -122,11 +122,10 @@ def check(
 def _readings(device_map: DeviceMap) -> dict[str, tuple[float, str]]:
     """Mean of each channel over a tenth of a second, with its unit."""
     devices = device_map.devices()
-    channels = devices.acquisition.channels
-    highest = device_map.entries.acquisition.sample_rate_maximum / len(channels)
+    channels = devices.channels
+    highest = device_map.entries.acquisition.total_rate_maximum / len(devices.acquisition.channels)
     try:
-        block = first_block(devices, sample_rate=min(_SAMPLE_RATE, highest))
+        means = first_readings(devices, sample_rate=min(_SAMPLE_RATE, highest))
     except SonolubeError as failure:
         raise InvalidInput(f"{shown('connect')}: {failure}") from None
-    means = block.values.mean(axis=0)
-    return {name: (float(mean), channels[name].unit) for name, mean in zip(channels, means, strict=True)}
+    return {name: (mean, channels[name].unit) for name, mean in means.items()}

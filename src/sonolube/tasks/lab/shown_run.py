@@ -1,6 +1,7 @@
 """Task `lab show`: a run with its facts, events, gaps and outcome, and a figure of its channels."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from sonolube.tasks.task import task
 if TYPE_CHECKING:
     import xarray as xr
 
+    from sonolube.charts import Chart
     from sonolube.report import Drawing
 
 
@@ -52,11 +54,24 @@ class ShownRun(Answer):
         title = self.run.summary.title
         caption = f"{title}: the range of the samples of each channel over time."
         name = f"{self.run.folder.resolve().name}-channels"
-        return {name: Drawing(chart=lambda: channels_chart(self.run.dataset()), caption=caption)}
+        of_clocks = {
+            f"{name}-{clock}": Drawing(
+                chart=partial(_chart_of_clock, self.run, clock), caption=f"{caption[:-1]}, by the clock {clock}."
+            )
+            for clock in self.run.clocks
+        }
+        return {name: Drawing(chart=lambda: channels_chart(self.run.dataset()), caption=caption)} | of_clocks
 
     def dataset(self) -> "xr.Dataset":
         """Return the recording, where there is one."""
         return self.run.dataset().assign_attrs(self.notes()) if self.run.recordings else super().dataset()
+
+
+def _chart_of_clock(run: Run, clock: str) -> "Chart":
+    """Chart of the channels of another clock."""
+    from sonolube.laboratory.records.channels_figure import channels_chart
+
+    return channels_chart(run.dataset(clock=clock))
 
 
 @task

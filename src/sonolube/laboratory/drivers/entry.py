@@ -1,0 +1,323 @@
+"""Sections of a device map, of which every driver has its own: bases that refuse what they do not know."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from math import inf
+from typing import Annotated, ClassVar, Final, Literal, Self
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.facts.protocol.quantity_text import SiText, Table
+from sonolube.laboratory.block import CHANNEL_QUANTITIES, Channel, quantity_of
+from sonolube.laboratory.devices import Acquisition, DriveSource, Motor, OutputGuard
+from sonolube.laboratory.drivers.output_limits import DriveLimits
+from sonolube.units import require_si_unit, to_si
+from sonolube.vocabulary import quantities, unit_of
+
+_LIBRARY: Final = "@py for pure Python, @ivi for the library of a maker"
+_TEXT: Final = 500
+
+Text = Annotated[str, Field(max_length=_TEXT)]
+Line = Annotated[str, Field(min_length=1, max_length=200)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,59}$")]
+Resource = Annotated[str, Field(min_length=1, max_length=200, pattern=r"^(TCPIP|USB|GPIB|ASRL)[!-~]*::(INSTR|SOCKET)$")]
+VisaLibrary = Annotated[Literal["@py", "@ivi"], Field(description=_LIBRARY)]
+Range = Annotated[float, SiText("V", 1e-3, 1e3)]
+HighVoltage = Annotated[float, SiText("V", 1e-3, 1e5)]
+Rate = Annotated[float, SiText("Hz", 1e-3, 1e9)]
+Speed = Annotated[float, SiText("1/s", 1e-9, 1e5)]
+Diameter = Annotated[float, SiText("m", 1e-4, 1e2)]
+Gain = Annotated[float, Field(gt=0, le=1e6)]
+
+
+class DriverEntry(Table, ABC):
+    """Section of a device, whose driver it names.
+
+    Parameters
+    ----------
+    driver : str
+        Name in the table of drivers.
+    description : str
+        Model and serial number.
+    """
+
+    extras: ClassVar[tuple[str, ...]] = ()
+    """Optional parts of the installation that the driver needs, as in `sonolube.extras.EXTRAS`."""
+
+    driver: str
+    description: Text = ""
+
+    @property
+    @abstractmethod
+    def where(self) -> str:
+        """Address, terminal or port, as people write it."""
+
+    @property
+    @abstractmethod
+    def reserved_as(self) -> str:
+        """Canonical name of the hardware, by which one run at a time has it."""
+
+    @property
+    def guarded_output(self) -> str | None:
+        """Analogue output that a guard on the same hardware can take off; None without."""
+        return None
+
+
+class ChannelEntry(Table):
+    """Channel of an acquisition: its name, and quantity and unit where the name tells none.
+
+    Parameters
+    ----------
+    name : str
+        As protocols call it, such as friction_force; with a quantity any other, such as pin_temperature.
+    quantity : str or None
+        Of the vocabulary, such as temperature, or a free one, such as acoustic_emission.
+    unit : str or None
+        SI unit of a free quantity, such as m/s2; empty for pure numbers.
+    limit : str or None
+        Greatest magnitude that the rig stands, beyond which every run ends, such as 120 degC.
+    """
+
+    quantity: Name | None = None
+    name: Name  # behind the quantity, on which it depends
+    unit: Annotated[str, Field(max_length=40)] | None = None
+    limit: Annotated[str, Field(max_length=80)] | None = None
+
+    @field_validator("name")
+    @classmethod
+    def _require_known(cls, name: str, info: ValidationInfo) -> str:
+        quantity = info.data.get("quantity")
+        if quantity is None:
+            try:
+                quantity_of(name)
+            except SonolubeError as unknown:
+                raise ValueError(f"{unknown}; any other name needs its quantity") from None
+        elif CHANNEL_QUANTITIES.get(name, quantity) != quantity:
+            raise ValueError(f"a channel {name} measures {quantity_of(name)}; choose another name")
+        elif name not in CHANNEL_QUANTITIES and name in quantities() and name != quantity:
+            raise ValueError(f"{name} is another quantity of the vocabulary than {quantity}; choose another name")
+        return name
+
+    @model_validator(mode="after")
+    def _require_unit(self) -> Self:
+        if self.kind in quantities():
+            if self.unit is not None:
+                raise ValueError(f"unit belongs to free quantities; that of {self.kind} is {unit_of(self.kind) or '1'}")
+        elif self.unit is None:
+            raise ValueError(f"quantity {self.quantity} is not in the vocabulary and needs its unit, of SI")
+        require_si_unit(self.si_unit, name="unit")
+        if self.limit is not None and not self.limit_value > 0:
+            raise ValueError("limit must be positive")
+        return self
+
+    @property
+    def kind(self) -> str:
+        """Quantity that it measures."""
+        return self.quantity or quantity_of(self.name)
+
+    @property
+    def si_unit(self) -> str:
+        """SI unit of its samples."""
+        return unit_of(self.kind) if self.unit is None else self.unit
+
+    @property
+    def limit_value(self) -> float:
+        """Greatest magnitude in SI; infinite without one."""
+        return inf if self.limit is None else to_si(self.limit, unit=self.si_unit, name="limit")
+
+    def channel(self, *, lowest: float = -inf, highest: float = inf, sample_rate: float | None = None) -> Channel:
+        """Channel with the range of sensor and input, in SI.
+
+        Parameters
+        ----------
+        lowest, highest : float
+        sample_rate : float or None
+            Of an acquisition with a clock of its own. [Hz]
+
+        Returns
+        -------
+        Channel
+        """
+        return Channel(
+            name=self.name,
+            quantity=self.kind,
+            lowest=lowest,
+            highest=highest,
+            free_unit=self.unit or "",
+            limit=self.limit_value,
+            sample_rate=sample_rate,
+        )
+
+
+class AcquisitionEntry(DriverEntry):
+    """Inputs with one clock.
+
+    Parameters
+    ----------
+    driver : str
+    sample_rate : float or None
+        Of each channel where the clock is one of several, thus below `acquisitions`. [Hz]
+    description : str
+    """
+
+    sample_rate: Rate | None = None
+
+    @property
+    @abstractmethod
+    def channel_entries(self) -> Sequence[ChannelEntry]:
+        """Its channels."""
+
+    @property
+    def own_rate(self) -> float | None:
+        """Sample rate that no protocol tells; None where protocols do. [Hz]"""
+        return self.sample_rate
+
+    @property
+    def total_rate_maximum(self) -> float:
+        """Samples of all channels together. [Hz]"""
+        return inf
+
+    @property
+    def described(self) -> str:
+        """Device and channels in words."""
+        return f"{self.driver} {self.where}: {'; '.join(each.name for each in self.channel_entries)}"
+
+    @property
+    def files_beside(self) -> Mapping[str, str]:
+        """Names of files beside the map, by their keys."""
+        return {}
+
+    def check_file(self, key: str, text: str) -> None:
+        """Raise InvalidInput where the text of a file beside the map is not what its key needs."""
+
+    @abstractmethod
+    def new_device(self, files: Mapping[str, str]) -> Acquisition:
+        """Inputs, not connected; `files` holds the texts of the files beside the map by their names."""
+
+
+class DriveEntry(DriverEntry):
+    """Source of the drive voltage with its amplifier, and what output and actuator stand.
+
+    Parameters
+    ----------
+    driver : str
+    description, amplifier : str
+        Model and serial number.
+    amplifier_gain : float
+        []
+    voltage_maximum : float
+        Magnitude at the actuator, offset included. [V]
+    frequency_maximum : float
+        In Hz.
+    output_maximum : float
+        Magnitude that the amplifier takes, in V.
+    """
+
+    amplifier: Text = ""
+    amplifier_gain: Gain = 1.0
+    voltage_maximum: HighVoltage
+    frequency_maximum: Rate
+    output_maximum: Range = 10.0
+
+    @field_validator("output_maximum")
+    @classmethod
+    def _require_small(cls, output_maximum: float) -> float:
+        if output_maximum > 10.0:
+            raise ValueError("output_maximum is at most 10 V, which these outputs give")
+        return output_maximum
+
+    @property
+    def limits(self) -> DriveLimits:
+        """What amplifier, output and actuator stand."""
+        return DriveLimits(
+            amplifier_gain=self.amplifier_gain,
+            actuator_voltage=self.voltage_maximum,
+            output_voltage=self.output_maximum,
+            frequency_maximum=self.highest_frequency,
+        )
+
+    @property
+    def highest_frequency(self) -> float:
+        """That output and map allow. [Hz]"""
+        return self.frequency_maximum
+
+    @abstractmethod
+    def new_device(self) -> DriveSource:
+        """Source, not connected."""
+
+
+class MotorEntry(DriverEntry):
+    """Motor of the disc.
+
+    Parameters
+    ----------
+    driver : str
+    description : str
+    rotation_speed_maximum : float
+        Of the disc, in 1/s.
+    groove_diameter : float
+        Of the circle under the pin. [m]
+    """
+
+    rotation_speed_maximum: Speed
+    groove_diameter: Diameter
+
+    @abstractmethod
+    def new_device(self) -> Motor:
+        """Motor, not connected."""
+
+
+class GuardEntry(DriverEntry):
+    """Hardware that takes the outputs off where the program does not answer.
+
+    Parameters
+    ----------
+    driver : str
+    description : str
+    """
+
+    @property
+    @abstractmethod
+    def described(self) -> str:
+        """What it does, in words."""
+
+    def outputs(self, guarded: Sequence[str]) -> tuple[str, ...]:
+        """Those of the analogue outputs of drive and motor that it takes off itself."""
+        return ()
+
+    def require_use(self, guarded: Sequence[str]) -> None:
+        """Raise InvalidInput where it would guard nothing of a rig with these analogue outputs."""
+
+    @abstractmethod
+    def new_device(self, guarded: Sequence[str]) -> OutputGuard:
+        """Guard, not connected, of a rig with these analogue outputs."""
+
+
+def si_gain(gain: str, offset: str | None, *, unit: str) -> tuple[float, float]:
+    """Gain per volt and offset of a sensor, in SI.
+
+    Parameters
+    ----------
+    gain : str
+        Quantity per voltage, such as 20 N/V.
+    offset : str or None
+        Value at 0 V; 0 by default.
+    unit : str
+        SI unit of the quantity.
+
+    Returns
+    -------
+    tuple of float
+
+    Raises
+    ------
+    InvalidInput
+        If a text is none of the unit, or the gain is 0.
+    """
+    per_volt = {"V": "", "": "1/V"}.get(unit, f"({unit})/V" if "/" in unit else f"{unit}/V")
+    at_zero = 0.0 if offset is None else to_si(offset, unit=unit, name="offset")
+    per = to_si(gain, unit=per_volt, name="gain")
+    if per == 0:
+        raise InvalidInput("gain must not be 0")
+    return per, at_zero

@@ -1,0 +1,312 @@
+"""Acquisitions with clocks of their own: each is read by a thread of its own, which also holds it to its limits.
+
+The thread has its device from the first call to the last, so that one that hangs keeps no other waiting. A run takes
+what was read, and looks for what is wrong, with every block of its own clock: a sample beyond a limit, an error, lost
+samples or a block that is late by more than two seconds end the run with motor and drive off.
+"""
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from threading import Event as Signal, Lock, Thread
+from typing import Final
+
+import numpy as np
+
+from sonolube.errors import SonolubeError
+from sonolube.laboratory import supervision
+from sonolube.laboratory.block import BLOCK_DURATION, Block, Channel
+from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, SamplesLost
+from sonolube.laboratory.ending import RunEnded
+from sonolube.laboratory.interlocks import Interlock, first_trip
+from sonolube.laboratory.run_control import RunControl
+from sonolube.laboratory.standing_rig import SETTLING, still_on
+from sonolube.laboratory.states import Event
+from sonolube.units import format_si
+
+_CONNECTING: Final = 60.0  # s
+_ENDING: Final = 10.0  # s, to stop and release a device
+_POLL: Final = 0.1  # s
+_MOST_WAITING: Final = 10_000  # blocks that nobody has taken
+
+
+class OwnClocks:
+    """Acquisitions of a run beside the one whose clock is that of the protocol.
+
+    Parameters
+    ----------
+    devices : Devices
+    locks : sequence of Interlock
+        Of all channels; those of these acquisitions hold from the first sample to the last.
+    off : sequence of (str, Interlock)
+        Bounds of all channels while motor and drive are off, with what is off then.
+    """
+
+    def __init__(self, devices: Devices, locks: Sequence[Interlock], off: Sequence[tuple[str, Interlock]] = ()) -> None:
+        self._readers = [
+            _Reader(
+                clock,
+                device,
+                [lock for lock in locks if lock.channel.name in device.channels],
+                [(what, lock) for what, lock in off if lock.channel.name in device.channels],
+            )
+            for clock, device in devices.further.items()
+        ]
+
+    def begin(self, end_if_asked: Callable[[], None]) -> None:
+        """Connect all and start to sample.
+
+        Parameters
+        ----------
+        end_if_asked : callable
+            Raises where the run is to end meanwhile.
+
+        Raises
+        ------
+        DeviceError
+            If one does not start.
+        """
+        for reader in self._readers:
+            reader.begin()
+        latest = time.monotonic() + _CONNECTING
+        for reader in self._readers:
+            while not reader.has_started.wait(_POLL):
+                end_if_asked()
+                if time.monotonic() > latest:
+                    raise DeviceError(f"{reader.device.name}: did not start within {format_si(_CONNECTING, 's')}")
+        self.look()
+
+    def look(self) -> None:
+        """Raise where something is wrong with any.
+
+        Raises
+        ------
+        RunEnded
+            If a sample is beyond a limit.
+        DeviceError
+            If a device has failed, or a block is late.
+        """
+        for reader in self._readers:
+            reader.look()
+
+    def record(self, channels: Sequence[str]) -> None:
+        """Record those of these channels that they have from now on."""
+        for reader in self._readers:
+            reader.record([name for name in channels if name in reader.device.channels])
+
+    def keep(self, recorder: Recorder) -> None:
+        """Record what was read meanwhile, and look."""
+        for reader in self._readers:
+            reader.keep(recorder)
+        self.look()
+
+    def end_recording(self, recorder: Recorder) -> None:
+        """Record what was read last, and no more."""
+        for reader in self._readers:
+            reader.keep(recorder)
+            reader.end_recording(recorder)
+
+    def mean(self, channel: str) -> float | None:
+        """Mean of a channel over the latest block, in SI; None where there is none."""
+        found = (reader.mean(channel) for reader in self._readers if channel in reader.device.channels)
+        return next(found, None)
+
+    @contextmanager
+    def watched(self, control: RunControl) -> Iterator[None]:
+        """Let what is wrong end the run while an operator works at the rig, motor and drive off, in a `with` block.
+
+        Parameters
+        ----------
+        control : RunControl
+            Asked to end the run where something is wrong.
+
+        Raises
+        ------
+        RunEnded, DeviceError
+            As `look`, at the end of the block.
+        """
+        for reader in self._readers:
+            reader.stands(control.stop)
+        try:
+            yield
+        finally:
+            for reader in self._readers:
+                reader.stands(None)
+        self.look()
+
+    def end(self) -> None:
+        """Stop and release all.
+
+        Raises
+        ------
+        DeviceError
+            Naming those that do not return.
+        """
+        for reader in self._readers:
+            reader.has_ended.set()
+        latest = time.monotonic() + _ENDING
+        failures = list(filter(None, (reader.end(latest) for reader in self._readers)))
+        if failures:
+            raise DeviceError("; ".join(failures))
+
+
+class _Reader:
+    """One acquisition with its thread; what both threads use is held by the lock."""
+
+    def __init__(
+        self, clock: str, device: Acquisition, locks: Sequence[Interlock], off: Sequence[tuple[str, Interlock]]
+    ) -> None:
+        self.clock, self.device = clock, device
+        self._locks, self._off = locks, off
+        self._names = list(device.channels)
+        self.has_started, self.has_ended = Signal(), Signal()
+        self._thread = Thread(target=self._work, daemon=True, name=f"sonolube clock {clock}")
+        self._held = Lock()
+        self._failure: SonolubeError | None = None
+        self._rate = self._due = 0.0
+        self._latest: Block | None = None
+        self._waiting: deque[tuple[Block, float]] = deque(maxlen=_MOST_WAITING)
+        self._alarm: Callable[[str], None] | None = None
+        self._stands_since = 0.0
+        self._recorded: list[str] = []
+        self._is_begun = False  # in the record
+
+    def begin(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    def look(self) -> None:
+        """Raise what has failed, or where a block is late."""
+        with self._held:
+            failure, is_late = self._failure, self._rate > 0 and time.monotonic() > self._due
+        if failure is not None:
+            raise failure
+        if is_late:
+            raise DeviceError(f"{self.device.name}: a block is late by more than {format_si(supervision.LATE, 's')}")
+
+    def stands(self, alarm: Callable[[str], None] | None) -> None:
+        """Tell an alarm while motor and drive are off; None when they may be on again."""
+        with self._held:
+            self._alarm, self._stands_since = alarm, time.monotonic()
+            failure = self._failure
+        if alarm is not None and failure is not None:
+            alarm(str(failure))
+
+    def record(self, channels: list[str]) -> None:
+        """Record channels from now on."""
+        with self._held:
+            self._waiting.clear()
+            self._recorded = channels
+
+    def keep(self, recorder: Recorder) -> None:
+        """Record the blocks that were read meanwhile."""
+        columns = [self._names.index(name) for name in self._recorded]
+        while columns and (taken := self._next_waiting()) is not None:
+            block, arrived = taken
+            if not self._is_begun:
+                lasts = block.samples / self._rate
+                recorder.begin_beside(
+                    self.clock,
+                    [self._channels[name] for name in self._recorded],
+                    sample_rate=self._rate,
+                    first=block.first_sample,
+                    ago=time.monotonic() - arrived + lasts - 1 / self._rate,
+                    uncertainty=lasts + BLOCK_DURATION,
+                )
+                self._is_begun = True
+            values = block.values[:, columns]
+            recorder.append_beside(
+                self.clock, Block(first_sample=block.first_sample, sample_rate=self._rate, values=values)
+            )
+
+    def end_recording(self, recorder: Recorder) -> None:
+        """Record no more; that nothing was recorded is noted."""
+        if self._recorded and not self._is_begun:
+            recorder.note(SILENT, clock=self.clock, channels=", ".join(self._recorded))
+        self.record([])
+        if self._is_begun:
+            self._is_begun = False
+            recorder.end_beside(self.clock)
+
+    def mean(self, channel: str) -> float | None:
+        """Mean of a channel over the latest block."""
+        with self._held:
+            latest = self._latest
+        return None if latest is None else float(np.mean(latest.values[:, self._names.index(channel)]))
+
+    def end(self, latest: float) -> str:
+        """Wait for the thread until a time, and return what does not return."""
+        if self._thread.ident is None:
+            return ""
+        self._thread.join(max(latest - time.monotonic(), 0.0))
+        return f"{self.device.name}: did not return" if self._thread.is_alive() else ""
+
+    @property
+    def _channels(self) -> Mapping[str, Channel]:
+        """Channels of the device."""
+        return self.device.channels
+
+    def _next_waiting(self) -> tuple[Block, float] | None:
+        """Oldest block that was not taken, and when it came."""
+        with self._held:
+            return self._waiting.popleft() if self._waiting else None
+
+    def _work(self) -> None:
+        """Thread: connect, read until the end, and release, whatever happens."""
+        try:
+            self.device.connect()
+            self._read()
+        except SonolubeError as failure:
+            self._fails(failure)
+        except BaseException as failure:  # whatever a driver raises ends the run
+            self._fails(DeviceError(f"{self.device.name}: {type(failure).__name__}: {failure}"))
+        finally:
+            self.has_started.set()
+            for release in (self.device.stop, self.device.close):
+                with suppress(Exception):  # as above; the other must be called
+                    release()
+
+    def _fails(self, failure: SonolubeError) -> None:
+        """Keep what is wrong, and tell the alarm."""
+        with self._held:
+            self._failure, alarm = failure, self._alarm
+        if alarm is not None:
+            alarm(str(failure))
+
+    def _read(self) -> None:
+        """Read block after block."""
+        wanted = next(iter(self._channels.values())).sample_rate
+        assert wanted is not None
+        began = time.monotonic()
+        rate = float(self.device.start(self._names, sample_rate=wanted))
+        count, taken = max(1, round(BLOCK_DURATION * rate)), 0
+        while not self.has_ended.is_set():
+            allowed = supervision.LATE + supervision.CLOCK_ERROR * (time.monotonic() - began)
+            with self._held:
+                self._rate, self._due = rate, began + (taken + count) / rate + allowed
+            self.has_started.set()
+            block = self.device.read(count)
+            if block.first_sample != taken:
+                raise SamplesLost(
+                    f"{self.device.name}: {block.first_sample - taken} samples are missing after sample {taken}"
+                )
+            taken = block.next_sample
+            self._take(block)
+        with self._held:
+            self._rate = 0.0  # no block is due any more
+
+    def _take(self, block: Block) -> None:
+        """Hold a block to the limits, and keep it for the run."""
+        trip = first_trip(block, self._names, self._locks)
+        if trip is not None:
+            raise RunEnded(Event.TRIP, trip.reason)
+        with self._held:
+            self._latest = block
+            if self._recorded:
+                self._waiting.append((block, time.monotonic()))
+            stood = time.monotonic() - self._stands_since if self._alarm is not None else 0.0
+        for what, lock in self._off:
+            found = first_trip(block, self._names, [lock]) if stood > SETTLING[what] else None
+            if found is not None:
+                raise RunEnded(Event.TRIP, still_on(what, lock, found))

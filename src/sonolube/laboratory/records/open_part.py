@@ -1,0 +1,94 @@
+"""Part of a recording that is being written, of the clock of a run or of another."""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from sonolube.errors import InvalidInput
+from sonolube.growing_files import AppendedFile
+from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.records.documents import DocumentLog, ReadDocuments
+from sonolube.laboratory.records.part_clock import PartClock
+from sonolube.laboratory.records.raw_blocks import raw_header, raw_record
+from sonolube.laboratory.records.run_folder import raw_path
+
+NoteGap = Callable[[int, Mapping[str, str | float]], None]
+"""Takes the first missing sample, and what is known of the gap."""
+
+
+class OpenPart:
+    """Samples of some channels that follow one another.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the run.
+    number : int
+        From 1.
+    channels : sequence of Channel
+    log : DocumentLog
+    sample_rate : float
+        [Hz]
+    begun : float
+        In s since 1970.
+    clock : PartClock, optional
+        Where it is not that of the run.
+
+    Raises
+    ------
+    InvalidInput
+        If the channels are no channels, or the disk is full.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        number: int,
+        channels: Sequence[Channel],
+        log: DocumentLog,
+        *,
+        sample_rate: float,
+        begun: float,
+        clock: PartClock | None = None,
+    ) -> None:
+        self.number, self.begun, self.clock, self.samples = number, begun, clock, 0
+        self._channels, self._rate, self._log = len(channels), sample_rate, log
+        self._blocks, self._next = 0, None if clock is None else clock.first_sample
+        header = raw_header(channels, sample_rate=sample_rate, begun=begun, clock=clock)
+        self._file: AppendedFile | None = AppendedFile(raw_path(folder, number))
+        try:
+            self._file.append(header)
+            name = "" if clock is None else clock.name
+            log.part(number, channels, sample_rate=sample_rate, time=begun, clock=name)
+        except InvalidInput:
+            with suppress(InvalidInput):
+                self.close()
+            raise
+
+    def require_fitting(self, block: Block) -> None:
+        """Raise where a block has another shape, or the sample counter goes back."""
+        if block.values.ndim != 2 or block.values.shape[1] != self._channels or not block.samples:
+            raise InvalidInput(f"block has the shape {block.values.shape}, but {self._channels} channels are recorded")
+        if block.first_sample < (self._next or 0):
+            raise InvalidInput(f"block begins at sample {block.first_sample}, but {self._next} was expected")
+
+    def append(self, block: Block, note_gap: NoteGap) -> None:
+        """Keep a block that fits; it is in the hands of the operating system when this returns."""
+        assert self._file is not None
+        if self._next is not None and block.first_sample > self._next:
+            note_gap(self._next, {"missing": block.first_sample - self._next})
+        self._file.append(raw_record(block, sequence=self._blocks))
+        self._blocks += 1
+        self.samples += block.samples
+        self._next = block.next_sample
+
+    def close(self) -> None:
+        """Close the file; harmless where that was done before."""
+        file, self._file = self._file, None
+        if file is not None:
+            file.close()
+
+    def describe(self, earlier: ReadDocuments) -> None:
+        """Write how many samples it has, unless `earlier` tells that."""
+        name = "" if self.clock is None else self.clock.name
+        self._log.end_part(earlier, self.number, samples=self.samples, sample_rate=self._rate, clock=name)
