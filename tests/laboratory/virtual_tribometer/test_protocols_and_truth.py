@@ -27,6 +27,7 @@ from sonolube.laboratory.virtual_tribometer.disturbances import DISTURBANCE_UNIT
 from sonolube.measurement.friction_analysis import analyse_stick_slip
 from sonolube.measurement.swept_impedance import swept_impedance
 from sonolube.models.dynamics.structure import electrical_admittance
+from sonolube.report.blocks import text_lines
 from sonolube.rig import read_rig
 from sonolube.tasks import lab
 from sonolube.tasks.lab.run_answer import RunAnswer
@@ -164,7 +165,7 @@ def test_stick_slip_at_low_speed_has_the_frequency_and_fall_of_the_truth(tmp_pat
 
 def next_of(answer: RunAnswer) -> list[str]:
     """Words of the command that a run names as the next one."""
-    (line,) = (str(block) for block in answer.blocks() if str(block).lstrip().startswith("next:"))
+    (line,) = (line for line in text_lines(answer.blocks(), line_length=40) if line.lstrip().startswith("next:"))
     return line.split()[1:]
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
-from sonolube.files import locked_folder, remove_file
+from sonolube.files import locked_folder
 from sonolube.growing_files import AppendedFile
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
@@ -28,6 +28,7 @@ from sonolube.laboratory.records.run_folder import (
     raw_path,
     recording_path,
 )
+from sonolube.operating_system import remove_file
 
 if TYPE_CHECKING:
     import xarray as xr
