@@ -130,7 +130,10 @@ class VirtualRig:
             "actuator_temperature_rise": (actuator, "K"),
             "pin_temperature_rise": (pin, "K"),
         }
-        return truth_dataset(self._settings, sizes=self._sizes, single=single, title=f"Truth of {self._rig.title}")
+        title = f"Truth of {self._rig.title}"
+        return truth_dataset(
+            self._settings, end_time=self._time, bursts=self._bursts, sizes=self._sizes, single=single, title=title
+        )
 
     def start(self, names: Sequence[str], sample_rate: float) -> None:
         """Begin to sample."""
@@ -243,9 +246,8 @@ class VirtualRig:
         flash = self._temperatures.set(
             self._time, setting=self._setting, friction_force=self._level.friction_force, sliding_speed=speed
         )
-        sticking, bursts = self._stick_slip, self._stick_slip.comes_in_bursts and self._sizes.burst_duration > 0
         self._settings.append(
-            TruthSetting(self._time, speed, self._setting, self._level, flash, self._load, sticking, bursts)
+            TruthSetting(self._time, speed, self._setting, self._level, flash, self._load, self._stick_slip)
         )
 
     def _sticking(self, sliding_speed: float) -> StickSlip:
