@@ -31,6 +31,7 @@ from sonolube.models.dynamics.structure import electrical_admittance
 from sonolube.report.blocks import text_lines
 from sonolube.rig import read_rig
 from sonolube.tasks import lab
+from sonolube.tasks.identify.decay_length_of_run import decay_length
 from sonolube.tasks.lab.run_answer import RunAnswer
 from sonolube.tasks.measure.gauge_calibration import calibration
 
@@ -131,9 +132,7 @@ def test_levels_speeds_and_loads_are_those_of_the_truth(made: Any, name: str, se
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 @pytest.mark.parametrize("name", ["study_1", "study_2"])
-def test_stick_slip_is_seen_or_said_to_be_too_fast_where_the_truth_has_it_alone(
-    made: Any, name: str, seed: int
-) -> None:
+def test_stick_slip_is_seen_or_too_fast_where_the_truth_has_it_alone(made: Any, name: str, seed: int) -> None:
     folder = made(name, seed)
     truth = xr.load_dataset(folder / "truth" / "truth.nc", engine="h5netcdf")
     run = read_run(folder)
@@ -204,6 +203,8 @@ def test_the_resonance_sweep_leads_to_the_resonance_of_the_structure(tmp_path: P
     assert structure is not None
     expected = 1 / electrical_admittance(structure, frequency=found.frequency)
     assert np.max(np.abs(found.impedance / expected - 1)) < 2e-3
+    line = "voltage and current at 100 kHz do not resolve the drive (fewer than five samples a period)"
+    assert line in found.caveats
 
 
 def test_the_waveguide_calibration_leads_to_the_stiffness_of_the_truth(tmp_path: Path) -> None:
@@ -215,6 +216,35 @@ def test_the_waveguide_calibration_leads_to_the_stiffness_of_the_truth(tmp_path:
         value.value for value in calibration(loops, apply=[test]).sheets[0].values if "stiffness" in value.name
     )
     assert stiffness == pytest.approx(float(truth["deflected_stiffness"]), rel=0.01)
+
+
+def test_the_decay_length_run_leads_to_the_forces_of_the_truth_and_to_no_change(tmp_path: Path) -> None:
+    protocol = protocol_by_name_or_file("decay_length_run")
+    *before, switched = protocol.steps
+    assert isinstance(switched, Repeat)
+    few = switched.model_copy(update={"count": 5, "steps": shortened(switched.steps, longest=6.0)})
+    (tmp_path / "run.toml").write_text(protocol_text(protocol.model_copy(update={"steps": (*before, few)})))
+    answer = lab.virtual(RIG, protocol=tmp_path / "run.toml", seed=1, out=tmp_path / "runs")
+    folder = answer.run.folder
+    assert next_of(answer) == ["sonolube", "identify", "decay-length", str(folder)]
+    truth = xr.load_dataset(folder / "truth" / "truth.nc", engine="h5netcdf")
+    volts, slides = truth["voltage_peak_to_peak"].to_numpy(), truth["sliding_speed"].to_numpy() > 0
+    without, with_vibration = (truth["friction_force"].to_numpy()[slides & (volts == each)][0] for each in (0.0, 25.9))
+    (one,) = {float(value) for value in catalogued_runs(f"catalogue:in={folder.parent}")["voltage_peak_to_peak"]}
+    assert one == pytest.approx(25.9)
+    found = decay_length(folder)
+    table = found.table
+    assert table.sliding_distance == pytest.approx(6.0 * 0.065 * np.arange(1, 10), rel=2e-3)
+    for force, error, expected in (
+        (table.friction_force, table.friction_force_uncertainty, with_vibration),
+        (table.intrinsic_friction_force, table.intrinsic_friction_force_uncertainty, without),
+    ):
+        assert error is not None
+        assert table.force_zero_uncertainty is not None
+        late = table.sliding_distance > 3 * float(truth["run_in_distance"])  # the track has run in
+        deviation = (force - table.force_zero - expected) / np.hypot(error, table.force_zero_uncertainty)
+        assert np.max(np.abs(deviation[late])) < 4
+    assert "none of them" in found.decision.verdict
 
 
 def test_lubricant_and_load_of_prompts_change_the_virtual_rig_or_it_says_that_they_do_not(made: Any) -> None:

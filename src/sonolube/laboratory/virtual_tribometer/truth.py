@@ -86,6 +86,7 @@ def truth_dataset(
     import xarray as xr
 
     ends = [*(each.start_time for each in settings[1:]), end_time]
+    shares = [each.sticking_share(bursts, end) for each, end in zip(settings, ends, strict=True)]
     columns = {
         "start_time": ([each.start_time for each in settings], "s"),
         "sliding_speed": ([each.sliding_speed for each in settings], "m/s"),
@@ -100,10 +101,7 @@ def truth_dataset(
         "normal_load": ([each.normal_load for each in settings], "N"),
         "stick_slip_frequency": ([1 / each.stick_slip.period if each.sticks else 0.0 for each in settings], "Hz"),
         "stick_slip_fall": ([each.stick_slip.fall if each.sticks else 0.0 for each in settings], "N"),
-        "stick_slip_fraction": (
-            [each.sticking_share(bursts, end) for each, end in zip(settings, ends, strict=True)],
-            "1",
-        ),
+        "stick_slip_fraction": (shares, "1"),
     }
     numbers = {**single, **{name: (getattr(sizes, name), unit) for name, unit in DISTURBANCE_UNITS.items()}}
     return xr.Dataset(

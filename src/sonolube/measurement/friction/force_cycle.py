@@ -94,7 +94,7 @@ def find_cycle(signal: Floats, *, sample_interval: float, frequency: float) -> t
 
     .. math:: S_b = \frac{K}{g}\Bigl[\ln\frac{\bar x - \min x}{s_x} + \tfrac12 - \tfrac12 \ln 2\pi\Bigr] ,
 
-    is at least 12, the standard deviation is below 0.3 of the mean, and a tenth of the power at most is left in between.
+    is at least 12, the standard deviation is below 0.3 of the mean, and at most a tenth of the power is left between.
     It is stick-slip where its fall takes less than a third of the period; and, from 30 Hz on, where it takes up to 0.6
     and the frequency is no multiple of that of the mains, which have no bursts: a mass on a spring with a slip as long
     as the stick swings nearly like a sine.
@@ -189,12 +189,12 @@ def _is_steady_in_bursts(power: Floats, whole: np.ndarray, empty: np.ndarray) ->
     if deviation > _VARYING * mean or np.mean(power[empty]) > _REMAINING * mean:
         return False
     gain = np.log((mean - own.min()) / deviation) + (1 - np.log(2 * np.pi)) / 2 if deviation else np.inf
-    return own.size / statistical_inefficiency(own) * float(gain) >= CYCLE_SCORE
+    return bool(own.size / statistical_inefficiency(own) * gain >= CYCLE_SCORE)
 
 
 def _inner(chosen: np.ndarray) -> np.ndarray:
     """Which sections are chosen with both neighbours."""
-    return chosen & np.append(chosen[1:], True) & np.insert(chosen[:-1], 0, True)
+    return np.asarray(chosen & np.append(chosen[1:], True) & np.insert(chosen[:-1], 0, True))
 
 
 def _aligned(coefficients: Floats, harmonics: int) -> tuple[Floats, Floats]:
