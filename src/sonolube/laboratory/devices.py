@@ -188,6 +188,8 @@ class Devices:
         Watchdog or enable line of the rig.
     attend : callable or None
         Takes a prompt after it was confirmed: of simulated devices the time passes, and load and lubricant change.
+    clock : callable or None
+        Time of virtual devices, in s, which goes on while they are read; None where that of the computer counts.
     """
 
     acquisition: Acquisition
@@ -200,6 +202,7 @@ class Devices:
     resources: tuple[str, ...] = ()
     guard: OutputGuard | None = None
     attend: Callable[[Prompt], None] | None = None
+    clock: Callable[[], float] | None = None
 
 
 def connect_devices(devices: Devices) -> None:

@@ -85,7 +85,7 @@ def truth_dataset(
     """
     import xarray as xr
 
-    ends = [*(each.start_time for each in settings[1:]), end_time]
+    ends = [*(each.start_time for each in settings), end_time][1:]
     shares = [each.sticking_share(bursts, end) for each, end in zip(settings, ends, strict=True)]
     columns = {
         "start_time": ([each.start_time for each in settings], "s"),
