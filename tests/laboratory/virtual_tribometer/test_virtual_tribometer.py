@@ -221,7 +221,10 @@ def test_a_broken_gauge_trips_the_limit_of_the_force(kind: str, reason: str) -> 
 
 
 @pytest.mark.parametrize("kind", ["late", "hang"])
-def test_the_supervisor_ends_a_virtual_run_that_is_late_or_hangs_with_its_outputs_off(kind: str) -> None:
+def test_the_supervisor_ends_a_virtual_run_that_is_late_or_hangs_with_its_outputs_off(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sonolube.laboratory.supervision.LATE", 2.0)  # of the time of the virtual rig
     virtual = tribometer(fault=Fault(2000, kind))  # type: ignore[arg-type]
     result = run_protocol(
         protocol_by_name_or_file("map_test"), virtual.devices, MemoryRecord(), operator=lambda prompt: True

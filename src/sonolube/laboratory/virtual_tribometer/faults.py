@@ -69,4 +69,5 @@ class FaultyReading:
 
     def release(self) -> None:
         """End a call that hangs."""
-        self._released.set()
+        if self.delay == inf:
+            self._released.set()
