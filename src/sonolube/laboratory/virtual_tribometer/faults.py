@@ -38,7 +38,7 @@ class FaultyReading:
     ----------
     fault : Fault or None
     delay : float
-        By which the clock is ahead of the samples. [s]
+        By which the clock is ahead of the samples, in s.
     """
 
     fault: Fault | None
