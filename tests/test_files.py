@@ -11,15 +11,8 @@ import pytest
 from pytest import MonkeyPatch, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.files import (
-    clear_unfinished,
-    expect_file,
-    expect_files,
-    locked_folder,
-    remove_file,
-    unfinished_file,
-    write_atomically,
-)
+from sonolube.files import clear_unfinished, expect_file, expect_files, locked_folder, unfinished_file, write_atomically
+from sonolube.operating_system import remove_file
 from sonolube.targets import command_files, expect_target, record_input
 
 LargestFile = Callable[[int], AbstractContextManager[None]]

@@ -3,8 +3,6 @@
 import io
 import os
 import stat
-import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
@@ -14,12 +12,8 @@ from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
 from sonolube.interruption import undone_at_signal
+from sonolube.operating_system import ON_WINDOWS, lock_file, replace_file
 from sonolube.targets import expect_target, refusal, resolved_target
-
-if sys.platform == "win32":
-    import msvcrt
-else:
-    import fcntl
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -85,9 +79,9 @@ class UnfinishedFile(io.FileIO):
             target = resolved_target(self._path)
             with suppress(FileNotFoundError):
                 self._name.chmod(stat.S_IMODE(target.stat().st_mode))
-            if sys.platform == "win32":
+            if ON_WINDOWS:
                 self.close()  # an open file cannot be renamed
-            self._name.replace(target)
+            replace_file(self._name, target)
             self.close()
 
 
@@ -183,11 +177,6 @@ def expect_files(folder: Path, patterns: Sequence[str]) -> None:
                 expect_target(path)
 
 
-def remove_file(path: Path) -> None:
-    """Remove a file where it exists."""
-    path.unlink(missing_ok=True)
-
-
 def clear_unfinished(folder: Path, *patterns: str) -> None:
     """Remove the unfinished files that killed processes have left in a folder.
 
@@ -240,30 +229,8 @@ def user_state_folder() -> Path:
     Path
         `sonolube` below $XDG_STATE_HOME, %LOCALAPPDATA% or ~/.local/state.
     """
-    base = os.environ.get("XDG_STATE_HOME") or (os.environ.get("LOCALAPPDATA") if os.name == "nt" else None)
+    base = os.environ.get("XDG_STATE_HOME") or (os.environ.get("LOCALAPPDATA") if ON_WINDOWS else None)
     return Path(base or Path.home() / ".local" / "state") / "sonolube"
-
-
-def process_start(process: int) -> str:
-    """Time at which a process has started, as the system writes it; empty where there is none.
-
-    Parameters
-    ----------
-    process : int
-        Number, which a later process may get again.
-
-    Returns
-    -------
-    str
-    """
-    with suppress(OSError, IndexError):
-        boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
-        state, *rest = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-        return "" if state == "Z" else f"{boot} {rest[18]}"
-    with suppress(OSError, subprocess.SubprocessError):  # where the system keeps no /proc
-        command = ["ps", "-o", "lstart=", "-p", str(process)]
-        return subprocess.run(command, capture_output=True, text=True, check=False, timeout=5).stdout.strip()
-    return ""
 
 
 def is_locked(folder: Path) -> bool:
@@ -273,7 +240,7 @@ def is_locked(folder: Path) -> bool:
     except OSError:
         return False
     try:
-        return _lock(handle) is False
+        return lock_file(handle) is False
     finally:
         os.close(handle)
 
@@ -324,9 +291,9 @@ def _created(name: Path, mode: int) -> int:
     """Handle of a new file, locked."""
     while True:
         handle = os.open(name, _FLAGS | os.O_EXCL, mode)
-        if sys.platform == "win32":
+        if ON_WINDOWS:
             return handle  # an open file cannot be removed
-        _lock(handle, wait=True)
+        lock_file(handle, wait=True)
         if os.fstat(handle).st_nlink:
             return handle
         os.close(handle)  # removed before it was locked
@@ -336,7 +303,7 @@ def _lock_handle(place: Path) -> int | None:
     """Handle of a locked file of this name; None where another process has locked it."""
     while True:
         handle = os.open(place, _FLAGS, 0o666)
-        if _lock(handle) is False:
+        if lock_file(handle) is False:
             os.close(handle)
             return None
         with suppress(FileNotFoundError):
@@ -345,23 +312,9 @@ def _lock_handle(place: Path) -> int | None:
         os.close(handle)  # removed by the process that had it locked
 
 
-def _lock(handle: int, *, wait: bool = False) -> bool | None:
-    """Whether a file could be locked; None on a file system without locks."""
-    try:
-        if sys.platform == "win32":
-            msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
-        else:
-            fcntl.flock(handle, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except (BlockingIOError, PermissionError):
-        return False
-    except OSError:
-        return None
-    return True
-
-
 def _release(handle: int, place: Path) -> None:
     """Remove a locked file and its lock."""
-    if sys.platform == "win32":
+    if ON_WINDOWS:
         os.close(handle)  # an open file cannot be removed
         _remove_quietly(place)
     else:
@@ -373,12 +326,12 @@ def _remove_unlocked(path: Path) -> None:
     """Remove a regular file unless a process has locked it."""
     if not stat.S_ISREG(path.lstat().st_mode):
         return
-    if sys.platform == "win32":
+    if ON_WINDOWS:
         path.unlink()  # fails while a process has it open
         return
     handle = os.open(path, os.O_RDWR)
     try:
-        if _lock(handle):
+        if lock_file(handle):
             path.unlink()
     finally:
         os.close(handle)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Self
 
 from sonolube.errors import InvalidInput
+from sonolube.operating_system import replace_file
 from sonolube.targets import expect_target, refusal
 
 if TYPE_CHECKING:
@@ -193,7 +194,7 @@ def set_database_aside(path: Path) -> None:
         If the folder cannot be written.
     """
     try:
-        path.replace(path.with_name(f"{path.name}.damaged"))
+        replace_file(path, path.with_name(f"{path.name}.damaged"))
         for ending in ("-wal", "-shm"):
             path.with_name(path.name + ending).unlink(missing_ok=True)
     except OSError as failure:

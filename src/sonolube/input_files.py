@@ -13,6 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
+from sonolube.operating_system import ON_WINDOWS
+
 LARGEST_INPUT: Final = 2**30
 """Bytes that a pipe may give; of regular files each reader has its own bound, or reads them in parts."""
 
@@ -78,6 +80,8 @@ def _is_pipe(path: Path) -> bool:
 
 def _pipe_bytes(path: Path, most: int) -> bytes:
     """Return what a pipe gives until its writer closes it, or gave when it was read."""
+    if ON_WINDOWS:
+        raise OSError(errno.ESPIPE, "is a pipe, which cannot be read on Windows; save it to a file", str(path))
     found = path.stat()
     key = path, found.st_dev, found.st_ino
     if key not in _PIPES:

@@ -4,9 +4,19 @@ import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from threading import Event
 from types import FrameType
+from typing import Final
 
-_MEANINGS = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "ended with its terminal"}
+from sonolube.operating_system import at_console_close
+
+_MEANINGS: Final = {  # Windows has no SIGHUP, and alone SIGBREAK
+    "SIGINT": "interrupted",
+    "SIGTERM": "terminated",
+    "SIGHUP": "ended with its terminal",
+    "SIGBREAK": "interrupted by Ctrl-Break",
+}
+_ORDERLY_END: Final = 2.0  # s, of the five that Windows leaves when it closes a console
 _SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # a progress bar has hidden it
 _UNDO: dict[object, Callable[[], object]] = {}
 
@@ -30,7 +40,7 @@ def undone_at_signal(undo: Callable[[], object]) -> Iterator[None]:
 
 @contextmanager
 def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
-    """Let the first SIGINT, SIGTERM or SIGHUP inside a `with` block ask for an orderly end; a second acts as outside.
+    """Let the first signal inside a `with` block ask for an orderly end; a second acts as outside.
 
     Parameters
     ----------
@@ -39,7 +49,9 @@ def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
 
     Notes
     -----
-    Signals that are ignored stay ignored; outside the main thread of a process nothing changes.
+    The signals are SIGINT, SIGTERM, SIGHUP and, on Windows, SIGBREAK. Those that are ignored stay ignored; outside the
+    main thread of a process they change nothing. Where Windows closes the console, the block has two seconds to end;
+    then what was begun is undone, and the process ends.
     """
     former: dict[int, signal._HANDLER] = {}
 
@@ -52,18 +64,28 @@ def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
             signal.signal(*former.popitem())
 
     for name in _MEANINGS:
-        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             with suppress(ValueError):
                 former[number] = signal.signal(number, first)
+    ended = Event()
+
+    def close(meaning: str) -> None:
+        ask(meaning)
+        ended.wait(_ORDERLY_END)
+        _undo_all()
+
+    forget = at_console_close(close)
     try:
         yield
     finally:
+        ended.set()
+        forget()
         restore()
 
 
 def end_program_at_signals() -> None:
-    """Let SIGINT, SIGTERM and SIGHUP end this process with one line and the exit status 128 + number of the signal.
+    """Let SIGINT, SIGTERM, SIGHUP and SIGBREAK end this process: one line, exit status 128 + number of the signal.
 
     Notes
     -----
@@ -80,8 +102,7 @@ def end_program_at_signals() -> None:
 
     def end(number: int, frame: FrameType | None) -> None:
         if os.getpid() == process:  # what a forked process began is in its parent's hands
-            for undo in list(_UNDO.values()):
-                undo()
+            _undo_all()
         if terminal is not None:
             line = f"sonolube: {_MEANINGS[signal.Signals(number).name]}\n".encode()
             with suppress(OSError):  # nobody may read it
@@ -89,7 +110,14 @@ def end_program_at_signals() -> None:
         os._exit(128 + number)
 
     for name in _MEANINGS:
-        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             with suppress(ValueError):  # only the main thread of a process handles signals
                 signal.signal(number, end)
+    at_console_close(lambda meaning: _undo_all())
+
+
+def _undo_all() -> None:
+    """Undo what was begun and is not complete."""
+    for undo in list(_UNDO.values()):
+        undo()

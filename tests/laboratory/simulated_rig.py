@@ -44,6 +44,7 @@ class SimulatedRig:
     connected: int = 0
     sample: int = 0
     total: int = 0
+    time: float = 0.0
     rate: float = 0.0
     names: tuple[str, ...] = ()
 
@@ -64,6 +65,7 @@ class SimulatedRig:
             description={"rig": "simulated"},
             groove_diameter=0.05,
             simulated=True,
+            clock=lambda: self.time,
         )
 
     @property
@@ -91,6 +93,7 @@ class SimulatedRig:
         first = self.sample + (1 if -1 < self.skip_at <= self.total else 0)
         self.sample += samples
         self.total += samples
+        self.time += samples / self.rate
         return Block(first_sample=first, sample_rate=self.rate, values=np.tile(row, (samples, 1)))
 
     def stop(self) -> None:

@@ -73,7 +73,7 @@ def test_another_run_of_the_same_process_is_kept_out() -> None:
 def test_where_files_cannot_be_locked_the_start_time_tells_a_process_from_a_later_one(
     tmp_path: Path, monkeypatch: MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sonolube.files._lock", lambda handle, wait=False: None)
+    monkeypatch.setattr("sonolube.files.lock_file", lambda handle, wait=False: None)
     with holder(tmp_path) as process:
         with raises(DeviceInUse, match=f"process {process.pid}"):
             require_free([CARD])
@@ -89,9 +89,14 @@ def test_where_files_cannot_be_locked_the_start_time_tells_a_process_from_a_late
     [
         ("TCPIP::192.168.1.21::5025::SOCKET", "tcpip0::192.168.1.21::5025::socket"),
         ("TCPIP::generator.local::INSTR", "TCPIP0::GENERATOR.local::inst0::INSTR"),
+        ("TCPIP::192.168.1.21", "TCPIP1::192.168.1.21::INST0::INSTR"),
         ("ASRL3::INSTR", "asrl3::instr"),
+        ("ASRL3::INSTR", "com3"),
+        ("ASRLCOM12::INSTR", r"\\.\COM12"),
         ("GPIB::10::INSTR", "GPIB0::10::INSTR"),
+        ("GPIB::5", "GPIB0::0x5::INSTR"),
         ("USB::0x0957::0x2807::MY500::INSTR", "USB0::2391::10247::my500::0::INSTR"),
+        ("USB::0x0957::0x2807::MY500", "USB1::0x957::0x2807::MY500::INSTR"),
     ],
 )
 def test_two_ways_to_write_an_address_are_one_device(addresses: tuple[str, str]) -> None:
@@ -111,6 +116,12 @@ def test_different_devices_have_different_names() -> None:
         "GPIB0::1::INSTR",
         "GPIB1::1::INSTR",
         "ASRL1::INSTR",
+        "COM2",
+        "TCPIP::h::inst1::INSTR",
+        "TCPIP::h::INSTR",
+        "USB::1::2::0::INSTR",
+        "USB::1::2::00::INSTR",
+        "USB::1::2::0::1::INSTR",
     )
     assert len(set(map(visa_resource, addresses))) == len(addresses)
     assert daqmx_resource("Dev1/ao0") == daqmx_resource("DEV1/ao1") == daqmx_resource("dev1") != daqmx_resource("Dev11")

@@ -58,7 +58,7 @@ def run(rig: Watched, operator: Callable[[Prompt, RunControl], bool]) -> tuple[R
         finally:
             rig.is_asking = False
 
-    devices = replace(rig.devices(), simulated=False)
+    devices = replace(rig.devices(), simulated=False, clock=None)
     result = run_protocol(PROTOCOL, devices, record, operator=asked, control=control)
     assert rig.is_off
     return result, record

@@ -85,7 +85,7 @@ class HangingRig(SimulatedRig):
 
 
 def hardware(rig: SimulatedRig) -> Devices:
-    return replace(rig.devices(), simulated=False)
+    return replace(rig.devices(), simulated=False, clock=None)
 
 
 def run(rig: SimulatedRig, record: MemoryRecord | None = None, advance: Callable[..., None] | None = None) -> RunResult:

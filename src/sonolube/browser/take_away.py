@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import shlex
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
@@ -15,6 +14,7 @@ from sonolube.browser.answers import called, given_arguments, offered_task, posi
 from sonolube.browser.places import Places
 from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.operating_system import quoted
 from sonolube.report.blocks import Rows, Table, Verbatim
 from sonolube.report.page import Page, PageTable, rendered_files
 from sonolube.tasks.answer import Answer
@@ -75,7 +75,7 @@ def command_line(task: Task, arguments: Mapping[str, Any], places: Places) -> di
             several = named if isinstance(named, list) else [named]
             flag = [] if name in by_place else [option]
             words += [word for each in several for word in (*flag, str(each))]
-    return _file("command.txt", "text/plain", shlex.join(words))
+    return _file("command.txt", "text/plain", " ".join(map(quoted, words)))
 
 
 def python(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.files import clear_unfinished, locked_folder, remove_file, write_atomically
+from sonolube.files import clear_unfinished, locked_folder, write_atomically
+from sonolube.operating_system import remove_file
 from sonolube.rig import NUMBERS, PointBatch
 
 _MANIFEST = "sweep.json"

@@ -240,6 +240,11 @@ def _executor(workers: int, scheduler: str | None, *, few_points: bool) -> Itera
     import distributed
 
     cluster: Any = distributed  # it has annotations in part
-    local = cluster.LocalCluster(n_workers=workers, threads_per_worker=1) if scheduler == "local" else None
+    own = {
+        "n_workers": workers,
+        "threads_per_worker": 1,
+        "dashboard_address": "127.0.0.1:0",
+    }  # any port: runs share 8787
+    local = cluster.LocalCluster(**own) if scheduler == "local" else None
     with local or nullcontext(), cluster.Client(local or scheduler) as client:
         yield client.get_executor(pure=False)

@@ -223,6 +223,8 @@ class Devices:
         Takes a prompt after it was confirmed: of simulated devices the time passes, and load and lubricant change.
     further : mapping of str to Acquisition
         Acquisitions with a clock and a sample rate of their own, by name; their channels state the rate.
+    clock : callable or None
+        Time of virtual devices, in s, which goes on while they are read; None where that of the computer counts.
     """
 
     acquisition: Acquisition
@@ -235,6 +237,7 @@ class Devices:
     resources: tuple[str, ...] = ()
     guard: OutputGuard | None = None
     attend: Callable[[Prompt], None] | None = None
+    clock: Callable[[], float] | None = None
     further: Mapping[str, Acquisition] = field(default_factory=dict)
 
     @property

@@ -112,8 +112,7 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
         "simulated": devices.simulated,
         **{f"device_{name.replace(' ', '_')}": text for name, text in devices.description.items()},
     }
-    if not devices.simulated:
-        facts["late_maximum"] = LATE
+    facts["late_maximum"] = LATE
     if unresolved := plan.unresolved(devices):
         facts[UNRESOLVED] = unresolved
     facts["groove_diameter"] = groove_diameter(plan.protocol, devices)

@@ -2,20 +2,21 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from math import inf
 from threading import Event as Signal, Thread
 from typing import Final
 
-from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Limits
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drive_sampling import IDLE_RATE
-from sonolube.laboratory.ending import RunEnded
+from sonolube.laboratory.ending import RunEnded, ending
 from sonolube.laboratory.interlocks import Interlock, Trip, first_trip
 from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.states import Event
 from sonolube.units import format_si
 
 _BLOCK: Final = 0.05  # s
+_VIRTUAL: Final = 2.0  # s, of the time of virtual devices
 _OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
 _OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
 _STILL_SHARE: Final = 0.01  # of the speed of the motor, below which the disc counts as at rest
@@ -29,7 +30,7 @@ class StandingRig:
     Parameters
     ----------
     devices : Devices
-        Simulated ones are not watched.
+        Virtual ones, whose time does not go on by itself, are watched for two seconds.
     locks : sequence of Interlock
         Of the protocol; those of the temperature hold here too.
     limits : Limits
@@ -39,12 +40,12 @@ class StandingRig:
 
     def __init__(self, devices: Devices, locks: Sequence[Interlock], limits: Limits, *, sample_rate: float) -> None:
         self._acquisition = devices.acquisition
-        channels = {} if devices.simulated else devices.acquisition.channels
+        channels, self._lasts = devices.acquisition.channels, inf if devices.clock is None else _VIRTUAL
         self._off = [(what, lock) for what, lock in off_bounds(devices, limits) if lock.channel.name in channels]
         self._always = [lock for lock in locks if lock.channel.is_watched_at_rest and lock.channel.name in channels]
         self._names = [lock.channel.name for lock in (*self._always, *(lock for _, lock in self._off))]
         self._wanted_rate, self._rate, self._time = min(sample_rate, IDLE_RATE), 0.0, 0.0
-        self._failure: SonolubeError | None = None
+        self._failure: BaseException | None = None
 
     @contextmanager
     def watched(self, control: RunControl) -> Iterator[None]:
@@ -59,8 +60,8 @@ class StandingRig:
         ------
         RunEnded
             At the end of the block, if a temperature is beyond its limit, or an output is on.
-        DeviceError
-            At the end of the block, if the inputs have failed.
+        BaseException
+            At the end of the block, whatever the inputs have raised.
         """
         if not self._names:
             yield
@@ -72,7 +73,8 @@ class StandingRig:
         try:
             yield
         finally:
-            ended.set()
+            if self._lasts == inf:
+                ended.set()
             thread.join()
             self._acquisition.stop()
         if self._failure is not None:
@@ -81,13 +83,13 @@ class StandingRig:
     def _look_on(self, ended: Signal, control: RunControl) -> None:
         """Read block after block until the end, or until something is wrong."""
         try:
-            while not ended.is_set():
+            while not ended.is_set() and self._time < self._lasts:
                 trip = self._look()
                 if trip is not None:
                     raise RunEnded(Event.TRIP, trip)
-        except SonolubeError as failure:
+        except BaseException as failure:  # whatever a driver raises, the rig is watched no more
             self._failure = failure
-            control.stop(str(failure))
+            control.stop(ending(failure)[1])
 
     def _look(self) -> str | None:
         """Read a block, and return what is wrong."""

@@ -63,20 +63,18 @@ class Supervisor:
     Parameters
     ----------
     devices : Devices
-        Simulated ones, which switch nothing, are used as they are.
+        The time of virtual ones is that of their own clock.
     """
 
     def __init__(self, devices: Devices) -> None:
         self._hardware, self._guard = devices, devices.guard
-        self.devices = devices
-        if not devices.simulated:
-            self.devices = replace(
-                devices,
-                acquisition=_SupervisedAcquisition(devices.acquisition, self),
-                drive=_SupervisedDrive(devices.drive, self),
-                motor=_SupervisedMotor(devices.motor, self),
-                guard=None,
-            )
+        self.devices = replace(
+            devices,
+            acquisition=_SupervisedAcquisition(devices.acquisition, self),
+            drive=_SupervisedDrive(devices.drive, self),
+            motor=_SupervisedMotor(devices.motor, self),
+            guard=None,
+        )
         self._changed = Condition()
         self._calls: SimpleQueue[_Call | None] = SimpleQueue()
         self._waiting: _Call | None = None
@@ -90,9 +88,6 @@ class Supervisor:
     @contextmanager
     def at_work(self) -> Iterator[None]:
         """Watch the clock inside a `with` block."""
-        if self._hardware.simulated:
-            yield
-            return
         for work in (self._make_calls, self._watch):
             Thread(target=work, daemon=True, name="sonolube devices").start()
         try:
@@ -102,6 +97,10 @@ class Supervisor:
                 self._has_ended = True
                 self._changed.notify_all()
             self._calls.put(None)
+
+    def now(self) -> float:
+        """Time of the clock. [s]"""
+        return time.monotonic() if self._hardware.clock is None else self._hardware.clock()
 
     def call(self, what: str, function: Callable[[], Any], *, limit: float, otherwise: str = "") -> Any:
         """Answer of a call to a device.
@@ -142,7 +141,7 @@ class Supervisor:
                 self._expect(
                     rest if self._on else inf, f"the program read no block for {format_si(rest, 's', digits=3)}"
                 )
-        if time.monotonic() > latest:
+        if self.now() > latest:
             self._end_late(missed)
             raise Late(self.reason)
         return value
@@ -218,7 +217,7 @@ class Supervisor:
 
     def _expect(self, within: float, otherwise: str) -> float:
         """Expect a sign of life within a time, and return when that ends; the lock is held."""
-        self._deadline, self._expected = time.monotonic() + within, otherwise
+        self._deadline, self._expected = self.now() + within, otherwise
         return self._deadline
 
     def _make_calls(self) -> None:
@@ -230,7 +229,7 @@ class Supervisor:
         """Thread of the clock: wait until a sign of life is overdue."""
         with self._changed:
             while not self._has_ended:
-                if time.monotonic() > self._deadline:
+                if self.now() > self._deadline:
                     break
                 self._changed.wait(_LOOK)
             else:
@@ -282,7 +281,7 @@ class _SupervisedAcquisition(_Supervised):
         """Start to sample."""
         start = partial(self._device.start, channels, sample_rate=sample_rate)
         self._rate = float(self._supervisor.call(f"{self.name}: start", start, limit=_SWITCHING))
-        self._began, self._samples = time.monotonic(), 0
+        self._began, self._samples = self._supervisor.now(), 0
         return self._rate
 
     def read(self, samples: int) -> Block:
@@ -290,7 +289,7 @@ class _SupervisedAcquisition(_Supervised):
         lasts = samples / self._rate if self._rate else 0.0
         self._samples += samples
         self._supervisor.pace = lasts
-        now = time.monotonic()
+        now = self._supervisor.now()
         due = self._began + self._samples / self._rate - now if self._rate else 0.0
         allowed = LATE + CLOCK_ERROR * (now - self._began)
         block: Block = self._supervisor.call(

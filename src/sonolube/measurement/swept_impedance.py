@@ -72,6 +72,7 @@ def swept_impedance(path: Path) -> ImpedanceSpectrum | None:
         file_name=path.name,
         file_format=f"{recording_format(path).name}, a sweep",
         sha256=str(recording.attrs.get("sha256", "")),
+        caveats=tuple(str(recording.attrs.get("caveats", "")).splitlines()),
     )
 
 

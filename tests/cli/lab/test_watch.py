@@ -9,7 +9,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Event
 
 import pytest
 from pytest import MonkeyPatch, approx
@@ -89,18 +88,18 @@ def folder_of(runs: Path) -> Path:
 def test_a_run_is_followed_to_its_end_with_lines_where_nothing_can_be_written_over(
     sonolube: Program, rigs: Path, tmp_path: Path, monkeypatch: MonkeyPatch
 ) -> None:
-    class Looks(Event):
+    class Looks(watch.EndOfWatching):
         """End of the watching, for which it waits between looks; after the third the run goes on."""
 
         waits = 0
 
-        def wait(self, timeout: float | None = None) -> bool:
+        def wait(self, longest: float) -> None:
             self.waits += 1
             if self.waits == 3:
                 (tmp_path / "seen").touch()
-            return super().wait(timeout)
+            super().wait(longest)
 
-    monkeypatch.setattr(watch, "Event", Looks)
+    monkeypatch.setattr(watch, "EndOfWatching", Looks)
     monkeypatch.setattr(watch, "LOOK_INTERVAL", 0.05)
     monkeypatch.setattr(watch, "LINE_INTERVAL", 0.0)
     with running(tmp_path, rigs, duration=2.0, until=tmp_path / "seen") as program:
@@ -165,6 +164,19 @@ def test_a_run_that_is_killed_while_it_is_watched_ends_the_watching(
         run = sonolube("lab", "watch", tmp_path / "runs")
     assert run.code == 1
     assert "motor or drive may be on; sonolube lab recover" in " ".join(run.out.split())
+
+
+def test_an_end_is_asked_for_at_any_moment_of_a_wait(monkeypatch: MonkeyPatch) -> None:
+    end, waits = watch.EndOfWatching(), list[float]()
+
+    def interrupted(wait: float) -> None:
+        waits.append(wait)
+        if len(waits) == 3:
+            end.ask("interrupted")
+
+    monkeypatch.setattr(time, "sleep", interrupted)
+    end.wait(3600.0)
+    assert len(waits) == 3
 
 
 def test_a_signal_ends_the_watching_and_not_the_run_and_a_terminal_gets_one_line_that_is_written_over(

@@ -11,8 +11,8 @@ from scipy.signal import welch
 from tests.laboratory.simulated_rig import MemoryRecord
 
 from sonolube.errors import InvalidInput
-from sonolube.facts.protocol import protocol_by_name_or_file
-from sonolube.laboratory import Devices, DriveSetting, connect_devices, run_protocol
+from sonolube.facts.protocol import protocol_by_name_or_file, protocol_from
+from sonolube.laboratory import Devices, DriveSetting, State, connect_devices, run_protocol
 from sonolube.laboratory.devices import DeviceError, DeviceLost, SamplesLost
 from sonolube.laboratory.dry_run import HeatingAssumptions, dry_run
 from sonolube.laboratory.virtual_tribometer import (
@@ -218,6 +218,41 @@ def test_a_broken_gauge_trips_the_limit_of_the_force(kind: str, reason: str) -> 
     virtual = tribometer(fault=Fault(2000, kind))  # type: ignore[arg-type]
     result = run_protocol(limited, virtual.devices, MemoryRecord(), operator=lambda prompt: True)
     assert (result.outcome, reason in result.reason) == ("stopped", True)
+
+
+@pytest.mark.parametrize("kind", ["late", "hang"])
+def test_the_supervisor_ends_a_virtual_run_that_is_late_or_hangs_with_its_outputs_off(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sonolube.laboratory.supervision.LATE", 2.0)  # of the time of the virtual rig
+    virtual = tribometer(fault=Fault(2000, kind))  # type: ignore[arg-type]
+    result = run_protocol(
+        protocol_by_name_or_file("map_test"), virtual.devices, MemoryRecord(), operator=lambda prompt: True
+    )
+    assert (result.outcome, result.state) == ("failed", State.SAFE)
+    assert "virtual acquisition: a block is late by more than 2 s; the supervisor has switched" in result.reason
+    truth = virtual.truth()
+    assert (float(truth["sliding_speed"][-1]), float(truth["voltage_peak_to_peak"][-1])) == (0.0, 0.0)
+
+
+def test_a_virtual_drive_that_stays_on_is_seen_while_the_operator_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    virtual = tribometer()
+    stuck = virtual.devices.drive
+    monkeypatch.setattr(stuck, "off", lambda: None)
+    driven = protocol_from(
+        {
+            "title": "test",
+            "source": "test",
+            "limits": {"voltage_maximum": "30 V", "duration_maximum": "1 min"},
+            "steps": [
+                {"kind": "drive", "voltage_peak_to_peak": "20 V", "frequency": "22 kHz"},
+                {"kind": "wait", "duration": "1 s"},
+                {"kind": "prompt", "task": "load", "text": "Add a weight."},
+            ],
+        }
+    )
+    result = run_protocol(driven, virtual.devices, MemoryRecord(), operator=lambda prompt: True)
+    assert "the drive was switched off, but channel voltage" in result.reason
 
 
 def test_devices_refuse_what_they_cannot_give() -> None:

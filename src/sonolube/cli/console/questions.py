@@ -1,6 +1,5 @@
 """Questions on a terminal for what the options of a command do not give."""
 
-import select
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import typer
 
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.operating_system import TypedLines
 from sonolube.printable_text import printable
 
 if TYPE_CHECKING:
@@ -100,9 +100,10 @@ class Operator:
         """Show a prompt, and return whether it is confirmed by an empty line or by yes."""
         sys.stderr.write(printable(f"\r\x1b[K{prompt.task}: {prompt.text}\n  done? [Y/n] "))
         sys.stderr.flush()
+        lines = TypedLines()
         while not self.control.stop_reason:
-            if select.select([sys.stdin], [], [], _POLL)[0]:
-                answer = sys.stdin.readline()
+            answer = lines.next(_POLL)
+            if answer is not None:
                 if not answer:
                     self.control.stop("the input has ended")
                 return bool(answer) and answer.strip().lower() in ("", "y", "yes")

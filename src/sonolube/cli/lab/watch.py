@@ -5,7 +5,6 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from threading import Event
 from typing import Annotated, Any, Final
 
 import typer
@@ -25,6 +24,7 @@ LOOK_INTERVAL = 0.5
 LINE_INTERVAL = 5.0
 """Between two lines where standard output is no terminal, while the state stays. [s]"""
 
+_POLL: Final = 0.05  # s
 _WIDTH: Final = 80  # of a terminal that does not tell its own
 
 
@@ -47,15 +47,33 @@ def watch(
 
 def _follow(observer: RunObserver, *, is_quiet: bool) -> Observation:
     """Look until the run or the watching ends, with lines unless it is to be quiet, and return the last look."""
-    ended, display = Event(), _Display(is_quiet=is_quiet)
-    with asked_by_signal(lambda reason: ended.set()):
+    end, display = EndOfWatching(), _Display(is_quiet=is_quiet)
+    with asked_by_signal(end.ask):
         seen = observer.look()
-        while seen.is_running and not ended.is_set():
+        while seen.is_running and not end.is_asked:
             display.show(seen)
-            ended.wait(LOOK_INTERVAL)
+            end.wait(LOOK_INTERVAL)
             seen = observer.look()
     display.close()
     return seen
+
+
+class EndOfWatching:
+    """End of the watching, asked for by the handler of a signal; an `Event` might wait for the lock it interrupts."""
+
+    def __init__(self) -> None:
+        self.is_asked = False
+
+    def ask(self, reason: str) -> None:
+        """End the watching."""
+        del reason
+        self.is_asked = True
+
+    def wait(self, longest: float) -> None:
+        """Wait for a time, in s, or until the end is asked for."""
+        latest = time.monotonic() + longest
+        while not self.is_asked and (left := latest - time.monotonic()) > 0:
+            time.sleep(min(left, _POLL))
 
 
 class _Display:

@@ -12,6 +12,7 @@ from sonolube.identification.decay_length.switch_table import SwitchTable
 from sonolube.measurement.friction.step_means import sampled_parts, without_wobble, wobble_columns
 from sonolube.measurement.friction_analysis import channel_values
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
+from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,6 +23,7 @@ _SETTLING: Final = 0.1  # of a part at either end, left out of means
 _FEWEST: Final = 8  # samples of a mean
 _HARMONICS: Final = 2
 _PAUSE: Final = 1.5  # sample intervals, beyond which nothing was recorded between two samples
+_SAMPLES_PER_PERIOD: Final = 5  # of the drive, below which samples do not show its amplitude
 _RECTIFIED: Final = 0.5  # of the standard deviation, above which the mean of a current is its reading
 
 
@@ -58,7 +60,8 @@ def recorded_switches(
         With the channels `friction_force`, `voltage_peak_to_peak` and `normal_load`, in which the pin counts as lifted
         below a tenth of the median load, and `stack_current`, `small_drive_shift` and `large_drive_shift` where they
         were recorded: shifts in the samples about a switch, NaN elsewhere. A current that alternates counts by its
-        amplitude. The set point `sliding_speed_set`, where there is one, tells the distance.
+        amplitude; where `frequency_set` says that a period has fewer than five samples, it does not enter. The set
+        point `sliding_speed_set`, where there is one, tells the distance.
     sliding_speed : float
         While the pin is on the track. [m/s]
     rotation_speed : float, optional
@@ -89,6 +92,7 @@ def recorded_switches(
         raise InvalidInput(f"{title}: the vibration is never switched on or off; record several switches in one run")
     steady = _without_wobble(time, force, [part for part in parts if not part.lifted], rotation_speed)
     slid = _slid(recording, time, sliding_speed * ~_lifted(parts, time.size))
+    unseen = _unseen_current(recording, time)
     columns: dict[str, list[float]] = {}
     for before, between, after in switches:
         on, off = (after.half(last=False), before.half(last=True))
@@ -97,7 +101,7 @@ def recorded_switches(
         row: dict[str, float] = {"sliding_distance": float(slid[before.end - 1])}
         row |= _mean("friction_force", steady[on]) | _mean("intrinsic_friction_force", steady[off])
         row |= _mean("force_zero", force[between.inner] if between else np.empty(0))
-        if "stack_current" in recording:
+        if "stack_current" in recording and not unseen:
             row |= _current(channel_values(recording, "stack_current")[on])
         for name in ("small_drive_shift", "large_drive_shift"):
             if name in recording:
@@ -109,7 +113,19 @@ def recorded_switches(
     needed = ("sliding_distance", "friction_force", "intrinsic_friction_force", "force_zero")
     stated = {name: values for name, values in arrays.items() if name in needed or np.isfinite(values).any()}
     caveats = tuple(line for line in str(recording.attrs.get("caveats", "")).split("\n") if line)
-    return SwitchTable(**stated, title=title, caveats=caveats)
+    return SwitchTable(**stated, title=title, caveats=(*caveats, *unseen))
+
+
+def _unseen_current(recording: "xr.Dataset", time: Floats) -> tuple[str, ...]:
+    """Caveat of a current whose samples do not show its amplitude, as the frequency of the drive was recorded."""
+    if "stack_current" not in recording or "frequency_set" not in recording:
+        return ()
+    current, rate = channel_values(recording, "stack_current"), 1 / float(np.median(np.diff(time)))
+    known = current[np.isfinite(current)]
+    is_rectified = bool(known.size) and abs(known.mean()) > _RECTIFIED * known.std()
+    if is_rectified or rate >= _SAMPLES_PER_PERIOD * float(np.nanmax(channel_values(recording, "frequency_set"))):
+        return ()
+    return (f"stack_current at {format_si(rate, 'Hz')} does not resolve the drive, and does not enter",)
 
 
 def _parts(load: Floats, voltage: Floats) -> list[_Part]:

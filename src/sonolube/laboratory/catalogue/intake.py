@@ -4,10 +4,10 @@ import hashlib
 from pathlib import Path
 
 from sonolube.errors import InvalidInput
-from sonolube.files import remove_file
 from sonolube.laboratory.records.documents import DocumentLog
 from sonolube.laboratory.records.run_folder import RESERVE, Facts, make_run_folder
 from sonolube.measurement.recordings.reader import recording_format_name
+from sonolube.operating_system import remove_file
 
 
 def take_in(parent: Path, source: Path, *, facts: Facts | None = None, title: str = "") -> Path:

@@ -4,7 +4,9 @@ import os
 import re
 from typing import Final
 
-_SERIAL: Final = re.compile(r"ASRL(.*?)(::INSTR)?", re.IGNORECASE)
+_SERIAL: Final = re.compile(r"ASRL(.*?)(::INSTR)?|(?:\\\\\.\\)?(COM\d+)", re.IGNORECASE)
+_PORT: Final = re.compile(r"(?:\\\\\.\\)?(?:COM)?(\d+)", re.IGNORECASE)
+_CLASSES: Final = ("instr", "socket", "raw")  # of resources
 
 
 def daqmx_resource(terminal: str) -> str:
@@ -28,23 +30,40 @@ def visa_resource(resource: str) -> str:
     Parameters
     ----------
     resource : str
-        As VISA calls it, such as TCPIP0::192.168.1.21::5025::SOCKET or ASRL/dev/ttyUSB0::INSTR.
+        As VISA calls it, such as TCPIP0::192.168.1.21::5025::SOCKET or ASRL/dev/ttyUSB0::INSTR, or COM3.
 
     Returns
     -------
     str
+
+    Notes
+    -----
+    VISA takes board 0, device inst0 of a LAN instrument, interface 0 of one on USB and class INSTR where an address has
+    none, and numbers in decimal or hexadecimal. ASRL3 is COM3 of Windows. [1]_
+
+    References
+    ----------
+    .. [1] IVI Foundation, VPP-4.3, The VISA Library, grammar of address strings.
     """
-    serial = _SERIAL.fullmatch(resource)
+    serial = _SERIAL.fullmatch(resource.strip())
     if serial:
-        port = serial[1]
-        return f"serial {port}".lower() if port.isdigit() else f"serial {os.path.realpath(port)}"
-    interface, *parts = resource.lower().split("::")
+        port = serial[1] or serial[3] or "0"
+        number = _PORT.fullmatch(port)
+        return f"serial {int(number[1])}" if number else f"serial {os.path.realpath(port)}"
+    interface, *parts = resource.strip().lower().split("::")
     kind, board = re.fullmatch(r"(\D*)(\d*)", interface).groups()  # type: ignore[union-attr]
+    parts = [part for part in parts if part not in _CLASSES]
     if kind == "tcpip":
-        parts, board = [part for part in parts if part not in ("instr", "socket", "inst0")], ""
-    elif kind == "usb":
-        parts = [str(int(part, 16)) if part.startswith("0x") else part for part in parts if part not in ("instr", "0")]
-    else:
-        parts = [part for part in parts if part != "instr"]
-    bus = f"{kind}{int(board or 0)}" if kind not in ("tcpip", "usb") else kind
-    return " ".join([bus, *parts])
+        host, *others = parts
+        return " ".join([kind, host, *(map(_number, others) if others != ["inst0"] else ())])
+    if kind == "usb":
+        maker, model, *others = parts
+        return " ".join([kind, _number(maker), _number(model), *(others[:-1] if others[1:] == ["0"] else others)])
+    return " ".join([f"{kind}{int(board or 0)}", *map(_number, parts)])
+
+
+def _number(part: str) -> str:
+    """Part of an address, a number as a decimal one."""
+    if re.fullmatch(r"0x[0-9a-f]+", part):
+        return str(int(part, 16))
+    return str(int(part)) if part.isdecimal() else part

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
-from sonolube.files import locked_folder, remove_file
+from sonolube.files import locked_folder
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
 from sonolube.laboratory.records.open_part import OpenPart
@@ -30,6 +30,7 @@ from sonolube.laboratory.records.run_folder import (
     raw_parts,
     recording_path,
 )
+from sonolube.operating_system import remove_file
 
 if TYPE_CHECKING:
     import xarray as xr

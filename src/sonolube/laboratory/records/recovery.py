@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import clear_unfinished, is_locked, locked_folder, remove_file, unfinished_file
+from sonolube.files import clear_unfinished, is_locked, locked_folder, unfinished_file
 from sonolube.growing_files import AppendedFile
 from sonolube.laboratory.records.documents import DocumentLog, read_documents
 from sonolube.laboratory.records.raw_blocks import RawPart, scan_raw
@@ -28,6 +28,7 @@ from sonolube.laboratory.records.run_folder import (
     recording_path,
     write_run_facts,
 )
+from sonolube.operating_system import remove_file
 
 _COPIED: Final = 1 << 20  # bytes at a time
 _PATIENCE: Final = 1.0  # s

@@ -10,11 +10,11 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.facts.protocol import PROMPT_DURATIONS, Prompt
 from sonolube.laboratory.block import Block, Channel, quantity_of
-from sonolube.laboratory.devices import DeviceError, DeviceLost, DriveSetting, SamplesLost
+from sonolube.laboratory.devices import DeviceError, DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.arm_resonance import arm_resonance
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
-from sonolube.laboratory.virtual_tribometer.faults import Fault
+from sonolube.laboratory.virtual_tribometer.faults import Fault, FaultyReading
 from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
 from sonolube.laboratory.virtual_tribometer.signals import (
     Approach,
@@ -87,7 +87,7 @@ class VirtualRig:
         fault: Fault | None,
     ) -> None:
         self._rig, self._friction, self._sizes = rig, friction, disturbances
-        self._diameter, self._real_time, self._fault = groove_diameter, real_time, fault
+        self._diameter, self._real_time, self._reading = groove_diameter, real_time, FaultyReading(fault)
         self._streams = streams
         phases = np.random.default_rng(streams[_PHASES])
         self._bursts = Bursts(np.random.default_rng(streams[_BURSTS]), disturbances.burst_duration)
@@ -130,7 +130,10 @@ class VirtualRig:
             "actuator_temperature_rise": (actuator, "K"),
             "pin_temperature_rise": (pin, "K"),
         }
-        return truth_dataset(self._settings, sizes=self._sizes, single=single, title=f"Truth of {self._rig.title}")
+        title = f"Truth of {self._rig.title}"
+        return truth_dataset(
+            self._settings, end_time=self._time, bursts=self._bursts, sizes=self._sizes, single=single, title=title
+        )
 
     def start(self, names: Sequence[str], sample_rate: float) -> None:
         """Begin to sample."""
@@ -149,26 +152,26 @@ class VirtualRig:
 
     def stop(self) -> None:
         """End to sample."""
+        self._reading.release()
         self._rate = 0.0
+
+    def clock(self) -> float:
+        """Time of the devices, by the samples and the prompts. [s]"""
+        return self._time + self._reading.delay
 
     def read(self, samples: int) -> Block:
         """Next samples."""
         if not self._rate:
             raise DeviceError("virtual acquisition: nothing is sampled; call start first")
-        fault = self._fault
         first = self._sample
-        reached = fault is not None and first <= fault.sample < first + samples
-        if fault is not None and fault.kind == "lost" and (reached or fault.sample < first):
-            raise DeviceLost("virtual acquisition: answers no more")
-        if fault is not None and fault.kind == "overrun" and reached:
-            raise SamplesLost("virtual acquisition: samples were overwritten before they were read")
+        self._reading.begin(first, samples)
         time = self._epoch + (first + np.arange(samples)) / self._rate
         self._sample = first + samples
         self._time = self._epoch + self._sample / self._rate
         values = self._values(time)
-        if fault is not None and (reached or fault.sample < first) and "friction_force" in self._names:
-            broken = {"saturated": self.channels["friction_force"].highest, "no number": np.nan}
-            values[max(0, fault.sample - first) :, self._names.index("friction_force")] = broken[fault.kind]
+        if "friction_force" in self._names:
+            force = values[:, self._names.index("friction_force")]
+            self._reading.spoil(force, first, highest=self.channels["friction_force"].highest)
         if self._real_time:
             sleep(max(0.0, self._began_at + self._time - self._epoch - monotonic()))
         return Block(first_sample=first, sample_rate=self._rate, values=values)
@@ -212,7 +215,8 @@ class VirtualRig:
     def attend(self, prompt: Prompt) -> None:
         """Let the time of a prompt pass: the rig cools, the gauge is set to zero, load and pull change as it says."""
         self._volume_until_now()
-        self._time += PROMPT_DURATIONS[prompt.task]
+        since = self._settings[-1].start_time if self._settings else self._time  # switched off then, and watched
+        self._time = max(self._time, since + PROMPT_DURATIONS[prompt.task])
         if prompt.normal_load is not None:
             self._hang(prompt.normal_load)
         self._pull, self._pulled_from = prompt.applied_force or 0.0, self._time
@@ -243,9 +247,8 @@ class VirtualRig:
         flash = self._temperatures.set(
             self._time, setting=self._setting, friction_force=self._level.friction_force, sliding_speed=speed
         )
-        sticking, bursts = self._stick_slip, self._stick_slip.comes_in_bursts and self._sizes.burst_duration > 0
         self._settings.append(
-            TruthSetting(self._time, speed, self._setting, self._level, flash, self._load, sticking, bursts)
+            TruthSetting(self._time, speed, self._setting, self._level, flash, self._load, self._stick_slip)
         )
 
     def _sticking(self, sliding_speed: float) -> StickSlip:

@@ -136,9 +136,31 @@ class Bursts:
         """
         if self.mean == 0 or not time.size:
             return np.ones(time.shape, bool)
-        while not self._ends or self._ends[-1] <= time[-1]:
-            last = self._ends[-1] if self._ends else 0.0
-            self._ends.append(last + float(self.generator.exponential(self.mean)))
+        self._draw_until(float(time[-1]))
         first = bisect_right(self._ends, float(time[0]))
         ended = first + np.searchsorted(self._ends[first:], time, side="right")
         return np.asarray(ended % 2 == 0)
+
+    def share(self, first: float, last: float) -> float:
+        """Share of a span with a burst. []
+
+        Parameters
+        ----------
+        first, last : float
+            [s]
+
+        Returns
+        -------
+        float
+        """
+        if self.mean == 0 or last <= first:
+            return 1.0
+        self._draw_until(last)
+        edges = np.clip([0.0, *self._ends, *([] if len(self._ends) % 2 else [last])], first, last)
+        return float(np.sum(np.diff(edges)[::2])) / (last - first)
+
+    def _draw_until(self, time: float) -> None:
+        """Draw bursts and pauses beyond a time."""
+        while not self._ends or self._ends[-1] <= time:
+            last = self._ends[-1] if self._ends else 0.0
+            self._ends.append(last + float(self.generator.exponential(self.mean)))

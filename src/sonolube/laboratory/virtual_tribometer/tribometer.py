@@ -92,6 +92,7 @@ class VirtualTribometer:
             simulated=True,
             prepare=virtual.prepare,
             attend=virtual.attend,
+            clock=virtual.clock,
         )
 
     def truth(self) -> "xr.Dataset":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.virtual_tribometer.disturbances import DISTURBANCE_UNITS, Disturbances
 from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionLevel
-from sonolube.laboratory.virtual_tribometer.stick_slip import StickSlip
+from sonolube.laboratory.virtual_tribometer.stick_slip import Bursts, StickSlip
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,8 +32,6 @@ class TruthSetting:
         [N]
     stick_slip : StickSlip
         Of sliding without vibration at this speed and load.
-    has_bursts : bool
-        Whether it comes in bursts.
     """
 
     start_time: float
@@ -43,22 +41,37 @@ class TruthSetting:
     flash_temperature_rise: float
     normal_load: float
     stick_slip: StickSlip
-    has_bursts: bool
 
     @property
     def sticks(self) -> bool:
         """Whether there is stick-slip."""
         return self.drive is None and self.stick_slip.occurs
 
+    def sticking_share(self, bursts: Bursts, end_time: float) -> float:
+        """Share of the time with stick-slip, where this setting lasts to a time. []"""
+        if not (self.sticks and self.stick_slip.comes_in_bursts):
+            return float(self.sticks)
+        return bursts.share(self.start_time, end_time)
+
 
 def truth_dataset(
-    settings: Sequence[TruthSetting], *, sizes: Disturbances, single: Mapping[str, tuple[float, str]], title: str
+    settings: Sequence[TruthSetting],
+    *,
+    end_time: float,
+    bursts: Bursts,
+    sizes: Disturbances,
+    single: Mapping[str, tuple[float, str]],
+    title: str,
 ) -> "xr.Dataset":
     """True values behind a virtual test.
 
     Parameters
     ----------
     settings : sequence of TruthSetting
+    end_time : float
+        Of the last one. [s]
+    bursts : Bursts
+        Of stick-slip.
     sizes : Disturbances
         Of the test.
     single : mapping of str to (float, str)
@@ -72,6 +85,8 @@ def truth_dataset(
     """
     import xarray as xr
 
+    ends = [*(each.start_time for each in settings), end_time][1:]
+    shares = [each.sticking_share(bursts, end) for each, end in zip(settings, ends, strict=True)]
     columns = {
         "start_time": ([each.start_time for each in settings], "s"),
         "sliding_speed": ([each.sliding_speed for each in settings], "m/s"),
@@ -86,7 +101,7 @@ def truth_dataset(
         "normal_load": ([each.normal_load for each in settings], "N"),
         "stick_slip_frequency": ([1 / each.stick_slip.period if each.sticks else 0.0 for each in settings], "Hz"),
         "stick_slip_fall": ([each.stick_slip.fall if each.sticks else 0.0 for each in settings], "N"),
-        "stick_slip_bursts": ([float(each.sticks and each.has_bursts) for each in settings], "1"),
+        "stick_slip_fraction": (shares, "1"),
     }
     numbers = {**single, **{name: (getattr(sizes, name), unit) for name, unit in DISTURBANCE_UNITS.items()}}
     return xr.Dataset(

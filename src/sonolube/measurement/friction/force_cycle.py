@@ -27,6 +27,8 @@ _MAINS = (50.0, 60.0)  # Hz
 _MAINS_WIDTH = 0.3  # Hz, about multiples of the mains
 _SUDDEN = 1 / 3  # of the period, up to which a fall is that of a slip
 _LONGEST_FALL = 0.6  # of the period, above which the rises are the sudden ones
+_VARYING = 0.3  # standard deviation of the power in bursts over its mean, from which it is no steady cycle
+_REMAINING = 0.1  # of the mean power in bursts, which is not left between them
 _PHASES = 256  # at which the shape of a cycle is computed
 
 
@@ -41,7 +43,7 @@ class ForceCycle:
     fall_share : float
         Duration of the fall from the highest to the lowest force, over the period.
     falls : ndarray, shape (sections,)
-        Fall of the force in sections of eight cycles, in N.
+        Fall of the force in sections of eight cycles, without the first and the last of a burst, in N.
     truncation : float
         Share of the fall in the highest harmonic that the sampling rate resolves, in N.
     slips : ndarray of int
@@ -86,9 +88,16 @@ def find_cycle(signal: Floats, *, sample_interval: float, frequency: float) -> t
     .. math:: S = \frac{K}{g}\Bigl[a \ln a - a - \ln\Gamma(a) + 1 + (a - 1)\,(\overline{\ln x} - \ln\bar x)\Bigr]
 
     is the logarithm of the likelihood ratio, which grows with the length of the recording. The cycle is one where S is
-    at least 12 and the fit holds half of the variance in half of the sections. It is stick-slip where its fall takes
-    less than a third of the period; and, from 30 Hz on, where it takes up to 0.6 and the frequency is no multiple of
-    that of the mains: a mass on a spring with a slip as long as the stick swings nearly like a sine.
+    at least 12 and the fit holds half of the variance in half of the sections. In bursts it is one where, of the
+    sections that it fills with their neighbours, the logarithm of the likelihood ratio of a normal distribution over an
+    exponential one from the least power on,
+
+    .. math:: S_b = \frac{K}{g}\Bigl[\ln\frac{\bar x - \min x}{s_x} + \tfrac12 - \tfrac12 \ln 2\pi\Bigr] ,
+
+    is at least 12, the standard deviation is below 0.3 of the mean, and at most a tenth of the power is left between.
+    It is stick-slip where its fall takes less than a third of the period; and, from 30 Hz on, where it takes up to 0.6
+    and the frequency is no multiple of that of the mains, which have no bursts: a mass on a spring with a slip as long
+    as the stick swings nearly like a sine.
     """
     per_cycle = 1 / (frequency * sample_interval) if frequency > 0 else np.inf
     size = round(_CYCLES_OF_SECTION * min(per_cycle, float(signal.size)))
@@ -99,20 +108,24 @@ def find_cycle(signal: Floats, *, sample_interval: float, frequency: float) -> t
     parts = signal[: count * size].reshape(count, size)
     coefficients, filled = _fits(parts, per_cycle, harmonics)
     power = np.hypot(coefficients[:, 0], coefficients[:, harmonics]) ** 2
+    whole = filled
     if np.mean(filled) < SHARE_OF_VARIANCE or _steadiness(power) < CYCLE_SCORE:
-        return None, ""
+        whole = _inner(filled)
+        if not _is_steady_in_bursts(power, whole, _inner(~filled)):
+            return None, ""
     waves = coefficients @ _waves(np.arange(_PHASES) / _PHASES, harmonics).T
-    falls = np.ptp(waves[filled], axis=1)
+    falls = np.ptp(waves[whole], axis=1)
     mean_wave, shifts = _aligned(coefficients, harmonics)
     top = int(np.argmax(mean_wave))
     fall_share = (int(np.argmin(mean_wave)) - top) % _PHASES / _PHASES
     if fall_share > _LONGEST_FALL:
         return None, f"the force rises faster than it falls in the cycle of {frequency:.3g} Hz"
-    if fall_share > _SUDDEN and (reason := _other_origin(frequency, signal.size * sample_interval)):
+    duration = signal.size * sample_interval
+    if fall_share > _SUDDEN and (reason := _other_origin(frequency, duration, has_bursts=whole is not filled)):
         return None, reason
     fewer = coefficients.copy()
     fewer[:, [harmonics - 1, 2 * harmonics - 1]] = 0.0
-    lower = np.ptp(fewer[filled] @ _waves(np.arange(_PHASES) / _PHASES, harmonics).T, axis=1)
+    lower = np.ptp(fewer[whole] @ _waves(np.arange(_PHASES) / _PHASES, harmonics).T, axis=1)
     starts = np.flatnonzero(filled) * size
     middles = (top / _PHASES + fall_share / 2 - shifts[filled, None] + np.arange(_CYCLES_OF_SECTION)) * per_cycle
     slips = np.ceil(starts[:, None] + middles % (_CYCLES_OF_SECTION * per_cycle)).astype(int).ravel()
@@ -129,10 +142,12 @@ def find_cycle(signal: Floats, *, sample_interval: float, frequency: float) -> t
     )
 
 
-def _other_origin(frequency: float, duration: float) -> str:
+def _other_origin(frequency: float, duration: float, *, has_bursts: bool) -> str:
     """Reason for which a cycle like a sine is not stick-slip; empty where it is."""
     if frequency < _SLOWEST_SINE:
         return f"the cycle of {frequency:.3g} Hz falls as slowly as it rises, as wobble does"
+    if has_bursts:
+        return ""
     width = max(_MAINS_WIDTH, 0.5 / duration)
     mains = [mains for mains in _MAINS if abs(frequency - mains * round(frequency / mains)) < width]
     return f"the cycle of {frequency:.4g} Hz cannot be told from hum of the mains" if mains else ""
@@ -163,6 +178,23 @@ def _steadiness(power: Floats) -> float:
     a = float(np.clip(shape, 1.0, _STEADIEST))
     gain = a * np.log(a) - a - float(gammaln(a)) + 1 - (a - 1) * deficit
     return power.size / statistical_inefficiency(power) * float(gain)
+
+
+def _is_steady_in_bursts(power: Floats, whole: np.ndarray, empty: np.ndarray) -> bool:
+    """Whether the powers of whole sections are steady, no resonance above a threshold, and vanish in empty ones."""
+    own = power[whole]
+    if own.size < _FEWEST_SECTIONS or not empty.any():
+        return False
+    deviation, mean = float(np.std(own)), float(np.mean(own))
+    if deviation > _VARYING * mean or np.mean(power[empty]) > _REMAINING * mean:
+        return False
+    gain = np.log((mean - own.min()) / deviation) + (1 - np.log(2 * np.pi)) / 2 if deviation else np.inf
+    return bool(own.size / statistical_inefficiency(own) * gain >= CYCLE_SCORE)
+
+
+def _inner(chosen: np.ndarray) -> np.ndarray:
+    """Which sections are chosen with both neighbours."""
+    return np.asarray(chosen & np.append(chosen[1:], True) & np.insert(chosen[:-1], 0, True))
 
 
 def _aligned(coefficients: Floats, harmonics: int) -> tuple[Floats, Floats]:

@@ -19,6 +19,7 @@ from sonolube.measurement.time_series import even_stretches, evenly_sampled, req
 
 _FEWEST_SAMPLES = 64
 _FEWEST_SLIPS = 3
+_LINE = 0.03  # of its frequency, about a line that comes and goes
 _PADDING = 4  # zero padding of the spectrum, in lengths of the signal
 _SLOW_FALL = 0.2  # of the period, from which a cycle has no sawtooth's ramps
 _FEW_SAMPLES = 16  # of a period, below which slips cannot be told from the ramps
@@ -173,7 +174,7 @@ def _estimate(
         return not_detected(reason, frequency)
     if found.force_drops < _FEWEST_SLIPS:
         return not_detected(f"{found.force_drops} falls of the force are too few to recur", frequency)
-    if not found.stick_slip_amplitude > minimum:
+    if not found.stick_slip_amplitude > max(minimum, found.stick_slip_amplitude_uncertainty):
         return not_detected(f"the force falls by {found.stick_slip_amplitude:.3g} N only", frequency)
     return found
 
@@ -356,7 +357,8 @@ def _spectral_peak(f: Floats, interval: float) -> tuple[float, float]:
     if not peaks.size:
         return float((first + np.argmax(power[first:])) / (size * interval)), 0.0
     peak = int(peaks[np.argmax(power[peaks])])
-    share = float(power[max(0, peak - first) : peak + first + 1].sum() / power.sum())
+    reach = max(first, round(_LINE * peak))
+    share = float(power[max(0, peak - reach) : peak + reach + 1].sum() / power.sum())
     below, at, above = np.log(np.maximum(power[peak - 1 : peak + 2], 1e-300))
     curvature = below - 2 * at + above
     shift = float(np.clip(0.5 * (below - above) / curvature, -0.5, 0.5)) if curvature else 0.0

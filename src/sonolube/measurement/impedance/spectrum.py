@@ -31,6 +31,8 @@ class ImpedanceSpectrum:
         Name of the format of that file.
     sha256 : str
         Digest of that file.
+    caveats : tuple of str
+        Of its reading.
 
     Raises
     ------
@@ -56,6 +58,7 @@ class ImpedanceSpectrum:
     file_name: str = ""
     file_format: str = ""
     sha256: str = ""
+    caveats: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         f = require_positive(frequency=self.frequency)

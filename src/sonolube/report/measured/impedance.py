@@ -81,7 +81,7 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
         "residual": residual_for(spectrum, settings.residual),
         "sha256": spectrum.sha256,
     }
-    section = replace(section, caveats=(*turned, *section.caveats))
+    section = replace(section, caveats=(*turned, *section.caveats, *spectrum.caveats))
     return sheet.joined([section], title=path.name, source=source)
 
 

@@ -23,7 +23,7 @@ from sonolube.measurement.vibration import (
     operating_deflection_shape,
 )
 from sonolube.report.measured import sheet, vibration_figures as figures
-from sonolube.report.measured.friction import recording_source
+from sonolube.report.measured.friction import recording_caveats, recording_source
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -102,6 +102,7 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> sheet.Sheet:
         sections.append(_shape(points, shape))
         if settings.modes is not None:
             sections.append(sheet.attempted(partial(_assurance, motion, settings.modes), what="modal assurance"))
+    sections.append(sheet.Sheet(caveats=recording_caveats(recording)))
     return sheet.joined(sections, title=path.name, source=recording_source(recording))
 
 

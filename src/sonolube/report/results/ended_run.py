@@ -6,7 +6,7 @@ from sonolube.facts.protocol import Protocol
 from sonolube.laboratory import RunResult, State
 from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_lines, dry_run_sums
 from sonolube.laboratory.records import Run
-from sonolube.report.blocks import Block, Rows, Table
+from sonolube.report.blocks import Block, Rows, Table, Verbatim
 from sonolube.report.results.next_step import next_command
 from sonolube.rig import Rig
 from sonolube.units import format_si
@@ -31,7 +31,7 @@ def run_blocks(result: RunResult, run: Run, *, simulated: bool) -> list[Block]:
         *(() if mean is None else (("mean friction", format_si(mean, "N", digits=3)),)),
         ("record", str(summary.folder)),
     ]
-    after = [f"  next: {next_command(run)}"] if run.recordings else []
+    after = [Verbatim(f"  next: {next_command(run)}")] if run.recordings else []
     return [summary.title + (" (virtual)" if simulated else ""), Rows(rows), *after]
 
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from shlex import quote
 
 from sonolube.laboratory.records import Run
+from sonolube.operating_system import quoted
 from sonolube.units import format_si
 
 
@@ -25,10 +25,10 @@ def next_command(run: Run) -> str:
     gauges = [path for path in friction if "displacement" in parts[path]]
     lifts = any(note.facts.get("normal_load") == 0 for note in run.notes if note.kind == "conditions")
     if lifts and any("normal_load" in parts[path] for path in friction):
-        return f"sonolube identify decay-length {quote(str(run.folder))}"
+        return f"sonolube identify decay-length {quoted(str(run.folder))}"
     if gauges:
-        applied = "".join(f" --apply {quote(str(path))}" for path in gauges[1:])
-        return f"sonolube measure calibration {quote(str(gauges[0]))}{applied}"
+        applied = "".join(f" --apply {quoted(str(path))}" for path in gauges[1:])
+        return f"sonolube measure calibration {quoted(str(gauges[0]))}{applied}"
     if friction:
         return f"sonolube measure friction {_files(run, friction)}"
     driven = [path for path in _having(parts, "voltage") if "current" in parts[path]]
@@ -39,7 +39,7 @@ def next_command(run: Run) -> str:
     if turning and isinstance(diameter, int | float):
         groove = format_si(float(diameter), "m").replace(" ", "")
         return f"sonolube measure rotation {_files(run, turning)} --groove-diameter {groove}"
-    return f"sonolube lab show {quote(str(run.folder))}"
+    return f"sonolube lab show {quoted(str(run.folder))}"
 
 
 def _having(parts: dict[Path, tuple[str, ...]], channel: str) -> list[Path]:
@@ -50,4 +50,4 @@ def _having(parts: dict[Path, tuple[str, ...]], channel: str) -> list[Path]:
 def _files(run: Run, chosen: Sequence[Path]) -> str:
     """Folder of a run where all of its parts are chosen, else their files."""
     is_whole = len(chosen) == len(run.recordings)
-    return quote(str(run.folder)) if is_whole else " ".join(quote(str(path)) for path in chosen)
+    return quoted(str(run.folder)) if is_whole else " ".join(quoted(str(path)) for path in chosen)

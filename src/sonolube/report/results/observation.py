@@ -1,9 +1,9 @@
 """A run that is being recorded, as it was seen last: lines of text."""
 
-from shlex import quote
 from typing import Any, Final
 
 from sonolube.laboratory.records import Observation
+from sonolube.operating_system import quoted
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.ended_run import SIMULATED
 from sonolube.units import format_si
@@ -108,7 +108,7 @@ def observation_caveats(seen: Observation) -> list[str]:
     """A writer that has died, samples that are missing, and a run that writes nothing."""
     told = [line for line in warnings(seen) if line not in seen.trips]
     if seen.outcome == "unfinished":
-        remedy = f"sonolube lab recover {quote(str(seen.folder))}"
+        remedy = f"sonolube lab recover {quoted(str(seen.folder))}"
         told.append(f"the program died during the run, and motor or drive may be on; {remedy} completes its record")
     if seen.known.facts.get("simulated"):
         told.append(SIMULATED)

@@ -1,6 +1,5 @@
 """Task `modes`: natural modes of a part by finite elements, with pictures, grids, shapes and animations."""
 
-import shlex
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -22,6 +21,7 @@ from sonolube.models.fem.mode_files import (
     structure_modes,
 )
 from sonolube.models.fem.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
+from sonolube.operating_system import quoted
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
 from sonolube.report.results.parts import natural_modes as results
@@ -185,7 +185,7 @@ def _command(part: str, sizes: PartSizes, names: Sequence[str]) -> str:
     for name, value in given_arguments(names).items():
         for each in value if isinstance(value, list | tuple) else [value]:
             words += [f"--{name.replace('_', '-')}", _typed(each, _BODY_UNITS.get(name, ""))]
-    return " ".join(shlex.quote(word) if " " in word else word for word in words)
+    return " ".join(quoted(word) if " " in word else word for word in words)
 
 
 def _typed(value: Number, unit: str) -> str:

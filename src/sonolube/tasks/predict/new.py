@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
-from sonolube.report.blocks import Block, Table
+from sonolube.operating_system import quoted
+from sonolube.report.blocks import Block, Table, Verbatim
 from sonolube.rig import Rig
 from sonolube.rig.new_rig.known_surface import KnownSurface
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text, rig_of_known
@@ -158,7 +158,7 @@ class NewRig(Answer):
         """Title, the inputs known least with how to measure them, and the next command."""
         heads = ("least known", "distribution", "to measure it")
         rows = [(one.key, one.text, one.remedy) for one in self.least_known]
-        following = [] if self.target is None else [f"  next: sonolube predict {quote(str(self.target))}"]
+        following = [] if self.target is None else [Verbatim(f"  next: sonolube predict {quoted(str(self.target))}")]
         return [self.rig.title, Table(heads, rows), *following]
 
     def written_to(self, target: Path) -> "NewRig":
