@@ -7,11 +7,12 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.models.contact import GapMotion, load_balanced_motion, separation, sinusoidal_motion
+from sonolube.models.contact import GapMotion, load_balanced_motion, sinusoidal_motion
 from sonolube.models.friction.models import MeanGap
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
 from sonolube.models.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig
 from sonolube.units import format_si
 
 ANY_FREQUENCY = 1.0
@@ -160,13 +161,13 @@ def mean_over_time(values: Sequence[Floats], motions: tuple[GapMotion, ...]) -> 
 
 
 def mean_wear(
-    rig: Rig, motions: tuple[GapMotion, ...], *, wear_model: str, vibration_amplitude: float | None = None
+    resolved: ResolvedRig, motions: tuple[GapMotion, ...], *, wear_model: str, vibration_amplitude: float | None = None
 ) -> tuple[float, str | None]:
     """Return the mean wear ratio over several motions about the mean gap of a wear model, and why it does not hold.
 
     Parameters
     ----------
-    rig : Rig
+    resolved : ResolvedRig
     motions : tuple of GapMotion
         One after the other, each of its own duration.
     wear_model : str
@@ -179,14 +180,16 @@ def mean_wear(
     tuple of float and str or None
         None where the ratio is within the range of the model.
     """
-    ratio, smallest = _raw_wear_ratio(rig, motions, wear_model, vibration_amplitude)
+    ratio, smallest = _raw_wear_ratio(resolved, motions, wear_model, vibration_amplitude)
     if smallest > 0:
         return ratio, None
     others = [
-        (name, *_raw_wear_ratio(rig, motions, name, vibration_amplitude)) for name in WEAR_MODELS if name != wear_model
+        (name, *_raw_wear_ratio(resolved, motions, name, vibration_amplitude))
+        for name in WEAR_MODELS
+        if name != wear_model
     ]
     holding = [(value, name) for name, value, gap in others if gap > 0]
-    rest = float(separation(rig.contact, normal_load=rig.normal_load))
+    rest = resolved.separation
     amplitude = format_si(max(float(np.ptp(motion.displacement)) / 2 for motion in motions), "m")
     if wear_model != _RISING_WEAR_MODEL:
         why = (
@@ -200,13 +203,13 @@ def mean_wear(
 
 
 def wear_model_that_holds(
-    rig: Rig, motions: tuple[GapMotion, ...], *, vibration_amplitude: float | None = None
+    resolved: ResolvedRig, motions: tuple[GapMotion, ...], *, vibration_amplitude: float | None = None
 ) -> str | None:
     """Return the wear model within whose range some motions lie, the one about the risen mean gap first.
 
     Parameters
     ----------
-    rig : Rig
+    resolved : ResolvedRig
     motions : tuple of GapMotion
     vibration_amplitude : float, optional
         Amplitude of a motion that is a sine; None for other motions. [m]
@@ -217,7 +220,7 @@ def wear_model_that_holds(
         None where no model holds.
     """
     names = sorted(WEAR_MODELS, key=lambda name: name != _RISING_WEAR_MODEL)
-    return next((name for name in names if _raw_wear_ratio(rig, motions, name, vibration_amplitude)[1] > 0), None)
+    return next((name for name in names if _raw_wear_ratio(resolved, motions, name, vibration_amplitude)[1] > 0), None)
 
 
 def rise_caveats(motions: tuple[GapMotion, ...], *, wear_model: str) -> tuple[str, ...]:
@@ -265,12 +268,11 @@ def range_text(holding: list[tuple[float, str]], of: str) -> str:
 
 
 def _raw_wear_ratio(
-    rig: Rig, motions: tuple[GapMotion, ...], model: str, vibration_amplitude: float | None
+    resolved: ResolvedRig, motions: tuple[GapMotion, ...], model: str, vibration_amplitude: float | None
 ) -> tuple[float, float]:
     """Return the wear ratio by the formula of a model, and the smallest gap of the motion that it is for. [m]"""
-    load = rig.normal_load
-    rest = float(separation(rig.contact, normal_load=load))
-    smallest = rest + min(_lowest_displacement(rig, motion, model) for motion in motions)
+    rig, load = resolved.rig, resolved.rig.normal_load
+    smallest = resolved.separation + min(_lowest_displacement(rig, motion, model) for motion in motions)
     if vibration_amplitude is not None and model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
         vibrating = vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=vibration_amplitude)
         return float(vibrating / cube_wear_rate(rig.contact, normal_load=load)), smallest

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from sonolube.report import Drawing, Page
     from sonolube.rig import Rig
-    from sonolube.rig.labelled_arrays import LabelledArrays
+    from sonolube.rig.datasets import LabelledArrays
     from sonolube.tasks.call import Call
     from sonolube.tasks.progress import Advance
 
