@@ -16,7 +16,6 @@ from sonolube.vocabulary import quantities
 if TYPE_CHECKING:
     import xarray as xr
 
-
 _UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
 _LEAST_FORCE = 1e-6  # of the load, below which a friction force means nothing
 _LABELS = {"amplitude_origin": "amplitude", "energy_balance": "energy"}
