@@ -92,8 +92,8 @@ def test_another_friction_model_keeps_all_else_that_was_resolved(calls: Counter[
     kept = resolved.vibration, resolved.gap_law, resolved.separation
     model = FRICTION_MODELS["dong_2015_full_period"]()
     other = resolved.with_friction_model(model)
-    assert resolved.friction_model is REFERENCE.friction_model
-    assert other.friction_model is model
+    assert resolved.rig.friction_model is REFERENCE.friction_model
+    assert other.rig.friction_model is model
     found = friction_point(other)
     assert (other.vibration, other.gap_law, other.separation) == kept
     assert calls["resolved_vibration"] == calls["gap_law_of"] == calls["rest_separation"] == 1

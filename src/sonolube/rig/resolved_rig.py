@@ -46,11 +46,6 @@ class ResolvedRig:
 
     rig: Rig
 
-    @property
-    def friction_model(self) -> FrictionModel:
-        """Friction model of the rig."""
-        return self.rig.friction_model
-
     @cached_property
     def voltage(self) -> DriveVoltage:
         """Voltage of the drive, for rigs that have one."""
@@ -127,7 +122,7 @@ class ResolvedRig:
 
     def require_separation(self) -> "ResolvedRig":
         """Rig itself, whose load is refused where it leaves no separation between the surfaces."""
-        assert self.separation > 0  # which refuses
+        _ = self.separation
         return self
 
     def with_friction_model(self, friction_model: FrictionModel) -> "ResolvedRig":

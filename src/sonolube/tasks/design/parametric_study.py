@@ -216,9 +216,9 @@ def _require_studied(rig: Rig, of: str) -> None:
         why = "has no drive voltage" if own is AMPLITUDE else "has a drive voltage, which sets its amplitude"
         raise InvalidInput(f"{rig.title} {why}: take {shown('of')} {own.word}")
     if of in _OF_STRUCTURE:
-        assert resolved.moved  # which refuses a rig without a structure that moves it
+        _ = resolved.moved  # which refuses a rig without a structure that moves it
     elif of != "speed":
-        assert resolved.vibration  # which refuses a rig without an amplitude
+        _ = resolved.vibration  # which refuses a rig without an amplitude
 
 
 def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None) -> Floats:
