@@ -1,5 +1,7 @@
 """Motions of the gap: load balance, derivatives and resampling of sines, and inconsistent samples."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pytest import approx, raises
@@ -116,3 +118,18 @@ def test_averages_of_many_motions_are_those_of_each_alone() -> None:
     assert together == approx(np.array(alone), rel=1e-12)
     assert seen[0] == 3
     assert seen[-1] < 3  # motions that are done take no further samples
+
+
+def test_parts_of_a_motion_within_the_plane_are_resampled_with_it() -> None:
+    phase = 2 * np.pi * np.arange(256) / 256
+    motion = replace(sine(2e-6), along=1e-6 * np.sin(phase), across=3e-7 * np.cos(phase - 0.4))
+    fine = 2 * np.pi * np.arange(640) / 640
+    found = load_balanced_motion(CONTACT, motion).resampled(640)
+    assert found.along == approx(1e-6 * np.sin(fine), abs=1e-18)
+    assert found.across == approx(3e-7 * np.cos(fine - 0.4), abs=1e-18)
+    assert sine(2e-6).resampled(640).along is None
+
+
+def test_a_part_within_the_plane_has_the_phases_of_the_normal_one() -> None:
+    with raises(InvalidInput, match=r"across must have the phases of displacement, got shapes \(8,\) and \(256,\)"):
+        replace(sine(2e-6), across=np.zeros(8))

@@ -1,4 +1,4 @@
-"""Periodic motions of the gap of a contact: one sampled period, and batches of Fourier coefficients.
+"""Periodic motions of a contact: one sampled period by direction, and batches of Fourier coefficients of the gap.
 
 The record in which `sonolube.models.dynamics` hands over a vibration and which the models of friction and wear take.
 """
@@ -26,7 +26,7 @@ _SAMPLES = 256  # per period
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class GapMotion:
-    """One period of a steady-state motion of the gap along the surface normal, at uniform phases.
+    """One period of a steady-state motion of a contact along its normal and within its plane, at uniform phases.
 
     Parameters
     ----------
@@ -38,6 +38,8 @@ class GapMotion:
         Frequency of the vibration. [Hz]
     normal_load : float
         Dead load, which is the normal force at rest. [N]
+    along, across : ndarray, shape (n,), optional
+        Displacement within the plane at these phases, along the mean sliding and across it; None for none. [m]
 
     Raises
     ------
@@ -50,6 +52,8 @@ class GapMotion:
     normal_force: Floats
     frequency: float
     normal_load: float
+    along: Floats | None = None
+    across: Floats | None = None
 
     def __post_init__(self) -> None:
         x = require_finite(displacement=self.displacement)
@@ -63,6 +67,15 @@ class GapMotion:
             )
         object.__setattr__(self, "displacement", x)
         object.__setattr__(self, "normal_force", F_n)
+        for name in ("along", "across"):
+            if getattr(self, name) is None:
+                continue
+            within = require_finite(**{name: getattr(self, name)})
+            if within.shape != x.shape:
+                raise InvalidInput(
+                    f"{name} must have the phases of displacement, got shapes {within.shape} and {x.shape}"
+                )
+            object.__setattr__(self, name, within)
 
     @property
     def velocity(self) -> Floats:
@@ -306,8 +319,13 @@ def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
 @lru_cache(maxsize=256)
 def _resampled_motion(motion: GapMotion, samples: int) -> GapMotion:
     """Return a motion at another number of uniform phases; kept for models that are fitted to it."""
-    force = np.maximum(_resampled(motion.normal_force, samples), 0.0)
-    return replace(motion, displacement=_resampled(motion.displacement, samples), normal_force=force)
+    return replace(
+        motion,
+        displacement=_resampled(motion.displacement, samples),
+        normal_force=np.maximum(_resampled(motion.normal_force, samples), 0.0),
+        along=None if motion.along is None else _resampled(motion.along, samples),
+        across=None if motion.across is None else _resampled(motion.across, samples),
+    )
 
 
 def _resampled(values: Floats, samples: int) -> Floats:

@@ -118,12 +118,17 @@ class AsperityStickSlip(FrictionModel):
 
         def mean_over_limit(sampled: GapMotion) -> Floats:
             gap, steps = _from_widest_gap(sampled)
-            delays = np.exp(-1j * self.in_plane_phase * np.arange(steps.size))
-            slides = self.in_plane_fraction / self.memory_length * np.fft.irfft(steps * delays, gap.size)
+            if sampled.along is None:
+                delays = np.exp(-1j * self.in_plane_phase * np.arange(steps.size))
+                slides = self.in_plane_fraction / self.memory_length * np.fft.irfft(steps * delays, gap.size)
+            else:
+                along = np.roll(sampled.along, -int(np.argmax(sampled.displacement)))
+                slides = (np.roll(along, -1) - along) / self.memory_length
             steady = v_r.ravel() / (self.memory_length * motion.frequency * gap.size)
             return _sampled_ratio(gap / length, slides, steady)
 
-        if not self.in_plane_fraction and motion.displacement.size <= _LONGEST_PERIOD:
+        is_normal = motion.along is None and not self.in_plane_fraction
+        if is_normal and motion.displacement.size <= _LONGEST_PERIOD:
             every = np.zeros(v_r.size, dtype=np.int64)
             closed = self.batched_ratio(
                 contact, gap_harmonics(motion), sliding_speed=v_r.ravel(), motion=every, friction_coefficient=np.nan

@@ -145,7 +145,7 @@ class BristleWithHolder(FrictionModel):
             order = np.roll(np.arange(sampled.displacement.size), -int(np.argmin(sampled.normal_force)))
             limit = mu * sampled.normal_force[order]
             k = mindlin_tangential_stiffness(contact, separation=d + sampled.displacement[order])
-            u = self.in_plane_fraction * delayed_oscillation(sampled.displacement, phase=self.in_plane_phase)[order]
+            u = self._along(sampled)[order]
             step = 1 / (motion.frequency * order.size)
             slides = np.roll(u, -1) - u, v_r.ravel() * step
             forces, settled = self._mean_force(k, limit, slides, step)
@@ -158,6 +158,12 @@ class BristleWithHolder(FrictionModel):
                 " returned. Increase holder_damping"
             )
         return ratio.reshape(v_r.shape)
+
+    def _along(self, motion: GapMotion) -> Floats:
+        """Displacement along the sliding: that of the motion, else the fraction of its normal part. [m]"""
+        if motion.along is not None:
+            return motion.along
+        return self.in_plane_fraction * delayed_oscillation(motion.displacement, phase=self.in_plane_phase)
 
     def _mean_force(self, k: Floats, limit: Floats, slides: tuple[Floats, Floats], step: float) -> tuple[Floats, bool]:
         """Return the mean force at each sliding speed, in N, and whether a steady period was reached."""
