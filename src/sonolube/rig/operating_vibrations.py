@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import OutsideRange, SonolubeError
 from sonolube.models.actuator.stack import require_allowed_voltage
-from sonolube.models.contact import GapMotion, separation
+from sonolube.models.contact import ContactMotion, separation
 from sonolube.models.dynamics import Status, SteadyStates, steady_state
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
@@ -31,7 +31,7 @@ class PointVibration:
 
     status: str
     reason: str
-    motion: GapMotion | None = None
+    motion: ContactMotion | None = None
     numbers: tuple[float, ...] = (np.nan,) * 6  # five of the vibration, and whether the gap closes
 
 

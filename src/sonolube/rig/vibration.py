@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sonolube.errors import OutsideRange
 from sonolube.models.actuator.drive import Drive
-from sonolube.models.contact import GapMotion, separation_range
+from sonolube.models.contact import ContactMotion, separation_range
 from sonolube.models.dynamics import Status, SteadyStates, contact_motion, drive_receptance, steady_state
 from sonolube.models.dynamics.long_time_response import LongTimeResponse, march_until_settled
 from sonolube.models.friction.models import MeanGap
@@ -46,7 +46,7 @@ class SteadyVibration:
         "periodic", "subharmonic", "beating", "chaotic" or "settling".
     repetition_periods : int
         Periods of the drive after which the motion repeats, zero where it does not. []
-    motions : tuple of GapMotion
+    motions : tuple of ContactMotion
         One repetition; for a motion that does not repeat, segments from one widest gap to another, each made periodic.
     vibration_amplitude : float
         Half of the displacement from peak to peak, the mean over periods where these differ. [m]
@@ -77,7 +77,7 @@ class SteadyVibration:
     reason: str
     attractor: str
     repetition_periods: int
-    motions: tuple[GapMotion, ...]
+    motions: tuple[ContactMotion, ...]
     vibration_amplitude: float
     lowest_amplitude: float | None
     highest_amplitude: float | None
@@ -149,7 +149,7 @@ def _sine(resolved: ResolvedRig) -> SteadyVibration:
     )
 
 
-def contact_loss_fraction(motion: GapMotion) -> float:
+def contact_loss_fraction(motion: ContactMotion) -> float:
     """Return the share of a period in which the contact carries less than a hundredth of the load. []"""
     return float(np.mean(motion.normal_force < _CONTACT_LOSS * motion.normal_load))
 
@@ -193,7 +193,7 @@ def _refuse_drive_beyond_contact(resolved: ResolvedRig, rig: DrivenRig) -> None:
     )
 
 
-def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
+def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> ContactMotion:
     """Return one steady vibration as a sampled motion of the gap.
 
     Parameters
@@ -204,7 +204,7 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
 
     Returns
     -------
-    GapMotion
+    ContactMotion
 
     Raises
     ------
@@ -212,7 +212,7 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
         If the point did not converge.
     """
     period = contact_motion(states, point, samples=_SAMPLES)
-    return GapMotion(
+    return ContactMotion(
         displacement=period.displacement,
         normal_force=period.normal_force,
         frequency=float(states.frequency[point]),
@@ -293,7 +293,7 @@ def _of_march(
     elongation = record.states.coordinates[:-1] @ rig.structure.drive_vector / rig.stack.charge_per_elongation
     turning = np.exp(-2j * np.pi * drive.frequency * record.time[:-1])
     if repeats:
-        motions: tuple[GapMotion, ...] = (_segment(rig, x[:-1], force[:-1], drive.frequency / repeats),)
+        motions: tuple[ContactMotion, ...] = (_segment(rig, x[:-1], force[:-1], drive.frequency / repeats),)
     else:
         motions = tuple(_segments(rig, x, force, attained, drive.frequency))
         periods = sum(drive.frequency / each.frequency for each in motions)
@@ -324,7 +324,7 @@ def _of_march(
 
 def _segments(
     rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], attained: LongTimeResponse, frequency: float
-) -> list[GapMotion]:
+) -> list[ContactMotion]:
     """Return segments of a motion that does not repeat, cut at the widest gaps and made periodic by a linear term."""
     steps, slow = attained.steps_per_period, float(attained.attractor.beat_frequency)
     whole = attained.periods * steps
@@ -342,5 +342,5 @@ def _segments(
     return found
 
 
-def _segment(rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], frequency: float) -> GapMotion:
-    return GapMotion(displacement=x, normal_force=force, frequency=frequency, normal_load=rig.normal_load)
+def _segment(rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], frequency: float) -> ContactMotion:
+    return ContactMotion(displacement=x, normal_force=force, frequency=frequency, normal_load=rig.normal_load)

@@ -7,7 +7,7 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.models.contact import GapMotion, RoughContact, sinusoidal_motion
+from sonolube.models.contact import ContactMotion, RoughContact, sinusoidal_motion
 from sonolube.models.friction import FRICTION_MODELS, FrictionModel
 from sonolube.models.friction.models.range_check import (
     OUTSIDE_MODEL_RANGE,
@@ -21,7 +21,7 @@ CONTACT = read_rig("examples/rigs/tribometer.toml").contact
 CLOSE = read_rig("examples/rigs/welder_flat.toml").contact  # 8.2 um of gap under 70 N
 
 
-def moving(contact: RoughContact, *, load: float, amplitude: float) -> GapMotion:
+def moving(contact: RoughContact, *, load: float, amplitude: float) -> ContactMotion:
     return sinusoidal_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=22e3)
 
 

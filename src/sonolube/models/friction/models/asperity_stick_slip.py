@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Complexes, Floats, Integers, require_positive
 from sonolube.compilation import kernel
-from sonolube.models.contact.gap_motion import GapMotion, GapMotionBatch, gap_harmonics
+from sonolube.models.contact.contact_motion import ContactMotion, GapMotionBatch, gap_harmonics
 from sonolube.models.contact.height_distribution import ExponentialHeights
 from sonolube.models.contact.period_mean import richardson_period_mean
 from sonolube.models.contact.rough import RoughContact, decay_length, separation
@@ -88,7 +88,7 @@ class AsperityStickSlip(FrictionModel):
     def ratio(
         self,
         contact: RoughContact,
-        motion: GapMotion,
+        motion: ContactMotion,
         *,
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
@@ -98,7 +98,7 @@ class AsperityStickSlip(FrictionModel):
         Parameters
         ----------
         contact : RoughContact
-        motion : GapMotion
+        motion : ContactMotion
         sliding_speed : array_like, any shape
             Mean sliding speed. [m/s]
         friction_coefficient : float, optional
@@ -116,7 +116,7 @@ class AsperityStickSlip(FrictionModel):
         v_r = require_positive(sliding_speed=sliding_speed)
         length = float(decay_length(contact, separation=separation(contact, normal_load=motion.normal_load)))
 
-        def mean_over_limit(sampled: GapMotion) -> Floats:
+        def mean_over_limit(sampled: ContactMotion) -> Floats:
             gap, steps = _from_widest_gap(sampled)
             if sampled.along is None:
                 delays = np.exp(-1j * self.in_plane_phase * np.arange(steps.size))
@@ -182,7 +182,7 @@ class AsperityStickSlip(FrictionModel):
 
 
 @lru_cache(maxsize=64)
-def _from_widest_gap(motion: GapMotion) -> tuple[Floats, Complexes]:
+def _from_widest_gap(motion: ContactMotion) -> tuple[Floats, Complexes]:
     """Return the displacement from its widest on, and the harmonics of its steps; kept for fits."""
     gap = np.roll(motion.displacement, -int(np.argmax(motion.displacement)))
     harmonics = np.fft.rfft(gap)

@@ -10,8 +10,8 @@ from scipy.special import i0
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.contact import (
     ASPERITY_LAWS,
+    ContactMotion,
     ContactPair,
-    GapMotion,
     GaussianHeights,
     RoughContact,
     load_balanced_motion,
@@ -19,7 +19,7 @@ from sonolube.models.contact import (
     separation,
     sinusoidal_motion,
 )
-from sonolube.models.contact.gap_motion import delayed_oscillation
+from sonolube.models.contact.contact_motion import delayed_oscillation
 from sonolube.models.contact.period_mean import richardson_period_mean, richardson_period_means
 from sonolube.models.surfaces import Roughness
 
@@ -33,7 +33,7 @@ LOAD, FREQUENCY, DECAY_LENGTH = 3.0, 22e3, 2e-6
 OMEGA = 2 * np.pi * FREQUENCY
 
 
-def sine(amplitude: float, *, samples: int = 256) -> GapMotion:
+def sine(amplitude: float, *, samples: int = 256) -> ContactMotion:
     return sinusoidal_motion(
         CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY, samples=samples
     )
@@ -73,14 +73,14 @@ def test_a_resampled_motion_lies_on_the_same_sine() -> None:
 
 def test_forces_and_displacements_of_different_length_are_refused() -> None:
     with raises(InvalidInput, match=r"got shapes \(8,\) and \(9,\)"):
-        GapMotion(displacement=np.zeros(8), normal_force=np.ones(9), frequency=1.0, normal_load=1.0)
+        ContactMotion(displacement=np.zeros(8), normal_force=np.ones(9), frequency=1.0, normal_load=1.0)
 
 
 def test_a_period_mean_with_an_error_of_second_order_is_extrapolated_until_it_is_exact() -> None:
     # an error of 1e5/n^2 at n phases: 1.5 at 256 phases, below 1e-5 from 2^17 phases on, without extrapolation
     counts: list[int] = []
 
-    def mean(motion: GapMotion) -> np.ndarray:
+    def mean(motion: ContactMotion) -> np.ndarray:
         counts.append(motion.displacement.size)
         return np.asarray(2.0 + 1e5 / motion.displacement.size**2)
 
