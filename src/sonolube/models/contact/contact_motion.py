@@ -39,7 +39,7 @@ class ContactMotion:
     normal_load : float
         Dead load, which is the normal force at rest. [N]
     along, across : ndarray, shape (n,), optional
-        Displacement within the plane at these phases, along the mean sliding and across it; None for none. [m]
+        Displacement within the plane at these phases, along the mean sliding and across it, in m; None for none.
 
     Raises
     ------
