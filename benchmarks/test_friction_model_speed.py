@@ -6,8 +6,8 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from sonolube.models.contact import (
     ASPERITY_LAWS,
+    ContactMotion,
     ContactPair,
-    GapMotion,
     RoughContact,
     load_balanced_motion,
     sinusoidal_motion,
@@ -25,7 +25,7 @@ SPEEDS = np.geomspace(1e-3, 1.0, 16)
 POINTS = 10_000
 
 
-def motion(amplitude: float = 2.5e-6) -> GapMotion:
+def motion(amplitude: float = 2.5e-6) -> ContactMotion:
     return load_balanced_motion(
         CONTACT, sinusoidal_motion(CONTACT, normal_load=3.0, vibration_amplitude=amplitude, frequency=22e3)
     )

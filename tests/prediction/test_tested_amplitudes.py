@@ -7,6 +7,7 @@ from pytest import approx
 
 from sonolube.prediction.tested_amplitudes import amplitude_ratios_of_tests, large_amplitude_caveats
 from sonolube.rig import read_rig
+from sonolube.rig.resolved_rig import resolved_rig
 
 RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 
@@ -21,6 +22,6 @@ def test_the_tested_amplitudes_are_those_of_the_dissertation_over_a_third_of_the
 @pytest.mark.parametrize(("amplitude", "said"), [(2.5e-6, False), (11e-6, False), (18e-6, True)])
 def test_an_amplitude_of_more_decay_lengths_than_any_test_is_said(amplitude: float, said: bool) -> None:
     # R_q 6 um: a decay length of 2 um, so that 18 um are 9 of them
-    found = large_amplitude_caveats(read_rig(RIG), vibration_amplitude=amplitude)
+    found = large_amplitude_caveats(resolved_rig(read_rig(RIG)), vibration_amplitude=amplitude)
     assert bool(found) == said
     assert not said or "9 decay lengths" in found[0]

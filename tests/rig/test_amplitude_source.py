@@ -22,13 +22,13 @@ from sonolube.rig import (
     operating_points,
     point_batch,
     read_rig,
-    resolved_vibration,
     rig_from,
     simulate,
     steady_vibration,
     temperature_point,
     thermal_solid,
 )
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.simulation import vibrated_friction
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
@@ -133,7 +133,7 @@ def test_the_computed_motion_of_a_measured_amplitude_has_that_amplitude_under_th
     assert steady_vibration(read_rig(TRIBOMETER)).vibration_amplitude == approx(2.5e-6, rel=1e-9)
     halved = chosen("tribometer", "measured", "vibration.vibration_amplitude=1.25um")
     assert steady_vibration(halved).vibration_amplitude == approx(1.25e-6, rel=1e-9)
-    driven = resolved_vibration(halved).driven
+    driven = resolved_rig(halved).vibration.driven
     assert driven is not None
     assert driven.calibration == approx(0.5, rel=5e-3)  # the tip is nearly linear in the drive
 

@@ -13,11 +13,12 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.models.actuator import catalogue_actuator
 from sonolube.models.surfaces import typical_summits
-from sonolube.rig import PUBLISHED_DECAY_LENGTH, Rig, friction_point, resolved_vibration, rig_from
+from sonolube.rig import PUBLISHED_DECAY_LENGTH, Rig, friction_point, rig_from
 from sonolube.rig.new_rig.known_surface import finished_surface, scanned_surface, surfaces_in_contact
 from sonolube.rig.new_rig.pin_and_vibration import DrivenActuator, FlatPin, RoundPin, StatedAmplitude
 from sonolube.rig.new_rig.rig_text import KnownRig, least_known, new_rig_text
 from sonolube.rig.new_rig.stated_text import pin_shape, speed_of, surface_of
+from sonolube.rig.resolved_rig import resolved_rig
 
 GROUND = finished_surface("ground N6")
 KNOWN = KnownRig(
@@ -270,12 +271,12 @@ def test_what_was_assumed_in_reading_a_finish_is_said() -> None:
 
 def test_a_stated_amplitude_is_not_called_measured_until_its_uncertainty_is_removed() -> None:
     rig = rig_of(KNOWN)
-    assert resolved_vibration(rig).source == "measured"
-    assert resolved_vibration(rig).text == "stated, 3 um at 20 kHz"
+    assert resolved_rig(rig).vibration.source == "measured"
+    assert resolved_rig(rig).vibration.text == "stated, 3 um at 20 kHz"
     assert "3 um stated" in dict(rig.table())["vibration amplitude"]
     content = rig.content()
     del content["uncertainty"]["vibration.vibration_amplitude"]
-    assert resolved_vibration(rig_from(content)).text == "measured, 3 um at 20 kHz"
+    assert resolved_rig(rig_from(content)).vibration.text == "measured, 3 um at 20 kHz"
 
 
 def test_a_class_puts_its_spread_into_the_file_and_an_alloy_does_not() -> None:

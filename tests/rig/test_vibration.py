@@ -20,8 +20,8 @@ from sonolube.models.dynamics.structure import contact_receptance, drive_recepta
 from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.rig.excitation import voltage_range, waveform_of
-from sonolube.rig.linear_response import gap_law_of
+from sonolube.rig.excitation import DriveVoltage, waveform_of
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.vibration import steady_vibration
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
@@ -103,7 +103,7 @@ def test_where_no_vibration_was_found_the_march_tells_what_there_is() -> None:
 
 def test_a_vibration_found_under_a_hard_drive_answers_its_own_force() -> None:
     rig = read_rig(TRIBOMETER)
-    structure, law = driven_rig(rig).structure, gap_law_of(rig)
+    structure, law = driven_rig(rig).structure, resolved_rig(rig).gap_law
     load, frequency, voltage = 61.9955, 390.40532, 1162.227 / 2
     states = steady_state(structure, law, normal_load=load, frequency=frequency, voltage_amplitude=voltage)
     assert Status(int(states.status)) is Status.UNSTABLE
@@ -152,7 +152,7 @@ def test_the_voltage_of_a_lopsided_waveform_reaches_as_far_as_its_samples_do() -
     drive = rig_from(sampled([1, 0, 0, 0], offset="10 V")).drive
     assert drive is not None
     assert waveform_extremes(waveform_of(drive)) == approx((-0.25, 0.75))
-    assert voltage_range(drive) == approx((10 - 7, 10 + 21))
+    assert DriveVoltage(drive=drive).range() == approx((10 - 7, 10 + 21))
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,8 @@ from scipy.special import ellipk, i0e
 
 from sonolube.charts import Points
 from sonolube.errors import InvalidInput
-from sonolube.models.contact import decay_length
 from sonolube.rig import read_rig
-from sonolube.rig.linear_response import rest_separation
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.validation.comparison import compare_models, compared_models
 from sonolube.validation.run_conditions import run_conditions
 from sonolube.validation.runs_comparison import predict_runs
@@ -105,7 +104,7 @@ def test_runs_of_coulomb_friction_along_rank_that_model_first() -> None:
 
 def test_runs_of_asperity_stick_slip_give_back_their_memory_length_on_the_rig() -> None:
     rig = read_rig(RIG)
-    decay = decay_length(rig.contact, separation=rest_separation(rig))
+    decay = resolved_rig(rig).decay_length
     amplitude, speed = conditions()
     rates = speed * decay / (2 * np.pi * FREQUENCY * amplitude * 1.1e-6)
     exact = [stick_slip(a / decay, rate) for a, rate in zip(amplitude, rates, strict=True)]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from sonolube.prediction.calibration import Calibration
-    from sonolube.rig.labelled_arrays import LabelledArrays
+    from sonolube.rig.datasets import LabelledArrays
 
 _OPACITIES: Final = (0.15, 0.25, 0.4)  # of the bands, the widest first
 _HIGHEST: Final = 1.15  # ratio on the axis, where no own run lies above

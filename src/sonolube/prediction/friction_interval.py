@@ -8,7 +8,8 @@ from sonolube.prediction.inputs import rig_inputs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, ratio_draws
 from sonolube.prediction.scores import central_interval
-from sonolube.rig import Rig
+from sonolube.rig import ResolvedRig, Rig
+from sonolube.rig.resolved_rig import resolved_rig
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,25 +36,26 @@ class FrictionInterval:
         return f"{self.low:.2g} to {self.high:.2g} (80 %, `sonolube predict`)"
 
 
-def friction_interval(rig: Rig) -> FrictionInterval:
+def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
     """Interval of the friction ratio of a rig at its operating point, without own runs.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
 
     Returns
     -------
     FrictionInterval
         Equal to that of `predict`.
     """
+    resolved = resolved_rig(rig)
     try:
-        limits = applicability(rig)
+        limits = applicability(resolved.rig)
         if limits.refusal:
             return FrictionInterval(reason=limits.refusal)
         if limits.any_ratio:
             return FrictionInterval(reason=limits.caveats[0])
-        at = rig_inputs(rig).at()
+        at = rig_inputs(resolved).at()
     except SonolubeError as refusal:
         return FrictionInterval(reason=str(refusal))
     low, high = central_interval(ratio_draws(learned().friction, at, count=DRAWS)[:, 0], 0.8)

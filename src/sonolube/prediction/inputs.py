@@ -11,8 +11,9 @@ from sonolube.errors import InvalidInput
 from sonolube.prediction.closures import Conditions, UncertainConditions
 from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH
 from sonolube.prediction.posterior import Posterior, learned
-from sonolube.rig import Distribution, FrictionPoint, Rig, friction_point
+from sonolube.rig import Distribution, FrictionPoint, ResolvedRig, Rig, friction_point
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
@@ -127,12 +128,12 @@ class RigInputs:
         )
 
 
-def rig_inputs(rig: Rig) -> RigInputs:
+def rig_inputs(rig: Rig | ResolvedRig) -> RigInputs:
     """Inputs of a prediction from a rig file: its own distributions where it has them, else usual ones.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
 
     Returns
     -------
@@ -143,11 +144,13 @@ def rig_inputs(rig: Rig) -> RigInputs:
     InvalidInput
         If the rig does not vibrate, does not slide or states no frequency.
     """
+    resolved = resolved_rig(rig)
+    rig = resolved.rig
     if rig.drive is None:
         raise InvalidInput(f"{rig.title}: a prediction needs a frequency; give drive.frequency")
     if not rig.sliding_speed > 0:
         raise InvalidInput(f"{rig.title}: a prediction needs a sliding speed above 0; give sliding.sliding_speed")
-    point = friction_point(rig)
+    point = friction_point(resolved)
     if not point.vibration_amplitude > 0:
         raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is 0 m")
     length = _measured_decay_length(rig)

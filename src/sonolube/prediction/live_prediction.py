@@ -24,8 +24,7 @@ from sonolube.prediction.stiffness_probes import Probe, probe_sentences, stiffne
 from sonolube.prediction.wear import vibration_weight
 from sonolube.prediction.wear_statement import pair_of
 from sonolube.rig import Rig
-from sonolube.rig.datasets import labels
-from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
+from sonolube.rig.datasets import LabelledArray, LabelledArrays, labels
 
 if TYPE_CHECKING:
     import xarray as xr

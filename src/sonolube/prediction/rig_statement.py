@@ -15,7 +15,7 @@ from sonolube.prediction.run_check import RunCheck
 from sonolube.prediction.scores import PROBABILITIES, central_interval
 from sonolube.prediction.wear_statement import pair_of, wear_statement, worn_body
 from sonolube.rig import Rig
-from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
+from sonolube.rig.datasets import LabelledArray, LabelledArrays
 
 if TYPE_CHECKING:
     import xarray as xr

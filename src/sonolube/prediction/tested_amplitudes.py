@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from sonolube.models.contact import RoughContact, decay_length, separation
-from sonolube.rig import Rig
+from sonolube.rig import ResolvedRig
 from sonolube.validation.published_tests import friction_tests
 
 _MARGIN = 1.05  # of the largest tested one
@@ -18,12 +18,12 @@ def amplitude_ratios_of_tests() -> tuple[float, float]:
     return float(np.min(ratios)), float(np.max(ratios))
 
 
-def large_amplitude_caveats(rig: Rig, *, vibration_amplitude: float) -> tuple[str, ...]:
+def large_amplitude_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tuple[str, ...]:
     """Return a sentence where an amplitude is more decay lengths of a rig's contact than any published test had.
 
     Parameters
     ----------
-    rig : Rig
+    resolved : ResolvedRig
     vibration_amplitude : float
         Zero to peak. [m]
 
@@ -32,7 +32,7 @@ def large_amplitude_caveats(rig: Rig, *, vibration_amplitude: float) -> tuple[st
     tuple of str
         Empty for amplitudes within the tests.
     """
-    ratio = _amplitude_ratio(rig.contact, rig.normal_load, vibration_amplitude)
+    ratio = vibration_amplitude / resolved.decay_length
     low, high = amplitude_ratios_of_tests()
     if not ratio > _MARGIN * high:
         return ()

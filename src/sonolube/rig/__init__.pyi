@@ -1,9 +1,4 @@
-from .amplitude_source import (
-    ResolvedVibration as ResolvedVibration,
-    amplitude_labels as amplitude_labels,
-    available_sources as available_sources,
-    resolved_vibration as resolved_vibration,
-)
+from .amplitude_source import ResolvedVibration as ResolvedVibration, available_sources as available_sources
 from .contact_temperature import (
     TemperaturePoint as TemperaturePoint,
     temperature_point as temperature_point,
@@ -79,6 +74,7 @@ from .record import (
     MeasuredUnder as MeasuredUnder,
     Rig as Rig,
 )
+from .resolved_rig import ResolvedRig as ResolvedRig, amplitude_labels as amplitude_labels
 from .simulation import (
     Simulation as Simulation,
     friction_point as friction_point,

@@ -1,17 +1,17 @@
-"""Source of a rig's vibration: measured, computed, waveguide or per volt, resolved in one place for all commands."""
+"""Vibration of a rig by each source of its amplitude: measured, computed, waveguide or per volt."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from types import MappingProxyType
 
 import numpy as np
 
-from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.errors import InvalidInput
 from sonolube.models.contact import RoughContact, separation
-from sonolube.models.dynamics import Status, Structure, static_contact, steady_state
+from sonolube.models.dynamics import GapLaw, Status, Structure, static_contact, steady_state
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import voltage_harmonics
-from sonolube.rig.linear_response import gap_law_of
+from sonolube.rig.excitation import DriveVoltage
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, MeasuredUnder, Rig
 from sonolube.units import format_si
 
@@ -75,30 +75,14 @@ def available_sources(rig: Rig) -> tuple[AmplitudeSource, ...]:
     return tuple(source for source in AMPLITUDE_SOURCES if present[source])
 
 
-def resolved_vibration(rig: Rig) -> ResolvedVibration:
-    """Return the source of a rig's vibration: the one that it names, else measured, computed, waveguide, per volt.
-
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    ResolvedVibration
+def chosen_source(rig: Rig, sources: tuple[AmplitudeSource, ...]) -> AmplitudeSource:
+    """Source of a rig's amplitude among those that it has: the one that it names, else the first.
 
     Raises
     ------
     InvalidInput
-        If the rig has no amplitude, not the one that it names, or no drive gives the measured one.
-
-    Notes
-    -----
-    A measured amplitude of a rig with a structure fixes the scale of its drive: force and charge per volt are
-    multiplied by the factor at which the computed amplitude, under voltage, frequency and load of the measurement, is
-    the measured one; a measurement whose drive is stated was under a sine. Shape, mean gap and their change with
-    voltage, frequency and load are computed. Without a structure the vibration is a sine, proportional to the voltage.
+        If the rig has none, or not the one that it names.
     """
-    sources = available_sources(rig)
     source = rig.amplitude_source or next(iter(sources), None)
     if source is None:
         raise InvalidInput(
@@ -107,77 +91,56 @@ def resolved_vibration(rig: Rig) -> ResolvedVibration:
         )
     if source not in sources:
         raise InvalidInput(f"{rig.title}: no amplitude {source}: {_MISSING[source](rig)}; it has {_listed(sources)}")
-    return _RESOLVED[source](rig)
+    return source
 
 
-def amplitude_labels(rig: Rig) -> dict[str, str]:
-    """Return the source of a rig's amplitude and the same in words, by name; empty where it has none."""
-    try:
-        used = resolved_vibration(rig)
-    except SonolubeError:
-        return {}
-    return {"amplitude_source": used.source, "amplitude_origin": used.text}
-
-
-def moved_rig(rig: Rig) -> DrivenRig:
-    """Return the rig whose structure gives the vibration, for results that need one.
+def scaled_vibration(rig: DrivenRig, *, voltage: DriveVoltage, gap_law: GapLaw) -> ResolvedVibration:
+    """Vibration of a rig with a structure by its measured amplitude, which fixes the scale of its drive.
 
     Parameters
     ----------
-    rig : Rig
+    rig : DrivenRig
+        With a measured amplitude.
+    voltage : DriveVoltage
+        Of its own drive.
+    gap_law : GapLaw
+        Of its contact.
 
     Returns
     -------
-    DrivenRig
-        For a measured amplitude with its drive scaled to it.
+    ResolvedVibration
 
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or takes a sine of its amplitude per volt.
+        If no drive gives the measured amplitude.
+
+    Notes
+    -----
+    Force and charge per volt are multiplied by the factor at which the computed amplitude, under voltage, frequency and
+    load of the measurement, is the measured one; a measurement whose drive is stated was under a sine. Shape, mean gap
+    and their change with voltage, frequency and load are computed.
     """
-    if rig.structure is None:
-        return driven_rig(rig)  # which says what is missing
-    used = resolved_vibration(rig)
-    if used.driven is None:
-        raise InvalidInput(
-            f"{rig.title}: this needs the motion of the structure, not a sine of the amplitude {used.source}; choose"
-            " the amplitude computed or measured"
-        )
-    return used.driven
+    driven = _calibrated(rig, voltage, gap_law)
+    text = f"{_measurement_text(rig)}; it scales the drive of the computed motion by {driven.calibration:.4g}"
+    return ResolvedVibration(source="measured", text=text, driven=driven, sine_amplitude=None)
 
 
-def source_caveats(rig: Rig, *, taken: AmplitudeSource, vibration_amplitude: float) -> tuple[str, ...]:
-    """Return a line where the amplitudes of two sources of a rig differ by more than their error, at its own drive.
-
-    Parameters
-    ----------
-    rig : Rig
-    taken : {"measured", "computed", "waveguide", "per-volt"}
-        Source by which the rig vibrates.
-    vibration_amplitude : float
-        By that source. [m]
-
-    Returns
-    -------
-    tuple of str
-    """
-    found = {source: _amplitude_by(rig, source) for source in available_sources(rig) if source != taken}
-    error = {source: AMPLITUDE_ERROR * max(other, vibration_amplitude) for source, other in found.items()}
-    others = [
-        f"{source} {format_si(found[source], 'm')}"
-        for source in AMPLITUDE_SOURCES
-        if source in found and abs(found[source] - vibration_amplitude) > error[source]
-    ]
-    if not others:
-        return ()
-    return (
-        f"the amplitudes differ by more than their error of {100 * AMPLITUDE_ERROR:.0f} %: {taken}"
-        f" {format_si(vibration_amplitude, 'm')}, taken here, and {', '.join(others)}",
+def computed_amplitude(rig: DrivenRig, *, voltage: DriveVoltage, gap_law: GapLaw) -> float:
+    """Amplitude that the structure of a rig takes up under its own drive and load; NaN where none was found. [m]"""
+    own = _Excited(
+        rig=rig,
+        voltage=voltage,
+        gap_law=gap_law,
+        voltage_peak_to_peak=rig.voltage_peak_to_peak,
+        frequency=rig.drive.frequency,
+        normal_load=rig.normal_load,
     )
+    return _amplitude(own, 1.0)
 
 
-def _measured(rig: Rig) -> ResolvedVibration:
+def _measurement_text(rig: Rig) -> str:
+    """Measured amplitude with its drive, in words."""
     assert rig.vibration_amplitude is not None
     under = _conditions(rig)
     stated = [
@@ -186,15 +149,17 @@ def _measured(rig: Rig) -> ResolvedVibration:
         if value is not None
     ]
     origin = "stated" if rig.has_stated_amplitude else "measured"
-    text = f"{origin}, {format_si(rig.vibration_amplitude, 'm')}" + (f" at {', '.join(stated)}" if stated else "")
-    if rig.structure is None:
-        at, volts = under.voltage_peak_to_peak, None if rig.drive is None else rig.drive.voltage_peak_to_peak
-        per_volt = rig.vibration_amplitude / at if at and volts is not None else None
-        amplitude = rig.vibration_amplitude if per_volt is None or volts is None else per_volt * volts
-        return ResolvedVibration(source="measured", text=text, driven=None, sine_amplitude=amplitude, per_volt=per_volt)
-    driven = _calibrated(driven_rig(rig))
-    text += f"; it scales the drive of the computed motion by {driven.calibration:.4g}"
-    return ResolvedVibration(source="measured", text=text, driven=driven, sine_amplitude=None)
+    return f"{origin}, {format_si(rig.vibration_amplitude, 'm')}" + (f" at {', '.join(stated)}" if stated else "")
+
+
+def _measured_sine(rig: Rig) -> ResolvedVibration:
+    """Sine of the measured amplitude, proportional to the voltage where that of the measurement is known."""
+    assert rig.vibration_amplitude is not None
+    at, volts = _conditions(rig).voltage_peak_to_peak, None if rig.drive is None else rig.drive.voltage_peak_to_peak
+    per_volt = rig.vibration_amplitude / at if at and volts is not None else None
+    amplitude = rig.vibration_amplitude if per_volt is None or volts is None else per_volt * volts
+    text = _measurement_text(rig)
+    return ResolvedVibration(source="measured", text=text, driven=None, sine_amplitude=amplitude, per_volt=per_volt)
 
 
 def _computed(rig: Rig) -> ResolvedVibration:
@@ -219,12 +184,10 @@ def _per_volt(rig: Rig) -> ResolvedVibration:
     )
 
 
-_RESOLVED: dict[AmplitudeSource, Callable[[Rig], ResolvedVibration]] = {
-    "measured": _measured,
-    "computed": _computed,
-    "waveguide": _of_waveguide,
-    "per-volt": _per_volt,
-}
+VIBRATIONS: Mapping[AmplitudeSource, Callable[[Rig], ResolvedVibration]] = MappingProxyType(
+    {"measured": _measured_sine, "computed": _computed, "waveguide": _of_waveguide, "per-volt": _per_volt}
+)
+"""Vibration of a rig by each source, a measured amplitude being that of a sine."""
 
 
 def _missing_measurement(rig: Rig) -> str:
@@ -264,16 +227,7 @@ def _measured_here(rig: Rig) -> bool:
     return own is None or under.frequency is None or abs(own - under.frequency) <= _SAME_FREQUENCY * own
 
 
-def _amplitude_by(rig: Rig, source: AmplitudeSource) -> float:
-    """Return the amplitude at the rig's own drive by a source; NaN where none was found. [m]"""
-    found = resolved_vibration(replace(rig, amplitude_source=source, calibration=None))
-    if found.sine_amplitude is not None:
-        return found.sine_amplitude
-    assert found.driven is not None
-    return _amplitude(_Excited.by_own_drive(found.driven), 1.0)
-
-
-def _calibrated(rig: DrivenRig) -> DrivenRig:
+def _calibrated(rig: DrivenRig, voltage: DriveVoltage, gap_law: GapLaw) -> DrivenRig:
     """Return the rig with force and charge per volt at which the computed amplitude is the measured one."""
     if rig.calibration is not None:
         return rig
@@ -286,9 +240,13 @@ def _calibrated(rig: DrivenRig) -> DrivenRig:
             f"{rig.title}: a measured amplitude of {format_si(wanted, 'm')} at {format_si(volts, 'V')} fixes no drive;"
             " choose the amplitude computed"
         )
-    sine = replace(rig, drive=replace(rig.drive, waveform="sine", waveform_samples=None))
-    by = rig if stated.voltage_peak_to_peak is None and stated.frequency is None else sine
-    scale = _drive_scale(_Excited(rig=by, voltage_peak_to_peak=volts, frequency=f, normal_load=load), wanted)
+    stated_drive = stated.voltage_peak_to_peak is not None or stated.frequency is not None
+    if stated_drive and rig.drive.waveform != "sine":
+        voltage = DriveVoltage(drive=replace(rig.drive, waveform="sine", waveform_samples=None))
+    excited = _Excited(
+        rig=rig, voltage=voltage, gap_law=gap_law, voltage_peak_to_peak=volts, frequency=f, normal_load=load
+    )
+    scale = _drive_scale(excited, wanted)
     if scale is None:
         raise InvalidInput(
             f"{rig.title}: no scale of its drive gives the measured amplitude of {format_si(wanted, 'm')}; choose the"
@@ -313,6 +271,8 @@ class _Excited:
     """
 
     rig: DrivenRig = field(compare=False)
+    voltage: DriveVoltage = field(compare=False)
+    gap_law: GapLaw = field(compare=False)
     voltage_peak_to_peak: float
     frequency: float
     normal_load: float
@@ -320,20 +280,10 @@ class _Excited:
     by: tuple[Structure, RoughContact, str, tuple[float, ...] | None] = field(init=False)
 
     def __post_init__(self) -> None:
-        rig, drive = self.rig, self.rig.drive
+        rig, drive = self.rig, self.voltage.drive
         ratio = drive.offset_ratio if static_contact(rig.structure).displacement_per_volt else 0.0
         object.__setattr__(self, "voltage_offset", ratio * self.voltage_peak_to_peak)
         object.__setattr__(self, "by", (rig.structure, rig.contact, drive.waveform, drive.waveform_samples))
-
-    @classmethod
-    def by_own_drive(cls, rig: DrivenRig) -> "_Excited":
-        """Return a rig under its own drive and load."""
-        return cls(
-            rig=rig,
-            voltage_peak_to_peak=rig.voltage_peak_to_peak,
-            frequency=rig.drive.frequency,
-            normal_load=rig.normal_load,
-        )
 
 
 @lru_cache(maxsize=64)
@@ -356,10 +306,10 @@ def _amplitude(excited: _Excited, scale: float) -> float:
     rig, volts, load = excited.rig, excited.voltage_peak_to_peak, excited.normal_load
     states = steady_state(
         rig.structure,
-        gap_law_of(rig),
+        excited.gap_law,
         normal_load=load,
         frequency=excited.frequency,
-        voltage_harmonics=scale * voltage_harmonics(rig.drive, voltage_peak_to_peak=volts),
+        voltage_harmonics=scale * excited.voltage.harmonics(voltage_peak_to_peak=volts),
         voltage_offset=excited.voltage_offset,
         separation=separation(rig.contact, normal_load=load),
         relative_tolerance=1e-8,

@@ -23,8 +23,8 @@ from sonolube.models.thermal.contact_history import (
     frictional_heat_rate,
 )
 from sonolube.models.thermal.flash_models import FLASH_MODELS
-from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.simulation import vibrated_friction
 
 _STEPS = 200
@@ -105,7 +105,7 @@ def thermal_solid(name: str) -> ThermalSolid:
 
 
 def temperature_point(
-    rig: Rig,
+    rig: Rig | ResolvedRig,
     *,
     pin: ThermalSolid,
     disc: ThermalSolid,
@@ -121,7 +121,7 @@ def temperature_point(
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     pin : ThermalSolid
         Body that the contact is fixed to.
     disc : ThermalSolid
@@ -153,9 +153,11 @@ def temperature_point(
         If the load leaves no separation, or the vibration is outside the range of the friction model or drives the
         sliding.
     """
+    resolved = resolved_rig(rig)
+    rig = resolved.rig
     if rig.sliding_speed <= 0:
         raise InvalidInput("sliding.sliding_speed must be positive for heat of friction")
-    rest_separation(rig)
+    resolved.require_separation()
     require_positive(heat_capacity=heat_capacity, thermal_conductance=thermal_conductance, duration=duration)
     levels = np.atleast_1d(require_non_negative(vibration_heat_rate=vibration_heat_rate))
     if not 0 <= dry_duration < duration:
@@ -167,7 +169,7 @@ def temperature_point(
     moving_rise = FLASH_MODELS.named(flash_model)
     network = ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
     contact = HeatedContact(pin=pin, disc=disc, source=source, network=network, moving_rise=moving_rise)
-    vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
+    vibrated = vibrated_friction(resolved, sliding_speed=rig.sliding_speed)
     intrinsic = rig.friction_coefficient * rig.normal_load
     ratio = float(
         vibrated.ratio.require_braking()

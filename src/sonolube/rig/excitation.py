@@ -1,7 +1,8 @@
-"""Drive voltage of a rig: waveform, start-up ramp, harmonics, extremes, amplifier power and its balance."""
+"""Drive voltage of a rig: waveform, harmonics, extremes, power of the amplifier and its balance."""
 
+from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,9 +10,8 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Complexes, Floats, require_non_negative
 from sonolube.models.actuator.drive import Drive
 from sonolube.models.actuator.drive_power import linear_amplifier_power
-from sonolube.models.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform
+from sonolube.models.dynamics import WAVEFORMS, Sine, Waveform
 from sonolube.models.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
-from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.record import Rig
 from sonolube.units import format_si
 
@@ -35,115 +35,86 @@ def waveform_of(drive: Drive) -> Waveform:
     return WAVEFORMS[drive.waveform] if drive.waveform_samples is None else sampled_waveform(drive.waveform_samples)
 
 
-def drive_and_load(rig: DrivenRig) -> dict[str, Any]:
-    """Return the arguments, by name, with which a structure in contact is marched in time under a rig's drive and load.
-
-    Parameters
-    ----------
-    rig : DrivenRig
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    UnknownName
-        If the shape of the start-up ramp is unknown.
-    """
-    drive = rig.drive
-    return {
-        "normal_load": rig.normal_load,
-        "frequency": drive.frequency,
-        "voltage_peak_to_peak": rig.voltage_peak_to_peak,
-        "voltage_offset": drive.voltage_offset,
-        "waveform": waveform_of(drive),
-        "ramp": StartUpRamp(duration=drive.ramp_duration, shape=drive.ramp_shape),
-    }
-
-
-def voltage_harmonics(drive: Drive, *, voltage_peak_to_peak: ArrayLike | None = None) -> Complexes:
-    """Return the harmonics of drives of one waveform, V = offset + Re sum V_k exp(2 pi i k f t), in V.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DriveVoltage:
+    """Voltage of a drive over time, its waveform evaluated once.
 
     Parameters
     ----------
     drive : Drive
-    voltage_peak_to_peak : array_like, optional
-        Peak-to-peak voltages instead of the drive's own. [V]
-
-    Returns
-    -------
-    ndarray of complex, shape of `voltage_peak_to_peak` with the harmonics appended
     """
-    waveform = waveform_of(drive)
+
+    drive: Drive
+
+    @cached_property
+    def waveform(self) -> Waveform:
+        """Shape of the voltage."""
+        return waveform_of(self.drive)
+
+    @cached_property
+    def harmonics_per_volt(self) -> Complexes:
+        """Harmonics V_k of V = offset + Re sum V_k exp(2 pi i k f t) over the voltage peak to peak. []"""
+        return voltage_harmonics(self.waveform)
+
+    def harmonics(self, *, voltage_peak_to_peak: ArrayLike | None = None) -> Complexes:
+        """Harmonics of the voltage along the last axis, at other voltages peak to peak where given. [V]"""
+        return self._swing(voltage_peak_to_peak)[..., np.newaxis] * self.harmonics_per_volt
+
+    def range(
+        self, *, voltage_peak_to_peak: ArrayLike | None = None, voltage_offset: ArrayLike | None = None
+    ) -> tuple[Floats, Floats]:
+        """Lowest and highest voltage, at other voltages peak to peak and offsets where given. [V]"""
+        offset = np.asarray(self.drive.voltage_offset if voltage_offset is None else voltage_offset, dtype=np.float64)
+        swing, (lowest, highest) = self._swing(voltage_peak_to_peak), self._extremes_per_volt
+        return offset + swing * lowest, offset + swing * highest
+
+    def amplifier_power(
+        self,
+        *,
+        capacitance: float,
+        voltage_peak_to_peak: ArrayLike | None = None,
+        voltage_offset: ArrayLike | None = None,
+        frequency: ArrayLike | None = None,
+    ) -> Floats:
+        """Power that a linear amplifier supplies to a capacitance, its rail at the highest voltage, D 1.9. [W]
+
+        Parameters
+        ----------
+        capacitance : float
+            Capacitance of the actuator. [F]
+        voltage_peak_to_peak, voltage_offset, frequency : array_like, optional
+            Instead of the drive's own. [V, V, Hz]
+
+        Returns
+        -------
+        ndarray, shape of the broadcast arguments
+        """
+        lowest, highest = self.range(voltage_peak_to_peak=voltage_peak_to_peak, voltage_offset=voltage_offset)
+        return linear_amplifier_power(
+            capacitance=capacitance,
+            voltage_maximum=np.maximum(np.abs(lowest), np.abs(highest)),
+            voltage_peak_to_peak=self._swing(voltage_peak_to_peak),
+            frequency=self.drive.frequency if frequency is None else frequency,
+        )
+
+    @cached_property
+    def _extremes_per_volt(self) -> tuple[float, float]:
+        return waveform_extremes(self.waveform)
+
+    def _swing(self, voltage_peak_to_peak: ArrayLike | None) -> Floats:
+        own = self.drive.voltage_peak_to_peak or 0.0
+        return require_non_negative(voltage_peak_to_peak=own if voltage_peak_to_peak is None else voltage_peak_to_peak)
+
+
+def voltage_harmonics(waveform: Waveform) -> Complexes:
+    """Harmonics V_k, V = offset + Re sum V_k exp(2 pi i k f t), of a voltage of 1 V peak to peak. [V]"""
     count = 1 if isinstance(waveform, Sine) else _VOLTAGE_HARMONICS
-    return 2 * _swing(drive, voltage_peak_to_peak)[..., np.newaxis] * fourier_coefficients(waveform, count)[1:]
-
-
-def voltage_range(
-    drive: Drive, *, voltage_peak_to_peak: ArrayLike | None = None, voltage_offset: ArrayLike | None = None
-) -> tuple[Floats, Floats]:
-    """Return the lowest and the highest voltage of drives of one waveform, in V.
-
-    Parameters
-    ----------
-    drive : Drive
-    voltage_peak_to_peak : array_like, optional
-        Peak-to-peak voltages instead of the drive's own. [V]
-    voltage_offset : array_like, optional
-        Mean voltages instead of the drive's own. [V]
-
-    Returns
-    -------
-    pair of ndarray
-    """
-    offset = np.asarray(drive.voltage_offset if voltage_offset is None else voltage_offset, dtype=np.float64)
-    swing, (lowest, highest) = _swing(drive, voltage_peak_to_peak), waveform_extremes(waveform_of(drive))
-    return offset + swing * lowest, offset + swing * highest
+    return 2 * fourier_coefficients(waveform, count)[1:]
 
 
 def actuator_capacitance(rig: Rig) -> float | None:
     """Return the capacitance that an amplifier drives: that of the stack, else of the actuator. [F]"""
     return rig.capacitance if rig.stack is None else rig.stack.free_capacitance
-
-
-def amplifier_power(
-    drive: Drive,
-    *,
-    capacitance: float,
-    voltage_peak_to_peak: ArrayLike | None = None,
-    voltage_offset: ArrayLike | None = None,
-    frequency: ArrayLike | None = None,
-) -> Floats:
-    """Return the power that a linear amplifier supplies, its rail at the drive's highest voltage. [W]
-
-    Parameters
-    ----------
-    drive : Drive
-    capacitance : float
-        Capacitance of the actuator. [F]
-    voltage_peak_to_peak : array_like, optional
-        Peak-to-peak voltages instead of the drive's own. [V]
-    voltage_offset : array_like, optional
-        Mean voltages instead of the drive's own. [V]
-    frequency : array_like, optional
-        Frequencies instead of the drive's own. [Hz]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    References
-    ----------
-    .. [1] D 1.9.
-    """
-    lowest, highest = voltage_range(drive, voltage_peak_to_peak=voltage_peak_to_peak, voltage_offset=voltage_offset)
-    return linear_amplifier_power(
-        capacitance=capacitance,
-        voltage_maximum=np.maximum(np.abs(lowest), np.abs(highest)),
-        voltage_peak_to_peak=_swing(drive, voltage_peak_to_peak),
-        frequency=drive.frequency if frequency is None else frequency,
-    )
 
 
 def energy_balance(*, actuator_power: float | None, dissipated_power: float | None) -> str | None:
@@ -174,9 +145,3 @@ def energy_balance(*, actuator_power: float | None, dissipated_power: float | No
     if dissipated <= supplied:
         return which
     return f"{which}: D 1.9 leaves the current of the motion out, so that the amplifier must supply the larger"
-
-
-def _swing(drive: Drive, voltage_peak_to_peak: ArrayLike | None) -> Floats:
-    return require_non_negative(
-        voltage_peak_to_peak=drive.voltage_peak_to_peak or 0.0 if voltage_peak_to_peak is None else voltage_peak_to_peak
-    )

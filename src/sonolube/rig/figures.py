@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from sonolube.rig.contact_temperature import TemperaturePoint
-    from sonolube.rig.labelled_arrays import LabelledArrays
+    from sonolube.rig.datasets import LabelledArrays
     from sonolube.rig.linear_response import FrequencyResponse
     from sonolube.rig.lubrication import LubricationMap, LubricationPoint
     from sonolube.rig.record import Rig

@@ -1,4 +1,4 @@
-"""Friction and wear ratios of a rig under a motion of its gap, by the rig's own models."""
+"""Friction and wear ratios of a rig under a motion of its contact, by the rig's own models."""
 
 from collections.abc import Sequence
 
@@ -7,11 +7,12 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.models.contact import GapMotion, load_balanced_motion, separation, sinusoidal_motion
+from sonolube.models.contact import ContactMotion, load_balanced_motion, sinusoidal_motion
 from sonolube.models.friction.models import MeanGap
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
 from sonolube.models.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig
 from sonolube.units import format_si
 
 ANY_FREQUENCY = 1.0
@@ -20,14 +21,14 @@ ANY_FREQUENCY = 1.0
 _RISING_WEAR_MODEL = "dong_2015_load_balanced"
 
 
-def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) -> CheckedRatio:
+def friction_ratios(rig: Rig, motion: ContactMotion, *, sliding_speed: ArrayLike) -> CheckedRatio:
     """Return friction with vibration over friction without, by the rig's friction model at some sliding speeds. []
 
     Parameters
     ----------
     rig : Rig
-    motion : GapMotion
-        Motion of the gap of its contact.
+    motion : ContactMotion
+        Motion of its contact.
     sliding_speed : array_like, any shape
         Macroscopic relative speed. [m/s]
 
@@ -50,14 +51,14 @@ def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) ->
     )
 
 
-def friction_at_speeds(rig: Rig, moving: GapMotion, speeds: Floats) -> CheckedRatio:
+def friction_at_speeds(rig: Rig, moving: ContactMotion, speeds: Floats) -> CheckedRatio:
     """Return the friction ratio at each of some sliding speeds, and the reason where there is none.
 
     Parameters
     ----------
     rig : Rig
-    moving : GapMotion
-        Motion of the gap of its contact.
+    moving : ContactMotion
+        Motion of its contact.
     speeds : ndarray, shape (n,)
         Macroscopic relative speeds, in m/s.
 
@@ -82,7 +83,7 @@ def friction_at_speeds(rig: Rig, moving: GapMotion, speeds: Floats) -> CheckedRa
 
 def prescribed_sine(
     rig: Rig, *, vibration_amplitude: float, frequency: float | None = None, normal_load: float | None = None
-) -> GapMotion:
+) -> ContactMotion:
     """Return a sine of the gap of a rig, about the mean that its friction model is meant for.
 
     Parameters
@@ -97,7 +98,7 @@ def prescribed_sine(
 
     Returns
     -------
-    GapMotion
+    ContactMotion
 
     Raises
     ------
@@ -125,13 +126,13 @@ def wear_model_of(rig: Rig) -> str:
     return name if name in WEAR_MODELS else DEFAULT_WEAR_MODEL
 
 
-def mean_friction(rig: Rig, motions: tuple[GapMotion, ...], *, sliding_speed: ArrayLike) -> CheckedRatio:
+def mean_friction(rig: Rig, motions: tuple[ContactMotion, ...], *, sliding_speed: ArrayLike) -> CheckedRatio:
     """Return the mean friction ratio over several motions; that of the first outside the model's range withholds it.
 
     Parameters
     ----------
     rig : Rig
-    motions : tuple of GapMotion
+    motions : tuple of ContactMotion
         One after the other, each of its own duration.
     sliding_speed : array_like, any shape
         Macroscopic relative speed. [m/s]
@@ -154,20 +155,24 @@ def mean_friction(rig: Rig, motions: tuple[GapMotion, ...], *, sliding_speed: Ar
     )
 
 
-def mean_over_time(values: Sequence[Floats], motions: tuple[GapMotion, ...]) -> Floats:
+def mean_over_time(values: Sequence[Floats], motions: tuple[ContactMotion, ...]) -> Floats:
     """Return the mean over time of a quantity of several motions of unequal duration."""
     return np.asarray(np.average(np.stack(values), axis=0, weights=[1 / motion.frequency for motion in motions]))
 
 
 def mean_wear(
-    rig: Rig, motions: tuple[GapMotion, ...], *, wear_model: str, vibration_amplitude: float | None = None
+    resolved: ResolvedRig,
+    motions: tuple[ContactMotion, ...],
+    *,
+    wear_model: str,
+    vibration_amplitude: float | None = None,
 ) -> tuple[float, str | None]:
     """Return the mean wear ratio over several motions about the mean gap of a wear model, and why it does not hold.
 
     Parameters
     ----------
-    rig : Rig
-    motions : tuple of GapMotion
+    resolved : ResolvedRig
+    motions : tuple of ContactMotion
         One after the other, each of its own duration.
     wear_model : str
         Of `sonolube.models.wear.WEAR_MODELS`.
@@ -179,14 +184,16 @@ def mean_wear(
     tuple of float and str or None
         None where the ratio is within the range of the model.
     """
-    ratio, smallest = _raw_wear_ratio(rig, motions, wear_model, vibration_amplitude)
+    ratio, smallest = _raw_wear_ratio(resolved, motions, wear_model, vibration_amplitude)
     if smallest > 0:
         return ratio, None
     others = [
-        (name, *_raw_wear_ratio(rig, motions, name, vibration_amplitude)) for name in WEAR_MODELS if name != wear_model
+        (name, *_raw_wear_ratio(resolved, motions, name, vibration_amplitude))
+        for name in WEAR_MODELS
+        if name != wear_model
     ]
     holding = [(value, name) for name, value, gap in others if gap > 0]
-    rest = float(separation(rig.contact, normal_load=rig.normal_load))
+    rest = resolved.separation
     amplitude = format_si(max(float(np.ptp(motion.displacement)) / 2 for motion in motions), "m")
     if wear_model != _RISING_WEAR_MODEL:
         why = (
@@ -200,14 +207,14 @@ def mean_wear(
 
 
 def wear_model_that_holds(
-    rig: Rig, motions: tuple[GapMotion, ...], *, vibration_amplitude: float | None = None
+    resolved: ResolvedRig, motions: tuple[ContactMotion, ...], *, vibration_amplitude: float | None = None
 ) -> str | None:
     """Return the wear model within whose range some motions lie, the one about the risen mean gap first.
 
     Parameters
     ----------
-    rig : Rig
-    motions : tuple of GapMotion
+    resolved : ResolvedRig
+    motions : tuple of ContactMotion
     vibration_amplitude : float, optional
         Amplitude of a motion that is a sine; None for other motions. [m]
 
@@ -217,15 +224,15 @@ def wear_model_that_holds(
         None where no model holds.
     """
     names = sorted(WEAR_MODELS, key=lambda name: name != _RISING_WEAR_MODEL)
-    return next((name for name in names if _raw_wear_ratio(rig, motions, name, vibration_amplitude)[1] > 0), None)
+    return next((name for name in names if _raw_wear_ratio(resolved, motions, name, vibration_amplitude)[1] > 0), None)
 
 
-def rise_caveats(motions: tuple[GapMotion, ...], *, wear_model: str) -> tuple[str, ...]:
+def rise_caveats(motions: tuple[ContactMotion, ...], *, wear_model: str) -> tuple[str, ...]:
     """Return the line on the rise of computed motions, which wear about the gap at rest leaves out.
 
     Parameters
     ----------
-    motions : tuple of GapMotion
+    motions : tuple of ContactMotion
     wear_model : str
         Of `sonolube.models.wear.WEAR_MODELS`.
 
@@ -265,12 +272,11 @@ def range_text(holding: list[tuple[float, str]], of: str) -> str:
 
 
 def _raw_wear_ratio(
-    rig: Rig, motions: tuple[GapMotion, ...], model: str, vibration_amplitude: float | None
+    resolved: ResolvedRig, motions: tuple[ContactMotion, ...], model: str, vibration_amplitude: float | None
 ) -> tuple[float, float]:
     """Return the wear ratio by the formula of a model, and the smallest gap of the motion that it is for. [m]"""
-    load = rig.normal_load
-    rest = float(separation(rig.contact, normal_load=load))
-    smallest = rest + min(_lowest_displacement(rig, motion, model) for motion in motions)
+    rig, load = resolved.rig, resolved.rig.normal_load
+    smallest = resolved.separation + min(_lowest_displacement(rig, motion, model) for motion in motions)
     if vibration_amplitude is not None and model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
         vibrating = vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=vibration_amplitude)
         return float(vibrating / cube_wear_rate(rig.contact, normal_load=load)), smallest
@@ -278,7 +284,7 @@ def _raw_wear_ratio(
     return float(mean_over_time([np.asarray(ratio(rig.contact, motion)) for motion in motions], motions)), smallest
 
 
-def _lowest_displacement(rig: Rig, motion: GapMotion, model: str) -> float:
+def _lowest_displacement(rig: Rig, motion: ContactMotion, model: str) -> float:
     """Return the lowest displacement of a motion about the mean gap of a wear model. [m]"""
     if model == _RISING_WEAR_MODEL:
         return float(load_balanced_motion(rig.contact, motion).displacement.min())

@@ -6,11 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive, require_within
-from sonolube.rig.amplitude_source import amplitude_labels, moved_rig
 from sonolube.rig.datasets import gridded
-from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, amplitude_labels, resolved_rig
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,7 +23,7 @@ _CLOSE = 1e-4  # relative error of the voltage
 
 
 def least_power_study(
-    rig: Rig,
+    rig: Rig | ResolvedRig,
     *,
     frequency: ArrayLike,
     friction_ratio: float,
@@ -35,7 +34,7 @@ def least_power_study(
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a stack, a structure and a drive voltage.
     frequency : array_like, shape (n,)
         Frequencies of the drive. [Hz]
@@ -66,15 +65,16 @@ def least_power_study(
     ----------
     .. [1] D 3.3.5, figure 3.17 (b).
     """
-    rig = moved_rig(rig)
+    resolved = resolved_rig(rig)
+    rig = resolved.moved
     f = np.atleast_1d(require_positive(frequency=frequency))
     target = float(require_within(0.0, 1.0, friction_ratio=friction_ratio))
     highest = float(require_positive(voltage_maximum=voltage_maximum))
-    top = _points(rig, f, np.full(f.shape, highest))
+    top = _points(resolved, f, np.full(f.shape, highest))
     reached = top.friction_ratio <= target
     log_volts = np.full(f.shape, np.log(highest))
-    log_volts[reached] = _search(rig, f[reached], target, top.friction_ratio[reached], np.log(highest), advance)
-    found = _points(rig, f, np.exp(log_volts))
+    log_volts[reached] = _search(resolved, f[reached], target, top.friction_ratio[reached], np.log(highest), advance)
+    found = _points(resolved, f, np.exp(log_volts))
     missed, reached = ~reached & ~top.failed, reached & ~found.failed
     numbers = {
         name: np.where(reached, getattr(found, name), np.nan)
@@ -93,11 +93,13 @@ def least_power_study(
         {"status": status.astype(np.str_), "reason": reason.astype(np.str_)} | numbers,
         axes={"frequency": f},
         title=f"Voltage and power for a friction ratio of {target:g}, {rig.title}",
-        about={"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(rig),
+        about={"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(resolved),
     )
 
 
-def _search(rig: DrivenRig, f: Floats, target: float, at_top: Floats, top: float, advance: Advance | None) -> Floats:
+def _search(
+    resolved: ResolvedRig, f: Floats, target: float, at_top: Floats, top: float, advance: Advance | None
+) -> Floats:
     """Return the logarithm of the voltage that gives the friction ratio at each frequency, by the Illinois method."""
     low, high = np.full(f.shape, top + np.log(_LOWEST)), np.full(f.shape, top)
     above, below = np.full(f.shape, 1.0) - target, at_top - target
@@ -110,7 +112,7 @@ def _search(rig: DrivenRig, f: Floats, target: float, at_top: Floats, top: float
             break
         span, a, b = high[going] - low[going], above[going], below[going]
         guess = low[going] + span * np.clip(a / (a - b), _CLOSE / 3, 1 - _CLOSE / 3)
-        miss = _points(rig, f[going], np.exp(guess)).raw_friction_ratio - target
+        miss = _points(resolved, f[going], np.exp(guess)).raw_friction_ratio - target
         left = miss > 0
         low[going], high[going] = np.where(left, guess, low[going]), np.where(left, high[going], guess)
         # Illinois: the value at an end that stays twice is halved
@@ -120,6 +122,6 @@ def _search(rig: DrivenRig, f: Floats, target: float, at_top: Floats, top: float
     return high
 
 
-def _points(rig: DrivenRig, f: Floats, volts: Floats) -> OperatingPoints:
-    offset = rig.drive.offset_ratio * volts
-    return operating_points(rig, frequency=f, voltage_peak_to_peak=volts, voltage_offset=offset)
+def _points(resolved: ResolvedRig, f: Floats, volts: Floats) -> OperatingPoints:
+    offset = resolved.voltage.drive.offset_ratio * volts
+    return operating_points(resolved, frequency=f, voltage_peak_to_peak=volts, voltage_offset=offset)

@@ -6,15 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.errors import OutsideRange
-from sonolube.models.contact import ExponentialHeights
-from sonolube.models.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
-from sonolube.models.dynamics import ExponentialGap, GapLaw, TabulatedGap, modes
+from sonolube.models.contact.rough import normal_stiffness
+from sonolube.models.dynamics import modes
 from sonolube.models.dynamics.structure import Structure, drive_receptance, electrical_admittance, with_contact_spring
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.record import Rig
-
-_POINTS = 2101  # of the table of a contact's force: 50 for each standard deviation of summit heights
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -39,12 +36,12 @@ class FrequencyResponse:
     phase: Floats
 
 
-def frequency_response(rig: Rig, *, frequency: ArrayLike) -> FrequencyResponse:
+def frequency_response(rig: Rig | ResolvedRig, *, frequency: ArrayLike) -> FrequencyResponse:
     """Return the frequency response of a rig to small voltages, with the contact linearised at rest.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a stack and a structure.
     frequency : array_like, shape (n,)
         Frequencies of the drive. [Hz]
@@ -73,24 +70,7 @@ def frequency_response(rig: Rig, *, frequency: ArrayLike) -> FrequencyResponse:
     )
 
 
-def rest_separation(rig: Rig) -> float:
-    """Return the separation of a rig's surfaces at rest. [m]
-
-    Raises
-    ------
-    OutsideRange
-        If the surfaces would be pressed through each other, so that no separation is left.
-    """
-    gap = float(separation(rig.contact, normal_load=rig.normal_load))
-    if gap <= 0:
-        raise OutsideRange(
-            f"contact.normal_load {rig.normal_load:g} N leaves no separation between the surfaces (d = {gap:.3g} m): "
-            "lower the load or enlarge contact.nominal_area"
-        )
-    return gap
-
-
-def structure_in_contact(rig: Rig) -> Structure:
+def structure_in_contact(rig: Rig | ResolvedRig) -> Structure:
     """Return the structure of a rig with the contact as a spring of its stiffness at rest.
 
     Raises
@@ -100,35 +80,19 @@ def structure_in_contact(rig: Rig) -> Structure:
     OutsideRange
         If its load leaves no separation.
     """
-    stiffness = float(normal_stiffness(rig.contact, separation=rest_separation(rig)))
-    return with_contact_spring(driven_rig(rig).structure, normal_stiffness=stiffness)
-
-
-def gap_law_of(rig: Rig) -> GapLaw:
-    """Return the gap law of a rig's contact: exponential for exponential heights, tabulated otherwise.
-
-    Notes
-    -----
-    Between the points of the table the force keeps within 1e-9 of that of the contact.
-    """
-    if isinstance(rig.contact.heights, ExponentialHeights):
-        return ExponentialGap(decay_length=float(decay_length(rig.contact)))
-    d = np.linspace(*separation_range(rig.contact), _POINTS)
-    return TabulatedGap(
-        separation=d,
-        normal_force=normal_force(rig.contact, separation=d),
-        normal_stiffness=normal_stiffness(rig.contact, separation=d),
-    )
+    resolved = resolved_rig(rig)
+    stiffness = float(normal_stiffness(resolved.rig.contact, separation=resolved.separation))
+    return with_contact_spring(driven_rig(resolved.rig).structure, normal_stiffness=stiffness)
 
 
 def frequency_grid(
-    rig: Rig, *, lowest: float, highest: float, points: int = 2000, resonance_points: int = 201
+    rig: Rig | ResolvedRig, *, lowest: float, highest: float, points: int = 2000, resonance_points: int = 201
 ) -> Floats:
     """Return frequencies spaced evenly on a logarithmic axis, and more densely at the resonances.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a stack and a structure.
     lowest, highest : float
         Ends of the range, in Hz.

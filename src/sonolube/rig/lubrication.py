@@ -16,8 +16,8 @@ from sonolube.models.friction import (
     lubrication_coefficients,
 )
 from sonolube.models.wear import CrystalStructure, WearMechanismAssessment, WearPairBody, assess_wear_mechanism
-from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.simulation import VibratedFriction, vibrated_friction
 
 _SPAN = 10.0  # how far the map reaches to either side of the rig's point, as a factor
@@ -86,12 +86,14 @@ class LubricationMap:
     best: NDArray[np.str_]
 
 
-def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0) -> LubricationPoint:
+def lubrication_point(
+    rig: Rig | ResolvedRig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0
+) -> LubricationPoint:
     """Return the friction of a rig's contact by each method of lubrication at its load and speed, and the best method.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     lubricant : BoundaryLubricant
     smallest_gain : float
         Fraction by which vibration must lower the friction of the lubricated contact to be worth its power.
@@ -107,10 +109,11 @@ def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: 
     OutsideRange
         If the vibration is outside the range of the friction model at a speed, or drives the sliding.
     """
-    rest_separation(rig)
+    resolved = resolved_rig(rig).require_separation()
+    rig = resolved.rig
     pressure = rig.normal_load / rig.contact.nominal_area
     require_positive(sliding_speed=rig.sliding_speed)
-    vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
+    vibrated = vibrated_friction(resolved, sliding_speed=rig.sliding_speed)
     found = _coefficients(rig, lubricant, vibrated, nominal_pressure=pressure)
     return LubricationPoint(
         sliding_speed=rig.sliding_speed,
@@ -130,12 +133,14 @@ def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: 
     )
 
 
-def lubrication_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0) -> LubricationMap:
+def lubrication_map(
+    rig: Rig | ResolvedRig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0
+) -> LubricationMap:
     """Return the best method of lubrication over a decade to either side of a rig's speed and pressure.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     lubricant : BoundaryLubricant
     smallest_gain : float
         Fraction by which vibration must lower the friction of the lubricated contact to be worth its power.
@@ -155,10 +160,12 @@ def lubrication_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: fl
     -----
     What vibration leaves of friction is taken at the rig's own load throughout.
     """
+    resolved = resolved_rig(rig)
+    rig = resolved.rig
     require_positive(sliding_speed=rig.sliding_speed)
     factors = np.geomspace(1 / _SPAN, _SPAN, _RESOLUTION)
     speeds, pressures = rig.sliding_speed * factors, rig.normal_load / rig.contact.nominal_area * factors
-    vibrated = vibrated_friction(rig, sliding_speed=speeds)
+    vibrated = vibrated_friction(resolved, sliding_speed=speeds)
     found = _coefficients(rig, lubricant, vibrated, nominal_pressure=pressures[:, np.newaxis])
     return LubricationMap(
         sliding_speed=speeds,

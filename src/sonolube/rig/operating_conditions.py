@@ -11,10 +11,10 @@ from sonolube.charts import Axis
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.actuator.drive import Drive
-from sonolube.rig.amplitude_source import resolved_vibration
 from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.friction_and_wear import ANY_FREQUENCY
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.units import format_si
 
 CONDITIONS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
@@ -86,12 +86,12 @@ POWERS: Final = ("actuator_power", "dissipated_power")
 """Numbers of a point that a rig without a voltage does not have."""
 
 
-def commanded_quantity(rig: Rig) -> CommandedQuantity:
+def commanded_quantity(rig: Rig | ResolvedRig) -> CommandedQuantity:
     """Quantity that sets the vibration of a rig: its drive voltage, or its amplitude where it has no voltage.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
 
     Returns
     -------
@@ -102,9 +102,11 @@ def commanded_quantity(rig: Rig) -> CommandedQuantity:
     InvalidInput
         If the rig has no amplitude.
     """
-    if rig.drive is not None and rig.drive.voltage_peak_to_peak is not None:
+    resolved = resolved_rig(rig)
+    drive = resolved.rig.drive
+    if drive is not None and drive.voltage_peak_to_peak is not None:
         return VOLTAGE
-    resolved_vibration(rig)  # refuses a rig without an amplitude
+    _ = resolved.vibration  # which refuses a rig without an amplitude
     return AMPLITUDE
 
 
@@ -122,12 +124,12 @@ def quantity_of_axis(names: Collection[Hashable]) -> CommandedQuantity:
     return AMPLITUDE if AMPLITUDE.name in names else VOLTAGE
 
 
-def own_level(rig: Rig) -> float:
+def own_level(rig: Rig | ResolvedRig) -> float:
     """Voltage of a rig, or its amplitude where it has no voltage, in V or m.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
 
     Returns
     -------
@@ -138,17 +140,18 @@ def own_level(rig: Rig) -> float:
     InvalidInput
         If the rig has no amplitude.
     """
-    if commanded_quantity(rig) is VOLTAGE:
-        return require_drive(rig).voltage_peak_to_peak or 0.0
-    return resolved_vibration(rig).sine_amplitude or 0.0
+    resolved = resolved_rig(rig)
+    if commanded_quantity(resolved) is VOLTAGE:
+        return resolved.voltage.drive.voltage_peak_to_peak or 0.0
+    return resolved.vibration.sine_amplitude or 0.0
 
 
-def level_settings(rig: Rig, level: ArrayLike) -> dict[str, Any]:
+def level_settings(rig: Rig | ResolvedRig, level: ArrayLike) -> dict[str, Any]:
     """Settings of operating points for values of the commanded quantity, by name.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     level : array_like, any shape
         Voltages, whose offset is in the rig's own ratio to them, or amplitudes, in V or m.
 
@@ -162,19 +165,20 @@ def level_settings(rig: Rig, level: ArrayLike) -> dict[str, Any]:
     InvalidInput
         If a value is negative or not finite, or the rig has no amplitude.
     """
-    quantity = commanded_quantity(rig)
+    resolved = resolved_rig(rig)
+    quantity = commanded_quantity(resolved)
     values = require_non_negative(**{quantity.name: level})
     if quantity is AMPLITUDE:
         return {quantity.name: values}
-    return {quantity.name: values, "voltage_offset": _offset(rig, values)}
+    return {quantity.name: values, "voltage_offset": _offset(resolved.voltage.drive, values)}
 
 
-def require_commanded(rig: Rig, quantity: CommandedQuantity) -> None:
+def require_commanded(rig: Rig | ResolvedRig, quantity: CommandedQuantity) -> None:
     """Raise if a quantity does not set the vibration of a rig.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     quantity : CommandedQuantity
 
     Raises
@@ -182,16 +186,16 @@ def require_commanded(rig: Rig, quantity: CommandedQuantity) -> None:
     InvalidInput
         If the other one does, or the rig has no amplitude.
     """
-    own = commanded_quantity(rig)
+    resolved = resolved_rig(rig)
+    own = commanded_quantity(resolved)
     if quantity is VOLTAGE:
-        require_drive(rig)
+        require_drive(resolved.rig)
     elif own is not quantity:
-        raise InvalidInput(f"{rig.title}: its voltage sets its amplitude; vary {own.key} instead")
+        raise InvalidInput(f"{resolved.rig.title}: its voltage sets its amplitude; vary {own.key} instead")
 
 
-def _offset(rig: Rig, volts: Floats) -> Floats:
-    """Offset in the rig's ratio to each voltage; its own where it has none, being at 0 V."""
-    drive = require_drive(rig)
+def _offset(drive: Drive, volts: Floats) -> Floats:
+    """Offset in a drive's ratio to each voltage; its own where it has none, being at 0 V."""
     return volts * drive.offset_ratio if drive.voltage_peak_to_peak else 0 * volts + drive.voltage_offset
 
 

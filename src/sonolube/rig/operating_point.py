@@ -6,8 +6,8 @@ from sonolube.models.contact.rough import contact_count, normal_stiffness, real_
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
 from sonolube.models.wear import cube_wear_rate
-from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import AmplitudeSource, Rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.worn_contact import resting_caveats
 
 COMPUTED = "computed"
@@ -172,12 +172,14 @@ class WearPoint:
     caveats: tuple[str, ...]
 
 
-def contact_point(rig: Rig, *, tangential_stiffness_model: str = DEFAULT_TANGENTIAL_STIFFNESS) -> ContactPoint:
+def contact_point(
+    rig: Rig | ResolvedRig, *, tangential_stiffness_model: str = DEFAULT_TANGENTIAL_STIFFNESS
+) -> ContactPoint:
     """Return the state of the contact under the rig's load, without vibration.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     tangential_stiffness_model : str
         Model of the tangential stiffness, of `sonolube.models.contact.TANGENTIAL_STIFFNESSES`.
 
@@ -200,7 +202,8 @@ def contact_point(rig: Rig, *, tangential_stiffness_model: str = DEFAULT_TANGENT
     (4981, 264)
     """
     model = TANGENTIAL_STIFFNESSES.named(tangential_stiffness_model)
-    gap = rest_separation(rig)
+    resolved = resolved_rig(rig)
+    rig, gap = resolved.rig, resolved.separation
     normal, tangential = (float(of(rig.contact, separation=gap)) for of in (normal_stiffness, model))
     above = tangential / normal if tangential > normal else None
     return ContactPoint(
@@ -213,7 +216,7 @@ def contact_point(rig: Rig, *, tangential_stiffness_model: str = DEFAULT_TANGENT
         tangential_stiffness_model=tangential_stiffness_model,
         mindlin_ratio=rig.contact.pair.mindlin_ratio,
         caveats=(
-            *resting_caveats(rig),
+            *resting_caveats(resolved),
             *(() if above is None else (_stiffer_along(tangential_stiffness_model, above),)),
         ),
     )

@@ -13,9 +13,6 @@ from sonolube.models.dynamics import Status, SteadyStates
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.dynamics.kernels.peak_velocity import peak_velocities
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, checked_ratio
-from sonolube.rig.amplitude_source import resolved_vibration
-from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.excitation import voltage_range
 from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.operating_conditions import SETTINGS, OperatingConditions, conditions_of, points_by_vibration
 from sonolube.rig.operating_point_grid import (
@@ -27,6 +24,7 @@ from sonolube.rig.operating_point_grid import (
 )
 from sonolube.rig.operating_vibrations import REFUSED, steady_states_of
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.vibration import gap_motion
 
 STATUSES = (*(status.name.lower() for status in Status), REFUSED, OUTSIDE_MODEL_RANGE)
@@ -83,7 +81,7 @@ class PointBatch:
 
 
 def point_batch(
-    rig: Rig,
+    rig: Rig | ResolvedRig,
     *,
     voltage_peak_to_peak: ArrayLike | None = None,
     voltage_offset: ArrayLike | None = None,
@@ -98,7 +96,7 @@ def point_batch(
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         Its vibration is by the source of its amplitude: of a structure, or a sine.
     voltage_peak_to_peak : array_like, optional
         Peak-to-peak voltage of the drive. [V]
@@ -138,25 +136,25 @@ def point_batch(
     friction of the whole batch at once, asperity stick-slip on exponential heights to `friction_tolerance`; any other
     is evaluated for each vibration, and so is a sine of a stated amplitude.
     """
-    used = resolved_vibration(rig)
+    resolved = resolved_rig(rig)
+    rig = resolved.rig
     given = (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
-    if used.driven is None:
+    if resolved.vibration.driven is None:
         stated: dict[str, Any] = dict(zip(SETTINGS, given, strict=True))
-        return _columns(operating_points(rig, **stated, vibration_amplitude=vibration_amplitude))
-    rig = used.driven
+        return _columns(operating_points(resolved, **stated, vibration_amplitude=vibration_amplitude))
     columns, speeds = conditions_of(rig, given, vibration_amplitude=vibration_amplitude)
     columns, speeds = columns.reshape(4, -1), speeds.ravel()
     first, which = _distinct(columns)
     settings = OperatingConditions.of_columns(columns[:, first])
     rest = separation(rig.contact, normal_load=settings.normal_load)
-    refusal, reasons = _refusals(rig, settings, rest)
+    refusal, reasons = _refusals(resolved, settings, rest)
     status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal
     numbers = np.full((5, first.size), np.nan)
     friction = _no_friction(speeds.size)
     possible = np.flatnonzero(refusal == 0)
     if possible.size:
         states = steady_states_of(
-            rig, OperatingConditions.of_columns(columns[:, first[possible]]), rest[possible], backend
+            resolved, OperatingConditions.of_columns(columns[:, first[possible]]), rest[possible], backend
         )
         status[possible] = states.status
         reason[possible] = states.status
@@ -172,7 +170,7 @@ def point_batch(
         point_reason[members] = len(reasons)
         reasons = (*reasons, str(text))
     found = friction_and_power(
-        rig, columns, friction_ratio=friction.friction_ratio, raw_friction_ratio=friction.raw_friction_ratio
+        resolved, columns, friction_ratio=friction.friction_ratio, raw_friction_ratio=friction.raw_friction_ratio
     )
     found |= dict(zip(VIBRATION_NUMBERS, numbers[:, which], strict=True))
     return PointBatch(
@@ -205,11 +203,14 @@ def _distinct(columns: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return first, which.ravel()
 
 
-def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> tuple[NDArray[np.int16], tuple[str, ...]]:
+def _refusals(
+    resolved: ResolvedRig, settings: OperatingConditions, rest: Floats
+) -> tuple[NDArray[np.int16], tuple[str, ...]]:
     """Return the number of the reason against each drive and load, from 1, 0 without one; and the reasons."""
-    low, high = rig.stack.lowest_voltage, rig.stack.highest_voltage
-    lowest, highest = voltage_range(
-        rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
+    stack = resolved.moved.stack
+    low, high = stack.lowest_voltage, stack.highest_voltage
+    lowest, highest = resolved.voltage.range(
+        voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
     )
     texts = (
         f"the drive goes too low: the lowest admissible voltage is {low} V",

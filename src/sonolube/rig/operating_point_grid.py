@@ -11,8 +11,7 @@ from sonolube.models.contact import separation
 from sonolube.models.dynamics import SteadyStates
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
-from sonolube.rig.amplitude_source import moved_rig, resolved_vibration
-from sonolube.rig.excitation import actuator_capacitance, amplifier_power
+from sonolube.rig.excitation import actuator_capacitance
 from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.operating_conditions import CONDITIONS, OperatingConditions, conditions_of, points_by_vibration
 from sonolube.rig.operating_vibrations import (
@@ -23,6 +22,7 @@ from sonolube.rig.operating_vibrations import (
     steady_states_of,
 )
 from sonolube.rig.record import AmplitudeSource, Rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 
 VIBRATION_NUMBERS = (
     "vibration_amplitude",
@@ -128,7 +128,7 @@ class _Outcome:
 
 
 def operating_points(
-    rig: Rig,
+    rig: Rig | ResolvedRig,
     *,
     voltage_peak_to_peak: ArrayLike | None = None,
     voltage_offset: ArrayLike | None = None,
@@ -143,7 +143,7 @@ def operating_points(
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         Its vibration is by the source of its amplitude: of a structure, or a sine.
     voltage_peak_to_peak : array_like, optional
         Peak-to-peak voltage of the drive. [V]
@@ -181,17 +181,18 @@ def operating_points(
     -----
     Steady vibrations are found in one batch, each drive and load once, whatever the number of sliding speeds.
     """
-    used = resolved_vibration(rig)
+    resolved = resolved_rig(rig)
+    rig, used = resolved.rig, resolved.vibration
     given = (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
     columns, speeds = conditions_of(rig, given, vibration_amplitude=vibration_amplitude)
     commanded = vibration_amplitude is not None
     shape = speeds.shape
     distinct, which = np.unique(columns.reshape(4, -1), axis=1, return_inverse=True)
     speeds = speeds.ravel()
-    vibration_at = stated_vibrations(rig, used, distinct, commanded=commanded)
-    if used.driven is not None:
-        rig = used.driven
-        vibration_at = computed_vibrations(used.driven, distinct, backend)
+    if used.driven is None:
+        vibration_at = stated_vibrations(resolved, distinct, commanded=commanded)
+    else:
+        vibration_at = computed_vibrations(resolved, distinct, backend)
 
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
     numbers = np.full((8, speeds.size), np.nan)
@@ -210,7 +211,7 @@ def operating_points(
         status=status.astype(np.str_).reshape(shape),
         reason=reason.astype(np.str_).reshape(shape),
         **dict(zip(VIBRATION_NUMBERS, vibration, strict=True)),
-        **friction_and_power(rig, columns, friction_ratio=ratio, raw_friction_ratio=raw),
+        **friction_and_power(resolved, columns, friction_ratio=ratio, raw_friction_ratio=raw),
         gap_closed=closed == 1,
         amplitude_source=used.source,
         amplitude_origin=used.text,
@@ -218,13 +219,13 @@ def operating_points(
 
 
 def friction_and_power(
-    rig: Rig, columns: Floats, *, friction_ratio: Floats, raw_friction_ratio: Floats
+    resolved: ResolvedRig, columns: Floats, *, friction_ratio: Floats, raw_friction_ratio: Floats
 ) -> dict[str, Floats]:
     """Return friction force, coefficient, reduction and amplifier power from friction ratio and settings, by name.
 
     Parameters
     ----------
-    rig : Rig
+    resolved : ResolvedRig
     columns : ndarray
         Settings as `conditions_of` returns them.
     friction_ratio : ndarray
@@ -237,26 +238,28 @@ def friction_and_power(
     dict of str to ndarray
     """
     u, offset, f, load = columns
+    coefficient = resolved.rig.friction_coefficient
     return {
         "friction_ratio": friction_ratio,
         "raw_friction_ratio": raw_friction_ratio,
         "friction_reduction": 1 - friction_ratio,
-        "friction_coefficient": friction_ratio * rig.friction_coefficient,
-        "friction_force": friction_ratio * rig.friction_coefficient * load,
-        "actuator_power": _supplied_power(rig, voltage_peak_to_peak=u, voltage_offset=offset, frequency=f),
+        "friction_coefficient": friction_ratio * coefficient,
+        "friction_force": friction_ratio * coefficient * load,
+        "actuator_power": _supplied_power(resolved, voltage_peak_to_peak=u, voltage_offset=offset, frequency=f),
     }
 
 
-def _supplied_power(rig: Rig, **drive: Floats) -> Floats:
+def _supplied_power(resolved: ResolvedRig, **drive: Floats) -> Floats:
     """Return the power of a linear amplifier, NaN where voltage or capacitance is not known. [W]"""
+    rig = resolved.rig
     capacitance = actuator_capacitance(rig)
     if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
         return np.full(drive["voltage_peak_to_peak"].shape, np.nan)
-    return amplifier_power(rig.drive, capacitance=capacitance, **drive)
+    return resolved.voltage.amplifier_power(capacitance=capacitance, **drive)
 
 
 def steady_states(
-    rig: Rig,
+    rig: Rig | ResolvedRig,
     *,
     voltage_peak_to_peak: ArrayLike | None = None,
     voltage_offset: ArrayLike | None = None,
@@ -266,7 +269,7 @@ def steady_states(
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a stack, a structure and a drive voltage.
     voltage_peak_to_peak : array_like, optional
         Swing of the drive, of one axis. [V]
@@ -284,11 +287,11 @@ def steady_states(
     InvalidInput
         If the rig has no structure, a setting has no meaning, or the tolerance is out of its range.
     """
-    rig = moved_rig(rig)
-    columns, _ = conditions_of(rig, (voltage_peak_to_peak, voltage_offset, None, None, None))
+    resolved = resolved_rig(rig)
+    columns, _ = conditions_of(resolved.moved, (voltage_peak_to_peak, voltage_offset, None, None, None))
     settings = OperatingConditions.of_columns(columns.reshape(4, -1))
-    rest = separation(rig.contact, normal_load=settings.normal_load)
-    return steady_states_of(rig, settings, rest, relative_tolerance=relative_tolerance)
+    rest = separation(resolved.rig.contact, normal_load=settings.normal_load)
+    return steady_states_of(resolved, settings, rest, relative_tolerance=relative_tolerance)
 
 
 def _outcome(rig: Rig, vibration: PointVibration, speeds: Floats) -> _Outcome:

@@ -8,17 +8,14 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import OutsideRange, SonolubeError
 from sonolube.models.actuator.stack import require_allowed_voltage
-from sonolube.models.contact import GapMotion, separation
+from sonolube.models.contact import ContactMotion, separation
 from sonolube.models.dynamics import Status, SteadyStates, steady_state
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
-from sonolube.rig.amplitude_source import ResolvedVibration
-from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.excitation import NO_DISSIPATED_POWER, voltage_harmonics, voltage_range
+from sonolube.rig.excitation import NO_DISSIPATED_POWER
 from sonolube.rig.friction_and_wear import prescribed_sine
-from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.operating_conditions import OperatingConditions
-from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig
 from sonolube.rig.vibration import contact_loss_fraction, gap_motion
 from sonolube.units import format_si
 
@@ -34,7 +31,7 @@ class PointVibration:
 
     status: str
     reason: str
-    motion: GapMotion | None = None
+    motion: ContactMotion | None = None
     numbers: tuple[float, ...] = (np.nan,) * 6  # five of the vibration, and whether the gap closes
 
 
@@ -43,7 +40,7 @@ VibrationAt = Callable[[int], PointVibration]
 
 
 def steady_states_of(
-    rig: DrivenRig,
+    resolved: ResolvedRig,
     settings: OperatingConditions,
     rest: Floats,
     backend: Backend = "cpu",
@@ -51,11 +48,11 @@ def steady_states_of(
 ) -> SteadyStates:
     """Return the steady vibrations of a rig under drives and loads, given the separations at rest."""
     return steady_state(
-        rig.structure,
-        gap_law_of(rig),
+        resolved.moved.structure,
+        resolved.gap_law,
         normal_load=settings.normal_load,
         frequency=settings.frequency,
-        voltage_harmonics=voltage_harmonics(rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak),
+        voltage_harmonics=resolved.voltage.harmonics(voltage_peak_to_peak=settings.voltage_peak_to_peak),
         voltage_offset=settings.voltage_offset,
         separation=rest,
         relative_tolerance=relative_tolerance,
@@ -63,15 +60,17 @@ def steady_states_of(
     )
 
 
-def computed_vibrations(rig: DrivenRig, distinct: Floats, backend: Backend) -> VibrationAt:
+def computed_vibrations(resolved: ResolvedRig, distinct: Floats, backend: Backend) -> VibrationAt:
     """Return the function that gives the vibration of each drive and load, all solved at once."""
     settings = OperatingConditions.of_columns(distinct)
-    rest = separation(rig.contact, normal_load=settings.normal_load)
-    refusals = _refusals(rig, settings, rest)
+    rest = separation(resolved.rig.contact, normal_load=settings.normal_load)
+    refusals = _refusals(resolved, settings, rest)
     possible = np.array([not text for text in refusals], dtype=bool)
     states = None
     if possible.any():
-        states = steady_states_of(rig, OperatingConditions.of_columns(distinct[:, possible]), rest[possible], backend)
+        states = steady_states_of(
+            resolved, OperatingConditions.of_columns(distinct[:, possible]), rest[possible], backend
+        )
     place = np.cumsum(possible) - 1
 
     def vibration_at(setting: int) -> PointVibration:
@@ -98,8 +97,9 @@ def _of_state(states: SteadyStates, point: int) -> PointVibration:
     return PointVibration(status=known.name.lower(), reason=reason, motion=motion, numbers=numbers)
 
 
-def stated_vibrations(rig: Rig, used: ResolvedVibration, distinct: Floats, *, commanded: bool) -> VibrationAt:
+def stated_vibrations(resolved: ResolvedRig, distinct: Floats, *, commanded: bool) -> VibrationAt:
     """Return the function that gives a sine under each drive and load, of the stated or the commanded amplitude."""
+    rig, used = resolved.rig, resolved.vibration
 
     def vibration_at(setting: int) -> PointVibration:
         level, _, f, load = distinct[:, setting].tolist()
@@ -135,16 +135,17 @@ def _no_separation(load: float) -> str:
     return f"normal_load {load:g} N leaves no separation between the surfaces: lower the load"
 
 
-def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> list[str]:
+def _refusals(resolved: ResolvedRig, settings: OperatingConditions, rest: Floats) -> list[str]:
     """Return the reason against each drive and load that the stack or the contact rules out, else empty text."""
     refusals = []
-    extremes = voltage_range(
-        rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
+    stack = resolved.moved.stack
+    extremes = resolved.voltage.range(
+        voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
     )
     for voltages, load, gap in zip(np.transpose(extremes), settings.normal_load, rest, strict=True):
         refusal = ""
         try:
-            require_allowed_voltage(rig.stack, stack_voltage=voltages)
+            require_allowed_voltage(stack, stack_voltage=voltages)
         except SonolubeError as beyond:
             refusal = str(beyond)
         if gap <= 0:

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import WAVEFORMS, Status, contact_motion, modes
-from sonolube.rig.amplitude_source import amplitude_labels, moved_rig, resolved_vibration
 from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig, require_drive
 from sonolube.rig.friction_and_wear import prescribed_sine
@@ -28,6 +27,7 @@ from sonolube.rig.operating_conditions import (
 from sonolube.rig.operating_point_batch import NUMBERS
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, amplitude_labels, resolved_rig
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,7 +43,7 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a drive voltage.
     voltage_peak_to_peak : array_like, shape (n,)
         Peak-to-peak voltages; the offset keeps the rig's ratio to them. [V]
@@ -76,7 +76,7 @@ def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advanc
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         Without a drive voltage; its vibration is a sine.
     vibration_amplitude : array_like, shape (n,)
         Zero to peak. [m]
@@ -101,7 +101,7 @@ def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advanc
 
 
 def speed_study(
-    rig: Rig,
+    rig: Rig | ResolvedRig,
     *,
     sliding_speed: ArrayLike,
     voltage_peak_to_peak: ArrayLike | None = None,
@@ -112,7 +112,7 @@ def speed_study(
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     voltage_peak_to_peak : array_like, shape (m,), optional
@@ -138,21 +138,26 @@ def speed_study(
     ----------
     .. [1] D 3.50, figure 3.16.
     """
-    quantity, level = _curves(rig, voltage_peak_to_peak, vibration_amplitude)
+    resolved = resolved_rig(rig)
+    quantity, level = _curves(resolved, voltage_peak_to_peak, vibration_amplitude)
     speeds = np.atleast_1d(require_positive(sliding_speed=sliding_speed))
-    points = _by_level(rig, level, sliding_speed=speeds, advance=advance)
+    points = _by_level(resolved, level, sliding_speed=speeds, advance=advance)
     found = _values(points) | {"velocity_ratio": speeds / points.vibration_velocity}
-    return _study(rig, "over sliding speed", found, **{quantity.name: level, "sliding_speed": speeds})
+    return _study(resolved, "over sliding speed", found, **{quantity.name: level, "sliding_speed": speeds})
 
 
 def frequency_study(
-    rig: Rig, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike | None = None, advance: Advance | None = None
+    rig: Rig | ResolvedRig,
+    *,
+    frequency: ArrayLike,
+    voltage_peak_to_peak: ArrayLike | None = None,
+    advance: Advance | None = None,
 ) -> "xr.Dataset":
     """Return the rig over drive frequencies, at some drive voltages.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a stack, a structure and a drive voltage.
     frequency : array_like, shape (n,)
         Frequencies of the drive, such as `frequency_grid` gives. [Hz]
@@ -175,19 +180,20 @@ def frequency_study(
     ----------
     .. [1] D 3.3.5, figure 3.17.
     """
-    require_drive(rig)
-    _, volts = _curves(rig, voltage_peak_to_peak, None)
+    resolved = resolved_rig(rig)
+    require_drive(resolved.rig)
+    _, volts = _curves(resolved, voltage_peak_to_peak, None)
     f = np.atleast_1d(require_positive(frequency=frequency))
-    points = _by_level(rig, volts, frequency=f, advance=advance)
-    return _study(rig, "over drive frequency", _values(points), voltage_peak_to_peak=volts, frequency=f)
+    points = _by_level(resolved, volts, frequency=f, advance=advance)
+    return _study(resolved, "over drive frequency", _values(points), voltage_peak_to_peak=volts, frequency=f)
 
 
-def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
+def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) -> "xr.Dataset":
     """Return the rig under each named waveform at its own voltage, and one period of its contact under each.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a stack, a structure and a drive voltage.
     advance : callable, optional
         Told how many waveforms are done, and of how many.
@@ -206,14 +212,14 @@ def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
     ----------
     .. [1] D 3.3.5, figure 3.18.
     """
-    rig = moved_rig(rig)
-    drive = rig.drive
-    shaped = [replace(rig, drive=replace(drive, waveform=name)) for name in WAVEFORMS]
+    resolved = resolved_rig(rig)
+    moved = resolved.moved
+    shaped = [resolved_rig(replace(moved, drive=replace(moved.drive, waveform=name))) for name in WAVEFORMS]
     points = _one_by_one(shaped, operating_points, advance)
-    periods = [_computed_periods(one, np.array([rig.voltage_peak_to_peak])) for one in shaped]
+    periods = [_computed_periods(one, np.array([moved.voltage_peak_to_peak])) for one in shaped]
     displacement, normal_force = (np.concatenate(rows) for rows in zip(*periods, strict=True))
     found = points | {"displacement": displacement, "normal_force": normal_force}
-    return _study(rig, "under waveforms of equal swing", found, waveform=np.array(list(WAVEFORMS)), phase=_PHASE)
+    return _study(resolved, "under waveforms of equal swing", found, waveform=np.array(list(WAVEFORMS)), phase=_PHASE)
 
 
 def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
@@ -221,7 +227,7 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a sine of its amplitude, which every load has; or with a structure that says where the dead load hangs, its
         heights exponential.
     normal_load : array_like, shape (n,)
@@ -249,33 +255,34 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     .. [1] D 4.1.2, figures 4.7 and 4.8.
     """
     loads = np.atleast_1d(require_positive(normal_load=normal_load))
-    driven = resolved_vibration(rig).driven
+    resolved = resolved_rig(rig)
+    driven = resolved.vibration.driven
     if driven is None:
-        found = _values(operating_points(rig, normal_load=loads, advance=advance))
-        return _study(rig, "over normal load", found, normal_load=loads)
-    rig = driven
-    loaded = [_weighted(rig, float(load)) for load in loads]
+        found = _values(operating_points(resolved, normal_load=loads, advance=advance))
+        return _study(resolved, "over normal load", found, normal_load=loads)
+    loaded = [resolved_rig(_weighted(driven, float(load))) for load in loads]
     points = _one_by_one(loaded, operating_points, advance)
     found = points | {"natural_frequency": np.array([_slowest(one) for one in loaded])}
-    return _study(rig, "over normal load", found, normal_load=loads)
+    return _study(resolved, "over normal load", found, normal_load=loads)
 
 
 def _level_study(
-    rig: Rig, quantity: CommandedQuantity, level: ArrayLike, title: str, advance: Advance | None
+    rig: Rig | ResolvedRig, quantity: CommandedQuantity, level: ArrayLike, title: str, advance: Advance | None
 ) -> "xr.Dataset":
     """Points over voltage or amplitude, with one period of the contact at each."""
-    require_commanded(rig, quantity)
-    driven = resolved_vibration(rig).driven
+    resolved = resolved_rig(rig)
+    require_commanded(resolved, quantity)
     levels = np.atleast_1d(require_non_negative(**{quantity.name: level}))
-    points = operating_points(driven or rig, **level_settings(rig, levels), advance=advance)
-    displacement, normal_force = _sine_periods(rig, points) if driven is None else _computed_periods(driven, levels)
+    points = operating_points(resolved, **level_settings(resolved, levels), advance=advance)
+    is_sine = resolved.vibration.driven is None
+    displacement, normal_force = _sine_periods(resolved.rig, points) if is_sine else _computed_periods(resolved, levels)
     found = _values(points) | {"displacement": displacement, "normal_force": normal_force}
-    return _study(driven or rig, title, found, **{quantity.name: levels, "phase": _PHASE})
+    return _study(resolved, title, found, **{quantity.name: levels, "phase": _PHASE})
 
 
-def _by_level(rig: Rig, level: Floats, **others: Any) -> OperatingPoints:
+def _by_level(resolved: ResolvedRig, level: Floats, **others: Any) -> OperatingPoints:
     """Points over voltage or amplitude, a row each, and over another condition."""
-    return operating_points(rig, **level_settings(rig, level[:, np.newaxis]), **others)
+    return operating_points(resolved, **level_settings(resolved, level[:, np.newaxis]), **others)
 
 
 def _values(points: OperatingPoints) -> dict[str, NDArray[Any]]:
@@ -283,7 +290,7 @@ def _values(points: OperatingPoints) -> dict[str, NDArray[Any]]:
 
 
 def _one_by_one(
-    rigs: Sequence[Rig], study: Callable[[Rig], OperatingPoints], advance: Advance | None
+    rigs: Sequence[ResolvedRig], study: Callable[[ResolvedRig], OperatingPoints], advance: Advance | None
 ) -> dict[str, NDArray[Any]]:
     every = []
     for done, rig in enumerate(rigs, start=1):
@@ -293,19 +300,21 @@ def _one_by_one(
     return {name: np.stack([one[name] for one in every]) for name in _POINT}
 
 
-def _curves(rig: Rig, volts: ArrayLike | None, amplitudes: ArrayLike | None) -> tuple[CommandedQuantity, Floats]:
+def _curves(
+    resolved: ResolvedRig, volts: ArrayLike | None, amplitudes: ArrayLike | None
+) -> tuple[CommandedQuantity, Floats]:
     """Commanded quantity of a rig, and its value for each curve: those given, or the rig's own."""
     for quantity, given in ((VOLTAGE, volts), (AMPLITUDE, amplitudes)):
         if given is not None:
-            require_commanded(rig, quantity)
+            require_commanded(resolved, quantity)
             return quantity, np.atleast_1d(require_positive(**{quantity.name: given}))
-    own = commanded_quantity(rig)
-    return own, np.atleast_1d(require_positive(**{own.name: own_level(rig)}))
+    own = commanded_quantity(resolved)
+    return own, np.atleast_1d(require_positive(**{own.name: own_level(resolved)}))
 
 
-def _computed_periods(rig: DrivenRig, volts: Floats) -> tuple[Floats, Floats]:
+def _computed_periods(resolved: ResolvedRig, volts: Floats) -> tuple[Floats, Floats]:
     """Return displacement and normal force of the contact over a period at each voltage; NaN where not converged."""
-    states = steady_states(rig, **level_settings(rig, volts))
+    states = steady_states(resolved, **level_settings(resolved, volts))
     displacement, normal_force = np.full((2, volts.size, _PHASES), np.nan)
     for point in np.flatnonzero(states.status != Status.NOT_CONVERGED):
         period = contact_motion(states, int(point), samples=_PHASES)
@@ -339,17 +348,17 @@ def _weighted(rig: DrivenRig, load: float) -> DrivenRig:
     return replace(rig, normal_load=load, structure=weighted)
 
 
-def _slowest(rig: Rig) -> float:
-    natural = modes(structure_in_contact(rig))
+def _slowest(resolved: ResolvedRig) -> float:
+    natural = modes(structure_in_contact(resolved))
     return float(natural.natural_frequency[~natural.rigid].min())
 
 
-def _study(rig: Rig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> "xr.Dataset":
-    known = commanded_quantity(rig)
+def _study(resolved: ResolvedRig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> "xr.Dataset":
+    rig, known = resolved.rig, commanded_quantity(resolved)
     values = {
         name: array
         for name, array in values.items()
         if name not in axes and not (known is AMPLITUDE and name in POWERS)
     }
-    about = {"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(rig)
+    about = {"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(resolved)
     return gridded(values, axes=axes, title=f"Friction {title}, {rig.title}", about=about)

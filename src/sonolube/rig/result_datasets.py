@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from sonolube.models.contact import separation
-from sonolube.rig.datasets import labelled, labels, result_quantities, result_texts
-from sonolube.rig.labelled_arrays import LabelledArray, LabelledArrays
+from sonolube.rig.datasets import LabelledArray, LabelledArrays, labelled, labels, result_quantities, result_texts
 from sonolube.rig.linear_response import FrequencyResponse
 from sonolube.rig.record import Rig
 from sonolube.rig.simulation import Simulation

@@ -1,6 +1,6 @@
 """Friction, wear and power of a rig under its vibration, by the source of its amplitude."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,15 +10,8 @@ from sonolube.models.actuator import stack_caveats
 from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
 from sonolube.models.wear import WEAR_MODELS
-from sonolube.rig.amplitude_source import ResolvedVibration, resolved_vibration, source_caveats
-from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.excitation import (
-    actuator_capacitance,
-    amplifier_power,
-    energy_balance,
-    voltage_harmonics,
-    voltage_range,
-)
+from sonolube.rig.amplitude_source import ResolvedVibration
+from sonolube.rig.excitation import actuator_capacitance, energy_balance
 from sonolube.rig.friction_and_wear import (
     mean_friction,
     mean_wear,
@@ -27,9 +20,9 @@ from sonolube.rig.friction_and_wear import (
     wear_model_of,
     wear_model_that_holds,
 )
-from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig, source_caveats
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
 from sonolube.rig.worn_contact import resting_caveats
 
@@ -85,12 +78,12 @@ class VibratedFriction:
     caveats: tuple[str, ...]
 
 
-def simulate(rig: Rig) -> Simulation:
+def simulate(rig: Rig | ResolvedRig) -> Simulation:
     """Return the steady vibration of a rig by the source of its amplitude, and friction and wear under it.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
 
     Returns
     -------
@@ -108,18 +101,17 @@ def simulate(rig: Rig) -> Simulation:
     -----
     A motion that does not repeat gives the mean over periods of the drive, segment by segment.
     """
-    rest_separation(rig)
-    used = resolved_vibration(rig)
-    vibration = steady_vibration(rig, used)
-    origin, caveats = _origin(vibration), _caveats(rig, used, vibration)
-    friction = _friction_point(rig, vibration, origin, caveats)
+    resolved = resolved_rig(rig).require_separation()
+    vibration = steady_vibration(resolved)
+    origin, caveats = _origin(vibration), _caveats(resolved, vibration)
+    friction = _friction_point(resolved, vibration, origin, caveats)
     caveats = (*caveats, *ratio_caveats(friction_ratio=friction.friction_ratio))
     return Simulation(
         status=OUTSIDE_MODEL_RANGE if friction.reason else vibration.status,
         reason=friction.reason or vibration.reason,
         vibration=vibration,
         friction=friction,
-        wear=_wear_point(rig, vibration, wear_model_of(rig), caveats, friction),
+        wear=_wear_point(resolved, vibration, wear_model_of(resolved.rig), caveats, friction),
         energy_balance=energy_balance(
             actuator_power=friction.actuator_power, dissipated_power=vibration.dissipated_power
         ),
@@ -127,12 +119,12 @@ def simulate(rig: Rig) -> Simulation:
     )
 
 
-def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
+def friction_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> FrictionPoint:
     """Return the friction of a rig under its vibration, by the source of its amplitude.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     model : str, optional
         Name of a friction model instead of the rig's own; it takes over those of the rig's parameters that it has.
 
@@ -156,31 +148,32 @@ def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
     >>> round(friction_point(rig).friction_ratio, 2), round(friction_point(rig, model="kinematic").friction_ratio, 2)
     (0.35, 0.16)
     """
-    rest_separation(rig)
-    chosen = rig if model is None else replace(rig, friction_model=friction_model_named(rig, model))
-    used = resolved_vibration(chosen)
+    resolved = resolved_rig(rig).require_separation()
+    if model is not None:
+        resolved = resolved.with_friction_model(friction_model_named(resolved.rig, model))
+    used = resolved.vibration
     try:
-        vibration = steady_vibration(chosen, used)
+        vibration = steady_vibration(resolved)
     except OutsideRange as refusal:
         if used.driven is not None:
             raise
         return friction_under(
-            chosen,
-            ratio=_outside(refusal, chosen.sliding_speed),
+            resolved.rig,
+            ratio=_outside(refusal, resolved.rig.sliding_speed),
             vibration=_stated_origin(used),
-            actuator_power=_amplifier_power(chosen),
-            caveats=resting_caveats(chosen),
-            others=_models_that_hold(chosen),
+            actuator_power=_amplifier_power(resolved),
+            caveats=resting_caveats(resolved),
+            others=_models_that_hold(resolved),
         )
-    return _friction_point(chosen, vibration, _origin(vibration), _caveats(chosen, used, vibration))
+    return _friction_point(resolved, vibration, _origin(vibration), _caveats(resolved, vibration))
 
 
-def wear_point(rig: Rig, *, model: str | None = None) -> WearPoint:
+def wear_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> WearPoint:
     """Return the wear of a rig with and without its vibration, by the source of its amplitude.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     model : str, optional
         Name of the wear model. Where absent that of the friction model's name, else the default one; and outside the
         range of that one the model that holds, which a caveat says.
@@ -207,21 +200,20 @@ def wear_point(rig: Rig, *, model: str | None = None) -> WearPoint:
     >>> round(point.wear_reduction, 2)
     0.47
     """
-    rest_separation(rig)
-    name = wear_model_of(rig) if model is None else model
+    resolved = resolved_rig(rig).require_separation()
+    name = wear_model_of(resolved.rig) if model is None else model
     WEAR_MODELS.named(name)
-    used = resolved_vibration(rig)
-    vibration = steady_vibration(rig, used)
-    caveats = _caveats(rig, used, vibration)
-    return _wear_point(rig, vibration, name, caveats, None, is_chosen=model is not None)
+    vibration = steady_vibration(resolved)
+    caveats = _caveats(resolved, vibration)
+    return _wear_point(resolved, vibration, name, caveats, None, is_chosen=model is not None)
 
 
-def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction:
+def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> VibratedFriction:
     """Return the friction ratios of a rig under its vibration at some sliding speeds.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     sliding_speed : array_like, any shape
         Macroscopic relative speed. [m/s]
 
@@ -234,18 +226,19 @@ def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction
     InvalidInput
         If a speed is not positive, or the rig has no amplitude by the source it names.
     """
-    used = resolved_vibration(rig)
+    resolved = resolved_rig(rig)
+    used = resolved.vibration
     try:
-        vibration = steady_vibration(rig, used)
+        vibration = steady_vibration(resolved)
     except OutsideRange as refusal:
         if used.driven is not None:
             raise
         return VibratedFriction(ratio=_outside(refusal, sliding_speed), vibration=_stated_origin(used), caveats=())
-    ratio = mean_friction(rig, vibration.motions, sliding_speed=sliding_speed)
+    ratio = mean_friction(resolved.rig, vibration.motions, sliding_speed=sliding_speed)
     return VibratedFriction(
         ratio=ratio,
         vibration=_origin(vibration),
-        caveats=(*_caveats(rig, used, vibration), *ratio_caveats(friction_ratio=ratio.friction_ratio)),
+        caveats=(*_caveats(resolved, vibration), *ratio_caveats(friction_ratio=ratio.friction_ratio)),
     )
 
 
@@ -256,41 +249,42 @@ def friction_model_named(rig: Rig, name: str) -> FrictionModel:
     return model(**{key: getattr(rig.friction_model, key) for key in shared})
 
 
-def operating_caveats(rig: Rig) -> tuple[str, ...]:
+def operating_caveats(rig: Rig | ResolvedRig) -> tuple[str, ...]:
     """Return the caveats of a rig at its own operating point, for results over many points about it.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
 
     Returns
     -------
     tuple of str
         Of contact, amplitude, stack and gap; empty where the rig has no operating point.
     """
+    resolved = resolved_rig(rig)
     try:
-        used = resolved_vibration(rig)
-        return _caveats(rig, used, steady_vibration(rig, used))
+        return _caveats(resolved, steady_vibration(resolved))
     except SonolubeError:
         return ()
 
 
 def _friction_point(
-    rig: Rig, vibration: SteadyVibration, origin: VibrationOrigin, caveats: tuple[str, ...]
+    resolved: ResolvedRig, vibration: SteadyVibration, origin: VibrationOrigin, caveats: tuple[str, ...]
 ) -> FrictionPoint:
+    rig = resolved.rig
     ratio = mean_friction(rig, vibration.motions, sliding_speed=rig.sliding_speed)
     return friction_under(
         rig,
         ratio=ratio,
         vibration=origin,
-        actuator_power=_amplifier_power(rig),
+        actuator_power=_amplifier_power(resolved),
         caveats=(*caveats, *ratio_caveats(friction_ratio=ratio.friction_ratio)),
-        others=_models_that_hold(rig, vibration) if ratio.reason else "",
+        others=_models_that_hold(resolved, vibration) if ratio.reason else "",
     )
 
 
 def _wear_point(
-    rig: Rig,
+    resolved: ResolvedRig,
     vibration: SteadyVibration,
     model: str,
     caveats: tuple[str, ...],
@@ -299,31 +293,37 @@ def _wear_point(
     is_chosen: bool = False,
 ) -> WearPoint:
     sine = vibration.vibration_amplitude if vibration.prescribed else None
-    ratio, reason = mean_wear(rig, vibration.motions, wear_model=model, vibration_amplitude=sine)
-    other = None if is_chosen or not reason else wear_model_that_holds(rig, vibration.motions, vibration_amplitude=sine)
+    ratio, reason = mean_wear(resolved, vibration.motions, wear_model=model, vibration_amplitude=sine)
+    other = (
+        None
+        if is_chosen or not reason
+        else wear_model_that_holds(resolved, vibration.motions, vibration_amplitude=sine)
+    )
     if reason and other:
         outside = reason.removeprefix(f"{OUTSIDE_MODEL_RANGE}: ").partition(";")[0]
         caveats = (*caveats, f"{outside}, so that wear model {model} has no meaning; the wear is by {other}")
         model = other
-        ratio, reason = mean_wear(rig, vibration.motions, wear_model=model, vibration_amplitude=sine)
+        ratio, reason = mean_wear(resolved, vibration.motions, wear_model=model, vibration_amplitude=sine)
     if not reason and friction is not None and friction.reason and friction.friction_model == model:
         reason = friction.reason
     if not reason and not vibration.prescribed:
         caveats = (*caveats, *rise_caveats(vibration.motions, wear_model=model))
-    return wear_under(rig, ratio=ratio, model=model, vibration=_origin(vibration), caveats=caveats, reason=reason)
+    return wear_under(
+        resolved.rig, ratio=ratio, model=model, vibration=_origin(vibration), caveats=caveats, reason=reason
+    )
 
 
-def _models_that_hold(rig: Rig, vibration: SteadyVibration | None = None) -> str:
+def _models_that_hold(resolved: ResolvedRig, vibration: SteadyVibration | None = None) -> str:
     """Return the range of the friction ratio by the other friction models that hold for a rig's vibration."""
-    holding = []
+    holding, rig = [], resolved.rig
     for name in FRICTION_MODELS:
         if name == rig.friction_model.name:
             continue
-        other = replace(rig, friction_model=friction_model_named(rig, name))
+        other = resolved.with_friction_model(friction_model_named(rig, name))
         try:
             same = vibration is not None and not vibration.prescribed
             motions = vibration.motions if vibration is not None and same else steady_vibration(other).motions
-            found = mean_friction(other, motions, sliding_speed=rig.sliding_speed)
+            found = mean_friction(other.rig, motions, sliding_speed=rig.sliding_speed)
         except SonolubeError:
             continue
         if not found.reason:
@@ -348,27 +348,28 @@ def _stated_origin(used: ResolvedVibration) -> VibrationOrigin:
     return VibrationOrigin(amplitude=used.sine_amplitude, source=used.source, text=used.text)
 
 
-def _amplifier_power(rig: Rig) -> float | None:
+def _amplifier_power(resolved: ResolvedRig) -> float | None:
+    rig = resolved.rig
     capacitance = actuator_capacitance(rig)
     if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
         return None
-    return float(amplifier_power(rig.drive, capacitance=capacitance))
+    return float(resolved.voltage.amplifier_power(capacitance=capacitance))
 
 
-def _caveats(rig: Rig, used: ResolvedVibration, vibration: SteadyVibration) -> tuple[str, ...]:
+def _caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:
     """Return the caveats of contact, amplitude, stack and gap."""
     return (
-        *resting_caveats(rig, vibration_amplitude=vibration.vibration_amplitude),
-        *source_caveats(rig, taken=used.source, vibration_amplitude=vibration.vibration_amplitude),
-        *([] if used.driven is None else _stack_caveats(used.driven, vibration)),
+        *resting_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
+        *source_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
+        *([] if vibration.prescribed else _stack_caveats(resolved, vibration)),
     )
 
 
-def _stack_caveats(rig: DrivenRig, vibration: SteadyVibration) -> tuple[str, ...]:
-    voltage = complex(voltage_harmonics(rig.drive)[0])
+def _stack_caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:
+    rig, voltage = resolved.moved, complex(resolved.voltage.harmonics()[0])
     caveats = stack_caveats(
         rig.stack,
-        voltage_offset=float(sum(voltage_range(rig.drive))) / 2,
+        voltage_offset=float(sum(resolved.voltage.range())) / 2,
         voltage_peak_to_peak=rig.voltage_peak_to_peak,
         elongation=vibration.elongation * abs(voltage) / voltage if voltage else 0.0,
         frequency=rig.drive.frequency,

@@ -8,10 +8,8 @@ from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.attractor import beat, settling_time
 from sonolube.models.dynamics.trajectories import Trajectory
 from sonolube.models.dynamics.transient import march, trajectory
-from sonolube.rig.amplitude_source import moved_rig
-from sonolube.rig.excitation import drive_and_load
-from sonolube.rig.linear_response import gap_law_of, rest_separation
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, drive_and_load, resolved_rig
 
 _WINDOWS = 400
 _LONGEST = 200_000  # periods whose every step still fits a figure's memory
@@ -48,12 +46,12 @@ class StartUp:
     trajectory: Trajectory
 
 
-def start_up(rig: Rig, *, duration: float) -> StartUp:
+def start_up(rig: Rig | ResolvedRig, *, duration: float) -> StartUp:
     """Return the start-up transient of a rig from rest, with the drive switched on at once or by its ramp.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
         With a stack, a structure and a drive voltage.
     duration : float
         Duration to compute. [s]
@@ -71,17 +69,17 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
     -----
     D figure 3.13 in kind.
     """
-    rig = moved_rig(rig)
-    structure, drive = rig.structure, rig.drive
-    rest_separation(rig)
+    resolved = resolved_rig(rig)
+    structure, drive = resolved.moved.structure, resolved.moved.drive
+    resolved.require_separation()
     periods = math.ceil(float(require_positive(duration=duration)) * drive.frequency)
     if not 8 <= periods <= _LONGEST:
         raise InvalidInput(f"duration must be from 8 to {_LONGEST} periods of the drive, got {periods}")
-    law, window = gap_law_of(rig), max(1, periods // _WINDOWS)
+    law, window = resolved.gap_law, max(1, periods // _WINDOWS)
     marched = march(
-        structure, law, periods=periods // window * window, periods_per_window=window, **drive_and_load(rig)
+        structure, law, periods=periods // window * window, periods_per_window=window, **drive_and_load(resolved)
     )
-    every_step = trajectory(structure, law, periods=periods, **drive_and_load(rig))
+    every_step = trajectory(structure, law, periods=periods, **drive_and_load(resolved))
     envelope = marched.envelope
     slow = beat(displacement=envelope.mean_displacement, interval=window / drive.frequency)
     return StartUp(

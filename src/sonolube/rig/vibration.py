@@ -8,16 +8,14 @@ from numpy.typing import NDArray
 
 from sonolube.errors import OutsideRange
 from sonolube.models.actuator.drive import Drive
-from sonolube.models.contact import GapMotion, separation, separation_range
+from sonolube.models.contact import ContactMotion, separation_range
 from sonolube.models.dynamics import Status, SteadyStates, contact_motion, drive_receptance, steady_state
 from sonolube.models.dynamics.long_time_response import LongTimeResponse, march_until_settled
 from sonolube.models.friction.models import MeanGap
-from sonolube.rig.amplitude_source import ResolvedVibration, resolved_vibration
 from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.excitation import drive_and_load, voltage_harmonics
 from sonolube.rig.friction_and_wear import prescribed_sine
-from sonolube.rig.linear_response import gap_law_of, rest_separation
 from sonolube.rig.record import AmplitudeSource, Rig
+from sonolube.rig.resolved_rig import ResolvedRig, drive_and_load, resolved_rig
 from sonolube.units import format_si
 
 _MEAN_GAPS = {MeanGap.AT_REST: "at rest", MeanGap.LOAD_BALANCED: "that balances the load"}
@@ -48,7 +46,7 @@ class SteadyVibration:
         "periodic", "subharmonic", "beating", "chaotic" or "settling".
     repetition_periods : int
         Periods of the drive after which the motion repeats, zero where it does not. []
-    motions : tuple of GapMotion
+    motions : tuple of ContactMotion
         One repetition; for a motion that does not repeat, segments from one widest gap to another, each made periodic.
     vibration_amplitude : float
         Half of the displacement from peak to peak, the mean over periods where these differ. [m]
@@ -79,7 +77,7 @@ class SteadyVibration:
     reason: str
     attractor: str
     repetition_periods: int
-    motions: tuple[GapMotion, ...]
+    motions: tuple[ContactMotion, ...]
     vibration_amplitude: float
     lowest_amplitude: float | None
     highest_amplitude: float | None
@@ -93,14 +91,12 @@ class SteadyVibration:
     gap_closed: bool
 
 
-def steady_vibration(rig: Rig, used: ResolvedVibration | None = None) -> SteadyVibration:
+def steady_vibration(rig: Rig | ResolvedRig) -> SteadyVibration:
     """Return the steady vibration of a rig by the source of its amplitude, after transients have decayed.
 
     Parameters
     ----------
-    rig : Rig
-    used : ResolvedVibration, optional
-        Source of the amplitude, where the caller has resolved it.
+    rig : Rig or ResolvedRig
 
     Returns
     -------
@@ -119,15 +115,16 @@ def steady_vibration(rig: Rig, used: ResolvedVibration | None = None) -> SteadyV
     A periodic vibration of a structure that is stable and the only one found is the answer. Otherwise the rig is
     marched in time from rest, with the start-up ramp of its drive, until transients have decayed.
     """
-    used = used or resolved_vibration(rig)
-    found = _sine(rig, used) if used.driven is None else _of_structure(used.driven)
+    resolved = resolved_rig(rig)
+    used = resolved.vibration
+    found = _sine(resolved) if used.driven is None else _of_structure(resolved, used.driven)
     return replace(found, amplitude_source=used.source, amplitude_origin=used.text)
 
 
-def _sine(rig: Rig, used: ResolvedVibration) -> SteadyVibration:
+def _sine(resolved: ResolvedRig) -> SteadyVibration:
     """Return a sine of the stated amplitude, about the mean gap that the friction model is meant for."""
+    rig, used = resolved.require_separation().rig, resolved.vibration
     assert used.sine_amplitude is not None
-    rest_separation(rig)
     motion = prescribed_sine(rig, vibration_amplitude=used.sine_amplitude)
     return SteadyVibration(
         amplitude_source=used.source,
@@ -148,36 +145,36 @@ def _sine(rig: Rig, used: ResolvedVibration) -> SteadyVibration:
         coexisting_amplitude=None,
         dissipated_power=None,
         elongation=0j,
-        gap_closed=bool(motion.displacement.min() <= -rest_separation(rig)),
+        gap_closed=bool(motion.displacement.min() <= -resolved.separation),
     )
 
 
-def contact_loss_fraction(motion: GapMotion) -> float:
+def contact_loss_fraction(motion: ContactMotion) -> float:
     """Return the share of a period in which the contact carries less than a hundredth of the load. []"""
     return float(np.mean(motion.normal_force < _CONTACT_LOSS * motion.normal_load))
 
 
-def _of_structure(rig: DrivenRig) -> SteadyVibration:
-    """Return the steady vibration that the structure of a rig takes up under its drive."""
-    _refuse_drive_beyond_contact(rig)
-    balanced = _balanced(rig, upper_branch=False)
+def _of_structure(resolved: ResolvedRig, rig: DrivenRig) -> SteadyVibration:
+    """Return the steady vibration that the structure of a rig takes up under its drive, scaled where measured."""
+    _refuse_drive_beyond_contact(resolved, rig)
+    balanced = _balanced(resolved, rig, upper_branch=False)
     if balanced.status == Status.PERIODIC:
         return _of_balance(rig, balanced, balanced.reason(()))
     if balanced.stability_undetermined(()):
         raise OutsideRange(balanced.reason(()))
-    attained = _marched(rig)
+    attained = march_until_settled(rig.structure, resolved.gap_law, **drive_and_load(resolved))
     route = f"{_why_marched(balanced)}; {_from_rest(rig.drive)}"
     found = attained.attractor
     if balanced.status == Status.MULTISTABLE and found.order == 1:
-        for states in (balanced, _balanced(rig, upper_branch=True)):
+        for states in (balanced, _balanced(resolved, rig, upper_branch=True)):
             if _same(states, attained):
                 appears = format_si(float(states.vibration_amplitude), "m")
                 return _of_balance(rig, states, f"{route} that of {appears} appears{states.contact_loss_note(())}")
     early = "" if attained.settled else f"; followed for {format_si(attained.marched_time, 's')}, before it has settled"
-    return _of_march(rig, attained, balanced, f"{route} another motion appears: {found.description}{early}")
+    return _of_march(resolved, rig, attained, balanced, f"{route} another motion appears: {found.description}{early}")
 
 
-def _refuse_drive_beyond_contact(rig: DrivenRig) -> None:
+def _refuse_drive_beyond_contact(resolved: ResolvedRig, rig: DrivenRig) -> None:
     """Refuse a drive under which the tip, without contact, would move by more than the contact's force is defined for.
 
     The force of a rough contact grows as the exponential of the approach; beyond some hundred decay lengths, where the
@@ -185,7 +182,7 @@ def _refuse_drive_beyond_contact(rig: DrivenRig) -> None:
     """
     voltage = rig.drive.voltage_peak_to_peak or 0.0
     per_volt = float(np.abs(drive_receptance(rig.structure, frequency=np.array([rig.drive.frequency])))[0]) / 2
-    reach = rest_separation(rig) - separation_range(rig.contact)[0]
+    reach = resolved.separation - separation_range(rig.contact)[0]
     if per_volt * voltage <= reach:
         return
     free, most = format_si(per_volt * voltage, "m"), format_si(reach, "m")
@@ -196,7 +193,7 @@ def _refuse_drive_beyond_contact(rig: DrivenRig) -> None:
     )
 
 
-def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
+def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> ContactMotion:
     """Return one steady vibration as a sampled motion of the gap.
 
     Parameters
@@ -207,7 +204,7 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
 
     Returns
     -------
-    GapMotion
+    ContactMotion
 
     Raises
     ------
@@ -215,7 +212,7 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
         If the point did not converge.
     """
     period = contact_motion(states, point, samples=_SAMPLES)
-    return GapMotion(
+    return ContactMotion(
         displacement=period.displacement,
         normal_force=period.normal_force,
         frequency=float(states.frequency[point]),
@@ -223,22 +220,18 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
     )
 
 
-def _balanced(rig: DrivenRig, *, upper_branch: bool) -> SteadyStates:
+def _balanced(resolved: ResolvedRig, rig: DrivenRig, *, upper_branch: bool) -> SteadyStates:
     drive = rig.drive
     return steady_state(
         rig.structure,
-        gap_law_of(rig),
+        resolved.gap_law,
         normal_load=rig.normal_load,
         frequency=drive.frequency,
-        voltage_harmonics=voltage_harmonics(drive),
+        voltage_harmonics=resolved.voltage.harmonics(),
         voltage_offset=drive.voltage_offset,
-        separation=separation(rig.contact, normal_load=rig.normal_load),
+        separation=resolved.separation,
         upper_branch=upper_branch,
     )
-
-
-def _marched(rig: DrivenRig) -> LongTimeResponse:
-    return march_until_settled(rig.structure, gap_law_of(rig), **drive_and_load(rig))
 
 
 def _why_marched(states: SteadyStates) -> str:
@@ -291,14 +284,16 @@ def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyVibr
     )
 
 
-def _of_march(rig: DrivenRig, attained: LongTimeResponse, balanced: SteadyStates, reason: str) -> SteadyVibration:
+def _of_march(
+    resolved: ResolvedRig, rig: DrivenRig, attained: LongTimeResponse, balanced: SteadyStates, reason: str
+) -> SteadyVibration:
     found, drive, record = attained.attractor, rig.drive, attained.record
     slow, repeats = float(found.beat_frequency), int(found.order)
     x, force = record.contact.displacement, record.contact.normal_force
     elongation = record.states.coordinates[:-1] @ rig.structure.drive_vector / rig.stack.charge_per_elongation
     turning = np.exp(-2j * np.pi * drive.frequency * record.time[:-1])
     if repeats:
-        motions: tuple[GapMotion, ...] = (_segment(rig, x[:-1], force[:-1], drive.frequency / repeats),)
+        motions: tuple[ContactMotion, ...] = (_segment(rig, x[:-1], force[:-1], drive.frequency / repeats),)
     else:
         motions = tuple(_segments(rig, x, force, attained, drive.frequency))
         periods = sum(drive.frequency / each.frequency for each in motions)
@@ -323,13 +318,13 @@ def _of_march(rig: DrivenRig, attained: LongTimeResponse, balanced: SteadyStates
         coexisting_amplitude=unstable if np.isfinite(unstable) and balanced.status == Status.MULTISTABLE else None,
         dissipated_power=attained.dissipated_power,
         elongation=complex(2 * np.mean(elongation * turning)),
-        gap_closed=bool(x.min() <= -float(separation(rig.contact, normal_load=rig.normal_load))),
+        gap_closed=bool(x.min() <= -resolved.separation),
     )
 
 
 def _segments(
     rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], attained: LongTimeResponse, frequency: float
-) -> list[GapMotion]:
+) -> list[ContactMotion]:
     """Return segments of a motion that does not repeat, cut at the widest gaps and made periodic by a linear term."""
     steps, slow = attained.steps_per_period, float(attained.attractor.beat_frequency)
     whole = attained.periods * steps
@@ -347,5 +342,5 @@ def _segments(
     return found
 
 
-def _segment(rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], frequency: float) -> GapMotion:
-    return GapMotion(displacement=x, normal_force=force, frequency=frequency, normal_load=rig.normal_load)
+def _segment(rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], frequency: float) -> ContactMotion:
+    return ContactMotion(displacement=x, normal_force=force, frequency=frequency, normal_load=rig.normal_load)

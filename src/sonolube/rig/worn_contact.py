@@ -7,10 +7,9 @@ from typing import Final
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.contact import ExponentialHeights, contact_caveats, decay_length
-from sonolube.rig.amplitude_source import resolved_vibration
 from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
-from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 
 CENTRAL_SHARE: Final = 0.95
 """Share of published contacts whose range of decay lengths the caveat gives. []"""
@@ -62,12 +61,12 @@ through its ratio to the decay length, and neither printed roughness nor load, h
 lengths that the tests ask for."""
 
 
-def decay_length_caveat(rig: Rig, *, vibration_amplitude: float | None = None) -> str | None:
+def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | None = None) -> str | None:
     """Return the caveat against a decay length by roughness that worn contacts of published tests do not have.
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig or ResolvedRig
     vibration_amplitude : float, optional
         Zero to peak, at which the friction of both decay lengths is compared; the stated one where absent. [m]
 
@@ -78,25 +77,27 @@ def decay_length_caveat(rig: Rig, *, vibration_amplitude: float | None = None) -
         and for the median of `PUBLISHED_DECAY_LENGTH`, where it has an amplitude; None where the rig states its decay
         length, its heights are not exponential, or R_q/lambda lies within the central 95 % of that population.
     """
-    heights, (low, high) = rig.contact.heights, PUBLISHED_DECAY_LENGTH.central_range()
-    if rig.contact.decay_length is not None or not isinstance(heights, ExponentialHeights):
+    resolved = resolved_rig(rig)
+    contact, (low, high) = resolved.rig.contact, PUBLISHED_DECAY_LENGTH.central_range()
+    heights = contact.heights
+    if contact.decay_length is not None or not isinstance(heights, ExponentialHeights):
         return None
-    own = float(decay_length(rig.contact))
+    own = float(decay_length(contact))
     if low <= own <= high:
         return None
     return (
         f"decay length by roughness R_q/{heights.decay:g} = {_micrometres(own)} um; worn contacts of published tests"
         f" have {_micrometres(low)} to {_micrometres(high)} um ({100 * CENTRAL_SHARE:.0f} %); "
-        f"{_ratios_text(rig, vibration_amplitude)}give contact.decay_length or contact.normal_stiffness"
+        f"{_ratios_text(resolved, vibration_amplitude)}give contact.decay_length or contact.normal_stiffness"
     )
 
 
-def resting_caveats(rig: Rig, *, vibration_amplitude: float | None = None) -> tuple[str, ...]:
+def resting_caveats(resolved: ResolvedRig, *, vibration_amplitude: float | None = None) -> tuple[str, ...]:
     """Return the caveats of the contact of a rig under its load, that of its decay length included.
 
     Parameters
     ----------
-    rig : Rig
+    resolved : ResolvedRig
     vibration_amplitude : float, optional
         As of `decay_length_caveat`. [m]
 
@@ -109,16 +110,18 @@ def resting_caveats(rig: Rig, *, vibration_amplitude: float | None = None) -> tu
     OutsideRange
         If the surfaces would be pressed through each other, so that no separation is left.
     """
-    caveat = decay_length_caveat(rig, vibration_amplitude=vibration_amplitude)
-    return (*contact_caveats(rig.contact, separation=rest_separation(rig)), *(() if caveat is None else (caveat,)))
+    caveat = decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
+    own = contact_caveats(resolved.rig.contact, separation=resolved.separation)
+    return (*own, *(() if caveat is None else (caveat,)))
 
 
-def _ratios_text(rig: Rig, amplitude: float | None) -> str:
+def _ratios_text(resolved: ResolvedRig, amplitude: float | None) -> str:
     """Return the friction ratios by the decay length of the roughness and by that of published tests, in words."""
     if amplitude is None:
-        amplitude = _stated_amplitude(rig)
+        amplitude = _stated_amplitude(resolved)
     if amplitude is None:
         return ""
+    rig = resolved.rig
     worn = replace(rig, contact=replace(rig.contact, decay_length=PUBLISHED_DECAY_LENGTH.median))
     first, second = (_friction_ratio(one, amplitude) for one in (rig, worn))
     if first is None and second is None:
@@ -127,14 +130,14 @@ def _ratios_text(rig: Rig, amplitude: float | None) -> str:
     return f"friction ratio {texts[0]} with the first, {texts[1]} with their median; "
 
 
-def _stated_amplitude(rig: Rig) -> float | None:
+def _stated_amplitude(resolved: ResolvedRig) -> float | None:
     """Return the amplitude that a rig states or measured, not one that has to be computed. [m]"""
     try:
-        used = resolved_vibration(rig)
+        used = resolved.vibration
     except SonolubeError:
         return None
     if used.sine_amplitude is None and used.source == "measured":
-        return rig.vibration_amplitude
+        return resolved.rig.vibration_amplitude
     return used.sine_amplitude
 
 

@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar, dataclass_transform
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.report.blocks import Block, block_html, text_lines
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
     from sonolube.report import Drawing, Page
     from sonolube.rig import Rig
-    from sonolube.rig.labelled_arrays import LabelledArrays
+    from sonolube.rig.datasets import LabelledArrays
     from sonolube.tasks.call import Call
     from sonolube.tasks.progress import Advance
 
-    Content = str | bytes | xr.Dataset | LabelledArrays | Path
+    Content: TypeAlias = str | bytes | xr.Dataset | LabelledArrays | Path
 
 _Answer = TypeVar("_Answer")
 

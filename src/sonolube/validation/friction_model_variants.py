@@ -8,7 +8,7 @@ from typing import Final
 from sonolube.checks import Floats
 from sonolube.models import friction
 from sonolube.models.contact import (
-    GapMotion,
+    ContactMotion,
     RoughContact,
     decay_length,
     load_balanced_motion,
@@ -32,7 +32,7 @@ from sonolube.validation.published_tests import FrictionTest
 
 
 @cache
-def balanced_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> GapMotion:
+def balanced_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> ContactMotion:
     """Return the harmonic gap motion about the mean gap at which the mean contact force is the load."""
     return load_balanced_motion(contact, _harmonic_motion(contact, load, amplitude, frequency))
 
@@ -141,17 +141,17 @@ def _bristle_with_holder(
 
 
 @cache
-def _harmonic_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> GapMotion:
+def _harmonic_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> ContactMotion:
     """Return the harmonic gap motion about the gap at rest."""
     return sinusoidal_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
 
 
-def _unbalanced(test: FrictionTest) -> GapMotion:
+def _unbalanced(test: FrictionTest) -> ContactMotion:
     """Return the harmonic gap motion of a test about the gap at rest."""
     return _harmonic_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
 
 
-def _balanced(test: FrictionTest) -> GapMotion:
+def _balanced(test: FrictionTest) -> ContactMotion:
     """Return the harmonic gap motion of a test about the load-balanced mean gap."""
     return balanced_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
 

@@ -17,7 +17,7 @@ from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.facts.metrics import EfficiencyLine, efficiency_coefficient
 from sonolube.rig import friction_point, read_rig
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.rig.excitation import amplifier_power
+from sonolube.rig.excitation import DriveVoltage
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 TRIBOMETER, COLLAR = driven_rig(read_rig(RIGS / "tribometer.toml")), read_rig(RIGS / "collar.toml")
@@ -60,8 +60,8 @@ def test_every_point_of_an_efficiency_characteristic_has_the_efficiency_of_the_l
     line = EfficiencyLine(slope=0.0, intercept=2e-9)
     characteristic = efficiency_characteristic(TRIBOMETER, line, voltage_maximum=20.0, points=5)
     volts = characteristic.level[1:]
-    power = amplifier_power(
-        TRIBOMETER.drive, capacitance=360e-9, voltage_peak_to_peak=volts, voltage_offset=0.5 * volts
+    power = DriveVoltage(drive=TRIBOMETER.drive).amplifier_power(
+        capacitance=360e-9, voltage_peak_to_peak=volts, voltage_offset=0.5 * volts
     )
     found = efficiency_coefficient(
         intrinsic_friction_force=characteristic.highest_force,

@@ -7,7 +7,14 @@ import pytest
 from pytest import approx
 from scipy.special import i0, i1
 
-from sonolube.models.contact import ASPERITY_LAWS, ContactPair, GapMotion, RoughContact, separation, sinusoidal_motion
+from sonolube.models.contact import (
+    ASPERITY_LAWS,
+    ContactMotion,
+    ContactPair,
+    RoughContact,
+    separation,
+    sinusoidal_motion,
+)
 from sonolube.models.surfaces import Roughness
 from sonolube.models.wear import WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
@@ -20,7 +27,7 @@ ACORN_NUT_ON_DISC = RoughContact(  # D Table 3.2
 DECAY_LENGTH = 6e-6 / 3  # Rq/lambda
 
 
-def sine(amplitude: float) -> GapMotion:
+def sine(amplitude: float) -> ContactMotion:
     return sinusoidal_motion(ACORN_NUT_ON_DISC, normal_load=3.0, vibration_amplitude=amplitude, frequency=22e3)
 
 

@@ -7,7 +7,7 @@ import pytest
 from pytest import approx
 
 from sonolube.figure import publication_style
-from sonolube.models.contact import GapMotion
+from sonolube.models.contact import ContactMotion
 from sonolube.models.friction import AsperityStickSlip, BristleWithHolder
 from sonolube.reproduction.friction_models.computed_motion import (
     MODELS,
@@ -46,9 +46,9 @@ def test_a_slow_swing_of_the_arm_leaves_the_ratio_as_it_was(swing: float) -> Non
     test = friction_tests("A")[1]
     phases = 2 * np.pi * np.arange(256) / 256
     x = 2.5e-6 * np.cos(phases)
-    still = GapMotion(displacement=x, normal_force=np.ones(256), frequency=22e3, normal_load=3.0)
+    still = ContactMotion(displacement=x, normal_force=np.ones(256), frequency=22e3, normal_load=3.0)
     rise = 2e-6 * np.log(np.mean(np.exp(-x / 2e-6)))
-    balanced = GapMotion(
+    balanced = ContactMotion(
         displacement=x + rise, normal_force=3.0 * np.exp(-(x + rise) / 2e-6), frequency=22e3, normal_load=3.0
     )
     swung = swinging_arm_motion(test, still, swing=swing, cycles=220)

@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.facts.metrics import EfficiencyLine, friction_at_power, power_for_friction
 from sonolube.rig import VOLTAGE, CommandedQuantity, Rig, commanded_quantity, level_settings, operating_points
 from sonolube.rig.driven_rig import require_drive
-from sonolube.rig.excitation import amplifier_power
+from sonolube.rig.excitation import DriveVoltage
 from sonolube.units import format_si
 
 _RESOLUTION = 1e-6  # of the intrinsic friction force, by which neighbouring points must differ
@@ -201,8 +201,8 @@ def efficiency_characteristic(
         "normal_load": rig.normal_load,
     }
     volts = _levels(VOLTAGE, voltage_maximum, points)
-    power = amplifier_power(
-        drive, capacitance=rig.capacitance, voltage_peak_to_peak=volts, voltage_offset=drive.offset_ratio * volts
+    power = DriveVoltage(drive=drive).amplifier_power(
+        capacitance=rig.capacitance, voltage_peak_to_peak=volts, voltage_offset=drive.offset_ratio * volts
     )
     zero_friction_power = float(power_for_friction(line, reduced_friction_force=0.0, **conditions))
     # the power is proportional to the square of the voltage

@@ -9,7 +9,7 @@ from sonolube.design.control.closed_loop_simulation import ClosedLoopRun
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig, level_settings
 from sonolube.rig.driven_rig import require_drive
-from sonolube.rig.excitation import amplifier_power
+from sonolube.rig.excitation import DriveVoltage
 
 _FINAL_FRACTION = 5  # the tracking error is that of the last fifth
 
@@ -119,8 +119,8 @@ def control_energy(rig: Rig, run: ClosedLoopRun) -> ControlEnergy:
     interval = float(run.time[1] - run.time[0]) if run.time.size > 1 else 0.0
     amplifier_energy = None
     if rig.capacitance is not None and run.electrical_energy is not None:
-        power = amplifier_power(
-            require_drive(rig), capacitance=rig.capacitance, frequency=run.frequency, **level_settings(rig, run.level)
+        power = DriveVoltage(drive=require_drive(rig)).amplifier_power(
+            capacitance=rig.capacitance, frequency=run.frequency, **level_settings(rig, run.level)
         )
         amplifier_energy = float(power.sum() * interval)
     reduction = rig.friction_coefficient * rig.normal_load - run.friction_force

@@ -1,7 +1,7 @@
 """Evaluation of drives of a rig: objectives, and the utilisation of each constraint."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -14,10 +14,10 @@ from sonolube.models.actuator.stack import PiezoStack
 from sonolube.models.contact import separation
 from sonolube.models.dynamics import Status, SteadyStates
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import amplifier_power, voltage_range
 from sonolube.rig.operating_conditions import OperatingConditions
 from sonolube.rig.operating_vibrations import steady_states_of
 from sonolube.rig.record import Rig
+from sonolube.rig.resolved_rig import resolved_rig
 
 LIMITS: Mapping[str, str] = MappingProxyType(
     {
@@ -107,15 +107,16 @@ def evaluate(
 
     The tension is the greatest value of :math:`-F` over a period, its utilisation that over the preload.
     """
-    rig = driven_rig(rig)
+    rig = replace(driven_rig(rig), amplitude_source="computed")
+    resolved = resolved_rig(rig)
     f, volts = np.broadcast_arrays(np.asarray(frequency, dtype=float), np.asarray(voltage_peak_to_peak, dtype=float))
     offset = rig.drive.offset_ratio * volts
     load = np.full(f.shape, rig.normal_load)
     settings = OperatingConditions(voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f, normal_load=load)
-    states = steady_states_of(rig, settings, separation(rig.contact, normal_load=load))
-    stack, drive = rig.stack, rig.drive
-    power = amplifier_power(
-        drive, capacitance=stack.free_capacitance, voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f
+    states = steady_states_of(resolved, settings, separation(rig.contact, normal_load=load))
+    stack = rig.stack
+    power = resolved.voltage.amplifier_power(
+        capacitance=stack.free_capacitance, voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f
     )
     dielectric_loss = np.pi / 4 * f * stack.free_capacitance * limits.loss_tangent * volts**2
     heat = states.dissipated_power + dielectric_loss
@@ -125,7 +126,7 @@ def evaluate(
         "dissipated_power": states.dissipated_power,
         "vibration_amplitude": states.vibration_amplitude,
     }
-    extremes = voltage_range(drive, voltage_peak_to_peak=volts, voltage_offset=offset)
+    extremes = resolved.voltage.range(voltage_peak_to_peak=volts, voltage_offset=offset)
     utilisation = _utilisation(stack, limits, quantities, f, extremes)
     admissible = (states.status == Status.PERIODIC) & ~states.gap_closed
     utilisation["admissible_vibration"] = np.where(admissible, 0.0, np.inf)

@@ -10,7 +10,7 @@ from sonolube.checks import Floats
 from sonolube.design.optimisation.requirements import Limits
 from sonolube.rig import point_batch
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import voltage_range
+from sonolube.rig.excitation import DriveVoltage
 from sonolube.rig.record import Rig
 
 DEFAULT_MAXIMUM_SWING = 200.0
@@ -39,7 +39,7 @@ def maximum_swing(rig: Rig, limits: Limits) -> float:
     """
     rig = replace(driven_rig(rig), amplitude_source="computed")
     drive, stack = rig.drive, rig.stack
-    ends = voltage_range(drive, voltage_peak_to_peak=1.0, voltage_offset=drive.offset_ratio)
+    ends = DriveVoltage(drive=drive).range(voltage_peak_to_peak=1.0, voltage_offset=drive.offset_ratio)
     low, high = (float(end) for end in ends)
     bounds = [DEFAULT_MAXIMUM_SWING] if stack.highest_voltage is None and limits.voltage_maximum is None else []
     if stack.highest_voltage is not None and high > 0:

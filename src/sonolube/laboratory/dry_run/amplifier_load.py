@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.checks import require_positive
 from sonolube.facts.protocol import SetPoint
 from sonolube.models.actuator import Drive, amplifier_requirements, linear_amplifier_power
-from sonolube.rig.excitation import voltage_harmonics
+from sonolube.rig.excitation import DriveVoltage
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,7 +70,7 @@ def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
     if point.frequency is None or point.voltage_peak_to_peak == 0:
         return OFF
     drive = Drive(frequency=point.frequency, voltage_peak_to_peak=point.voltage_peak_to_peak, waveform=point.waveform)
-    harmonics = np.atleast_1d(voltage_harmonics(drive))
+    harmonics = np.atleast_1d(DriveVoltage(drive=drive).harmonics())
     admittance = 2j * pi * point.frequency * capacitance * np.arange(1, harmonics.size + 1)
     need = amplifier_requirements(admittance=admittance, voltage_amplitude=harmonics, frequency=point.frequency)
     power = linear_amplifier_power(

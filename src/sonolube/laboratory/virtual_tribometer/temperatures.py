@@ -13,7 +13,7 @@ from sonolube.laboratory.virtual_tribometer.signals import Approach, Lagged
 from sonolube.models.actuator import Drive, amplifier_requirements
 from sonolube.models.thermal import EllipticSource, ThermalSolid, contact_rise
 from sonolube.rig import Rig, thermal_solid
-from sonolube.rig.excitation import actuator_capacitance, voltage_harmonics
+from sonolube.rig.excitation import DriveVoltage, actuator_capacitance
 
 _AT_ONCE = 1e-6  # s, in which the flash rise follows the heat
 
@@ -114,7 +114,7 @@ def capacitive_power(setting: DriveSetting | None, *, capacitance: float) -> flo
     drive = Drive(
         frequency=setting.frequency, voltage_peak_to_peak=setting.voltage_peak_to_peak, waveform=setting.waveform
     )
-    harmonics = np.atleast_1d(voltage_harmonics(drive))
+    harmonics = np.atleast_1d(DriveVoltage(drive=drive).harmonics())
     admittance = 2j * pi * setting.frequency * capacitance * np.arange(1, harmonics.size + 1)
     need = amplifier_requirements(admittance=admittance, voltage_amplitude=harmonics, frequency=setting.frequency)
     return need.apparent_power

@@ -13,14 +13,14 @@ from .coated_body import (
     equivalent_plane_strain_modulus as equivalent_plane_strain_modulus,
     layer_compliance_ratio as layer_compliance_ratio,
 )
-from .cube import cube_axial_stiffness as cube_axial_stiffness, cube_tangential_stiffness as cube_tangential_stiffness
-from .gap_motion import (
-    GapMotion as GapMotion,
+from .contact_motion import (
+    ContactMotion as ContactMotion,
     GapMotionBatch as GapMotionBatch,
     gap_harmonics as gap_harmonics,
     load_balanced_motion as load_balanced_motion,
     sinusoidal_motion as sinusoidal_motion,
 )
+from .cube import cube_axial_stiffness as cube_axial_stiffness, cube_tangential_stiffness as cube_tangential_stiffness
 from .height_distribution import (
     HEIGHT_DISTRIBUTIONS as HEIGHT_DISTRIBUTIONS,
     ExponentialHeights as ExponentialHeights,

@@ -6,14 +6,14 @@ import numpy as np
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import OutsideRange
-from sonolube.models.contact.gap_motion import GapMotion
+from sonolube.models.contact.contact_motion import ContactMotion
 
 _MINIMUM_SAMPLES, _MAXIMUM_SAMPLES = 256, 65536  # per period, between which a period average is refined
 _UNCONVERGED = "the average over a period does not converge with {samples} samples of this motion"
 
 
 def richardson_period_mean(
-    mean: Callable[[GapMotion], Floats], motion: GapMotion, *, tolerance: float = 1e-5
+    mean: Callable[[ContactMotion], Floats], motion: ContactMotion, *, tolerance: float = 1e-5
 ) -> Floats:
     r"""Return an average over the period by doubling the samples and Richardson's extrapolation.
 
@@ -21,7 +21,7 @@ def richardson_period_mean(
     ----------
     mean : callable
         Returns the average, or several, for a sampled motion, with an error of second order in the phase step.
-    motion : GapMotion
+    motion : ContactMotion
     tolerance : float
         Largest error of the result, relative to the larger of the average and one.
 
@@ -53,7 +53,7 @@ def richardson_period_mean(
 
 
 def richardson_period_means(
-    mean: Callable[[Integers, Floats, Floats], Floats], motions: Sequence[GapMotion], *, tolerance: float = 1e-5
+    mean: Callable[[Integers, Floats, Floats], Floats], motions: Sequence[ContactMotion], *, tolerance: float = 1e-5
 ) -> Floats:
     """Return an average over the period of each of many motions, each with the samples that it needs alone.
 
@@ -61,7 +61,7 @@ def richardson_period_means(
     ----------
     mean : callable
         Returns the averages of some motions from their indices, and their displacement and normal force, a row each.
-    motions : sequence of GapMotion
+    motions : sequence of ContactMotion
     tolerance : float
 
     Returns
@@ -91,7 +91,7 @@ def richardson_period_means(
     return means
 
 
-def _stacked(motions: Sequence[GapMotion], rows: Integers, samples: int) -> tuple[Floats, Floats]:
+def _stacked(motions: Sequence[ContactMotion], rows: Integers, samples: int) -> tuple[Floats, Floats]:
     """Return displacement and normal force of some motions at a number of phases, a row each."""
     sampled = [motions[row].resampled(samples) for row in rows]
     return np.stack([each.displacement for each in sampled]), np.stack([each.normal_force for each in sampled])

@@ -64,7 +64,7 @@ from .structure import (
     with_contact_spring as with_contact_spring,
 )
 from .trajectories import (
-    ContactMotion as ContactMotion,
+    ContactSamples as ContactSamples,
     Envelope as Envelope,
     State as State,
     Trajectories as Trajectories,

@@ -14,7 +14,7 @@ from sonolube.errors import GpuUnused, InvalidInput
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.dynamics.gap_laws.protocol import CONTACT_LOSS_THRESHOLD, GapLaw
 from sonolube.models.dynamics.structure import Structure
-from sonolube.models.dynamics.trajectories import ContactMotion, Envelope, State, Trajectories
+from sonolube.models.dynamics.trajectories import ContactSamples, Envelope, State, Trajectories
 from sonolube.models.dynamics.transient import NO_RAMP, march
 from sonolube.models.dynamics.waveform import Waveform
 
@@ -340,7 +340,7 @@ def _lyapunov_exponent(
     return np.asarray(np.mean(growth[rounds // 2 :], axis=0) / _ROUND)
 
 
-def _contact_loss_fraction(gap_law: GapLaw, motion: ContactMotion, load: Floats, rate: Floats) -> Floats:
+def _contact_loss_fraction(gap_law: GapLaw, motion: ContactSamples, load: Floats, rate: Floats) -> Floats:
     """Return the fraction of the time without contact, between steps by cubic Hermite interpolation."""
     s = (np.arange(_SUBDIVISIONS) / _SUBDIVISIONS)[:, np.newaxis]
     x = motion.displacement[..., np.newaxis, :]

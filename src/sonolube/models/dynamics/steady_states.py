@@ -12,7 +12,7 @@ from sonolube.models.dynamics.gap_laws.protocol import GapLaw, damped_force
 from sonolube.models.dynamics.harmonic_balance.floquet_exponent import stability_undetermined
 from sonolube.models.dynamics.harmonic_balance.receptance import pole_residue_model
 from sonolube.models.dynamics.structure import Structure
-from sonolube.models.dynamics.trajectories import ContactMotion
+from sonolube.models.dynamics.trajectories import ContactSamples
 
 
 class Status(IntEnum):
@@ -171,7 +171,7 @@ class SteadyStates:
         return f"; contact is lost for {fraction:.2%} of the time" if fraction > 0 else ""
 
 
-def contact_motion(states: SteadyStates, point: int | tuple[int, ...], *, samples: int = 512) -> ContactMotion:
+def contact_motion(states: SteadyStates, point: int | tuple[int, ...], *, samples: int = 512) -> ContactSamples:
     """Return the motion of one point's contact over a period of the drive.
 
     Parameters
@@ -184,7 +184,7 @@ def contact_motion(states: SteadyStates, point: int | tuple[int, ...], *, sample
 
     Returns
     -------
-    ContactMotion
+    ContactSamples
 
     Raises
     ------
@@ -204,4 +204,4 @@ def contact_motion(states: SteadyStates, point: int | tuple[int, ...], *, sample
     x, v = np.fft.ifft(spectra, norm="forward").real
     x += states.mean_displacement[point]
     force = damped_force(states.gap_law, x, v, states.normal_load[point])
-    return ContactMotion(displacement=x, velocity=v, normal_force=force)
+    return ContactSamples(displacement=x, velocity=v, normal_force=force)

@@ -60,7 +60,7 @@ class Envelope:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ContactMotion:
+class ContactSamples:
     """Displacement, velocity and force of the contact at a series of instants.
 
     Parameters
@@ -92,9 +92,9 @@ class Trajectories:
     step_error : ndarray, shape (...)
         Estimated error of the contact force over its largest value, from the last period; infinite where diverged.
     envelope : Envelope
-    last_periods : ContactMotion
+    last_periods : ContactSamples
         Every step of the recorded periods, at phases of whole steps, the last one at the end.
-    strobed : ContactMotion
+    strobed : ContactSamples
         Stroboscopic (Poincare) samples: the end of each of the last periods, oldest first.
     final_state : State
         State at the end, from which marching can continue.
@@ -104,8 +104,8 @@ class Trajectories:
     advice: NDArray[np.str_]
     step_error: Floats
     envelope: Envelope
-    last_periods: ContactMotion
-    strobed: ContactMotion
+    last_periods: ContactSamples
+    strobed: ContactSamples
     final_state: State
 
 
@@ -119,7 +119,7 @@ class Trajectory:
         Time from the start. [s]
     voltage : ndarray, shape (times,)
         Drive voltage in V; at a jump, the value after it.
-    contact : ContactMotion
+    contact : ContactSamples
         Motion of the contact, shape (times,).
     states : State
         State of the structure, shape (times, n).
@@ -129,18 +129,18 @@ class Trajectory:
 
     time: Floats
     voltage: Floats
-    contact: ContactMotion
+    contact: ContactSamples
     states: State
     status: str
     advice: str
 
 
-def displacement_harmonics(motion: ContactMotion, *, steps_per_period: int, count: int) -> tuple[Floats, Complexes]:
+def displacement_harmonics(motion: ContactSamples, *, steps_per_period: int, count: int) -> tuple[Floats, Complexes]:
     r"""Return mean and harmonics of the contact's displacement over the last period, by discrete Fourier transform.
 
     Parameters
     ----------
-    motion : ContactMotion
+    motion : ContactSamples
         Recorded periods of `march`, which end at phase zero.
     steps_per_period : int
         Time steps per drive period of that march.

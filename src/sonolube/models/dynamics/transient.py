@@ -16,7 +16,7 @@ from sonolube.models.dynamics.time_marching.batch import (
     march_on_cpu,
 )
 from sonolube.models.dynamics.time_marching.step_control import assess_steps
-from sonolube.models.dynamics.trajectories import ContactMotion, Envelope, State, Trajectories, Trajectory
+from sonolube.models.dynamics.trajectories import ContactSamples, Envelope, State, Trajectories, Trajectory
 from sonolube.models.dynamics.waveform import Sine, StartUpRamp, Waveform, drive_voltage, ramp_factor
 
 _WINDOWS = 256  # default number of entries of an envelope
@@ -290,13 +290,13 @@ def _state(modes: FirstOrderModes, states: Floats, shape: tuple[int, ...]) -> St
     return State(coordinates=x.T.reshape(*shape, n), velocities=v.T.reshape(*shape, n))
 
 
-def _contact_motion(problem: MarchingProblem, states: Floats, shape: tuple[int, ...]) -> ContactMotion:
+def _contact_motion(problem: MarchingProblem, states: Floats, shape: tuple[int, ...]) -> ContactSamples:
     """Return the motion of the contact and its force from pairs of states, shape (times, 2 n, points)."""
     x, v = (np.einsum("m,tml->lt", row.ravel(), states) for row in problem.contact_output)
     with np.errstate(over="ignore", invalid="ignore"):  # of points that diverged
         force = damped_force(problem.gap_law, x, v, problem.normal_load[:, np.newaxis])
     x, v, force = (values.reshape(*shape, -1) for values in (x, v, force))
-    return ContactMotion(displacement=x, velocity=v, normal_force=force)
+    return ContactSamples(displacement=x, velocity=v, normal_force=force)
 
 
 def _envelope(problem: MarchingProblem, solution: MarchingSolution, shape: tuple[int, ...]) -> Envelope:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.models.contact.gap_motion import GapMotion, load_balanced_motion
+from sonolube.models.contact.contact_motion import ContactMotion, load_balanced_motion
 from sonolube.models.contact.period_mean import richardson_period_mean
 from sonolube.models.contact.rough import RoughContact, real_contact_area, separation
 from sonolube.models.contact.separating_half_period import sampled_separating_mean, separating_half_period_mean
@@ -97,13 +97,13 @@ def vibrating_cube_wear_rate(
     )
 
 
-def full_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
+def full_period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
     r"""Return the ratio of wear rates with and without vibration by the cube model over the full period. []
 
     Parameters
     ----------
     contact : RoughContact
-    motion : GapMotion
+    motion : ContactMotion
         Its vibration is taken about the gap at rest; the mean of the motion has no effect.
 
     Returns
@@ -134,13 +134,13 @@ def full_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
     return _period_wear_ratio(contact, _about_rest(motion))
 
 
-def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
+def half_period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
     r"""Return the ratio of wear rates with and without vibration by the cube model over the separating half period. []
 
     Parameters
     ----------
     contact : RoughContact
-    motion : GapMotion
+    motion : ContactMotion
         Its vibration is taken about the gap at rest; the mean of the motion has no effect.
 
     Returns
@@ -178,13 +178,13 @@ def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
     )
 
 
-def load_balanced_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
+def load_balanced_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
     r"""Return the ratio of wear rates with and without vibration by the cube model about the load-balanced mean gap. []
 
     Parameters
     ----------
     contact : RoughContact
-    motion : GapMotion
+    motion : ContactMotion
         The mean of the motion has no effect.
 
     Returns
@@ -207,12 +207,12 @@ def load_balanced_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats
     return _period_wear_ratio(contact, load_balanced_motion(contact, motion))
 
 
-def _about_rest(motion: GapMotion) -> GapMotion:
+def _about_rest(motion: ContactMotion) -> ContactMotion:
     """Return a motion without the shift of its mean gap; its forces, which wear does not take, stay as they are."""
     return replace(motion, displacement=motion.displacement - np.mean(motion.displacement))
 
 
-def _period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
+def _period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
     """Return the mean wear rate over a motion as it is, over that at rest. []"""
     d, at_rest = _separation_and_rate(contact, motion)
     return richardson_period_mean(
@@ -220,7 +220,7 @@ def _period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
     )
 
 
-def _separation_and_rate(contact: RoughContact, motion: GapMotion) -> tuple[Floats, Floats]:
+def _separation_and_rate(contact: RoughContact, motion: ContactMotion) -> tuple[Floats, Floats]:
     """Return the separation [m] and the wear rate [m2] at rest."""
     d = separation(contact, normal_load=motion.normal_load)
     return d, _wear_rate(contact, require_positive(separation=d))

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 
 from sonolube.checks import Floats
-from sonolube.models.contact.gap_motion import GapMotion
+from sonolube.models.contact.contact_motion import ContactMotion
 from sonolube.models.contact.rough import RoughContact
 from sonolube.variants import VariantTable
 
-WEAR_MODELS: VariantTable[Callable[[RoughContact, GapMotion], Floats]] = VariantTable(
+WEAR_MODELS: VariantTable[Callable[[RoughContact, ContactMotion], Floats]] = VariantTable(
     "wear model",
     {
         "dong_2015_full_period": "sonolube.models.wear.cube:full_period_wear_ratio",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sonolube.models.friction import FrictionModel
     from sonolube.prediction.friction_interval import FrictionInterval
-    from sonolube.rig import Rig
+    from sonolube.rig import ResolvedRig, Rig
     from sonolube.validation.assessment import ErrorStatistics
 
 
@@ -48,7 +48,7 @@ class BeyondTheModel:
         }
 
 
-def beyond_the_model(rig: "Rig", model: "FrictionModel", *, interval: bool) -> BeyondTheModel:
+def beyond_the_model(rig: "Rig | ResolvedRig", model: "FrictionModel", *, interval: bool) -> BeyondTheModel:
     """What the friction ratio of a rig by a friction model leaves out."""
     if not interval:
         return BeyondTheModel(error=None, interval=None)

@@ -6,7 +6,7 @@ import numpy as np
 
 from sonolube.prediction.rig_statement import interval
 from sonolube.prediction.scores import PROBABILITIES
-from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.datasets import LabelledArrays
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 

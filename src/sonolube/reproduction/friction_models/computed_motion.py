@@ -19,7 +19,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.facts.published import si_value
 from sonolube.figure import COLOURS, ReportFigure
-from sonolube.models.contact import GapMotion, decay_length, load_balanced_motion, sinusoidal_motion
+from sonolube.models.contact import ContactMotion, decay_length, load_balanced_motion, sinusoidal_motion
 from sonolube.models.dynamics import ExponentialGap, contact_motion as motion_of, steady_state, trajectory
 from sonolube.models.friction import FRICTION_MODELS
 from sonolube.reproduction.friction_models.variant_predictions import Predictions
@@ -114,13 +114,13 @@ def computed_motion_figures() -> Iterator[ReportFigure]:
     )
 
 
-def swinging_arm_motion(test: FrictionTest, moving: GapMotion, *, swing: float, cycles: int) -> GapMotion:
+def swinging_arm_motion(test: FrictionTest, moving: ContactMotion, *, swing: float, cycles: int) -> ContactMotion:
     """Return a gap motion superimposed on a slow oscillation of the arm, load-balanced over the period of the arm.
 
     Parameters
     ----------
     test : FrictionTest
-    moving : GapMotion
+    moving : ContactMotion
         One period of the drive.
     swing : float
         Amplitude of the arm at the contact, in m.
@@ -129,7 +129,7 @@ def swinging_arm_motion(test: FrictionTest, moving: GapMotion, *, swing: float, 
 
     Returns
     -------
-    GapMotion
+    ContactMotion
     """
     one = moving.resampled(_SAMPLES_OF_ARM_PERIOD).displacement
     slow = swing * np.cos(2 * np.pi * np.arange(cycles * one.size) / (cycles * one.size))
@@ -138,7 +138,7 @@ def swinging_arm_motion(test: FrictionTest, moving: GapMotion, *, swing: float, 
     )
 
 
-def _motions(test: FrictionTest) -> Iterator[tuple[str, GapMotion]]:
+def _motions(test: FrictionTest) -> Iterator[tuple[str, ContactMotion]]:
     """Yield every motion of a test by name."""
     about_rest = sinusoidal_motion(
         test.contact,
@@ -154,13 +154,13 @@ def _motions(test: FrictionTest) -> Iterator[tuple[str, GapMotion]]:
     yield "time-integration", _integrated_motion(test)
 
 
-def _ratio(model: str, test: FrictionTest, moving: GapMotion) -> float:
+def _ratio(model: str, test: FrictionTest, moving: ContactMotion) -> float:
     """Return the friction ratio of a test by a friction model on a motion. []"""
     speed, mu = test.sliding_speed, test.friction_coefficient
     return float(FRICTION_MODELS[model]().ratio(test.contact, moving, sliding_speed=speed, friction_coefficient=mu))
 
 
-def _steady_motion(test: FrictionTest) -> GapMotion:
+def _steady_motion(test: FrictionTest) -> ContactMotion:
     """Return the steady motion of the identified tribometer by harmonic balance."""
     states = steady_state(
         identified_structure(),
@@ -173,7 +173,7 @@ def _steady_motion(test: FrictionTest) -> GapMotion:
     return _gap_motion(period.displacement, period.normal_force, test)
 
 
-def _integrated_motion(test: FrictionTest) -> GapMotion:
+def _integrated_motion(test: FrictionTest) -> ContactMotion:
     """Return the last arm period of the tribometer by time integration from rest."""
     cycles = _arm_cycles(test)
     periods = round(si_value("3.3.4-settling-time") * test.frequency)
@@ -190,9 +190,9 @@ def _integrated_motion(test: FrictionTest) -> GapMotion:
     return _gap_motion(contact.displacement[last], contact.normal_force[last], test, cycles=cycles)
 
 
-def _gap_motion(displacement: Floats, force: Floats, test: FrictionTest, *, cycles: int = 1) -> GapMotion:
+def _gap_motion(displacement: Floats, force: Floats, test: FrictionTest, *, cycles: int = 1) -> ContactMotion:
     """Return the gap motion of a test over one or several periods of the drive."""
-    return GapMotion(
+    return ContactMotion(
         displacement=displacement, normal_force=force, frequency=test.frequency / cycles, normal_load=test.normal_load
     )
 

@@ -9,8 +9,8 @@ from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.actuator.drive import Drive
+from sonolube.models.dynamics.waveform import sampled_waveform
 from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
-from sonolube.rig.excitation import waveform_of
 from sonolube.rig.file.contact_section import ContactSection, Text
 from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.structures import StructureSection
@@ -101,12 +101,12 @@ class DriveSection(Section):
     def require_possible(self) -> None:
         """Refuse voltages, frequencies, ramps and samples that no drive has."""
         self.drive()
+        if self.waveform_samples is not None:
+            sampled_waveform(self.waveform_samples)
 
     def drive(self) -> Drive:
         """Return the drive."""
-        drive = Drive(**self.model_dump())
-        waveform_of(drive)
-        return drive
+        return Drive(**self.model_dump())
 
 
 class ActuatorSection(Section):

@@ -28,10 +28,8 @@ from sonolube.rig import (
     frequency_grid,
     operating_caveats,
     operating_points,
-    resolved_vibration,
 )
-from sonolube.rig.amplitude_source import moved_rig
-from sonolube.rig.linear_response import gap_law_of
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown
@@ -212,14 +210,15 @@ def studies_of(rig: Rig) -> list[str]:
 
 def _require_studied(rig: Rig, of: str) -> None:
     """Raise if a rig lacks the structure that a study computes, or another quantity sets its vibration."""
-    own = commanded_quantity(rig)
+    resolved = resolved_rig(rig)
+    own = commanded_quantity(resolved)
     if of in (VOLTAGE.word, AMPLITUDE.word) and of != own.word:
         why = "has no drive voltage" if own is AMPLITUDE else "has a drive voltage, which sets its amplitude"
         raise InvalidInput(f"{rig.title} {why}: take {shown('of')} {own.word}")
     if of in _OF_STRUCTURE:
-        gap_law_of(moved_rig(rig))
-    elif of != "speed" and (driven := resolved_vibration(rig).driven) is not None:
-        gap_law_of(driven)
+        _ = resolved.moved  # which refuses a rig without a structure that moves it
+    elif of != "speed":
+        _ = resolved.vibration  # which refuses a rig without an amplitude
 
 
 def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None) -> Floats:

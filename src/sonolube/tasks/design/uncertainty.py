@@ -21,6 +21,7 @@ from sonolube.report.results.beyond_the_model import BeyondTheModel, beyond_the_
 from sonolube.report.results.design import uncertainty as results
 from sonolube.report.results.design.uncertain_entries import agreement
 from sonolube.rig import Rig, operating_caveats, steady_vibration
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.parameters import DoorParameter, Interval, Kept, Parameter, RigFile, Stop, Watch, kept, rig_of
 from sonolube.tasks.progress import stage
@@ -146,8 +147,9 @@ class UncertaintyAnswer(Answer):
         if self._of not in _OF_THE_MODEL:
             return ()
         try:
-            amplitude = steady_vibration(self.rig).vibration_amplitude
-            return large_amplitude_caveats(self.rig, vibration_amplitude=amplitude)
+            resolved = resolved_rig(self.rig)
+            amplitude = steady_vibration(resolved).vibration_amplitude
+            return large_amplitude_caveats(resolved, vibration_amplitude=amplitude)
         except SonolubeError:  # at the values of the file, which need not be those of the samples
             return ()
 

@@ -23,8 +23,7 @@ from sonolube.models.fem.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
 from sonolube.report.results.parts import impedance_spectra as results
-from sonolube.rig.datasets import labelled
-from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.datasets import LabelledArrays, labelled
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch

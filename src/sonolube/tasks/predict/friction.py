@@ -7,6 +7,7 @@ from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report.results.beyond_the_model import beyond_the_model
 from sonolube.report.results.measured_on_rig import measured_on
 from sonolube.rig import friction_point
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.simulation import friction_model_named
 from sonolube.tasks.parameters import Interval, Parameter, RigFile, rig_of
 from sonolube.tasks.predict.rig_record import RigRecord
@@ -42,14 +43,15 @@ def friction(rig: RigFile, *, model: Annotated[str | None, _MODEL] = None, inter
     0.36
     """
     known = rig_of(rig)
-    result = friction_point(known, model=model)
+    resolved = resolved_rig(known)
+    result = friction_point(resolved, model=model)
     by = known.friction_model if model is None else friction_model_named(known, model)
-    beyond = beyond_the_model(known, by, interval=interval)
+    beyond = beyond_the_model(resolved, by, interval=interval)
     return RigRecord(
         rig=known,
         result=result,
         measured=measured_on(known, vibration_amplitude=result.vibration_amplitude),
-        leading=large_amplitude_caveats(known, vibration_amplitude=result.vibration_amplitude),
+        leading=large_amplitude_caveats(resolved, vibration_amplitude=result.vibration_amplitude),
         rows=beyond.rows(),
         entries=beyond.object(),
     )

@@ -12,7 +12,7 @@ from sonolube.report.blocks import Block, Table
 from sonolube.report.results import prediction as results
 from sonolube.report.results.measured_on_rig import Measurement, measured_on
 from sonolube.rig import Rig
-from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.datasets import LabelledArrays
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of

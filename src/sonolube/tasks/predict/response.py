@@ -9,8 +9,9 @@ from sonolube.models.dynamics import modes
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block, Rows
 from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, structure_in_contact
+from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.figures import response_chart
-from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import response_arrays
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.parameters import Number, Parameter, RestingRig, rig_of
@@ -41,8 +42,9 @@ def response(
     if not 0 < low < high:
         raise InvalidInput(f"{shown('lowest')} {lowest} must lie above 0 Hz and below {shown('highest')} {highest}")
     known = rig_of(rig)
-    result = frequency_response(known, frequency=frequency_grid(known, lowest=low, highest=high))
-    natural = modes(structure_in_contact(known))
+    resolved = resolved_rig(known)
+    result = frequency_response(resolved, frequency=frequency_grid(resolved, lowest=low, highest=high))
+    natural = modes(structure_in_contact(resolved))
     return ResponseAnswer(rig=known, result=result, natural_frequency=natural.natural_frequency[~natural.rigid])
 
 

@@ -8,15 +8,13 @@ from sonolube.report import Drawing
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.measured_on_rig import Measurement
 from sonolube.rig import Rig
-from sonolube.rig.datasets import result_quantities, result_texts
+from sonolube.rig.datasets import LabelledArrays, result_quantities, result_texts
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.units import format_quantity, format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from sonolube.rig.labelled_arrays import LabelledArrays
 
 _UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
 _LEAST_FORCE = 1e-6  # of the load, below which a friction force means nothing

@@ -5,9 +5,10 @@ from typing import Annotated, Any
 
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block, Rows
-from sonolube.rig import Rig, StartUp, resolved_vibration, start_up
+from sonolube.rig import ResolvedVibration, Rig, StartUp, start_up
+from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.figures import start_up_chart
-from sonolube.rig.labelled_arrays import LabelledArrays
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import start_up_arrays
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
@@ -40,8 +41,9 @@ def transient(
     """
     known = rig_of(rig)
     with stage("marching"):
-        result = start_up(known, duration=in_si("duration", duration))
-    return StartUpAnswer(rig=known, result=result)
+        resolved = resolved_rig(known)
+        result = start_up(resolved, duration=in_si("duration", duration))
+    return StartUpAnswer(rig=known, vibration=resolved.vibration, result=result)
 
 
 @answer
@@ -49,6 +51,7 @@ class StartUpAnswer(Answer):
     """Start-up of a rig: settling time, final amplitude and slow oscillation."""
 
     rig: Rig
+    vibration: ResolvedVibration
     result: StartUp
 
     def blocks(self) -> Sequence[Block]:
@@ -56,7 +59,7 @@ class StartUpAnswer(Answer):
         found = self.result
         rows = [
             ("amplitude settles", f"within 2 % after {format_si(found.settling_time, 's')}"),
-            ("amplitude", f"{format_si(found.vibration_amplitude, 'm')}: {resolved_vibration(self.rig).text}"),
+            ("amplitude", f"{format_si(found.vibration_amplitude, 'm')}: {self.vibration.text}"),
             ("mean displacement", format_si(found.mean_displacement, "m")),
             ("slow oscillation", format_si(found.beat_frequency, "Hz")),
             ("status", found.status + (f": {found.reason}" if found.reason else "")),
@@ -67,7 +70,7 @@ class StartUpAnswer(Answer):
         """Status, settling time, amplitude, mean displacement and frequency of the slow oscillation."""
         return {
             "rig": self.rig.title,
-            "amplitude_source": resolved_vibration(self.rig).source,
+            "amplitude_source": self.vibration.source,
             "status": self.result.status,
             "reason": self.result.reason,
             **si({name: getattr(self.result, name) for name in _QUANTITIES}),

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import i0
 
 from sonolube.errors import InvalidInput
-from sonolube.models.contact import GapMotion
+from sonolube.models.contact import ContactMotion
 from sonolube.models.friction import LuGreFriction, lugre_under_vibration, parallel_vibration_ratio
 
 LOAD, FREQUENCY, LENGTH = 3.0, 22e3, 2e-6
@@ -29,10 +29,12 @@ def load_ratio(amplitude: float, phases: np.ndarray) -> np.ndarray:
     return np.asarray(np.exp(-amplitude / LENGTH * np.cos(phases)) / i0(amplitude / LENGTH))
 
 
-def sine(amplitude: float) -> GapMotion:
+def sine(amplitude: float) -> ContactMotion:
     phases = 2 * np.pi * np.arange(256) / 256
     force = LOAD * load_ratio(amplitude, phases)
-    return GapMotion(displacement=amplitude * np.cos(phases), normal_force=force, frequency=FREQUENCY, normal_load=LOAD)
+    return ContactMotion(
+        displacement=amplitude * np.cos(phases), normal_force=force, frequency=FREQUENCY, normal_load=LOAD
+    )
 
 
 @pytest.mark.parametrize(("fraction", "phase", "speed"), [(0.0, 0.0, 0.03), (0.3, 0.7, 0.05), (0.5, -1.0, 0.2)])

@@ -9,8 +9,8 @@ from scipy.special import i0, i0e
 from sonolube.errors import InvalidInput
 from sonolube.models.contact import (
     ASPERITY_LAWS,
+    ContactMotion,
     ContactPair,
-    GapMotion,
     RoughContact,
     load_balanced_motion,
     normal_force,
@@ -111,12 +111,12 @@ def test_a_sampled_sine_gives_the_closed_form(amplitude: float) -> None:
     assert AsperityStickSlip().ratio(CONTACT, motion, sliding_speed=speeds) == approx(closed, abs=1e-4)
 
 
-def two_harmonics(samples: int = 256) -> GapMotion:
+def two_harmonics(samples: int = 256) -> ContactMotion:
     theta = 2 * np.pi * np.arange(samples) / samples
     x = 2e-6 * np.cos(theta) + 0.8e-6 * np.sin(2 * theta + 0.4)
     forces = normal_force(CONTACT, separation=separation(CONTACT, normal_load=LOAD) + x)
     return load_balanced_motion(
-        CONTACT, GapMotion(displacement=x, normal_force=forces, frequency=FREQUENCY, normal_load=LOAD)
+        CONTACT, ContactMotion(displacement=x, normal_force=forces, frequency=FREQUENCY, normal_load=LOAD)
     )
 
 

@@ -11,8 +11,8 @@ from scipy.special import i0e
 from sonolube.errors import InvalidInput
 from sonolube.models.contact import (
     ASPERITY_LAWS,
+    ContactMotion,
     ContactPair,
-    GapMotion,
     GapMotionBatch,
     RoughContact,
     load_balanced_motion,
@@ -118,7 +118,7 @@ def test_a_motion_with_harmonics_has_the_ratio_of_elements_integrated_in_time(ha
     x = (rotations @ amplitudes).real
     force = normal_force(CONTACT, separation=separation(CONTACT, normal_load=LOAD) + x)
     motion = load_balanced_motion(
-        CONTACT, GapMotion(displacement=x, normal_force=force, frequency=FREQUENCY, normal_load=LOAD)
+        CONTACT, ContactMotion(displacement=x, normal_force=force, frequency=FREQUENCY, normal_load=LOAD)
     )
     speeds = np.array([5e-3, 40e-3, 0.2, 0.5])
     sampled = AsperityStickSlip(memory_length=MEMORY_LENGTH, in_plane_fraction=1e-15)  # its own quadrature

@@ -11,8 +11,8 @@ from scipy.special import i0
 from sonolube.errors import InvalidInput
 from sonolube.models.contact import (
     ASPERITY_LAWS,
+    ContactMotion,
     ContactPair,
-    GapMotion,
     RoughContact,
     load_balanced_motion,
     sinusoidal_motion,
@@ -31,7 +31,7 @@ OMEGA = 2 * np.pi * FREQUENCY
 HOLDER = Holder(holder_stiffness=2e6, holder_mass=1e-4, holder_damping=3.0)
 
 
-def balanced(amplitude: float = AMPLITUDE) -> GapMotion:
+def balanced(amplitude: float = AMPLITUDE) -> ContactMotion:
     return load_balanced_motion(
         CONTACT, sinusoidal_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
     )

@@ -8,8 +8,8 @@ from scipy.integrate import quad
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.contact import (
     ASPERITY_LAWS,
+    ContactMotion,
     ContactPair,
-    GapMotion,
     RoughContact,
     cube_tangential_stiffness,
     load_balanced_motion,
@@ -38,13 +38,13 @@ AT_REST = float(separation(CONTACT, normal_load=LOAD))
 SPEEDS = np.array([20.3e-3, 40.6e-3, 87e-3])  # of D Table 2.3
 
 
-def sine(amplitude: float, *, samples: int = 256) -> GapMotion:
+def sine(amplitude: float, *, samples: int = 256) -> ContactMotion:
     return sinusoidal_motion(
         CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY, samples=samples
     )
 
 
-def model_ratio(name: str, motion: GapMotion, speeds: np.ndarray) -> np.ndarray:
+def model_ratio(name: str, motion: ContactMotion, speeds: np.ndarray) -> np.ndarray:
     return FRICTION_MODELS[name]().ratio(CONTACT, motion, sliding_speed=speeds, friction_coefficient=0.3)
 
 
@@ -123,7 +123,7 @@ def test_results_have_the_shape_of_the_speeds_and_are_independent(name: str) -> 
 @pytest.mark.parametrize("name", FRICTION_MODELS)
 def test_the_start_of_the_period_has_no_effect(name: str) -> None:
     motion = load_balanced_motion(CONTACT, sine(2.5e-6))
-    later = GapMotion(
+    later = ContactMotion(
         displacement=np.roll(motion.displacement, 71),
         normal_force=np.roll(motion.normal_force, 71),
         frequency=FREQUENCY,

@@ -1,11 +1,13 @@
 """Range of validity of friction models: no contact transmits more than mu F_N; a formula beyond that is withheld."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.models.contact import GapMotion, RoughContact, sinusoidal_motion
+from sonolube.models.contact import ContactMotion, RoughContact, sinusoidal_motion
 from sonolube.models.friction import FRICTION_MODELS, FrictionModel
 from sonolube.models.friction.models.range_check import (
     OUTSIDE_MODEL_RANGE,
@@ -19,7 +21,7 @@ CONTACT = read_rig("examples/rigs/tribometer.toml").contact
 CLOSE = read_rig("examples/rigs/welder_flat.toml").contact  # 8.2 um of gap under 70 N
 
 
-def moving(contact: RoughContact, *, load: float, amplitude: float) -> GapMotion:
+def moving(contact: RoughContact, *, load: float, amplitude: float) -> ContactMotion:
     return sinusoidal_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=22e3)
 
 
@@ -127,3 +129,32 @@ def test_a_ratio_below_0_is_said_to_drive_and_one_above_1_to_raise_friction() ->
     below, above = ratio_caveats(friction_ratio=[-0.174, 0.5, 1.37])
     assert below.startswith("friction ratio -0.174 is below 0: the mean friction force drives the sliding")
     assert above.startswith("friction ratio 1.37 is above 1: the vibration raises friction")
+
+
+@pytest.mark.parametrize("name", ["asperity_stick_slip", "bristle_with_holder"])
+@pytest.mark.parametrize(("fraction", "lag"), [(0.2, 0.0), (0.5, 0.9)])
+def test_a_motion_along_the_sliding_acts_as_the_same_fraction_of_the_normal_one(
+    name: str, fraction: float, lag: float
+) -> None:
+    normal = moving(CONTACT, load=3.0, amplitude=1e-6)
+    phase = 2 * np.pi * np.arange(normal.displacement.size) / normal.displacement.size
+    along = replace(normal, along=fraction * 1e-6 * np.cos(phase - lag))
+    arguments = {"sliding_speed": [5e-3, 0.05], "friction_coefficient": 0.3}
+    by_motion = model_friction(FRICTION_MODELS[name](), CONTACT, along, **arguments)
+    own = FRICTION_MODELS[name](in_plane_fraction=fraction, in_plane_phase=lag)
+    by_fraction = model_friction(own, CONTACT, normal, **arguments)
+    assert by_motion.raw_friction_ratio == approx(by_fraction.raw_friction_ratio, rel=1e-6)
+    assert (by_motion.reason == by_fraction.reason).all()
+    without = model_friction(FRICTION_MODELS[name](), CONTACT, normal, **arguments)
+    assert by_motion.raw_friction_ratio != approx(without.raw_friction_ratio, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("name", "direction"),
+    [("kinematic", "along"), ("dong_2015_full_period", "along"), ("asperity_stick_slip", "across")],
+)
+def test_a_motion_that_a_model_has_no_law_for_is_refused(name: str, direction: str) -> None:
+    normal = moving(CONTACT, load=3.0, amplitude=1e-6)
+    motion = replace(normal, **{direction: np.zeros_like(normal.displacement)})
+    with raises(InvalidInput, match=f"friction model {name} has no law for a motion {direction} the sliding"):
+        model_friction(FRICTION_MODELS[name](), CONTACT, motion, sliding_speed=0.05, friction_coefficient=0.3)

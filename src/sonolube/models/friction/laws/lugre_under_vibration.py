@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_finite, require_non_negative, require_positive
-from sonolube.models.contact.gap_motion import GapMotion, delayed_oscillation
+from sonolube.models.contact.contact_motion import ContactMotion, delayed_oscillation
 from sonolube.models.contact.period_mean import richardson_period_mean, richardson_period_means
 from sonolube.models.friction.laws.lugre import LuGreFriction, lugre_steady_friction
 from sonolube.models.friction.laws.steady_period_kernel import steady_period_mean_force
@@ -17,7 +17,7 @@ _TOLERANCE = 1e-4
 
 def lugre_under_vibration(
     law: LuGreFriction,
-    motion: GapMotion,
+    motion: ContactMotion,
     *,
     sliding_speed: ArrayLike,
     in_plane_fraction: ArrayLike = 0.0,
@@ -29,7 +29,7 @@ def lugre_under_vibration(
     ----------
     law : LuGreFriction
         Law of the contact under its dead load.
-    motion : GapMotion
+    motion : ContactMotion
         One period of the gap, with its normal force.
     sliding_speed : array_like, any shape
         Mean sliding speed. [m/s]
@@ -74,7 +74,7 @@ def lugre_under_vibration(
     lag = float(require_finite(in_plane_phase=in_plane_phase))
     speeds, own = v_r.reshape(-1, 1), _Columns.of([law])
 
-    def mean_force(sampled: GapMotion) -> Floats:
+    def mean_force(sampled: ContactMotion) -> Floats:
         oscillation = _in_plane(sampled.displacement, fraction, lag)
         load = _mid_load(sampled.normal_force, motion.normal_load)
         bristle_force = _mean_force(own, load, oscillation, speeds, motion.frequency)
@@ -87,7 +87,7 @@ def lugre_under_vibration(
 
 def lugre_ratios(
     laws: Sequence[LuGreFriction],
-    motions: Sequence[GapMotion],
+    motions: Sequence[ContactMotion],
     *,
     sliding_speed: Floats,
     in_plane_fraction: float = 0.0,
@@ -99,7 +99,7 @@ def lugre_ratios(
     ----------
     laws : sequence of LuGreFriction
         Of each point.
-    motions : sequence of GapMotion
+    motions : sequence of ContactMotion
         Of each point.
     sliding_speed : ndarray, shape (n,)
         Mean sliding speed of each point. [m/s]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Complexes, Floats, Integers, require_positive
 from sonolube.compilation import kernel
-from sonolube.models.contact.gap_motion import GapMotion, GapMotionBatch, gap_harmonics
+from sonolube.models.contact.contact_motion import ContactMotion, GapMotionBatch, gap_harmonics
 from sonolube.models.contact.height_distribution import ExponentialHeights
 from sonolube.models.contact.period_mean import richardson_period_mean
 from sonolube.models.contact.rough import RoughContact, decay_length, separation
@@ -88,7 +88,7 @@ class AsperityStickSlip(FrictionModel):
     def ratio(
         self,
         contact: RoughContact,
-        motion: GapMotion,
+        motion: ContactMotion,
         *,
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
@@ -98,7 +98,7 @@ class AsperityStickSlip(FrictionModel):
         Parameters
         ----------
         contact : RoughContact
-        motion : GapMotion
+        motion : ContactMotion
         sliding_speed : array_like, any shape
             Mean sliding speed. [m/s]
         friction_coefficient : float, optional
@@ -116,14 +116,19 @@ class AsperityStickSlip(FrictionModel):
         v_r = require_positive(sliding_speed=sliding_speed)
         length = float(decay_length(contact, separation=separation(contact, normal_load=motion.normal_load)))
 
-        def mean_over_limit(sampled: GapMotion) -> Floats:
+        def mean_over_limit(sampled: ContactMotion) -> Floats:
             gap, steps = _from_widest_gap(sampled)
-            delays = np.exp(-1j * self.in_plane_phase * np.arange(steps.size))
-            slides = self.in_plane_fraction / self.memory_length * np.fft.irfft(steps * delays, gap.size)
+            if sampled.along is None:
+                delays = np.exp(-1j * self.in_plane_phase * np.arange(steps.size))
+                slides = self.in_plane_fraction / self.memory_length * np.fft.irfft(steps * delays, gap.size)
+            else:
+                along = np.roll(sampled.along, -int(np.argmax(sampled.displacement)))
+                slides = (np.roll(along, -1) - along) / self.memory_length
             steady = v_r.ravel() / (self.memory_length * motion.frequency * gap.size)
             return _sampled_ratio(gap / length, slides, steady)
 
-        if not self.in_plane_fraction and motion.displacement.size <= _LONGEST_PERIOD:
+        is_normal = motion.along is None and not self.in_plane_fraction
+        if is_normal and motion.displacement.size <= _LONGEST_PERIOD:
             every = np.zeros(v_r.size, dtype=np.int64)
             closed = self.batched_ratio(
                 contact, gap_harmonics(motion), sliding_speed=v_r.ravel(), motion=every, friction_coefficient=np.nan
@@ -177,7 +182,7 @@ class AsperityStickSlip(FrictionModel):
 
 
 @lru_cache(maxsize=64)
-def _from_widest_gap(motion: GapMotion) -> tuple[Floats, Complexes]:
+def _from_widest_gap(motion: ContactMotion) -> tuple[Floats, Complexes]:
     """Return the displacement from its widest on, and the harmonics of its steps; kept for fits."""
     gap = np.roll(motion.displacement, -int(np.argmax(motion.displacement)))
     harmonics = np.fft.rfft(gap)

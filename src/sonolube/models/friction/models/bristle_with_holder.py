@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, warn_of_range
-from sonolube.models.contact.gap_motion import GapMotion, delayed_oscillation, require_open_gap
+from sonolube.models.contact.contact_motion import ContactMotion, delayed_oscillation, require_open_gap
 from sonolube.models.contact.mindlin import mindlin_tangential_stiffness
 from sonolube.models.contact.period_mean import richardson_period_mean
 from sonolube.models.contact.rough import RoughContact
@@ -101,7 +101,7 @@ class BristleWithHolder(FrictionModel):
     def ratio(
         self,
         contact: RoughContact,
-        motion: GapMotion,
+        motion: ContactMotion,
         *,
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
@@ -111,7 +111,7 @@ class BristleWithHolder(FrictionModel):
         Parameters
         ----------
         contact : RoughContact
-        motion : GapMotion
+        motion : ContactMotion
         sliding_speed : array_like, any shape
             Mean sliding speed. [m/s]
         friction_coefficient : float, optional
@@ -140,12 +140,12 @@ class BristleWithHolder(FrictionModel):
         d = require_open_gap(contact, motion)
         settled = True
 
-        def normalized_friction(sampled: GapMotion) -> Floats:
+        def normalized_friction(sampled: ContactMotion) -> Floats:
             nonlocal settled
             order = np.roll(np.arange(sampled.displacement.size), -int(np.argmin(sampled.normal_force)))
             limit = mu * sampled.normal_force[order]
             k = mindlin_tangential_stiffness(contact, separation=d + sampled.displacement[order])
-            u = self.in_plane_fraction * delayed_oscillation(sampled.displacement, phase=self.in_plane_phase)[order]
+            u = self._along(sampled)[order]
             step = 1 / (motion.frequency * order.size)
             slides = np.roll(u, -1) - u, v_r.ravel() * step
             forces, settled = self._mean_force(k, limit, slides, step)
@@ -158,6 +158,12 @@ class BristleWithHolder(FrictionModel):
                 " returned. Increase holder_damping"
             )
         return ratio.reshape(v_r.shape)
+
+    def _along(self, motion: ContactMotion) -> Floats:
+        """Displacement along the sliding: that of the motion, else the fraction of its normal part. [m]"""
+        if motion.along is not None:
+            return motion.along
+        return self.in_plane_fraction * delayed_oscillation(motion.displacement, phase=self.in_plane_phase)
 
     def _mean_force(self, k: Floats, limit: Floats, slides: tuple[Floats, Floats], step: float) -> tuple[Floats, bool]:
         """Return the mean force at each sliding speed, in N, and whether a steady period was reached."""

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
+from sonolube.models.contact.contact_motion import ContactMotion, load_balanced_motion, require_open_gap
 from sonolube.models.contact.cube import cube_tangential_stiffness
-from sonolube.models.contact.gap_motion import GapMotion, load_balanced_motion, require_open_gap
 from sonolube.models.contact.period_mean import richardson_period_mean
 from sonolube.models.contact.rough import RoughContact, separation
 from sonolube.models.contact.separating_half_period import sampled_separating_mean
@@ -73,7 +73,7 @@ class Dong2015FullPeriod(_CubeModel):
     def ratio(
         self,
         contact: RoughContact,
-        motion: GapMotion,
+        motion: ContactMotion,
         *,
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
@@ -83,7 +83,7 @@ class Dong2015FullPeriod(_CubeModel):
         Parameters
         ----------
         contact : RoughContact
-        motion : GapMotion
+        motion : ContactMotion
         sliding_speed : array_like, any shape
             Mean sliding speed. [m/s]
         friction_coefficient : float, optional
@@ -132,7 +132,7 @@ class Dong2015HalfPeriod(_CubeModel):
     def ratio(
         self,
         contact: RoughContact,
-        motion: GapMotion,
+        motion: ContactMotion,
         *,
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
@@ -142,7 +142,7 @@ class Dong2015HalfPeriod(_CubeModel):
         Parameters
         ----------
         contact : RoughContact
-        motion : GapMotion
+        motion : ContactMotion
         sliding_speed : array_like, any shape
             Mean sliding speed, which has no effect in this model. [m/s]
         friction_coefficient : float, optional
@@ -162,7 +162,7 @@ class Dong2015HalfPeriod(_CubeModel):
         v_r = require_positive(sliding_speed=sliding_speed)
         k_ratio = _stiffness_ratio(contact, separation(contact, normal_load=motion.normal_load))
 
-        def mean(sampled: GapMotion) -> Floats:
+        def mean(sampled: ContactMotion) -> Floats:
             return sampled_separating_mean(k_ratio, displacement=sampled.displacement)
 
         ratio = richardson_period_mean(mean, motion)
@@ -195,7 +195,7 @@ class Dong2015LoadBalanced(_CubeModel):
     def ratio(
         self,
         contact: RoughContact,
-        motion: GapMotion,
+        motion: ContactMotion,
         *,
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
@@ -205,7 +205,7 @@ class Dong2015LoadBalanced(_CubeModel):
         Parameters
         ----------
         contact : RoughContact
-        motion : GapMotion
+        motion : ContactMotion
         sliding_speed : array_like, any shape
             Mean sliding speed. [m/s]
         friction_coefficient : float, optional
@@ -225,7 +225,7 @@ class Dong2015LoadBalanced(_CubeModel):
         return _full_period(contact, load_balanced_motion(contact, motion), sliding_speed)
 
 
-def _full_period(contact: RoughContact, motion: GapMotion, sliding_speed: ArrayLike) -> Floats:
+def _full_period(contact: RoughContact, motion: ContactMotion, sliding_speed: ArrayLike) -> Floats:
     """Return the mean of the stiffness ratio of the cube times the kinematic factor over the full period. []"""
     k_ratio = _stiffness_ratio(contact, require_open_gap(contact, motion))
     return kinematic_mean(k_ratio, motion, sliding_speed=sliding_speed)

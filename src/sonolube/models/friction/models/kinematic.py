@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
 from sonolube.compilation import kernel
-from sonolube.models.contact.gap_motion import GapMotion
+from sonolube.models.contact.contact_motion import ContactMotion
 from sonolube.models.contact.period_mean import richardson_period_mean
 from sonolube.models.contact.rough import RoughContact
 from sonolube.models.friction.models.model import FrictionModel, parameter
@@ -58,7 +58,7 @@ class Kinematic(FrictionModel):
     def ratio(
         self,
         contact: RoughContact,
-        motion: GapMotion,
+        motion: ContactMotion,
         *,
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
@@ -69,7 +69,7 @@ class Kinematic(FrictionModel):
         ----------
         contact : RoughContact
             Without effect in this model.
-        motion : GapMotion
+        motion : ContactMotion
         sliding_speed : array_like, any shape
             Mean sliding speed. [m/s]
         friction_coefficient : float, optional
@@ -90,7 +90,11 @@ class Kinematic(FrictionModel):
 
 
 def kinematic_mean(
-    weight: Callable[[Floats], Floats], motion: GapMotion, *, sliding_speed: ArrayLike, amplitude_fraction: float = 1.0
+    weight: Callable[[Floats], Floats],
+    motion: ContactMotion,
+    *,
+    sliding_speed: ArrayLike,
+    amplitude_fraction: float = 1.0,
 ) -> Floats:
     r"""Return the period average of a weight times the kinematic factor. []
 
@@ -98,7 +102,7 @@ def kinematic_mean(
     ----------
     weight : callable
         Returns the weight for an array of displacements.
-    motion : GapMotion
+    motion : ContactMotion
     sliding_speed : array_like, any shape
         Mean sliding speed. [m/s]
     amplitude_fraction : float
@@ -119,7 +123,7 @@ def kinematic_mean(
     """
     v_r = require_positive(sliding_speed=sliding_speed)
 
-    def mean(sampled: GapMotion) -> Floats:
+    def mean(sampled: ContactMotion) -> Floats:
         return _weighted_cosine(weight(sampled.displacement), amplitude_fraction * sampled.velocity, v_r.ravel())
 
     return richardson_period_mean(mean, motion).reshape(v_r.shape)

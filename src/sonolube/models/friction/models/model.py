@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
-from sonolube.models.contact.gap_motion import GapMotion, GapMotionBatch
+from sonolube.models.contact.contact_motion import ContactMotion, GapMotionBatch
 from sonolube.models.contact.rough import RoughContact
 from sonolube.vocabulary import quantities
 
@@ -167,7 +167,7 @@ class FrictionModel(ABC):
     def ratio(
         self,
         contact: RoughContact,
-        motion: GapMotion,
+        motion: ContactMotion,
         *,
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
@@ -177,7 +177,7 @@ class FrictionModel(ABC):
         Parameters
         ----------
         contact : RoughContact
-        motion : GapMotion
+        motion : ContactMotion
             One period of the gap.
         sliding_speed : array_like, any shape
             Mean sliding speed. [m/s]

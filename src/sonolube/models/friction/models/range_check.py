@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_positive
-from sonolube.errors import OutsideRange
-from sonolube.models.contact.gap_motion import GapMotion
+from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.models.contact.contact_motion import ContactMotion
 from sonolube.models.contact.rough import RoughContact, separation
 from sonolube.models.friction.models.model import FrictionModel
 
@@ -150,7 +150,7 @@ def ratio_caveats(*, friction_ratio: ArrayLike) -> tuple[str, ...]:
 def model_friction(
     model: FrictionModel,
     contact: RoughContact,
-    motion: GapMotion,
+    motion: ContactMotion,
     *,
     sliding_speed: ArrayLike,
     friction_coefficient: ArrayLike | None = None,
@@ -161,7 +161,7 @@ def model_friction(
     ----------
     model : FrictionModel
     contact : RoughContact
-    motion : GapMotion
+    motion : ContactMotion
     sliding_speed : array_like, any shape
         Mean sliding speed. [m/s]
     friction_coefficient : float, optional
@@ -175,13 +175,15 @@ def model_friction(
     Raises
     ------
     InvalidInput
-        If a speed is not positive, or an argument that the model needs is missing.
+        If a speed is not positive, an argument that the model needs is missing, or it has no law for a direction in
+        which the contact moves.
 
     See Also
     --------
     FrictionModel.ratio : The formula alone, which published tables were computed by.
     """
     speeds = require_positive(sliding_speed=sliding_speed)
+    _require_direction(model, motion)
     smallest = float(separation(contact, normal_load=motion.normal_load)) + float(np.min(motion.displacement))
     raw, refusals = _raw_ratios(model, contact, motion, speeds.ravel(), friction_coefficient)
     found = checked_ratio(
@@ -195,8 +197,17 @@ def model_friction(
     )
 
 
+def _require_direction(model: FrictionModel, motion: ContactMotion) -> None:
+    """Refuse a motion within the plane that a model would leave out."""
+    if motion.across is not None or (motion.along is not None and not hasattr(model, "in_plane_fraction")):
+        direction = "along" if motion.across is None else "across"
+        raise InvalidInput(
+            f"friction model {model.name} has no law for a motion {direction} the sliding; leave {direction} out"
+        )
+
+
 def _raw_ratios(
-    model: FrictionModel, contact: RoughContact, motion: GapMotion, speeds: Floats, coefficient: ArrayLike | None
+    model: FrictionModel, contact: RoughContact, motion: ContactMotion, speeds: Floats, coefficient: ArrayLike | None
 ) -> tuple[Floats, NDArray[np.str_]]:
     """Return the ratio by the formula at each speed, NaN where it has none, and the reason why; else empty text."""
     try:

@@ -1,4 +1,4 @@
-"""Periodic motions of the gap of a contact: one sampled period, and batches of Fourier coefficients.
+"""Periodic motions of a contact: one sampled period by direction, and batches of Fourier coefficients of the gap.
 
 The record in which `sonolube.models.dynamics` hands over a vibration and which the models of friction and wear take.
 """
@@ -25,8 +25,8 @@ _SAMPLES = 256  # per period
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class GapMotion:
-    """One period of a steady-state motion of the gap along the surface normal, at uniform phases.
+class ContactMotion:
+    """One period of a steady-state motion of a contact along its normal and within its plane, at uniform phases.
 
     Parameters
     ----------
@@ -38,6 +38,8 @@ class GapMotion:
         Frequency of the vibration. [Hz]
     normal_load : float
         Dead load, which is the normal force at rest. [N]
+    along, across : ndarray, shape (n,), optional
+        Displacement within the plane at these phases, along the mean sliding and across it, in m; None for none.
 
     Raises
     ------
@@ -50,6 +52,8 @@ class GapMotion:
     normal_force: Floats
     frequency: float
     normal_load: float
+    along: Floats | None = None
+    across: Floats | None = None
 
     def __post_init__(self) -> None:
         x = require_finite(displacement=self.displacement)
@@ -63,6 +67,15 @@ class GapMotion:
             )
         object.__setattr__(self, "displacement", x)
         object.__setattr__(self, "normal_force", F_n)
+        for name in ("along", "across"):
+            if getattr(self, name) is None:
+                continue
+            within = require_finite(**{name: getattr(self, name)})
+            if within.shape != x.shape:
+                raise InvalidInput(
+                    f"{name} must have the phases of displacement, got shapes {within.shape} and {x.shape}"
+                )
+            object.__setattr__(self, name, within)
 
     @property
     def velocity(self) -> Floats:
@@ -73,7 +86,7 @@ class GapMotion:
             harmonics[-1] = 0.0  # the highest harmonic of an even count has no derivative at the samples
         return np.fft.irfft(harmonics, n)
 
-    def resampled(self, samples: int) -> "GapMotion":
+    def resampled(self, samples: int) -> "ContactMotion":
         """Return the same motion at another number of phases, by its harmonics.
 
         Parameters
@@ -83,7 +96,7 @@ class GapMotion:
 
         Returns
         -------
-        GapMotion
+        ContactMotion
         """
         return (_resampled_motion if samples <= _MOST_KEPT else _resampled_motion.__wrapped__)(self, samples)
 
@@ -136,12 +149,12 @@ class GapMotionBatch:
             object.__setattr__(self, name, value)
 
 
-def gap_harmonics(motion: GapMotion) -> GapMotionBatch:
+def gap_harmonics(motion: ContactMotion) -> GapMotionBatch:
     """Return the Fourier coefficients of one motion, as a batch of one.
 
     Parameters
     ----------
-    motion : GapMotion
+    motion : ContactMotion
 
     Returns
     -------
@@ -165,7 +178,7 @@ def sinusoidal_motion(
     vibration_amplitude: ArrayLike,
     frequency: ArrayLike,
     samples: int = _SAMPLES,
-) -> GapMotion:
+) -> ContactMotion:
     r"""Return a sinusoidal motion of prescribed amplitude about the separation at rest.
 
     Parameters
@@ -182,7 +195,7 @@ def sinusoidal_motion(
 
     Returns
     -------
-    GapMotion
+    ContactMotion
 
     Raises
     ------
@@ -204,7 +217,7 @@ def sinusoidal_motion(
     """
     load, a = require_positive(normal_load=normal_load), require_non_negative(vibration_amplitude=vibration_amplitude)
     x = a * np.cos(2 * np.pi * np.arange(samples) / samples)
-    return GapMotion(
+    return ContactMotion(
         displacement=x,
         normal_force=normal_force(contact, separation=separation(contact, normal_load=load) + x),
         frequency=float(require_positive(frequency=frequency)),
@@ -212,17 +225,17 @@ def sinusoidal_motion(
     )
 
 
-def load_balanced_motion(contact: RoughContact, motion: GapMotion) -> GapMotion:
+def load_balanced_motion(contact: RoughContact, motion: ContactMotion) -> ContactMotion:
     r"""Return the same vibration about the mean gap at which the mean normal force equals the load.
 
     Parameters
     ----------
     contact : RoughContact
-    motion : GapMotion
+    motion : ContactMotion
 
     Returns
     -------
-    GapMotion
+    ContactMotion
         Its normal force is that of the contact at the new gaps.
 
     Raises
@@ -256,13 +269,13 @@ def load_balanced_motion(contact: RoughContact, motion: GapMotion) -> GapMotion:
     return replace(motion, displacement=x, normal_force=normal_force(contact, separation=d + x))
 
 
-def require_open_gap(contact: RoughContact, motion: GapMotion) -> Floats:
+def require_open_gap(contact: RoughContact, motion: ContactMotion) -> Floats:
     """Return the separation at rest of a motion, and refuse a motion that closes the gap. [m]
 
     Parameters
     ----------
     contact : RoughContact
-    motion : GapMotion
+    motion : ContactMotion
 
     Returns
     -------
@@ -304,10 +317,15 @@ def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
 
 
 @lru_cache(maxsize=256)
-def _resampled_motion(motion: GapMotion, samples: int) -> GapMotion:
+def _resampled_motion(motion: ContactMotion, samples: int) -> ContactMotion:
     """Return a motion at another number of uniform phases; kept for models that are fitted to it."""
-    force = np.maximum(_resampled(motion.normal_force, samples), 0.0)
-    return replace(motion, displacement=_resampled(motion.displacement, samples), normal_force=force)
+    return replace(
+        motion,
+        displacement=_resampled(motion.displacement, samples),
+        normal_force=np.maximum(_resampled(motion.normal_force, samples), 0.0),
+        along=None if motion.along is None else _resampled(motion.along, samples),
+        across=None if motion.across is None else _resampled(motion.across, samples),
+    )
 
 
 def _resampled(values: Floats, samples: int) -> Floats:

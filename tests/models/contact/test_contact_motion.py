@@ -1,5 +1,7 @@
 """Motions of the gap: load balance, derivatives and resampling of sines, and inconsistent samples."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pytest import approx, raises
@@ -8,8 +10,8 @@ from scipy.special import i0
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.contact import (
     ASPERITY_LAWS,
+    ContactMotion,
     ContactPair,
-    GapMotion,
     GaussianHeights,
     RoughContact,
     load_balanced_motion,
@@ -17,7 +19,7 @@ from sonolube.models.contact import (
     separation,
     sinusoidal_motion,
 )
-from sonolube.models.contact.gap_motion import delayed_oscillation
+from sonolube.models.contact.contact_motion import delayed_oscillation
 from sonolube.models.contact.period_mean import richardson_period_mean, richardson_period_means
 from sonolube.models.surfaces import Roughness
 
@@ -31,7 +33,7 @@ LOAD, FREQUENCY, DECAY_LENGTH = 3.0, 22e3, 2e-6
 OMEGA = 2 * np.pi * FREQUENCY
 
 
-def sine(amplitude: float, *, samples: int = 256) -> GapMotion:
+def sine(amplitude: float, *, samples: int = 256) -> ContactMotion:
     return sinusoidal_motion(
         CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY, samples=samples
     )
@@ -71,14 +73,14 @@ def test_a_resampled_motion_lies_on_the_same_sine() -> None:
 
 def test_forces_and_displacements_of_different_length_are_refused() -> None:
     with raises(InvalidInput, match=r"got shapes \(8,\) and \(9,\)"):
-        GapMotion(displacement=np.zeros(8), normal_force=np.ones(9), frequency=1.0, normal_load=1.0)
+        ContactMotion(displacement=np.zeros(8), normal_force=np.ones(9), frequency=1.0, normal_load=1.0)
 
 
 def test_a_period_mean_with_an_error_of_second_order_is_extrapolated_until_it_is_exact() -> None:
     # an error of 1e5/n^2 at n phases: 1.5 at 256 phases, below 1e-5 from 2^17 phases on, without extrapolation
     counts: list[int] = []
 
-    def mean(motion: GapMotion) -> np.ndarray:
+    def mean(motion: ContactMotion) -> np.ndarray:
         counts.append(motion.displacement.size)
         return np.asarray(2.0 + 1e5 / motion.displacement.size**2)
 
@@ -116,3 +118,18 @@ def test_averages_of_many_motions_are_those_of_each_alone() -> None:
     assert together == approx(np.array(alone), rel=1e-12)
     assert seen[0] == 3
     assert seen[-1] < 3  # motions that are done take no further samples
+
+
+def test_parts_of_a_motion_within_the_plane_are_resampled_with_it() -> None:
+    phase = 2 * np.pi * np.arange(256) / 256
+    motion = replace(sine(2e-6), along=1e-6 * np.sin(phase), across=3e-7 * np.cos(phase - 0.4))
+    fine = 2 * np.pi * np.arange(640) / 640
+    found = load_balanced_motion(CONTACT, motion).resampled(640)
+    assert found.along == approx(1e-6 * np.sin(fine), abs=1e-18)
+    assert found.across == approx(3e-7 * np.cos(fine - 0.4), abs=1e-18)
+    assert sine(2e-6).resampled(640).along is None
+
+
+def test_a_part_within_the_plane_has_the_phases_of_the_normal_one() -> None:
+    with raises(InvalidInput, match=r"across must have the phases of displacement, got shapes \(8,\) and \(256,\)"):
+        replace(sine(2e-6), across=np.zeros(8))
