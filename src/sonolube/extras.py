@@ -83,7 +83,7 @@ _ALL = (
     ),
     Extra(name="web", package="Plotly", modules=("plotly",), needed_by="Interactive maps"),
     Extra(name="cluster", package="Dask", modules=("distributed",), needed_by="Sweeps on a cluster"),
-    Extra(name="gpu", package="numba-cuda", modules=("numba_cuda",), needed_by="Vibrations on an NVIDIA GPU"),
+    Extra(name="gpu", package="JAX", modules=("jax",), needed_by="Vibrations on a GPU"),
     Extra(name="daqmx", package="nidaqmx", modules=("nidaqmx",), needed_by="Devices of NI-DAQmx"),
     Extra(
         name="visa",
