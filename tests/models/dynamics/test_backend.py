@@ -2,6 +2,7 @@
 
 import sys
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from pytest import MonkeyPatch, approx, raises
@@ -21,7 +22,7 @@ def jax_with(monkeypatch: MonkeyPatch, *platforms: str) -> None:
 
 def test_without_a_gpu_the_cpu_solves_with_a_warning(monkeypatch: MonkeyPatch) -> None:
     jax_with(monkeypatch, "cpu")
-    given = {"normal_load": 5.0, "frequency": 20e3, "voltage_amplitude": 5.0}
+    given: Any = {"normal_load": 5.0, "frequency": 20e3, "voltage_amplitude": 5.0}
     with pytest.warns(GpuUnused, match=r"computed on the CPU: JAX finds no GPU; for one of NVIDIA, pip install 'jax\["):
         states = steady_state(TRIBOMETER, ROUGH, backend="gpu", **given)
     assert states.harmonics == approx(steady_state(TRIBOMETER, ROUGH, **given).harmonics, rel=0, abs=0)

@@ -1,9 +1,9 @@
 r"""Newton's method and Floquet stability of a batch by JAX, on a GPU where JAX has one.
 
-The methods, and the truncation of each point, are those of `harmonic_kernel`, `newton_kernel` and `floquet_kernel`. Here
-every function treats one point, and JAX maps it over the batch; iterations continue until the last point has ended, and
-points that have ended keep what they have. Arrays are padded to few sizes, since JAX compiles for each size.
-Numbers are double precision within these calls, whatever the program that calls has set for JAX.
+The methods, and the truncation of each point, are those of `harmonic_kernel`, `newton_kernel` and `floquet_kernel`. A
+function treats one point, and JAX maps it over the batch; iterations continue until the last point has ended, and points
+that have ended keep what they have. Arrays are padded to few sizes, since JAX compiles for each size. Numbers are double
+precision within these calls, whatever the program that calls has set for JAX.
 """
 
 from collections.abc import Callable, Iterator
@@ -285,7 +285,8 @@ def _power_norms(
         decay = velocity @ into * damping * duration
         share = duration * jnp.where(decay > 1e-12, -jnp.expm1(-decay) / jnp.maximum(decay, 1e-12), 1.0)
         impulse = -share * ((stiffness * displacement + damping * velocity) @ matrix)
-        return free @ (matrix + jnp.outer(into, impulse))
+        moved: Array = free @ (matrix + jnp.outer(into, impulse))
+        return moved
 
     def squared(_: Array, state: tuple[Array, Array]) -> tuple[Array, Array]:
         taken, matrix = state
