@@ -1,8 +1,8 @@
 r"""Newton's method and Floquet stability of a batch by JAX, on a GPU where JAX has one.
 
 The methods, and the truncation of each point, are those of `harmonic_kernel`, `newton_kernel` and `floquet_kernel`. A
-function treats one point, and JAX maps it over the batch; iterations continue until the last point has ended, and points
-that have ended keep what they have. Arrays are padded to few sizes, since JAX compiles for each size. Numbers are double
+function treats one point, and JAX maps it over the batch; iterations continue until the last point has ended, and those
+that have ended keep what they have. Arrays are padded to few sizes, since JAX compiles for each. Numbers are in double
 precision within these calls, whatever the program that calls has set for JAX.
 """
 
