@@ -32,3 +32,5 @@ x = 80 * np.interp(t, [0, 10, 17, 22, 30, 45, 60], [0, 1, 0.3, 0.8, 0, 1, 0])  #
 bent = np.frompyfunc(lambda held, now: min(max(held, now - 8), now + 8), 2, 1).accumulate(x, dtype=object)
 write("gauge.csv", "time (s),displacement (um),applied_force (N)", t, x, 0.03 * x - 0.01 * bent.astype(float))
 write("bending.csv", "time (s),displacement (um)", t[:1700], 0.9 * x[:1700])
+warm = 22 + 18 * -np.expm1(-np.clip(t - 5, 0, None) / 12) + 0.1 * rng.standard_normal(t.size)
+write("heated.csv", "time (s),temperature (degC)", t, warm)

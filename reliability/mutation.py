@@ -45,7 +45,7 @@ _NAMES = {
     "argmin": "argmax", "cumsum": "cumprod", "conj": "abs", "i0e": "i1e", "i1e": "i0e", "k0": "k1",
     "ellipk": "ellipe", "ellipe": "ellipk",
 }  # fmt: skip
-_NOT_MODELS = ("figure", "/gpu/", "__init__", "mode_files")
+_NOT_MODELS = ("figure", "jax_kernels", "__init__", "mode_files")
 _NOT_PHYSICS = ("require", "Invalid", "Outside", "Unknown", "warn", "approx_text", "format_si", "njit", "VariantTable")
 
 

@@ -61,13 +61,7 @@ def test_every_package_that_is_imported_is_required_and_every_extra_is_used() ->
     imported = imported_distributions()
     assert {module for module, called in imported.items() if not called & (required | optional | implied)} == set()
     used = {name for called in imported.values() for name in called}
-    by_others = {
-        "netgen-mesher",
-        "dask",
-        "numba-cuda",
-        "pyvisa-py",
-        "pyserial",
-    }  # import_module, distributed, numba, pyvisa
+    by_others = {"netgen-mesher", "dask", "pyvisa-py", "pyserial"}  # import_module, distributed, pyvisa
     assert optional - by_others <= used
 
 

@@ -1,4 +1,4 @@
-"""A run that allows the tests of a GPU alone to skip fails where another does, and names its remedy."""
+"""A run that allows the tests of a browser alone to skip fails where another does, and names its remedy."""
 
 import os
 import subprocess
@@ -11,9 +11,9 @@ ROOT = Path(__file__).parents[1]
 TESTS = """
 import pytest
 
-@pytest.mark.gpu
-def test_of_a_gpu():
-    pytest.skip("no GPU")
+@pytest.mark.browser
+def test_of_a_page():
+    pytest.skip("no Chromium")
 
 def test_that_passes():
     pass
@@ -26,18 +26,18 @@ MODULE = "import pytest\npytest.importorskip('no_such_module', reason='pip insta
 @pytest.mark.parametrize(
     ("tests", "allowed", "code", "line"),
     [
-        (TESTS, "gpu", 0, "1 passed, 1 skipped"),
-        (TESTS + SKIPS, "gpu", 1, "test_it.py::test_of_a_program: Skipped: apt-get install calculix-ccx"),
+        (TESTS, "browser", 0, "1 passed, 1 skipped"),
+        (TESTS + SKIPS, "browser", 1, "test_it.py::test_of_a_program: Skipped: apt-get install calculix-ccx"),
         (TESTS + SKIPS, None, 0, "1 passed, 2 skipped"),
-        (MODULE, "gpu", 1, "test_it.py: Skipped: pip install it"),
+        (MODULE, "browser", 1, "test_it.py: Skipped: pip install it"),
     ],
-    ids=["gpu alone", "a program", "everything allowed", "a module"],
+    ids=["browser alone", "a program", "everything allowed", "a module"],
 )
 def test_a_skip_that_is_not_allowed_fails_the_run(
     tests: str, allowed: str | None, code: int, line: str, processes: tuple[str, ...], tmp_path: Path
 ) -> None:
     (tmp_path / "test_it.py").write_text(tests)
-    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = gpu\n")
+    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = browser\n")
     given = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "SONOLUBE_ALLOWED"))}
     run = subprocess.run(
         [sys.executable, "-m", "pytest", "-p", "tests.skips", "-p", "no:cacheprovider", *processes, "test_it.py"],

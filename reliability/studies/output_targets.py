@@ -39,6 +39,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "horn face": ("steel",),
     "measure friction": (INPUT,),
     "measure rotation": (INPUT, "--groove-diameter", "50mm"),
+    "measure temperature": (INPUT,),
     "measure calibration": (INPUT,),
     "measure surface": (INPUT,),
     "measure groove": (INPUT,),

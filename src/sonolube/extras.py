@@ -96,13 +96,7 @@ _ALL = (
         modules=("distributed",),
         needed_by="Sweeps on a cluster",
     ),
-    Extra(
-        name="gpu",
-        package="numba-cuda",
-        distributions="numba-cuda",
-        modules=("numba_cuda",),
-        needed_by="Vibrations on an NVIDIA GPU",
-    ),
+    Extra(name="gpu", package="JAX", distributions="jax", modules=("jax",), needed_by="Vibrations on a GPU"),
     Extra(
         name="daqmx", package="nidaqmx", distributions="nidaqmx", modules=("nidaqmx",), needed_by="Devices of NI-DAQmx"
     ),

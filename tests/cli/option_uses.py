@@ -526,6 +526,18 @@ MODES = {
         {"--groove-diameter": "40mm", "--magnets": "2", "--prominence": "0.9", "--mapping": "FOLDER/hall.toml"}
         | SHEETS,
     ),
+    "temperature": Mode(
+        "measure temperature",
+        ("FOLDER/warm.csv",),
+        {
+            "--start-time": "3s",
+            "--end-time": "15s",
+            "--exponentials": "2",
+            "--without-vibration": "FOLDER/cool.csv",
+            "--mapping": "FOLDER/warm.toml",
+        }
+        | SHEETS,
+    ),
     "calibration": Mode(
         "measure calibration",
         ("FOLDER/gauge.csv",),
@@ -709,6 +721,9 @@ def write_inputs(place: Path) -> None:
     _table(place / "other.csv", "time (s),friction_force (N)", time, 2 * force)
     pulse = np.exp(-(((0.8 * time % 1 - 0.5) / 0.03) ** 2)) + 0.4 * np.exp(-(((0.8 * time % 1 - 0.1) / 0.03) ** 2))
     _table(place / "hall.csv", "time (s),magnetic_flux_density (mT)", time, pulse)
+    warm = 300 - 20 * np.exp(-time / 5) + 0.1 * rng.standard_normal(time.size)
+    _table(place / "warm.csv", "time (s),temperature (K)", time, warm)
+    _table(place / "cool.csv", "time (s),temperature (K)", time, 280 + 0.01 * time)
     loop = 1e-5 * (1 - np.cos(2 * np.pi * time / 20))
     load = 1e5 * loop + 0.05 * np.sin(2 * np.pi * time / 20) + 0.001 * rng.standard_normal(time.size)
     _table(place / "gauge.csv", "time (s),displacement (m),applied_force (N)", time, loop, load)
@@ -720,10 +735,16 @@ def write_inputs(place: Path) -> None:
         ("friction", "friction_force", 2.0),
         ("hall", "magnetic_flux_density", 1.0),
         ("gauge", "applied_force", 2.0),
+        ("warm", "temperature", 2.0),
         ("tip", "displacement", 2.0),
     ):
-        column = {"friction": "friction_force (N)", "hall": "magnetic_flux_density (mT)", "gauge": "applied_force (N)"}
-        unit = {"friction": "N", "hall": "mT", "gauge": "N", "tip": "um"}[name]
+        column = {
+            "friction": "friction_force (N)",
+            "hall": "magnetic_flux_density (mT)",
+            "gauge": "applied_force (N)",
+            "warm": "temperature (K)",
+        }
+        unit = {"friction": "N", "hall": "mT", "gauge": "N", "warm": "K", "tip": "um"}[name]
         more = '[channels.displacement]\ncolumn = "displacement (m)"\nunit = "m"\n' if name == "gauge" else ""
         (place / f"{name}.toml").write_text(
             f'[axis]\ncolumn = "time (s)"\nunit = "s"\ngain = 2.0\n{more}[channels.{quantity}]\n'

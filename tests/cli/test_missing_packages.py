@@ -48,8 +48,7 @@ def test_a_missing_package_is_refused_in_one_line_with_its_command(
 def test_a_missing_package_for_the_gpu_is_a_warning_with_its_command(
     sonolube: Program, monkeypatch: MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(sys.modules, "numba.cuda", None)
-    monkeypatch.delattr("numba.cuda", raising=False)
+    hide(EXTRAS["gpu"].modules, monkeypatch)
     _gpu.cache_clear()
     try:
         run = sonolube("sweep", RIG, *SPEEDS, "--backend", "gpu")

@@ -4,25 +4,13 @@ import numpy as np
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.temperature import (
-    fit_temperature_response,
-    heating_rate,
-    temperature_rise_between,
-    temperature_rise_by_stage,
-)
+from sonolube.measurement.temperature import fit_temperature_response, temperature_rise_by_stage
 
 TIME = np.linspace(0, 50, 501)
 
 
 def noise(seed: int, scale: float) -> np.ndarray:
     return scale * np.random.default_rng(seed).standard_normal(TIME.size)
-
-
-def test_a_temperature_rise_is_the_difference_of_means_with_its_standard_error() -> None:
-    temperature = np.where(TIME < 20, 22.0, 53.0) + noise(0, 0.5)
-    found = temperature_rise_between(time=TIME, temperature=temperature, before=(0, 19), after=(21, 50))
-    assert found.temperature_rise == approx(31.0, abs=0.15)
-    assert found.temperature_rise_uncertainty == approx(0.5 * np.hypot(1 / np.sqrt(191), 1 / np.sqrt(291)), rel=0.5)
 
 
 @mark.parametrize("count", [None, 1])
@@ -82,14 +70,10 @@ def test_rises_over_a_reference_test_are_found_stage_by_stage() -> None:
     assert 0 < low.temperature_rise_uncertainty < 0.05
 
 
-def test_a_linear_rise_has_its_heating_rate() -> None:
-    rate = heating_rate(time=TIME, temperature=20 + 0.25 * TIME, start_time=10.0, end_time=20.0)
-    assert rate == approx(0.25)
-
-
 def test_spans_without_values_are_refused() -> None:
-    with raises(InvalidInput, match="after, 60 to 70 s, holds 0 values"):
-        temperature_rise_between(time=TIME, temperature=TIME, before=(0, 10), after=(60, 70))
+    both = {"time": TIME, "temperature": TIME, "reference_time": TIME, "reference_temperature": TIME}
+    with raises(InvalidInput, match="stage 1, 60 to 70 s, holds 0 values"):
+        temperature_rise_by_stage(**both, stages=[60.0, 70.0])
     with raises(InvalidInput, match="exponentials must be 1 or 2, got 3"):
         fit_temperature_response(time=TIME, temperature=TIME, exponentials=3)
     with raises(InvalidInput, match="8 values that vary"):

@@ -59,7 +59,7 @@ def velocity_stress_map(
     vibration_amplitude : array_like, shape (p,), optional
         Amplitudes of a rig without a drive voltage, one per panel. [m]
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
+        Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def velocity_stress_map(
     Warns
     -----
     GpuUnused
-        If the GPU backend was requested but no GPU is present, or it does not support the rig's contact or structure.
+        If a GPU was requested and none can be used.
 
     See Also
     --------
@@ -163,7 +163,7 @@ def velocity_power_map(
     normal_load : array_like, shape (p,)
         Forces pressing the bodies together, one per panel; the structure is kept. [N]
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
+        Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
 
     Returns
     -------
@@ -180,7 +180,7 @@ def velocity_power_map(
     Warns
     -----
     GpuUnused
-        If the GPU backend was requested but no GPU is present, or it does not support the rig's contact or structure.
+        If a GPU was requested and none can be used.
 
     See Also
     --------
@@ -218,7 +218,7 @@ def frequency_voltage_map(
     voltage_peak_to_peak : array_like, shape (m,)
         Drive voltages; the offset is scaled in the rig's own ratio. [V]
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
+        Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
 
     Returns
     -------
@@ -233,7 +233,7 @@ def frequency_voltage_map(
     Warns
     -----
     GpuUnused
-        If the GPU backend was requested but no GPU is present, or it does not support the rig's contact or structure.
+        If a GPU was requested and none can be used.
 
     See Also
     --------

@@ -61,7 +61,7 @@ def sweep(
     advance : callable, optional
         Called with the number of finished points and their total.
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
+        Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def sweep(
     Warns
     -----
     GpuUnused
-        If the GPU backend was requested but no GPU is present, or it does not support a rig's contact or structure.
+        If a GPU was requested and none can be used.
 
     See Also
     --------
@@ -141,7 +141,7 @@ def compute_points(plan: SweepPlan, start: int, stop: int, *, backend: Backend =
     start, stop : int
         First flat index, and that after the last.
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU computes the vibrations that it supports.
+        Whether JAX computes the vibrations on its GPU.
 
     Returns
     -------

@@ -169,8 +169,6 @@ from .temperature import (
     TemperatureResponse as TemperatureResponse,
     TemperatureRise as TemperatureRise,
     fit_temperature_response as fit_temperature_response,
-    heating_rate as heating_rate,
-    temperature_rise_between as temperature_rise_between,
     temperature_rise_by_stage as temperature_rise_by_stage,
 )
 from .vibration import (

@@ -1,4 +1,4 @@
-"""Temperature measurements: rise between time spans, step response in exponentials, and differences between tests."""
+"""Temperature measurements: step response in exponentials, and differences between tests."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from scipy import stats
 from scipy.optimize import least_squares
 
-from sonolube.checks import Floats, require_finite, require_positive, require_within
+from sonolube.checks import Floats, require_finite, require_within
 from sonolube.errors import InvalidInput
 from sonolube.measurement.statistics.autocorrelation import correlated_mean, statistical_inefficiency
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
@@ -20,12 +20,12 @@ _INITIAL_TIME_CONSTANTS = 7  # on a logarithmic grid over the duration
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TemperatureRise:
-    """Temperature rise between two time spans with its standard error.
+    """Mean temperature rise over a reference with its standard error.
 
     Parameters
     ----------
     temperature_rise : float
-        Mean of the later span less that of the earlier. [K]
+        With less without vibration. [K]
     temperature_rise_uncertainty : float
         Standard error, accounting for the autocorrelation of samples. [K]
     """
@@ -63,34 +63,6 @@ class TemperatureResponse:
     temperature_deviation: float
     confidence_level: float
     caveats: tuple[str, ...]
-
-
-def temperature_rise_between(
-    *, time: ArrayLike, temperature: ArrayLike, before: tuple[float, float], after: tuple[float, float]
-) -> TemperatureRise:
-    """Return the temperature rise between two time spans, as the difference of their means.
-
-    Parameters
-    ----------
-    time : array_like, shape (samples,)
-        Increasing. [s]
-    temperature : array_like, shape (samples,)
-        Relative to any zero, so degrees Celsius are accepted; NaN is a missing value. [K]
-    before, after : tuple of two float
-        Beginning and end of the earlier and the later span, in seconds.
-
-    Returns
-    -------
-    TemperatureRise
-
-    Raises
-    ------
-    InvalidInput
-        If a span holds fewer than two values.
-    """
-    t, value = require_time_series(time=time, temperature=temperature)
-    (a, u_a), (b, u_b) = _span_mean(t, value, before, "before"), _span_mean(t, value, after, "after")
-    return TemperatureRise(temperature_rise=b - a, temperature_rise_uncertainty=float(np.hypot(u_a, u_b)))
 
 
 def fit_temperature_response(
@@ -204,43 +176,6 @@ def temperature_rise_by_stage(
         mean, error = _span_mean(t, value - without, (start, end), f"stage {place}")
         differences.append(TemperatureRise(temperature_rise=mean, temperature_rise_uncertainty=error))
     return tuple(differences)
-
-
-def heating_rate(*, time: ArrayLike, temperature: ArrayLike, start_time: float, end_time: float) -> float:
-    """Return the heating rate over a time span, the slope of the regression line, in kelvin per second.
-
-    Parameters
-    ----------
-    time : array_like, shape (samples,)
-        Increasing. [s]
-    temperature : array_like, shape (samples,)
-        Relative to any zero; NaN is a missing value. [K]
-    start_time : float
-        Beginning of the span. [s]
-    end_time : float
-        End of the span. [s]
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        If the span holds fewer than two values.
-
-    Examples
-    --------
-    >>> from sonolube.measurement import heating_rate
-    >>> round(heating_rate(time=[0, 10, 20], temperature=[20.0, 22.0, 24.0], start_time=0, end_time=20), 3)
-    0.2
-    """
-    t, value = require_time_series(time=time, temperature=temperature)
-    require_positive(duration=end_time - start_time)
-    inside = (t >= start_time) & (t <= end_time) & np.isfinite(value)
-    if np.count_nonzero(inside) < 2:
-        raise InvalidInput(f"{start_time:g} to {end_time:g} s holds {np.count_nonzero(inside)} values; two are needed")
-    return float(np.polyfit(t[inside] - start_time, value[inside], 1)[0])
 
 
 def _span_mean(t: Floats, value: Floats, span: tuple[float, float], name: str) -> tuple[float, float]:

@@ -111,7 +111,7 @@ def point_batch(
     vibration_amplitude : array_like, optional
         Amplitude of the sine at any frequency, of a rig without a drive voltage. [m]
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU solves the vibrations that it supports.
+        Whether JAX solves the vibrations on its GPU.
     friction_tolerance : float
         Largest error of a friction ratio by the batched form of a friction model; 8e-5 is five times as fast.
 
@@ -128,7 +128,7 @@ def point_batch(
     Warns
     -----
     GpuUnused
-        If a GPU was requested and there is none, or it does not support the contact or structure of the rig.
+        If a GPU was requested and none can be used.
 
     Notes
     -----

@@ -160,7 +160,7 @@ def operating_points(
     advance : callable, optional
         Called with the number of vibrations done, and of all.
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU solves the vibrations that it supports.
+        Whether JAX solves the vibrations on its GPU.
 
     Returns
     -------
@@ -175,7 +175,7 @@ def operating_points(
     Warns
     -----
     GpuUnused
-        If a GPU was requested and there is none, or it does not support the contact or structure of the rig.
+        If a GPU was requested and none can be used.
 
     Notes
     -----

@@ -102,6 +102,7 @@ TASKS: Final = (
     Task(_DESIGN, "horn face", "horn.poisson_horn_face:face", "horn-{horn}-face.*"),
     Task(_MEASURE, "measure friction", "measure.recorded_friction:friction", has_report=True),
     Task(_MEASURE, "measure rotation", "measure.hall_rotation:rotation", has_report=True),
+    Task(_MEASURE, "measure temperature", "measure.recorded_temperature:temperature", has_report=True),
     Task(_MEASURE, "measure calibration", "measure.gauge_calibration:calibration", has_report=True),
     Task(_MEASURE, "measure surface", "measure.scanned_surface:surface", has_report=True),
     Task(_MEASURE, "measure groove", "measure.worn_groove:groove", has_report=True),

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from pytest import approx
 
-from sonolube.models.dynamics.backend import device_name
+from sonolube.models.dynamics import backend
 
 Program = Callable[..., Any]
 VOLTS = "drive.voltage_peak_to_peak"
@@ -45,11 +45,11 @@ def test_a_sweep_says_which_power_is_which_as_the_simulation_of_its_best_point_d
     assert sonolube("sweep", path, "--of", "voltage", *ends).answer["least_friction"][0]["energy_balance"] == told
 
 
-@pytest.mark.skipif(bool(device_name("gpu")), reason="there is a GPU")
 @pytest.mark.parametrize("command", ["sweep", "map"])
 def test_without_a_gpu_one_line_says_that_the_cpu_is_used(
-    command: str, tmp_path: Path, sonolube: Program, rigs: Path
+    command: str, tmp_path: Path, sonolube: Program, rigs: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(backend, "_gpu", lambda: ("", "JAX finds no GPU"))
     over = ("--over", f"{VOLTS}=10V,20V")
     more = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--form", "png") if command == "map" else ()
     run = sonolube(command, rigs / "tribometer.toml", *over, *more, "--backend", "gpu", "--out", tmp_path)

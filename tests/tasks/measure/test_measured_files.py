@@ -142,6 +142,28 @@ def test_a_rotation_in_python_is_the_answer_of_the_program(tmp_path: Path, capfd
         measure.rotation(path, groove_diameter="5N")
 
 
+def test_a_temperature_in_python_is_the_answer_of_the_program(tmp_path: Path, capfd: CaptureFixture[str]) -> None:
+    time = np.arange(0, 60, 0.05)
+    noise = 0.05 * np.random.default_rng(2).standard_normal(time.size)
+    warm = 22 + 18 * -np.expm1(-np.clip(time - 4, 0, None) / 7) + noise
+    path = table(tmp_path / "heated.csv", "time (s),temperature (degC)", time, warm)
+    idle = table(tmp_path / "idle.csv", "time (s),temperature (degC)", time, 20 + 0 * time + noise)
+    words = ["--start-time", "4s", "--end-time", "59s", "--without-vibration", idle]
+    program = printed(capfd, "measure", "temperature", path, *words)
+    answer = measure.temperature(path, start_time="4s", end_time="59s", without_vibration=idle)
+    assert json.loads(answer.to_json()) == program
+    values = program["results"][0]["values"]
+    assert values["final_temperature_rise"]["value"] == approx(18, rel=5e-3)
+    (term,) = answer.sheets[0].tables[0].rows
+    assert term == approx((7, 7, 7, 18), rel=1e-2)
+    # by hand: 2 + 18 (1 - 7/55 (1 - exp(-55/7)))
+    assert values["temperature_rise"]["value"] == approx(2 + 18 * (1 - 7 / 55), rel=5e-3)
+    with raises(InvalidInput, match=r"heated\.csv: 58 s to 58.1 s holds fewer than 8 temperatures"):
+        measure.temperature(path, start_time=58, end_time=58.1).object()
+    with raises(InvalidInput, match="end_time must be later than start_time"):
+        measure.temperature(path, start_time=5, end_time=5)
+
+
 def test_a_calibration_in_python_is_the_answer_of_the_program(tmp_path: Path, capfd: CaptureFixture[str]) -> None:
     time = np.arange(0, 40, 0.1)
     x = 50 * (1 - np.cos(0.5 * time))  # um

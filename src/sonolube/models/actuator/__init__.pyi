@@ -7,7 +7,6 @@ from .catalogue import (
     catalogue_stack as catalogue_stack,
     read_catalogue as read_catalogue,
 )
-from .dong_2015 import dong_2015_impedance as dong_2015_impedance
 from .drive import Drive as Drive
 from .drive_power import (
     dissipated_power as dissipated_power,

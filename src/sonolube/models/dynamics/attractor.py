@@ -1,7 +1,6 @@
 """Classification of attractors as periodic, subharmonic, beating or chaotic; Lyapunov exponents and beats."""
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -10,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
-from sonolube.errors import GpuUnused, InvalidInput
-from sonolube.models.dynamics.backend import Backend
+from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.gap_laws.protocol import CONTACT_LOSS_THRESHOLD, GapLaw
 from sonolube.models.dynamics.structure import Structure
 from sonolube.models.dynamics.trajectories import ContactSamples, Envelope, State, Trajectories
@@ -95,7 +93,6 @@ def classify_attractor(
     periods: int = 256,
     steps_per_period: int = 16,
     workers: int = 1,
-    backend: Backend = "cpu",
 ) -> Attractors:
     r"""Classify the attractors that trajectories have reached, by marching on from their final states.
 
@@ -119,8 +116,6 @@ def classify_attractor(
         Periods to observe, a multiple of 16, at least 32; a beat slower than all of them together is not resolved.
     steps_per_period, workers
         As in `march`.
-    backend : {"cpu", "gpu"}
-        As in `march`.
 
     Returns
     -------
@@ -130,11 +125,6 @@ def classify_attractor(
     ------
     InvalidInput
         As `march`, or if the periods are not a multiple of 16 or too few.
-
-    Warns
-    -----
-    GpuUnused
-        As `march`.
 
     See Also
     --------
@@ -173,7 +163,6 @@ def classify_attractor(
         steps_per_period=steps_per_period,
         ramp=NO_RAMP,
         workers=workers,
-        backend=backend,
     )
     observe = partial(run, recorded_periods=_RECORDED, strobed_periods=periods)
     observed = observe(normal_load=load, periods=periods, initial_state=initial_state)
@@ -184,10 +173,8 @@ def classify_attractor(
     diverged = observed.status == "diverged"
     order, settling = _repetition(observed, f)
     stiffness = gap_law.stiffness(np.zeros_like(load), load)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", GpuUnused)  # it was issued already
-        rounds = min(periods // _ROUND, _MOST_ROUNDS)
-        exponent = _lyapunov_exponent(structure, advance_pair, observed.final_state, f, stiffness, rounds)
+    rounds = min(periods // _ROUND, _MOST_ROUNDS)
+    exponent = _lyapunov_exponent(structure, advance_pair, observed.final_state, f, stiffness, rounds)
     slow = beat(displacement=observed.strobed.displacement, interval=1 / f)
     kind = np.select(
         [diverged, order == 1, order > 1, exponent > _CHAOTIC, settling],

@@ -1,16 +1,14 @@
-"""Choice of the processor that solves a batch: the CPU, or an NVIDIA GPU where one is available."""
+"""Choice of the processor that solves a batch: the CPU, or a GPU where JAX has one."""
 
 import warnings
 from functools import cache
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 from sonolube.errors import GpuUnused, InvalidInput
 from sonolube.extras import EXTRAS
 
 Backend = Literal["cpu", "gpu"]
-"""Processor of a batch: the CPU alone, or an NVIDIA GPU with the CPU for the points that it does not solve."""
-
-_INSTALL = EXTRAS["gpu"].command
+"""Processor of a batch: the CPU, or the GPU of JAX with the CPU for initial guesses and measures."""
 
 
 def usable_backend(backend: Backend) -> Backend:
@@ -36,15 +34,10 @@ def usable_backend(backend: Backend) -> Backend:
     """
     if backend not in get_args(Backend):
         raise InvalidInput(f"backend must be cpu or gpu, got {backend!r}")
-    if backend == "gpu" and not _gpu()[0]:
-        return cpu_fallback(_gpu()[1])
+    if backend == "gpu" and gpu_obstacle():
+        warnings.warn(f"computed on the CPU: {gpu_obstacle()}", GpuUnused, stacklevel=3)
+        return "cpu"
     return backend
-
-
-def cpu_fallback(reason: str) -> Backend:
-    """Warn that the requested GPU is not used, and return "cpu"."""
-    warnings.warn(f"computed on the CPU: {reason}", GpuUnused, stacklevel=3)
-    return "cpu"
 
 
 def device_name(backend: Backend) -> str:
@@ -74,30 +67,15 @@ def gpu_obstacle() -> str:
 @cache
 def _gpu() -> tuple[str, str]:
     """Return the name of the GPU and an empty text, or an empty text and the reason why no GPU can be used."""
-    with warnings.catch_warnings():  # of the compiler, about numpy and about so small a test kernel
-        warnings.simplefilter("ignore")
-        try:
-            return _tried_gpu()
-        except ImportError:
-            return "", f"numba-cuda is missing: {_INSTALL}"
-        except Exception as failure:  # whatever driver or compiler raise: the CPU can still solve the batch
-            lines = str(failure).strip().splitlines() or [type(failure).__name__]
-            return "", f"the GPU cannot be used ({lines[0]}); install the extra with {_INSTALL}"
+    if not EXTRAS["gpu"].is_installed:
+        return "", f"JAX is missing: {EXTRAS['gpu'].command}"
+    try:
+        import jax
 
-
-def _tried_gpu() -> tuple[str, str]:
-    """Return what `_gpu` returns, by running a test kernel; errors of driver and compiler pass through."""
-    import numba.cuda
-
-    cuda: Any = numba.cuda  # numba.cuda has no types
-    if not cuda.is_available():
-        return "", f"no NVIDIA GPU with driver and CUDA was found; install the extra with {_INSTALL}"
-    simulated = bool(getattr(numba.config, "ENABLE_CUDASIM", 0))
-    if cuda.implementation == "Built-in" and not simulated:  # numba's own target is unmaintained
-        return "", f"numba-cuda is missing: {_INSTALL}"
-    from sonolube.models.dynamics.gpu.device import runs_test_kernel
-
-    if not runs_test_kernel():
-        return "", "a test kernel gave a wrong result on the GPU"
-    name = "CUDA simulator" if simulated else cuda.get_current_device().name
-    return (name.decode() if isinstance(name, bytes) else str(name)), ""
+        names = [str(each.device_kind) for each in jax.devices() if each.platform == "gpu"]
+    except Exception as failure:  # whatever JAX and its drivers raise: the CPU can still solve the batch
+        lines = str(failure).strip().splitlines() or [type(failure).__name__]
+        return "", f"JAX cannot be used ({lines[0]}); install it with {EXTRAS['gpu'].command}"
+    if not names:
+        return "", "JAX finds no GPU; for one of NVIDIA, pip install 'jax[cuda12]'"
+    return names[0], ""

@@ -8,7 +8,7 @@ the vibration velocity v; its mean component along the sliding direction falls b
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_non_negative
 from sonolube.errors import InvalidInput
@@ -29,7 +29,7 @@ from sonolube.models.dynamics.friction_average.piecewise_linear_kernel import pi
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw, force_decay_length
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.solver import MOST_HARMONICS
-from sonolube.models.dynamics.steady_state_response import drive_harmonics, solve_steady_states
+from sonolube.models.dynamics.steady_state_response import steady_state
 from sonolube.models.dynamics.steady_states import Status, SteadyStates
 from sonolube.models.dynamics.structure import Structure
 from sonolube.threads import map_chunks
@@ -76,7 +76,7 @@ def steady_friction(
     workers: int = 1,
     backend: Backend = "cpu",
 ) -> tuple[SteadyStates, FrictionAverages]:
-    """Return steady states and their kinematic friction factors, which a GPU computes in one kernel.
+    """Steady states and their kinematic friction factors.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def steady_friction(
     workers : int
         Number of threads of the CPU.
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU solves the points that it supports.
+        As in `steady_state`; the CPU averages friction.
 
     Returns
     -------
@@ -118,33 +118,26 @@ def steady_friction(
     Warns
     -----
     GpuUnused
-        If a GPU was requested and none is available, or it does not support this contact, structure or drive.
+        If a GPU was requested and none can be used.
 
     See Also
     --------
     steady_state, friction_averages
     """
-    speeds = _speeds(sliding_speed)
-    moving = speeds > 0
-    states, solution = solve_steady_states(
+    states = steady_state(
         structure,
         gap_law,
         normal_load=normal_load,
         frequency=frequency,
-        voltage_harmonics=drive_harmonics(voltage_amplitude, voltage_harmonics),
+        voltage_amplitude=voltage_amplitude,
+        voltage_harmonics=voltage_harmonics,
         voltage_offset=voltage_offset,
         relative_tolerance=relative_tolerance,
         stability=stability,
         workers=workers,
         backend=backend,
-        sliding_speed=speeds[moving],
     )
-    averages = _friction_averages(states, speeds, workers, ~solution.on_gpu)
-    if solution.on_gpu.any():
-        place = np.ix_(solution.on_gpu, moving)
-        for part, values in enumerate((averages.kinematic, averages.force_weighted)):
-            values.reshape(-1, speeds.size)[place] = solution.friction[solution.on_gpu, part]
-    return states, averages
+    return states, friction_averages(states, sliding_speed=sliding_speed, workers=workers)
 
 
 def friction_averages(states: SteadyStates, *, sliding_speed: ArrayLike, workers: int = 1) -> FrictionAverages:
@@ -183,34 +176,22 @@ def friction_averages(states: SteadyStates, *, sliding_speed: ArrayLike, workers
     ----------
     .. [1] D 3.46 and 3.48, with the resultant velocity in the denominator, as the text means it.
     """
-    return _friction_averages(states, _speeds(sliding_speed), workers, np.ones(states.frequency.size, dtype=bool))
-
-
-def _speeds(sliding_speed: ArrayLike) -> Floats:
-    """Return the sliding speeds as a row of numbers that are not negative."""
     speeds = np.atleast_1d(require_non_negative(sliding_speed=sliding_speed))
     if speeds.ndim != 1:
         raise InvalidInput(f"sliding_speed must be one number or one row of numbers, got shape {speeds.shape}")
-    return speeds
-
-
-def _friction_averages(
-    states: SteadyStates, speeds: Floats, workers: int, selected: NDArray[np.bool_]
-) -> FrictionAverages:
-    """Return the averages of the selected states; those of the others, and those without sliding, are zero."""
     shape, failed = states.mean_displacement.shape, states.status.reshape(-1) == Status.NOT_CONVERGED
     moving = speeds > 0
-    if moving.all() and selected.any():
-        kinematic, weighted = _averages(states, speeds, workers, selected)
+    if moving.all():
+        kinematic, weighted = _averages(states, speeds, workers)
     else:
-        kinematic, weighted = np.zeros((2, selected.size, speeds.size))
-        if moving.any() and selected.any():
-            kinematic[:, moving], weighted[:, moving] = _averages(states, speeds[moving], workers, selected)
+        kinematic, weighted = np.zeros((2, failed.size, speeds.size))
+        if moving.any():
+            kinematic[:, moving], weighted[:, moving] = _averages(states, speeds[moving], workers)
     kinematic[failed] = weighted[failed] = np.nan
     return FrictionAverages(kinematic=kinematic.reshape(*shape, -1), force_weighted=weighted.reshape(*shape, -1))
 
 
-def _averages(states: SteadyStates, speeds: Floats, workers: int, selected: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+def _averages(states: SteadyStates, speeds: Floats, workers: int) -> tuple[Floats, Floats]:
     """Return plain and force-weighted averages at positive speeds, each of shape (p, s).
 
     Motions with two extrema are grouped by the number of nodes that they require.
@@ -228,7 +209,7 @@ def _averages(states: SteadyStates, speeds: Floats, workers: int, selected: NDAr
     steepness = np.nan_to_num(states.vibration_amplitude.reshape(-1) / force_decay_length(gap_law, load))
     for_corners = _NODES_FOR_CORNERS if gap_law.has_corner else 0.0
     level = np.searchsorted(_EXTRA_NODES[:-1], np.maximum(_NODES_PER_DECAY_LENGTH * steepness, for_corners))
-    group = np.where(has_two_extrema & selected, _EXTRA_NODES.size * factor + level, 0)
+    group = np.where(has_two_extrema, _EXTRA_NODES.size * factor + level, 0)
     demand = rows * (MOST_HARMONICS + 1) + count
     order = np.argsort(demand.astype(np.uint16), kind="stable")  # radix sort, in linear time
     precise: Floats = speeds.astype(sum_precision(states.relative_tolerance))
@@ -245,7 +226,7 @@ def _averages(states: SteadyStates, speeds: Floats, workers: int, selected: NDAr
             averages_of(*variant, law, settings, parts, count, rows, chosen, precise, nodes, work, averages)
 
         map_chunks(average, alike.size, workers)
-    if not has_two_extrema[selected].all():
-        others = np.flatnonzero(~has_two_extrema & selected)
+    if not has_two_extrema.all():
+        others = np.flatnonzero(~has_two_extrema)
         piecewise_linear_averages(*variant, law, settings, harmonics, count, others, speeds, averages)
     return averages[0], averages[1]

@@ -15,7 +15,7 @@ from sonolube.checks import (
     require_positive,
 )
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics.backend import Backend, cpu_fallback, usable_backend
+from sonolube.models.dynamics.backend import Backend, usable_backend
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution, concatenate
@@ -77,7 +77,7 @@ def steady_state(
     workers : int
         Number of threads of the CPU.
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU solves the points that it supports; the CPU solves the others, and all without a GPU.
+        Whether JAX solves the equations and computes stability on its GPU; without one the CPU does, with a warning.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def steady_state(
     Warns
     -----
     GpuUnused
-        If a GPU was requested and none is available, or it does not support this contact, structure or drive.
+        If a GPU was requested and none can be used.
 
     See Also
     --------
@@ -128,67 +128,7 @@ def steady_state(
     >>> (1e6 * states.vibration_amplitude).round(2).tolist(), states.contact_loss_fraction.tolist()
     ([1.25, 2.5], [0.0, 0.0])
     """
-    states, _ = solve_steady_states(
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_harmonics=drive_harmonics(voltage_amplitude, voltage_harmonics),
-        voltage_offset=voltage_offset,
-        separation=separation,
-        upper_branch=upper_branch,
-        minimum_harmonics=minimum_harmonics,
-        relative_tolerance=relative_tolerance,
-        stability=stability,
-        workers=workers,
-        backend=backend,
-    )
-    return states
-
-
-def solve_steady_states(
-    structure: Structure,
-    gap_law: GapLaw,
-    *,
-    normal_load: ArrayLike,
-    frequency: ArrayLike,
-    voltage_harmonics: Complexes,
-    voltage_offset: ArrayLike = 0.0,
-    separation: ArrayLike | None = None,
-    upper_branch: bool = False,
-    minimum_harmonics: int = 1,
-    relative_tolerance: float = 1e-6,
-    stability: bool = True,
-    workers: int = 1,
-    backend: Backend = "cpu",
-    sliding_speed: Floats | None = None,
-) -> tuple[SteadyStates, BatchSolution]:
-    """Return steady states, and the solution of the batch with friction averages of the points that a GPU solved.
-
-    Parameters
-    ----------
-    structure, gap_law, upper_branch, minimum_harmonics, relative_tolerance, stability, workers, backend
-        As in `steady_state`.
-    normal_load : array_like
-        Dead load on the contact. [N]
-    frequency : array_like
-        Frequency of the drive. [Hz]
-    voltage_harmonics : ndarray of complex, shape (..., K)
-        Harmonics of the drive, in V.
-    voltage_offset : array_like
-        Mean of the drive. [V]
-    separation : array_like, optional
-        Separation at equilibrium under the dead load. [m]
-    sliding_speed : ndarray, shape (s,), optional
-        Positive sliding speeds at which a GPU averages friction. [m/s]
-
-    Returns
-    -------
-    SteadyStates
-        Of the shape of the broadcast arguments.
-    BatchSolution
-        Of the flattened batch.
-    """
+    harmonics = drive_harmonics(voltage_amplitude, voltage_harmonics)
     if not 1 <= minimum_harmonics <= MOST_HARMONICS:
         raise InvalidInput(f"minimum_harmonics must lie between 1 and {MOST_HARMONICS}, got {minimum_harmonics!r}")
     if not 1e-8 <= relative_tolerance <= 1e-3:
@@ -196,12 +136,12 @@ def solve_steady_states(
     load, f = require_positive(normal_load=normal_load), require_positive(frequency=frequency)
     offset = require_finite(voltage_offset=voltage_offset)
     rest = np.asarray(np.inf) if separation is None else require_positive(separation=separation)
-    shape = _batch_shape(load.shape, f.shape, voltage_harmonics.shape[:-1], offset.shape, rest.shape)
+    shape = _batch_shape(load.shape, f.shape, harmonics.shape[:-1], offset.shape, rest.shape)
 
     def flat(values: Floats) -> Floats:
         return np.ascontiguousarray(np.broadcast_to(values, shape)).reshape(-1)
 
-    drive = np.broadcast_to(voltage_harmonics, (*shape, voltage_harmonics.shape[-1]))
+    drive = np.broadcast_to(harmonics, (*shape, harmonics.shape[-1]))
     model = pole_residue_model(structure)
     problem = BatchProblem(
         model=model,
@@ -214,9 +154,9 @@ def solve_steady_states(
         upper_branch=upper_branch,
         stability=stability,
         tolerance=relative_tolerance,
-        speeds=np.empty(0) if sliding_speed is None else sliding_speed,
+        on_gpu=usable_backend(backend) == "gpu",
     )
-    solution = _solve(problem, workers, backend)
+    solution = _solve(problem, workers)
     orders = np.arange(1, problem.voltage.shape[1] + 1)
     current = 1j * problem.omega[:, np.newaxis] * orders * solution.charge_harmonics
     columns: dict[str, Any] = {
@@ -231,44 +171,17 @@ def solve_steady_states(
     }
     columns |= {name: getattr(solution, name) for name in _SHARED_FIELDS}
     shaped = {name: values.reshape((*shape, *values.shape[1:])) for name, values in columns.items()}
-    states = SteadyStates(structure=structure, gap_law=gap_law, relative_tolerance=relative_tolerance, **shaped)
-    return states, solution
+    return SteadyStates(structure=structure, gap_law=gap_law, relative_tolerance=relative_tolerance, **shaped)
 
 
 _SHARED_FIELDS = {field.name for field in fields(SteadyStates)} & set(BatchSolution._fields)
 
 
-def _solve(problem: BatchProblem, workers: int, backend: Backend) -> BatchSolution:
-    """Return the solution of a batch by a GPU, where requested and supported, and by the CPU for all other points."""
-    points = np.arange(problem.omega.size)
-    if not _gpu_supports(problem, backend):
-        return _solve_on_cpu(problem, points, workers)
-    from sonolube.models.dynamics.gpu import solve_on_gpu
-
-    solution, _ = solve_on_gpu(problem)
-    remaining = points[~solution.on_gpu]
-    if remaining.size:
-        others = _solve_on_cpu(problem, remaining, workers)
-        friction = np.zeros((remaining.size, *solution.friction.shape[1:]))
-        solution = solution.replace_rows(remaining, others._replace(friction=friction))
-    return solution
-
-
-def _gpu_supports(problem: BatchProblem, backend: Backend) -> bool:
-    """Return whether a GPU is requested, available, and supports the problem; warn where it is not or does not."""
-    if usable_backend(backend) == "cpu":
-        return False
-    from sonolube.models.dynamics.gpu import unsupported_steady_state
-
-    reason = unsupported_steady_state(problem)
-    return not reason or cpu_fallback(reason) == "gpu"
-
-
-def _solve_on_cpu(problem: BatchProblem, chosen: NDArray[np.intp], workers: int) -> BatchSolution:
-    """Return the solution of some points of a batch by threads of the CPU."""
+def _solve(problem: BatchProblem, workers: int) -> BatchSolution:
+    """Return the solution of a batch, in chunks."""
     variant, _ = kernel_law(problem.gap_law)
     with compile_in_parallel(variant, stability=problem.stability, tolerance=problem.tolerance):
-        return concatenate(map_chunks(lambda own: solve(problem.select(chosen[own])), chosen.size, workers))
+        return concatenate(map_chunks(lambda own: solve(problem.select(own)), problem.omega.size, workers))
 
 
 def _batch_shape(*shapes: tuple[int, ...]) -> tuple[int, ...]:

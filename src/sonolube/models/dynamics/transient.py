@@ -5,7 +5,6 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics.backend import Backend, cpu_fallback, usable_backend
 from sonolube.models.dynamics.first_order_modes import FirstOrderModes, first_order_modes
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw, damped_force
 from sonolube.models.dynamics.structure import Structure
@@ -41,7 +40,6 @@ def march(
     recorded_periods: int = 1,
     strobed_periods: int = 64,
     workers: int = 1,
-    backend: Backend = "cpu",
 ) -> Trajectories:
     """Return the trajectories of a batch of points, by time marching with an exponential integrator.
 
@@ -75,8 +73,6 @@ def march(
         Number of periods, at the end, of which the last instant is returned.
     workers : int
         Number of threads of the CPU. Results do not depend on it.
-    backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU marches the points, one per thread.
 
     Returns
     -------
@@ -88,11 +84,6 @@ def march(
     InvalidInput
         If a load or frequency is not positive, a peak-to-peak voltage negative, a value not finite, a count out of
         range, shapes do not match, or the waveform jumps within a step.
-
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none is available, or it does not support this contact, structure or waveform.
 
     See Also
     --------
@@ -107,9 +98,6 @@ def march(
     `advice` names this. An amplitude of fourteen micrometres over a decay length of two takes 12 steps per period for
     an error of 1e-4 of amplitude, mean force and friction, and 16 for 1e-5. Steps must also resolve the contact at its
     stiffest; `status` is "coarse" where they do not.
-
-    A GPU takes the same steps but rounds sums differently, by 1e-15 per step. Where disturbances do not grow, its
-    results are within 1e-9 of the CPU's, over the largest of their kind; in chaotic motion rounding grows on either.
     """
     problem, shape = _problem(
         structure,
@@ -126,7 +114,7 @@ def march(
             strobed=strobed_periods,
         ),
     )
-    solution = _solve(problem, workers, backend)
+    solution = march_on_cpu(problem, workers)
     assessment = assess_steps(problem, solution)
     return Trajectories(
         status=assessment.status.reshape(shape),
@@ -212,18 +200,6 @@ def trajectory(
         status=str(assessment.status[0]),
         advice=str(assessment.advice[0]),
     )
-
-
-def _solve(problem: MarchingProblem, workers: int, backend: Backend) -> MarchingSolution:
-    """Return the trajectories of a batch by a GPU where requested, available and supported, else by the CPU."""
-    if usable_backend(backend) == "gpu":
-        from sonolube.models.dynamics.gpu import march_on_gpu, unsupported_march
-
-        reason = unsupported_march(problem)
-        if not reason:
-            return march_on_gpu(problem)
-        cpu_fallback(reason)
-    return march_on_cpu(problem, workers)
 
 
 def _problem(

@@ -1,4 +1,4 @@
-"""Batches of steady states: selected, joined and completed by rows."""
+"""Batches of steady states: chunks joined."""
 
 import numpy as np
 
@@ -23,8 +23,6 @@ def solution(first: float, points: int, harmonics: int) -> BatchSolution:
         unstable=values > 100,
         coexisting_amplitude=values.copy(),
         harmonic_count=np.full(points, harmonics),
-        friction=np.zeros((points, 2, 3)),
-        on_gpu=np.zeros(points, dtype=bool),
     )
 
 
@@ -33,12 +31,3 @@ def test_chunks_with_different_numbers_of_harmonics_are_joined_in_order() -> Non
     assert joined.mean_displacement.tolist() == [1.0, 2.0, 3.0, 4.0, 5.0]
     assert joined.harmonics.shape == (5, 3)
     assert joined.harmonics[3].tolist() == [4.0, 0.0, 0.0]
-    assert joined.friction.shape == (5, 2, 3)
-
-
-def test_replaced_rows_come_from_the_other_solution_and_the_rest_stay() -> None:
-    changed = solution(1.0, 3, 2).replace_rows(np.array([0, 2]), solution(200.0, 2, 4))
-    assert changed.vibration_amplitude.tolist() == [200.0, 2.0, 201.0]
-    assert changed.harmonics[1].tolist() == [2.0, 2.0, 0.0, 0.0]
-    assert changed.harmonics[2].tolist() == [201.0] * 4
-    assert changed.unstable.tolist() == [True, False, True]

@@ -31,7 +31,7 @@ LAWS: dict[str, GapLaw] = {
 def test_exponents_are_those_of_the_kernel(name: str, damping: float, monkeypatch: MonkeyPatch) -> None:
     found: list[tuple[Floats, Floats]] = []
 
-    def both(*arguments: object) -> Floats:
+    def both(*arguments: object, **_: object) -> Floats:
         with monkeypatch.context() as patch:
             patch.setattr(Kernel, "takes_few", lambda *_, **__: False)
             patch.setattr(Kernel, "compiled", Kernel.interpreted)  # the same statements, in less time than to compile

@@ -1,4 +1,4 @@
-"""Records of a batch of steady states: the problem that CPU and GPU solve, and the solution that both return."""
+"""Records of a batch of steady states: the problem, and the solution."""
 
 from typing import NamedTuple
 
@@ -23,9 +23,9 @@ class BatchProblem(NamedTuple):
     upper_branch: bool  # whether to return the larger of coexisting vibrations
     stability: bool  # whether to compute stability
     tolerance: float  # largest relative error of amplitude and force
-    speeds: Floats  # (s,) m/s, positive sliding speeds at which a GPU averages friction too
+    on_gpu: bool  # whether JAX solves on its GPU
 
-    def select(self, points: NDArray[np.intp]) -> "BatchProblem":
+    def select(self, points: NDArray[np.intp] | slice) -> "BatchProblem":
         """Return the problem of some of the points."""
         return self._replace(
             omega=self.omega[points],
@@ -51,20 +51,6 @@ class BatchSolution(NamedTuple):
     unstable: NDArray[np.bool_]  # (p,)
     coexisting_amplitude: Floats  # (p,) m, of another stable steady state; NaN where none was found
     harmonic_count: Integers  # (p,)
-    friction: Floats  # (p, 2, s): friction averages of a point that a GPU solved, plain and force-weighted
-    on_gpu: NDArray[np.bool_]  # (p,): whether a GPU solved the point
-
-    def replace_rows(self, points: NDArray[np.intp], other: "BatchSolution") -> "BatchSolution":
-        """Return the solution with the rows of some points taken from another one, in place but for `harmonics`."""
-        capacity = max(self.harmonics.shape[1], other.harmonics.shape[1])
-        harmonics = np.zeros((self.mean_displacement.size, capacity), dtype=np.complex128)
-        harmonics[:, : self.harmonics.shape[1]] = self.harmonics
-        harmonics[points] = 0.0
-        harmonics[points, : other.harmonics.shape[1]] = other.harmonics
-        for name in self._fields:
-            if name != "harmonics":
-                getattr(self, name)[points] = getattr(other, name)
-        return self._replace(harmonics=harmonics)
 
 
 def concatenate(parts: list[BatchSolution]) -> BatchSolution:

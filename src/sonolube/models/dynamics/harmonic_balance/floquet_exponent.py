@@ -46,6 +46,8 @@ def floquet_exponents(
     harmonics: Complexes,
     count: Integers,
     samples: Integers,
+    *,
+    on_gpu: bool = False,
 ) -> Floats:
     r"""Return the largest Floquet exponent of each motion, per period of the drive.
 
@@ -59,6 +61,8 @@ def floquet_exponents(
         Displacement harmonics, in m.
     count, samples : ndarray of int, shape (p,)
         Harmonics of each motion, and the least number of kicks per period.
+    on_gpu : bool
+        Whether JAX computes it.
 
     Returns
     -------
@@ -81,14 +85,20 @@ def floquet_exponents(
     drift = _transition_matrices(model, 2 * np.pi / (kicks * omega))
     pairs = np.hstack([model.contact_input, model.displacement_output, model.velocity_output])
     powers, norms = np.empty((2, omega.size))
-    if monodromy_power_norms.takes_few(int(kicks.sum()), **_FEW):
+    equilibrium = gap_law.equilibrium_coordinate(load)
+    if on_gpu:
+        from sonolube.models.dynamics.harmonic_balance import jax_kernels  # an optional package
+
+        settings = np.stack([omega, load, equilibrium, mean], axis=1)
+        powers, norms = jax_kernels.monodromy_power_norms(gap_law, pairs, settings, drift, harmonics, kicks)
+    elif monodromy_power_norms.takes_few(int(kicks.sum()), **_FEW):
         settings = np.stack([omega, load, mean], axis=1)
         with np.errstate(all="ignore"):
             for own in (np.flatnonzero(kicks == each) for each in np.unique(kicks)):
                 motions = settings[own], drift[own], harmonics[own, : count[own].max()]
                 powers[own], norms[own] = power_norms_of_motions(gap_law, pairs, *motions, int(kicks[own[0]]))
     else:
-        settings = np.stack([omega, load, gap_law.equilibrium_coordinate(load), mean], axis=1)
+        settings = np.stack([omega, load, equilibrium, mean], axis=1)
         chosen = uniform_blocks(np.arange(omega.size), count, kicks)
         work = period_workspace(2 * model.trace.size, int(count.max(initial=0)))
         parts = np.ascontiguousarray(harmonics).view(np.float64)

@@ -47,8 +47,8 @@ CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES = 0, 1, 2, 3
 """Outcomes of a point. []"""
 # Over the tolerance, relative to the amplitude: the truncated harmonics, the step of Newton's method at which a point
 # is left as it is, and the last step of a point that ran out of iterations.
-TAIL, _FINAL_STEP, _LAST_STEP = 0.3, 0.001, 0.01
-_LARGEST_STEP = 2.0  # norm of a Newton step, in decay lengths
+TAIL, FINAL_STEP, LAST_STEP = 0.3, 0.001, 0.01
+LARGEST_STEP = 2.0  # norm of a Newton step, in decay lengths
 
 
 class Iterates(NamedTuple):
@@ -212,7 +212,7 @@ def _solve_block(
             _stiffness_from_force(law.parameter, 2 * (h + n) + 1, spectra)
         _residual(static_stiffness, unknown, receptances, free, spectra[0], lanes, h, step)
         newton_step(damped, static_stiffness, receptances, spectra, lanes[OMEGA], h, n, work.matrix, step)
-        if _update(unknown, step, 2 * h + 1, lanes, scratch[0], _FINAL_STEP * tolerance):
+        if _update(unknown, step, 2 * h + 1, lanes, scratch[0], FINAL_STEP * tolerance):
             break
     # Aliasing: the samples add harmonic count - h to harmonic h. The harmonics of an exponential force decay ever
     # faster, which bounds that one by the highest one that is resolved: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
@@ -332,7 +332,7 @@ def _update(unknown: Floats, step: Floats, rows: int, lanes: Floats, factor: Flo
     small = 0
     for lane in range(LANES):
         found = size[lane] <= allowed * scale[lane]  # false for NaN
-        factor[lane] = 0.0 if found else min(1.0, _LARGEST_STEP * lanes[DECAY_LENGTH, lane] / size[lane])
+        factor[lane] = 0.0 if found else min(1.0, LARGEST_STEP * lanes[DECAY_LENGTH, lane] / size[lane])
         small += found
     for row in range(rows):
         subtract_product(factor, step[row], unknown[row])
@@ -371,7 +371,7 @@ def _assess(
                 tail[lane] = max(tail[lane], 4 * square[lane] * g_square)
     for lane in range(block.size):
         result, allowed = CONVERGED, tolerance * lanes[MOTION_NORM, lane]
-        if not lanes[STEP_NORM, lane] <= _LAST_STEP * allowed:
+        if not lanes[STEP_NORM, lane] <= LAST_STEP * allowed:
             result = DIVERGED
         elif np.sqrt(square[lane]) > aliased * max(mean_force[lane], 1e-3 * lanes[LOAD, lane]):
             result = NEEDS_SAMPLES

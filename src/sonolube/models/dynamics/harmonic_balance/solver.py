@@ -50,7 +50,6 @@ def solve(problem: BatchProblem) -> BatchSolution:
     Returns
     -------
     BatchSolution
-        Without friction averages.
     """
     free = _receptances(problem, CONTACT_PER_VOLT) * problem.voltage
     guess = _guess(problem, free, upper_branch=problem.upper_branch)
@@ -112,25 +111,49 @@ def _raise_truncation(truncation: Truncation, harmonics: int) -> None:
 
 def _refine(problem: BatchProblem, iterates: Iterates, truncation: Truncation) -> tuple[Iterates, NDArray[np.bool_]]:
     """Solve all points, those without success again with more harmonics or samples; return which were solved."""
-    (variant, law), poles = kernel_law(problem.gap_law), problem.model.contact_poles()
-    points, stiffness = problem.omega.size, problem.model.static_stiffness
-    outcome = np.full(points, DIVERGED)
-    pending = np.arange(points)
+    newton = _newton_on_gpu if problem.on_gpu else _newton_on_cpu
+    outcome = np.full(problem.omega.size, DIVERGED)
+    pending = np.arange(outcome.size)
     for attempt in range(_REFINEMENTS):
         iterates = _with_capacity(iterates, int(truncation.harmonics[pending].max(initial=0)))
-        finest = [int(values[pending].max()) for values in truncation]
-        sampled = pending.size * (_POINT + finest[0] * finest[2])
-        chosen = uniform_blocks(pending, *truncation, lanes=newton_solve.lanes(sampled, LANES, **_FEW))
-        work = harmonic_workspace(*finest)
-        numbers, steps = np.array(truncation), _ITERATIONS + 4 * attempt
-        newton_solve.for_points(sampled, **_FEW)(
-            *variant, poles, stiffness, law, iterates, numbers, chosen, problem.tolerance, steps, outcome, work
-        )
+        newton(problem, iterates, truncation, pending, _ITERATIONS + 4 * attempt, outcome)
         pending = np.flatnonzero(outcome != CONVERGED)
         pending = pending[_refine_truncation(truncation, pending, outcome[pending])]
         if not pending.size:
             break
     return iterates, outcome == CONVERGED
+
+
+def _newton_on_cpu(
+    problem: BatchProblem, iterates: Iterates, truncation: Truncation, pending: Integers, steps: int, outcome: Integers
+) -> None:
+    """Solve the pending points by the compiled kernel; write their iterates and outcomes."""
+    variant, law = kernel_law(problem.gap_law)
+    finest = [int(values[pending].max()) for values in truncation]
+    sampled = pending.size * (_POINT + finest[0] * finest[2])
+    chosen = uniform_blocks(pending, *truncation, lanes=newton_solve.lanes(sampled, LANES, **_FEW))
+    newton_solve.for_points(sampled, **_FEW)(
+        *variant,
+        problem.model.contact_poles(),
+        problem.model.static_stiffness,
+        law,
+        iterates,
+        np.array(truncation),
+        chosen,
+        problem.tolerance,
+        steps,
+        outcome,
+        harmonic_workspace(*finest),
+    )
+
+
+def _newton_on_gpu(
+    problem: BatchProblem, iterates: Iterates, truncation: Truncation, pending: Integers, steps: int, outcome: Integers
+) -> None:
+    """Solve the pending points by JAX; write their iterates and outcomes."""
+    from sonolube.models.dynamics.harmonic_balance import jax_kernels  # an optional package
+
+    outcome[pending] = jax_kernels.newton_solve(problem, iterates, truncation, pending, steps)
 
 
 def _refine_truncation(truncation: Truncation, pending: Integers, outcome: Integers) -> NDArray[np.bool_]:
@@ -192,7 +215,8 @@ def _measured(
     measures = response_measures(problem.gap_law, *motion)
     unstable = np.zeros(omega.size, dtype=bool)
     if problem.stability:
-        unstable = floquet_exponents(model, problem.gap_law, *motion, truncation.samples) > STABILITY_THRESHOLD
+        exponents = floquet_exponents(model, problem.gap_law, *motion, truncation.samples, on_gpu=problem.on_gpu)
+        unstable = exponents > STABILITY_THRESHOLD
     charge = (model.clamped_capacitance + _receptances(problem, CHARGE_PER_VOLT)) * problem.voltage
     charge += _receptances(problem, CONTACT_PER_VOLT) * iterates.force_harmonics.view(np.complex128)
     width = int(truncation.harmonics[solved].max(initial=1))
@@ -205,8 +229,6 @@ def _measured(
         unstable=unstable,
         coexisting_amplitude=np.full(omega.size, np.nan),
         harmonic_count=truncation.harmonics,
-        friction=np.empty((omega.size, 2, 0)),
-        on_gpu=np.zeros(omega.size, dtype=bool),
     )
     for name in _NAN_WHERE_UNSOLVED:
         getattr(solution, name)[~solved] = np.nan
