@@ -115,7 +115,7 @@ Pin = Annotated[str | None, Parameter("Material of the pin, for the heat; by def
 Disc = Annotated[str | None, Parameter("Material of the disc, for the heat; by default the rig's.", kind="MATERIAL")]
 Backend = Annotated[
     Literal["cpu", "gpu"],
-    Parameter("Processor for the steady vibrations; gpu needs sonolube[gpu] and a GPU of JAX, and falls back to cpu."),
+    Parameter("Processor for the steady vibrations; gpu needs JAX and a GPU that it can use, and falls back to cpu."),
 ]
 Interval = Annotated[bool, Parameter("State the error of the friction model, and the interval with it.")]
 Sizes = Annotated[
