@@ -13,7 +13,7 @@ from sonolube.models.contact import (
     separation,
 )
 from sonolube.models.surfaces import Roughness
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 steel = ElasticBody(youngs_modulus=200e9, poisson_ratio=0.29)
 aluminium = ElasticBody(youngs_modulus=73e9, poisson_ratio=0.33)

@@ -16,9 +16,9 @@ from sonolube import files, interruption, operating_system
 from sonolube.cli.console.questions import Operator
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Prompt
-from sonolube.files import locked_folder, write_atomically
-from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.laboratory import RunControl
+from sonolube.storage.files import locked_folder, write_atomically
+from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 
 CLOSED, BREAK = 2, 1  # CTRL_CLOSE_EVENT, CTRL_BREAK_EVENT
 ASKED = Prompt(kind="prompt", task="load", text="Add a weight.")

@@ -13,10 +13,10 @@ from tests.cli.terminal import without_progress
 
 from sonolube.errors import InvalidInput
 from sonolube.figure import render_figure
-from sonolube.printable_text import active_character, printable
 from sonolube.report.page import Page, rendered_files
 from sonolube.rig import read_rig
-from sonolube.toml_text import require_plain_content, toml_content
+from sonolube.text.printable_text import active_character, printable
+from sonolube.text.toml_text import require_plain_content, toml_content
 
 HOSTILE = "$x_{$ \x1b[2J \x00 \u202e \udcff <b> & {{ 7 }} 漢字"
 SHOWN = r"$x_{$ \x1b[2J \x00 \u202e \udcff <b> & {{ 7 }} 漢字"
@@ -103,7 +103,7 @@ def test_usual_toml_is_read_as_ever() -> None:
 
 def test_no_toml_takes_long_to_refuse() -> None:
     code = (
-        "from sonolube.errors import InvalidInput\nfrom sonolube.toml_text import toml_content\n"
+        "from sonolube.errors import InvalidInput\nfrom sonolube.text.toml_text import toml_content\n"
         "for text in ('.'.join('a' * 500_000), 'a' * 10**6, '\"' * 10**6, 'a ' * 500_000, '[' * 10**6, '9' * 10**6,\n"
         "             'a=[' + '1.0,' * 200_000 + ']', 'a-' * 500_000, \"'.'\" * 300_000):\n"
         "    try: toml_content(text)\n    except InvalidInput: pass\n"

@@ -11,7 +11,7 @@ import pytest
 
 import sonolube
 from sonolube.errors import UnknownName
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities, quantity
 
 ENTRY = re.compile(r"^(\w+(?:, \w+)*) : [^\n]*\n((?:[ ]{4,}[^\n]*\n?|\n(?=[ ]{4}))*)", re.MULTILINE)

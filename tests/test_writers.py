@@ -1,4 +1,4 @@
-"""Files are written by sonolube.files and growing_files: no other module opens, moves or removes one."""
+"""Files are written by sonolube.storage.files and growing_files: no other module opens, moves or removes one."""
 
 import ast
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 SOURCE = Path(__file__).parents[1] / "src" / "sonolube"
-WRITERS = {SOURCE / "files.py", SOURCE / "growing_files.py"}
+WRITERS = {SOURCE / "storage" / "files.py", SOURCE / "storage" / "growing_files.py"}
 METHODS = {  # of paths, or of modules that move and remove files
     *("write_text", "write_bytes", "touch", "unlink", "rename", "replace", "symlink_to", "hardlink_to", "link_to"),
     *("mkdir", "rmdir", "removedirs", "renames", "remove", "makedirs", "rmtree", "move", "copy", "copy2", "copyfile"),
@@ -19,12 +19,12 @@ EXCEPTED = {  # calls of modules that replace nothing of users: a file without a
     "browser/pool.py": ("import tempfile", "TemporaryDirectory("),
     "browser/server.py": ("webbrowser.open(",),
     "browser/uploads.py": ("import ", "mkdtemp(", "rmtree(", "path.open('xb')", "path.unlink("),
-    "models/fem/solver/cad.py": ("TemporaryFile",),
-    "models/fem/solver/geometry.py": ("import TemporaryDirectory",),
-    "input_files.py": ("os.O_RDONLY",),  # reads pipes
+    "models/fem/mesh/cad.py": ("TemporaryFile",),
+    "models/fem/mesh/geometry.py": ("import TemporaryDirectory",),
+    "storage/input_files.py": ("os.O_RDONLY",),  # reads pipes
     "operating_system.py": ("source.replace(target)", "path.unlink(missing_ok=True)"),  # for files
     "tasks/files.py": ("tempfile", "TemporaryDirectory", "path.write_bytes(file.content)"),
-    "compilation.py": ("import tempfile", "tempfile.gettempdir()", "folder.mkdir(mode=stat.S_IRWXU"),
+    "execution/compilation.py": ("import tempfile", "tempfile.gettempdir()", "folder.mkdir(mode=stat.S_IRWXU"),
 }
 IN_MEMORY = {"BytesIO", "StringIO"}
 TO_FILES = {"savefig": 0, "savez": 0, "savez_compressed": 0, "savetxt": 0, "to_netcdf": 0, "to_csv": 0, "save": 0}

@@ -53,7 +53,7 @@ from sonolube.prediction.published_figures import blind_caption
 from sonolube.prediction.scores import PROBABILITIES
 from sonolube.rig import Rig, available_sources, read_rig, rig_schema
 from sonolube.rig.file.json_schema import tables_of
-from sonolube.units import format_si, unit_description
+from sonolube.text.units import format_si, unit_description
 from sonolube.vocabulary import quantities, quantity
 
 DOCS = Path(__file__).parents[1]

@@ -15,9 +15,9 @@ import xarray as xr
 from reliability.study import Measure, Record, Study
 from sonolube.design import grid_plan, sweep
 from sonolube.errors import InvalidInput
-from sonolube.files import write_atomically
 from sonolube.measurement.recordings.reader import write_recording
 from sonolube.rig import write_netcdf
+from sonolube.storage.files import write_atomically
 
 _RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 _SPEEDS = np.linspace(0.01, 0.1, 200)
@@ -131,7 +131,7 @@ STUDY = Study(
     title="Full disk",
     question="A page, a dataset, a recording or a sweep is written over its earlier self where files end at a random"
     " size. One line says so; nothing that stood before is lost, nothing unfinished stays.",
-    sources=("files.py", "design/chunk_store.py", "design/sweep_dataset.py", "rig/datasets.py"),
+    sources=("storage/files.py", "design/chunk_store.py", "design/sweep_dataset.py", "rig/datasets.py"),
     trials=500,
     sample=10,
     trial=_trial,

@@ -132,7 +132,7 @@ STUDY = Study(
     title="Recordings killed",
     question="A process records a run of one to three parts, and SIGKILL ends it at a random moment, from its first"
     " step to the end. Recovered, it lacks nothing that `append` had taken, and has no wrong sample.",
-    sources=("growing_files.py", "files.py", "lab/records/*.py", "lab/block.py"),
+    sources=("storage/growing_files.py", "storage/files.py", "laboratory/records/*.py", "laboratory/block.py"),
     trials=200,
     sample=3,
     trial=_trial,

@@ -116,7 +116,13 @@ STUDY = Study(
     title="Sweeps ended by signals",
     question="SIGKILL, SIGTERM or SIGINT ends a sweep into a folder at a random moment. A second run completes it with"
     " the bits of an undisturbed one, and nothing unfinished stays.",
-    sources=("files.py", "interruption.py", "design/chunk_store.py", "design/sweep_dataset.py", "cli/__init__.py"),
+    sources=(
+        "storage/files.py",
+        "storage/interruption.py",
+        "design/chunk_store.py",
+        "design/sweep_dataset.py",
+        "cli/__init__.py",
+    ),
     trials=60,
     sample=2,
     trial=_trial,

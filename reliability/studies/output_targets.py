@@ -179,7 +179,7 @@ STUDY = Study(
     title="Outputs that must not be replaced",
     question="A command is told to write to a pipe, a device, a folder, a broken link, or to its own input under any"
     " name. It refuses in one line before it computes, and destroys nothing.",
-    sources=("files.py", "targets.py", "cli/console/*.py"),
+    sources=("storage/files.py", "storage/targets.py", "cli/console/*.py"),
     trials=1000,
     sample=12,
     trial=_trial,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from reliability.study import Measure, Record, Study
 from sonolube.errors import InvalidInput
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 _WORDS = ("N", "m", "um", "kg", "s", "degC", "ohm", "rpm", "per", "squared", "square", "sqrt", "dB", "lambda", "None")
 _SIGNS = (
@@ -79,7 +79,7 @@ STUDY = Study(
     title="Random text as a quantity",
     question="A quantity with random symbols, operators, digits and other characters for its unit is a number or is "
     "refused, and never takes long.",
-    sources=("units.py", "unit_grammar.py"),
+    sources=("text/units.py", "text/unit_grammar.py"),
     trials=2000,
     sample=10,
     trial=_trial,

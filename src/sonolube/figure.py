@@ -11,8 +11,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from sonolube.errors import UnknownName
-from sonolube.files import write_atomically
-from sonolube.printable_text import printable, with_micro_sign
+from sonolube.storage.files import write_atomically
+from sonolube.text.printable_text import printable, with_micro_sign
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,10 +4,16 @@ import sys
 
 _MODELS = ("surfaces", "contact", "friction", "wear", "thermal", "actuator", "dynamics", "fem")
 _FACTS = ("materials", "published", "metrics", "protocol")
+_TEXT = ("units", "unit_grammar", "common_units", "toml_text", "printable_text", "text_layout")
+_STORAGE = ("files", "growing_files", "targets", "interruption", "input_files")
+_EXECUTION = ("threads", "compilation")
 _ROOMS = {
     **{room: f"models.{room}" for room in _MODELS},
     **{room: f"facts.{room}" for room in _FACTS},
     **{"reproduce": "reproduction", "lab": "laboratory", "workbench": "tasks"},
+    **{name: f"text.{name}" for name in _TEXT},
+    **{name: f"storage.{name}" for name in _STORAGE},
+    **{name: f"execution.{name}" for name in _EXECUTION},
 }
 _FUNCTIONS = {"new_rig": "new", "fit_runs": "fit"}
 

@@ -26,7 +26,7 @@ from sonolube.charts import chart_tables
 from sonolube.cli import main
 from sonolube.figure import render_figure
 from sonolube.rig import read_rig
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantity
 
 PREDICTED = (

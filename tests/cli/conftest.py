@@ -15,11 +15,11 @@ from pytest import CaptureFixture, MonkeyPatch, raises
 from sonolube.cli import main
 from sonolube.cli.console import delivery, progress
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.compilation import Kernel
+from sonolube.execution.compilation import Kernel
 from sonolube.models.fem import electromechanical_model, mode_files, tuning
 from sonolube.models.fem.solver import convergence
 from sonolube.models.fem.solver.model import Model
-from sonolube.targets import expect_target
+from sonolube.storage.targets import expect_target
 
 ROOT = Path(__file__).parents[2]
 

@@ -10,7 +10,7 @@ from pytest import mark
 from tests.cli.conftest import Program
 from tests.cli.terminal import without_progress
 
-from sonolube.files import locked_folder
+from sonolube.storage.files import locked_folder
 
 pytestmark = mark.skipif(sys.platform == "win32", reason="Windows has no such signals")
 
@@ -23,7 +23,7 @@ PROGRAM = (
     "import sonolube.cli; print('ready', flush=True); sonolube.cli.main()"
 )
 KILLED = (  # while it writes its third chunk
-    "import os, signal, sys, sonolube.files as files\n"
+    "import os, signal, sys, sonolube.storage.files as files\n"
     "complete = files.UnfinishedFile.complete\n"
     "def killed(file):\n"
     "    if file._path.name.startswith('chunk-000002'): os.kill(os.getpid(), signal.SIGKILL)\n"
@@ -75,7 +75,7 @@ def test_a_signal_during_the_computation_keeps_finished_chunks_only(tmp_path: Pa
 def test_an_ignored_signal_stays_ignored(tmp_path: Path) -> None:
     code = (
         "import os, signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
-        "from sonolube.interruption import end_program_at_signals; end_program_at_signals()\n"
+        "from sonolube.storage.interruption import end_program_at_signals; end_program_at_signals()\n"
         "os.kill(os.getpid(), signal.SIGINT); print('alive')"
     )
     run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
@@ -86,7 +86,7 @@ def test_an_interruption_of_the_first_import_is_no_traceback(tmp_path: Path) -> 
     code = (
         "import builtins\nkept = builtins.__import__\n"
         "def interrupted(name, *rest):\n"
-        "    if name == 'sonolube.interruption':\n        raise KeyboardInterrupt\n"
+        "    if name == 'sonolube.storage.interruption':\n        raise KeyboardInterrupt\n"
         "    return kept(name, *rest)\n"
         "builtins.__import__ = interrupted\nimport sonolube.cli"
     )

@@ -12,7 +12,7 @@ from tests.cli.option_uses import MODES, write_inputs
 import sonolube as sl
 from sonolube.cli import generated, main
 from sonolube.cli.console import delivery
-from sonolube.compilation import few_points
+from sonolube.execution.compilation import few_points
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.table import TASKS
 

@@ -11,7 +11,7 @@ from pytest import approx
 from sonolube.checks import Floats
 from sonolube.identification import Fact, Identification, identify, rig_tables
 from sonolube.models.actuator import PiezoStack
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import unit_of
 
 STACK = PiezoStack(

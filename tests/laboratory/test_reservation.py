@@ -73,7 +73,7 @@ def test_another_run_of_the_same_process_is_kept_out() -> None:
 def test_where_files_cannot_be_locked_the_start_time_tells_a_process_from_a_later_one(
     tmp_path: Path, monkeypatch: MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sonolube.files.lock_file", lambda handle, wait=False: None)
+    monkeypatch.setattr("sonolube.storage.files.lock_file", lambda handle, wait=False: None)
     with holder(tmp_path) as process:
         with raises(DeviceInUse, match=f"process {process.pid}"):
             require_free([CARD])

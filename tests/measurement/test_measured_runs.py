@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, run_caveats
 from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting, with_columns
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
 

@@ -12,7 +12,7 @@ from sonolube.measurement.measured_runs import read_runs, run_caveats
 from sonolube.measurement.recordings.mapping import read_mapping
 from sonolube.measurement.recordings.mapping_toml import mapping_toml
 from sonolube.measurement.run_headings import meaning_at_stake, run_heading
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

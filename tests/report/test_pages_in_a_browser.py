@@ -10,9 +10,9 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from tests.chromium import CHROMIUM, FLAGS
 
 from sonolube.cli import main
-from sonolube.files import write_atomically
 from sonolube.report import MeasurementReport, PinOnDiscSheet, measurement_page
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
+from sonolube.storage.files import write_atomically
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 VOLTS = "drive.voltage_peak_to_peak"

@@ -10,9 +10,9 @@ import pytest
 from tests.reproduced import reproduced
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.files import write_atomically
 from sonolube.report import summary_lines, validation_object, write_report
 from sonolube.reproduction import Verdict, reproduction
+from sonolube.storage.files import write_atomically
 
 KEYS = (
     "id",

@@ -11,7 +11,7 @@ from scipy import stats
 
 from sonolube.errors import InvalidInput
 from sonolube.rig import Distribution, LogNormal, Normal, Uniform, read_rig, rig_from
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = (RIGS / "tribometer.toml").read_text(encoding="utf-8")

@@ -7,7 +7,7 @@ lies near the step.
 from sonolube.facts.materials import material
 from sonolube.figure import publication_style
 from sonolube.models import fem
-from sonolube.models.fem.figures import mode_figure, shaped_surface
+from sonolube.models.fem.results.figures import mode_figure, shaped_surface
 
 horn = fem.stepped_horn(radius=20e-3, end_radius=11.3e-3, length=0.0598, end_length=0.0634, edge_radius=8e-3)
 mesh = fem.generate_mesh(horn, element_size=12e-3)

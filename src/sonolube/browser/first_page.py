@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.browser.places import OPENED, Places
-from sonolube.files import write_atomically
+from sonolube.storage.files import write_atomically
 
 _RIG: Final = {"rig": {"name": OPENED, "changes": {}}}
 REQUESTS: Final[Mapping[str, Mapping[str, Any]]] = {"rig": _RIG, "task": {"task": "predict", "arguments": _RIG}}

@@ -11,7 +11,7 @@ from sonolube.browser.answers import answer_object, called, given_arguments, off
 from sonolube.browser.places import Places
 from sonolube.browser.worker import encoded, limit_process
 from sonolube.errors import SonolubeError
-from sonolube.files import write_atomically
+from sonolube.storage.files import write_atomically
 from sonolube.tasks.task import marks_of
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import user_state_folder, write_atomically
 from sonolube.operating_system import process_start
+from sonolube.storage.files import user_state_folder, write_atomically
 
 KEPT_DAYS: Final = 30
 """Days after which a finished job is deleted."""

@@ -15,7 +15,7 @@ from sonolube.rig import Rig, commanded_quantity
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.reader import rig_contents, rig_of_file
 from sonolube.tasks.design.parametric_study import studies_of
-from sonolube.units import convert, to_si
+from sonolube.text.units import convert, to_si
 from sonolube.vocabulary import quantities
 
 _FIRST: Final = (

@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.charts.chart import Axis, Band, Bars, Chart, Field, Line, Panel, Part, Points
 from sonolube.figure import COLOURS
-from sonolube.printable_text import with_micro_sign
+from sonolube.text.printable_text import with_micro_sign
 
 _DIGITS = 6  # significant ones, more than a screen resolves
 

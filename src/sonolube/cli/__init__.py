@@ -8,7 +8,7 @@ import sys
 try:
     from collections.abc import Sequence
 
-    from sonolube.interruption import end_program_at_signals
+    from sonolube.storage.interruption import end_program_at_signals
 except KeyboardInterrupt:  # the handler of signals is not yet in place
     sys.stderr.write("sonolube: interrupted\n")
     raise SystemExit(130) from None

@@ -15,8 +15,8 @@ from sonolube.cli.console.figure_style import with_figure_style
 from sonolube.cli.console.literal_help import show_help_literally
 from sonolube.cli.console.outputs import with_checked_files
 from sonolube.errors import SeveralFaults, SonolubeError
-from sonolube.printable_text import printable
-from sonolube.threads import threads_running
+from sonolube.execution.threads import threads_running
+from sonolube.text.printable_text import printable
 
 _BAD_INPUT, _INTERRUPTED = 2, 130  # exit codes
 _LONGEST = 1200  # characters of a refusal, which may quote the input

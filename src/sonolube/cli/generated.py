@@ -15,14 +15,14 @@ from sonolube.cli.console.gpu_warning import gpu_warning
 from sonolube.cli.console.outputs import ContinuedFolder, OutputFile, OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.questions import operator_arguments
-from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import few_points
 from sonolube.tasks.call import Mark, item_of, members_of
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 from sonolube.tasks.progress import observed
 from sonolube.tasks.table import Task
 from sonolube.tasks.task import argument_names, marks_of
-from sonolube.units import unit_description
+from sonolube.text.units import unit_description
 
 _RIG_HELP = "The rig, as a TOML file."
 _RIG = {"load": options.Load, "amplitude": options.Amplitude, "changes": options.Changes}

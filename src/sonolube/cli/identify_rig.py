@@ -9,9 +9,9 @@ import typer
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.generated import Extra, command_of
-from sonolube.printable_text import printable
 from sonolube.tasks.identify.rig_of_facts import IdentificationAnswer
 from sonolube.tasks.table import task_named
+from sonolube.text.printable_text import printable
 
 _OUT: Final = Annotated[Path | None, typer.Option(help="File to write; standard output by default."), OutputFile()]
 

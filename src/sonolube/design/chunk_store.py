@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.files import clear_unfinished, locked_folder, write_atomically
 from sonolube.operating_system import remove_file
 from sonolube.rig import NUMBERS, PointBatch
+from sonolube.storage.files import clear_unfinished, locked_folder, write_atomically
 
 _MANIFEST = "sweep.json"
 _EARLIER = (".sweep.nc.*", ".sweep.json.*", ".chunk-*.npz.*")  # unfinished files of earlier versions

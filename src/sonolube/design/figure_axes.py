@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.charts import Axis
 from sonolube.checks import Floats
-from sonolube.units import format_quantity
+from sonolube.text.units import format_quantity
 from sonolube.vocabulary import quantities
 
 _RATIO_TOLERANCE = 1e-6  # relative, within which ratios of neighbouring values count as equal

@@ -9,7 +9,7 @@ from sonolube.checks import Floats
 from sonolube.design.map_layouts import map_layout, panels_text, same_panels
 from sonolube.extras import missing_package
 from sonolube.rig import AMPLITUDE, VOLTAGE
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.rig import VOLTAGE, quantity_of_axis
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:

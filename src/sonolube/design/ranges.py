@@ -4,7 +4,7 @@ import re
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from sonolube import __version__
 from sonolube.design.sweep_plan import SweepPlan
-from sonolube.files import unfinished_file
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, amplitude_labels, operating_caveats
 from sonolube.rig.datasets import labels
+from sonolube.storage.files import unfinished_file
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:

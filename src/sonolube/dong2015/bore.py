@@ -6,8 +6,8 @@ from enum import StrEnum
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.models.fem.mesh.mesh import Mesh
 from sonolube.models.fem.solver.assembly import tributary_areas
-from sonolube.models.fem.solver.mesh import Mesh
 
 
 class BoreMotion(StrEnum):

@@ -13,9 +13,9 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
+from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel
+from sonolube.models.fem.mesh.geometry import Geometry, bond, single_body
 from sonolube.models.fem.parts.bodies import extruded_polygon
-from sonolube.models.fem.solver.cad import MILLIMETRE, cad_kernel
-from sonolube.models.fem.solver.geometry import Geometry, bond, single_body
 
 _FAR = 1e3  # in mm, beyond any collar
 _FLAT_HALF_WIDTH = 5.5e-3  # of the flats of a round inner ring, in m, assumed

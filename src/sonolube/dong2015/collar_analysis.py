@@ -15,11 +15,11 @@ from sonolube.dong2015.bore import BoreMotion, bore_motion
 from sonolube.dong2015.collar import Collar, collar_geometry
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
+from sonolube.models.fem.mesh.mesh import Mesh
+from sonolube.models.fem.mesh.meshing import generate_mesh
 from sonolube.models.fem.parts.stack_material import homogenised_stack, stack_ceramic
 from sonolube.models.fem.solver.assembly import scalar_mass_matrix
 from sonolube.models.fem.solver.medium import Medium, medium_from_material, poled_medium
-from sonolube.models.fem.solver.mesh import Mesh
-from sonolube.models.fem.solver.meshing import generate_mesh
 from sonolube.models.fem.solver.model import Electrodes, FixedSupport, Model
 from sonolube.models.fem.solver.modes import natural_modes
 from sonolube.models.fem.solver.reduction import Output, ReducedModel, reduce_model

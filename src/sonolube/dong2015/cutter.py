@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import Final
 
 from sonolube.dong2015.tribometer import TRIBOMETER_ACTUATOR_DIMENSIONS
+from sonolube.models.fem.mesh.cad import cad_kernel
+from sonolube.models.fem.mesh.geometry import bond, single_body
 from sonolube.models.fem.parts.tips import hub_disc
 from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
-from sonolube.models.fem.solver.cad import cad_kernel
-from sonolube.models.fem.solver.geometry import bond, single_body
 from sonolube.models.fem.solver.model import FixedSupport
 
 _FAR: Final = 1e3  # mm, beyond all bodies

@@ -12,10 +12,10 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from sonolube.errors import UnknownName
+from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel
+from sonolube.models.fem.mesh.geometry import Geometry, single_body
 from sonolube.models.fem.parts.bodies import extruded_polygon
 from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
-from sonolube.models.fem.solver.cad import MILLIMETRE, cad_kernel
-from sonolube.models.fem.solver.geometry import Geometry, single_body
 from sonolube.models.fem.solver.medium import Medium, isotropic_medium
 from sonolube.models.fem.solver.model import FixedSupport
 from sonolube.models.fem.solver.reduction import Output

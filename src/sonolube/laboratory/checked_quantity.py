@@ -5,7 +5,7 @@ from math import pi
 from typing import Final
 
 from sonolube.facts.protocol import Check, Protocol, flattened, step_at
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import unit_of
 
 SPEED_CHANNEL: Final = "rotation_speed"

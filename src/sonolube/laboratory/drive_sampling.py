@@ -6,7 +6,7 @@ from typing import Final
 
 from sonolube.facts.protocol import Protocol, SetPoint, flattened
 from sonolube.laboratory.block import Channel
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 SAMPLES_PER_PERIOD: Final = 5
 """Of the drive, from which on samples show its peaks within a fifth."""

@@ -11,7 +11,7 @@ from sonolube.facts.protocol import Limits
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.drive_sampling import SAMPLES_PER_PERIOD, DriveSampling
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _WATCHED: Final = {  # channels by the limit that they are held to
     "voltage_maximum": ("voltage",),

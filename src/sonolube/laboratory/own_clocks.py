@@ -23,7 +23,7 @@ from sonolube.laboratory.interlocks import Interlock, first_trip
 from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.standing_rig import SETTLING, still_on
 from sonolube.laboratory.states import Event
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _CONNECTING: Final = 60.0  # s
 _ENDING: Final = 10.0  # s, to stop and release a device

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import is_locked, locked_folder, user_state_folder, write_atomically
 from sonolube.laboratory.devices import DeviceError
 from sonolube.operating_system import process_start, remove_file
+from sonolube.storage.files import is_locked, locked_folder, user_state_folder, write_atomically
 
 _HOLDER: Final = "holder.json"  # process that has a device
 _LARGEST: Final = 10_000  # bytes of it

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Final
 
 from sonolube.facts.protocol import Protocol, protocol_text
-from sonolube.input_files import input_text
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drive_sampling import DriveSampling, drive_sampling, recorded_channels
 from sonolube.laboratory.interlocks import interlocks_for
@@ -14,6 +13,7 @@ from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
 from sonolube.laboratory.set_points import groove_diameter
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import Rig
+from sonolube.storage.input_files import input_text
 
 _STATED: Final = ("specimen", "operator", "humidity", "calibrated", "block", "run")  # of the metadata of a protocol
 

@@ -10,7 +10,6 @@ from typing import Final
 
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
-from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.checked_quantity import SETTLING, SPEED_CHANNEL, SPEEDS, CheckedValue, speed_checks, speed_of
 from sonolube.laboratory.devices import (
@@ -32,7 +31,8 @@ from sonolube.laboratory.set_points import drive_setting, groove_diameter, requi
 from sonolube.laboratory.standing_rig import StandingRig, off_bounds
 from sonolube.laboratory.states import Event, RunState, State, after
 from sonolube.laboratory.supervision import Supervisor
-from sonolube.units import format_si
+from sonolube.storage.interruption import asked_by_signal, undone_at_signal
+from sonolube.text.units import format_si
 
 _POLL: Final = 0.1  # s, between two looks at requests while a run is paused
 

@@ -9,7 +9,7 @@ from sonolube.facts.protocol import Protocol, SetPoint, flattened
 from sonolube.laboratory.devices import Devices, DriveSetting
 from sonolube.laboratory.drive_sampling import drive_sampling
 from sonolube.laboratory.interlocks import interlocks_for
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _ROUNDING: Final = 1 + 1e-9
 

@@ -13,7 +13,7 @@ from sonolube.laboratory.ending import RunEnded, ending
 from sonolube.laboratory.interlocks import Interlock, Trip, first_trip
 from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.states import Event
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _BLOCK: Final = 0.05  # s
 _VIRTUAL: Final = 2.0  # s, of the time of virtual devices

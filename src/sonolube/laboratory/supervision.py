@@ -17,7 +17,7 @@ from typing import Any, Final
 
 from sonolube.laboratory.block import Block
 from sonolube.laboratory.devices import Acquisition, DeviceError, Devices, DriveSetting, DriveSource, Motor
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 LATE: Final = 2.0
 """Time by which a block may be late before motor and drive are switched off. [s]"""

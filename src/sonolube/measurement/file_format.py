@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import ClassVar, Protocol, TypeVar
 
 from sonolube.errors import InvalidInput
-from sonolube.input_files import open_input
+from sonolube.storage.input_files import open_input
 
 HEAD_SIZE = 8192
 """Number of bytes at the beginning of a file by which its format is detected."""

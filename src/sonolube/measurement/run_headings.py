@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
-from sonolube.common_units import COMMON_FACTORS
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.written_units import si_conversion
 from sonolube.measurement.run_columns import RUN_COLUMNS, TEXT_NAMES
+from sonolube.text.common_units import COMMON_FACTORS
 from sonolube.vocabulary import quantities
 
 _OWN: Final = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")  # as the tables of sonolube have it

@@ -22,7 +22,7 @@ from sonolube.measurement.recordings.text_tables import TextTable, require_rows,
 from sonolube.measurement.recordings.written_units import si_conversion
 from sonolube.measurement.run_columns import TEXT_NAMES, heading
 from sonolube.measurement.run_headings import meaning_at_stake, run_heading
-from sonolube.units import unit_description
+from sonolube.text.units import unit_description
 from sonolube.vocabulary import quantities
 
 _PREAMBLE: Final = re.compile(r'"?\s*(?:[#%](?!\s*[;,\t|])|//)|[\s;,"|]*\Z')  # comments, and lines without any text

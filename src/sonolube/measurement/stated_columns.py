@@ -11,7 +11,7 @@ from sonolube.measurement.recordings.repeated_labels import column_of_label, num
 from sonolube.measurement.recordings.text_tables import TextTable
 from sonolube.measurement.run_columns import TEXT_NAMES
 from sonolube.measurement.run_headings import RunHeading, fits, run_heading
-from sonolube.units import unit_description
+from sonolube.text.units import unit_description
 from sonolube.vocabulary import quantities
 
 LEFT_OUT: Final = "-"

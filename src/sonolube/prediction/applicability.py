@@ -9,7 +9,7 @@ from sonolube.prediction.bodies import named_bodies
 from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.inputs import RigInputs
 from sonolube.rig import Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.validation.published_tests import friction_tests
 
 NORMAL_VIBRATION: Final = "The vibration is along the normal of the contact."

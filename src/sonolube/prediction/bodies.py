@@ -8,7 +8,7 @@ from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.materials import material
 from sonolube.rig import Rig
 from sonolube.rig.file.derived import FROM_HARDNESS
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 _TABOR_FACTOR: Final = 3.0  # hardness over yield strength
 

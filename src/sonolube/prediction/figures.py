@@ -10,7 +10,7 @@ from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS, subplots
 from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.scores import PROBABILITIES
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,7 @@ from sonolube.prediction.posterior import Posterior, learned
 from sonolube.rig import Distribution, FrictionPoint, ResolvedRig, Rig, friction_point
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity
 
 _LENGTH_KEYS: Final = ("contact.decay_length", "contact.normal_stiffness")

@@ -12,11 +12,11 @@ from typing import Any, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.files import write_atomically
 from sonolube.prediction.closures import CLOSURES, Closure
 from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, TestedRig, published_rigs
 from sonolube.prediction.hierarchy import HYPERPARAMETERS, POPULATION_PRIOR, Prior, RigLikelihood, standard_normals
 from sonolube.prediction.wear import WEAR_HYPERPARAMETERS, WearPosterior, published_wear
+from sonolube.storage.files import write_atomically
 
 LEARNED_FILE: Final = "learned.json"
 """Name of the data in this package."""

@@ -13,7 +13,7 @@ from sonolube.prediction.inputs import RigInputs
 from sonolube.prediction.predictive import RigPrediction
 from sonolube.prediction.scores import central_interval
 from sonolube.prediction.stiffness_probes import Probe
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 KNOWN_WELL: Final = {"decay_length": 0.1, "vibration_amplitude": 0.02, "friction_coefficient": 0.03}
 """Standard deviation of the logarithm of each uncertain input after a careful measurement."""

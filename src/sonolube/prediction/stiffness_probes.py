@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import Structure, modes, with_contact_spring
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _RESOLVED = 3.0  # shift over its standard uncertainty
 _STEP = 0.01  # of central differences, in the logarithm of the stiffness

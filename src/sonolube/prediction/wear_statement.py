@@ -10,7 +10,7 @@ from sonolube.prediction.bodies import NamedBody, named_bodies
 from sonolube.prediction.scores import central_interval
 from sonolube.prediction.wear import published_pair, published_wear
 from sonolube.rig import Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _STEEL: Final = ("stainless_steel", "steel")
 _FAMILIES: Final = {

@@ -11,7 +11,7 @@ import numpy as np
 from sonolube.models.contact import SphereOnFlat, hertz_contact_radius
 from sonolube.models.dynamics import LinearGap, Status, Structure, modes, steady_state
 from sonolube.models.friction import oblique_vibration_ratio, parallel_vibration_ratio
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.report.measured.sheet import Sheet, Value
-from sonolube.toml_text import read_toml
-from sonolube.units import format_si, to_si
+from sonolube.text.toml_text import read_toml
+from sonolube.text.units import format_si, to_si
 from sonolube.vocabulary import quantities
 
 _NOT_STATED = "not stated"

@@ -7,10 +7,10 @@ from typing import Any
 
 from sonolube import __version__
 from sonolube.facts.published import errata
-from sonolube.files import write_atomically
 from sonolube.report.page import Advance, Drawing, drawn, embedded, html
 from sonolube.report.reproduction_text import KIND_NAMES, counts, counts_by_kind
 from sonolube.reproduction import Finding, Reproduction, Row
+from sonolube.storage.files import write_atomically
 
 
 def reproduction_files(

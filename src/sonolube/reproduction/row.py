@@ -6,7 +6,7 @@ from enum import StrEnum
 from typing import Final
 
 from sonolube.facts.published import ComputedValue, PrintedNumber, PublishedValue, propagate_rounding, published_value
-from sonolube.units import convert
+from sonolube.text.units import convert
 from sonolube.vocabulary import unit_of
 
 

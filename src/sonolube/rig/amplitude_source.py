@@ -13,7 +13,7 @@ from sonolube.models.dynamics import GapLaw, Status, Structure, static_contact, 
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import DriveVoltage
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, MeasuredUnder, Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 AMPLITUDE_ERROR = 0.05
 """Relative error of a stated amplitude: rounding of printed values and a vibrometer's calibration. []"""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sonolube import __version__
 from sonolube.checks import Floats
-from sonolube.files import write_atomically
+from sonolube.storage.files import write_atomically
 from sonolube.vocabulary import quantities, quantity
 
 if TYPE_CHECKING:

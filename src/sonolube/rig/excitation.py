@@ -13,7 +13,7 @@ from sonolube.models.actuator.drive_power import linear_amplifier_power
 from sonolube.models.dynamics import WAVEFORMS, Sine, Waveform
 from sonolube.models.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
 from sonolube.rig.record import Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first
 

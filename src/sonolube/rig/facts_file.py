@@ -28,8 +28,8 @@ from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile, StackSection
 from sonolube.rig.file.structures import ChainSection, ModesSection, PinOnDiscSection
 from sonolube.rig.file.toml_file import prefixed, validated
-from sonolube.toml_text import read_toml
-from sonolube.units import to_si, unit_description
+from sonolube.text.toml_text import read_toml
+from sonolube.text.units import to_si, unit_description
 
 _MOST_FACTS = 16
 _LEAST_NUMBER, _LARGEST_NUMBER = 1e-9, 1e9  # of a pure number

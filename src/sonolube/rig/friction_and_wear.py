@@ -13,7 +13,7 @@ from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, Che
 from sonolube.models.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 ANY_FREQUENCY = 1.0
 """Frequency of a sine where nothing depends on it. [Hz]"""

@@ -15,7 +15,7 @@ from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.friction_and_wear import ANY_FREQUENCY
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 CONDITIONS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
 """Settings of a point apart from its sliding speed, in the order of the rows that hold them."""

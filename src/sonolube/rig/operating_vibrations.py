@@ -17,7 +17,7 @@ from sonolube.rig.friction_and_wear import prescribed_sine
 from sonolube.rig.operating_conditions import OperatingConditions
 from sonolube.rig.resolved_rig import ResolvedRig
 from sonolube.rig.vibration import contact_loss_fraction, gap_motion
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 REFUSED = "refused"
 """Status of an operating point that a limit of the stack or the contact rules out."""

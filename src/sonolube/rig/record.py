@@ -16,7 +16,7 @@ from sonolube.models.contact import ExponentialHeights, RoughContact, decay_leng
 from sonolube.models.dynamics import Structure
 from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.distribution import Distribution
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 STATED = "as stated"
 """Beginning of the assumption about an amplitude that was stated before a test, not measured."""

@@ -24,7 +24,7 @@ from sonolube.rig.amplitude_source import (
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import DriveVoltage
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _POINTS = 2101  # of the table of a contact's force: 50 for each standard deviation of summit heights
 

@@ -16,7 +16,7 @@ from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.friction_and_wear import prescribed_sine
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, drive_and_load, resolved_rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _MEAN_GAPS = {MeanGap.AT_REST: "at rest", MeanGap.LOAD_BALANCED: "that balances the load"}
 _CONTACT_LOSS = 0.01  # force over load below which contact counts as lost

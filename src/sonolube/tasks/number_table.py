@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
-from sonolube.input_files import input_text
+from sonolube.storage.input_files import input_text
 
 if TYPE_CHECKING:
     from sonolube.checks import Floats

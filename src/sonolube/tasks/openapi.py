@@ -11,7 +11,7 @@ from sonolube.tasks.call import item_of, members_of
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
-from sonolube.units import unit_description
+from sonolube.text.units import unit_description
 
 _JSON: Final = {str: "string", bool: "boolean", int: "integer", float: "number"}
 _TEXTS: Final = {"type": "array", "items": {"type": "string"}}

@@ -18,7 +18,7 @@ from sonolube.tasks.files import private_files, with_names_only
 from sonolube.tasks.notebooks import cell_progress, is_in_notebook
 from sonolube.tasks.parameters import Number, Parameter, RigParameter
 from sonolube.tasks.progress import observed, watched
-from sonolube.units import temperature_difference_to_si, to_si
+from sonolube.text.units import temperature_difference_to_si, to_si
 
 P = ParamSpec("P")
 A = TypeVar("A", bound=Answer)

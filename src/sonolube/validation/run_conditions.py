@@ -14,7 +14,7 @@ from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting
 from sonolube.models.contact import RoughContact
 from sonolube.rig import Rig, steady_vibration
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

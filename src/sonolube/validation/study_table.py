@@ -13,7 +13,7 @@ from sonolube.facts.published import PreviousStudy, previous_studies
 from sonolube.measurement.measured_runs import read_runs, run_caveats
 from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.run_selection import checked_ratios, setting
-from sonolube.units import convert
+from sonolube.text.units import convert
 from sonolube.validation.previous_study_map import DIRECTIONS, StudyPoint, speed_range
 from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
 from sonolube.vocabulary import quantity

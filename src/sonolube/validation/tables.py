@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube import __version__
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.validation.comparison import DATA_SETS, ComparedFit, FittedParameter, RigPrediction
 from sonolube.validation.free_parameters import RIGS
 

@@ -8,7 +8,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.published import statements, table, table_ids
-from sonolube.units import convert
+from sonolube.text.units import convert
 from sonolube.vocabulary import quantity
 
 TABLES = [f"{chapter}.{k}" for chapter, count in ((2, 15), (3, 5), (4, 7)) for k in range(1, count + 1)]

@@ -7,8 +7,8 @@ import numpy as np
 from hypothesis import given, settings, strategies as st
 from pytest import approx, fail, fixture, raises
 
-from sonolube.compilation import Kernel, few_points
 from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.execution.compilation import Kernel, few_points
 from sonolube.measurement.gauge.calibration import (
     PreisachCalibration,
     dissipated_energy,

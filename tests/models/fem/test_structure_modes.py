@@ -14,7 +14,7 @@ pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 from sonolube.dong2015 import FINAL_COLLAR, POISSON_HORN_SOLIDS, main_resonance, reduced_collar_model
 from sonolube.models.dynamics import drive_receptance
 from sonolube.models.fem import change_order, generate_mesh, harmonic_response, reduce_model
-from sonolube.models.fem.part_modes import starting_size
+from sonolube.models.fem.results.part_modes import starting_size
 from sonolube.reproduction.chapter2.poisson_horn import ASSUMED_SOLIDS
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig

@@ -17,7 +17,7 @@ from sonolube.models.fem import (
     natural_modes,
     tuned_mode,
 )
-from sonolube.models.fem.solver.element_order import change_order
+from sonolube.models.fem.mesh.element_order import change_order
 from sonolube.models.fem.solver.modes import NotConverged
 
 E, NU, RHO = 200e9, 0.3, 8000.0

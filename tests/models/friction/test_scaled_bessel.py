@@ -4,7 +4,7 @@ import numpy as np
 from pytest import approx
 from scipy.special import i0e
 
-from sonolube.compilation import few_points
+from sonolube.execution.compilation import few_points
 from sonolube.models.friction.scaled_bessel import scaled_bessel_i0
 
 

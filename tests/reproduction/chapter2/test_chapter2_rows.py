@@ -13,7 +13,7 @@ from tests.reproduced import reproduced, reproduced_rows
 from sonolube.facts.published import PublishedValue, published_value
 from sonolube.figure import ReportFigure, publication_style
 from sonolube.reproduction import SECTIONS, Row, Verdict
-from sonolube.units import convert
+from sonolube.text.units import convert
 from sonolube.vocabulary import unit_of
 
 FIGURES = [figure for section in SECTIONS if section.chapter == 2 for figure in section.figures()]

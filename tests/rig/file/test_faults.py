@@ -14,7 +14,7 @@ from sonolube.rig import read_rig, rig_from, rig_schema
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantity
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"

@@ -11,7 +11,7 @@ from pytest import approx, raises
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import yield_strength_from_hardness
 from sonolube.rig import Rig, read_rig, rig_from
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 STATED = """
 title = "a"

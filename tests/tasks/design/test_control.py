@@ -8,8 +8,8 @@ import numpy as np
 from pytest import approx, raises
 
 from sonolube.charts import Line, Points, draw_chart
-from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.execution.compilation import few_points
 from sonolube.tasks.design.control import control
 
 

@@ -16,7 +16,7 @@ import sonolube as sl
 from sonolube.errors import InvalidInput, MissingPackage, SonolubeError, UnknownName
 from sonolube.figure import publication_style, render_figure
 from sonolube.models.fem import cylinder
-from sonolube.models.fem.part_modes import SupportedPart
+from sonolube.models.fem.results.part_modes import SupportedPart
 from sonolube.tasks.files import NamedBytes
 from sonolube.tasks.parts.supported_part import DEFAULT_MATERIAL, supported_part
 

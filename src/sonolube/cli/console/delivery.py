@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from sonolube.errors import InvalidInput
-from sonolube.printable_text import printable
 from sonolube.report.blocks import text_lines
-from sonolube.targets import expect_target
+from sonolube.storage.targets import expect_target
 from sonolube.tasks.answer import Answer
+from sonolube.text.printable_text import printable
 
 if TYPE_CHECKING:
     from sonolube.tasks.answer import Content
@@ -140,7 +140,7 @@ def _written(path: Path, content: "Content") -> Path:
     if isinstance(content, Path):
         return content
     if isinstance(content, str | bytes):
-        from sonolube.files import write_atomically
+        from sonolube.storage.files import write_atomically
 
         return write_atomically(path, content)
     from sonolube.rig import write_netcdf

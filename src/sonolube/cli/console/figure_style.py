@@ -52,7 +52,7 @@ def prepare_matplotlib() -> None:
     fifth of its import.
     """
     if "MPLCONFIGDIR" not in os.environ and not all(map(_is_writable, _matplotlib_folders())):
-        from sonolube.compilation import private_folder
+        from sonolube.execution.compilation import private_folder
 
         if folder := private_folder():
             os.environ["MPLCONFIGDIR"] = folder

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sonolube.errors import InvalidInput
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 if TYPE_CHECKING:
     from sonolube.rig import Rig

@@ -7,8 +7,8 @@ from glob import escape
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
-from sonolube.files import expect_file, expect_files
-from sonolube.targets import command_files, record_input
+from sonolube.storage.files import expect_file, expect_files
+from sonolube.storage.targets import command_files, record_input
 
 _Mark = TypeVar("_Mark")
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
-from sonolube.printable_text import printable
+from sonolube.text.printable_text import printable
 
 if TYPE_CHECKING:
     from rich.progress import Task

@@ -9,7 +9,7 @@ import typer
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.operating_system import TypedLines
-from sonolube.printable_text import printable
+from sonolube.text.printable_text import printable
 
 if TYPE_CHECKING:
     from sonolube.facts.protocol import Prompt

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
-from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.execution.compilation import kernel
 from sonolube.rig import Rig, commanded_quantity, level_settings, operating_points
 
 _SPEEDS = 33  # at which the friction ratio is computed; it is interpolated between them

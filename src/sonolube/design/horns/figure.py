@@ -7,7 +7,7 @@ from sonolube.charts import Axis, Band, Chart, Line, Panel, Rule
 from sonolube.checks import Floats
 from sonolube.design.horns.tuning import HornDesign, face_motion, nodal_stress, section_motion
 from sonolube.models.fem import face_triangulation
-from sonolube.models.fem.solver.model import DIRECTIONS
+from sonolube.models.fem.mesh.mesh import DIRECTIONS
 
 _SLICES = 40  # across the axis, in each of which the highest stress is taken
 _POINTS = 801  # of each curve

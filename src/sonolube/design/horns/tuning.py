@@ -11,12 +11,12 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.materials import Material
 from sonolube.models.fem import Geometry, Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
 from sonolube.models.fem.mass_loading import face_residual_compliance, mass_loaded_frequencies
-from sonolube.models.fem.solver.element_order import change_order
-from sonolube.models.fem.solver.mapping import determinant, jacobian_matrices
-from sonolube.models.fem.solver.model import DIRECTIONS
+from sonolube.models.fem.mesh.element_order import change_order
+from sonolube.models.fem.mesh.mapping import determinant, jacobian_matrices
+from sonolube.models.fem.mesh.mesh import DIRECTIONS
+from sonolube.models.fem.mesh.simplex import shape_functions, simplex_quadrature
+from sonolube.models.fem.results.postprocessing import gauss_point_stress, nodal_average, von_mises_stress
 from sonolube.models.fem.solver.modes import lanczos_modes, spectral_shift
-from sonolube.models.fem.solver.postprocessing import gauss_point_stress, nodal_average, von_mises_stress
-from sonolube.models.fem.solver.simplex import shape_functions, simplex_quadrature
 from sonolube.models.fem.solver.system import assemble_system, shift_invert_solver
 
 _ELEMENTS_ACROSS = 2.5  # in the first mesh, over the edge of a cube with the volume of the horn

@@ -4,7 +4,7 @@ import re
 
 from sonolube.errors import InvalidInput
 from sonolube.models.actuator import PreloadBolt
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 _THREAD = re.compile(r"M(\d+(?:\.\d+)?)x(.+)")
 _STEEL = 205e9  # Pa, Young's modulus of bolts

@@ -12,7 +12,7 @@ from sonolube.errors import InvalidInput
 from sonolube.models.thermal import EllipticSource, contact_rise
 from sonolube.prediction.inputs import RigInputs
 from sonolube.rig import Rig, friction_point, thermal_solid
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 MOST_CANDIDATES: Final = 200
 """Number of candidates among which points are chosen."""

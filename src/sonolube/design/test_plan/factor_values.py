@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 MOST_VALUES: Final = 200
 """Number of values of one factor."""

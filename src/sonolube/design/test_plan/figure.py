@@ -5,7 +5,7 @@ import numpy as np
 from sonolube.charts import Axis, Chart, Panel, Part, Points, Rule
 from sonolube.checks import Floats
 from sonolube.design.test_plan.plan import TestPlan
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _MOST_DESCRIBED = 4  # points whose conditions are written below the axis
 

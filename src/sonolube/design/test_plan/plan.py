@@ -22,7 +22,7 @@ from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import rig_prediction
 from sonolube.prediction.scores import central_interval
 from sonolube.rig import Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,7 +9,7 @@ from sonolube.design.test_plan.run_order import PlannedRun, RunPart, RunState
 from sonolube.design.test_plan.run_table import has_voltage
 from sonolube.facts.protocol import Protocol, protocol_from
 from sonolube.facts.protocol.quantity_text import exact_text
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _REST: Final = 0.5  # s, for the zero of the force, as in D 4.1.2
 _SAMPLE_RATE: Final = "400 Hz"  # D Table 2.2

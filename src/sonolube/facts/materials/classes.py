@@ -9,7 +9,7 @@ from typing import Any
 
 from sonolube.facts.materials.property_file import cited, read_property_file
 from sonolube.facts.materials.records import Material, SourcedValue
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _OF_RANGE = 4  # standard deviations between the ends of a range that holds 95 of 100
 

@@ -66,7 +66,7 @@ def yield_strength_from_hardness(*, hardness: float) -> YieldStrengthEstimate:
     Examples
     --------
     >>> from sonolube.facts.materials import yield_strength_from_hardness
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(yield_strength_from_hardness(hardness=1.2e9).yield_strength, "Pa")  # a third
     '400 MPa'
     """

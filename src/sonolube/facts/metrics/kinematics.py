@@ -32,7 +32,7 @@ def peak_vibration_velocity(*, frequency: ArrayLike, vibration_amplitude: ArrayL
     Examples
     --------
     >>> from sonolube.facts.metrics import peak_vibration_velocity
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(float(peak_vibration_velocity(frequency=22e3, vibration_amplitude=2.5e-6)), "m/s")
     '346 mm/s'
     """
@@ -150,7 +150,7 @@ def linear_speed(*, rotation_speed: ArrayLike, groove_diameter: ArrayLike) -> Fl
     Examples
     --------
     >>> from sonolube.facts.metrics import linear_speed
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(float(linear_speed(rotation_speed=1.0, groove_diameter=50e-3)), "m/s")  # 60 rpm
     '157 mm/s'
     """

@@ -119,7 +119,7 @@ def wear_rate(*, wear_volume: ArrayLike, sliding_distance: ArrayLike) -> Floats:
     Examples
     --------
     >>> from sonolube.facts.metrics import wear_rate
-    >>> from sonolube.units import format_quantity
+    >>> from sonolube.text.units import format_quantity
     >>> format_quantity(float(wear_rate(wear_volume=7.5e-9, sliding_distance=300.0)), "wear_rate")
     '0.025 mm3/m'
     """

@@ -2,7 +2,7 @@
 
 from sonolube.facts.protocol.record import Protocol
 from sonolube.facts.protocol.steps import MotorSpeed, Prompt, Repeat, Step
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 
 def protocol_at(protocol: Protocol, *, normal_load: float, sliding_speed: float) -> Protocol:

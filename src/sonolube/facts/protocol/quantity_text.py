@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaH
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from sonolube.units import format_si, to_si, unit_description
+from sonolube.text.units import format_si, to_si, unit_description
 
 
 class Table(BaseModel):

@@ -17,7 +17,7 @@ from sonolube.facts.protocol.quantity_text import (
     TurnsPerSecond,
     Volts,
 )
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import unit_of
 
 Waveform = Literal["sine", "square", "triangle", "sawtooth"]

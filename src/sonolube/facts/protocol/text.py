@@ -11,8 +11,8 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.protocol.record import Protocol
 from sonolube.facts.protocol.steps import STEP_KINDS
 from sonolube.facts.protocol.time_line import flattened
-from sonolube.toml_text import read_toml, require_plain_content
-from sonolube.units import format_si
+from sonolube.text.toml_text import read_toml, require_plain_content
+from sonolube.text.units import format_si
 
 _MOST_FAULTS: Final = 10  # that one refusal names
 _LONGEST_FAULT: Final = 300  # characters

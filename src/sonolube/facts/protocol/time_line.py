@@ -8,7 +8,7 @@ from typing import Any, Final
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol.record import Protocol
 from sonolube.facts.protocol.steps import Acquire, Drive, MotorSpeed, Prompt, Repeat, Step, Sweep, VoltageSteps, Wait
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 MOST_SET_POINTS: Final = 10_000
 """Number of set points of a protocol, repeats included."""

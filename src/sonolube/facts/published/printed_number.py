@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from sonolube.errors import InvalidInput
-from sonolube.units import convert
+from sonolube.text.units import convert
 from sonolube.vocabulary import unit_of
 
 _DIGITS = r"(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d+)?"

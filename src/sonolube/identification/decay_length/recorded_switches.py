@@ -12,7 +12,7 @@ from sonolube.identification.decay_length.switch_table import SwitchTable
 from sonolube.measurement.friction.step_means import sampled_parts, without_wobble, wobble_columns
 from sonolube.measurement.friction_analysis import channel_values
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

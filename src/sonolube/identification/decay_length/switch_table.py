@@ -8,10 +8,10 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.input_files import open_input
 from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.storage.input_files import open_input
 
 if TYPE_CHECKING:
     import xarray as xr

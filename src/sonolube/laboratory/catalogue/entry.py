@@ -8,7 +8,7 @@ from pathlib import Path
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Protocol, SetPoint, flattened, protocol_from
 from sonolube.laboratory.records import Run, RunSummary, read_run
-from sonolube.printable_text import printable
+from sonolube.text.printable_text import printable
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

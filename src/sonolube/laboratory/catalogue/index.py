@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import is_locked
-from sonolube.growing_files import database, set_database_aside
 from sonolube.laboratory.catalogue.entry import CatalogueEntry, catalogue_entry
 from sonolube.laboratory.catalogue.query import RunQuery
 from sonolube.laboratory.records import RunSummary, run_folders
+from sonolube.storage.files import is_locked
+from sonolube.storage.growing_files import database, set_database_aside
 
 if TYPE_CHECKING:
-    from sonolube.growing_files import Connection
+    from sonolube.storage.growing_files import Connection
 
 CATALOGUE: Final = "catalogue.sqlite"
 """Name of the index beside the folders of runs."""

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from typing import Final
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 Range = tuple[float, float]
 

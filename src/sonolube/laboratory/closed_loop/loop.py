@@ -8,7 +8,6 @@ import numpy as np
 
 from sonolube.design.control import initial_state, next_level
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.laboratory.block import Block
 from sonolube.laboratory.closed_loop.plan import recorded_channels
 from sonolube.laboratory.closed_loop.record import FrictionHold, HeldFriction
@@ -29,7 +28,8 @@ from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.runner import Advance
 from sonolube.laboratory.states import Event, RunState, State, after
 from sonolube.laboratory.supervision import Supervisor
-from sonolube.units import format_si
+from sonolube.storage.interruption import asked_by_signal, undone_at_signal
+from sonolube.text.units import format_si
 
 _FRICTION: Final = "friction_force"
 

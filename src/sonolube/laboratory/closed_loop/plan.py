@@ -8,7 +8,7 @@ from sonolube.facts.protocol import Protocol, exact_text, protocol_from
 from sonolube.laboratory.block import Channel
 from sonolube.laboratory.closed_loop.record import FrictionHold
 from sonolube.laboratory.interlocks import interlocks_for
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _RECORDED: Final = ("friction_force", "normal_load", "voltage_peak_to_peak", "voltage", "temperature", "gaussmeter")
 _LEAST_WAIT: Final = 1e-6  # s

@@ -14,7 +14,7 @@ from sonolube.laboratory.block import Block, Channel, quantity_of
 from sonolube.laboratory.devices import DeviceError
 from sonolube.laboratory.drivers.daqmx_library import daqmx_errors, daqmx_library, require_device
 from sonolube.laboratory.drivers.sensor_scale import SensorScale
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 BUFFER_DURATION: Final = 4.0
 """Time for which the driver keeps samples that nobody has read. [s]"""

@@ -23,7 +23,7 @@ from sonolube.laboratory.drivers.entry import (
 )
 from sonolube.laboratory.drivers.resources import daqmx_resource
 from sonolube.laboratory.drivers.sensor_scale import LinearScale, SensorScale, tabulated_scale
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 Output = Annotated[str, Field(pattern=r"^[\w-]+/ao\d+$")]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sonolube.laboratory.devices import DeviceError, DriveSetting
 from sonolube.laboratory.drivers.daqmx_library import daqmx_errors, daqmx_library, require_device
 from sonolube.laboratory.drivers.output_limits import DriveLimits, require_speed
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 SAMPLES_PER_PERIOD: Final = 20
 """Least number of samples of one period of the drive."""

@@ -13,8 +13,8 @@ from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError
 from sonolube.laboratory.devices import Acquisition, Devices, OutputGuard
 from sonolube.laboratory.drivers.entry import AcquisitionEntry, DriverEntry
 from sonolube.laboratory.drivers.map_entries import MapEntries
-from sonolube.toml_text import text_of, toml_content
-from sonolube.units import format_si
+from sonolube.text.toml_text import text_of, toml_content
+from sonolube.text.units import format_si
 
 _KIND: Final = "a device map"
 _MOST_FAULTS: Final = 20

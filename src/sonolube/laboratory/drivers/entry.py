@@ -12,7 +12,7 @@ from sonolube.facts.protocol.quantity_text import SiText, Table
 from sonolube.laboratory.block import CHANNEL_QUANTITIES, Channel, quantity_of
 from sonolube.laboratory.devices import Acquisition, DriveSource, Motor, OutputGuard
 from sonolube.laboratory.drivers.output_limits import DriveLimits
-from sonolube.units import require_si_unit, to_si
+from sonolube.text.units import require_si_unit, to_si
 from sonolube.vocabulary import quantities, unit_of
 
 _LIBRARY: Final = "@py for pure Python, @ivi for the library of a maker"

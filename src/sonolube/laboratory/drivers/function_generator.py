@@ -8,7 +8,7 @@ from sonolube.laboratory.devices import DeviceError, DriveSetting
 from sonolube.laboratory.drivers.output_limits import DriveLimits
 from sonolube.laboratory.drivers.switched_line import SwitchedLine
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 OUTPUT_MAXIMUM: Final = 10.0
 """Magnitude of the voltage into a high impedance. [V]"""

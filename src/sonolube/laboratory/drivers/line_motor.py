@@ -7,7 +7,7 @@ from sonolube.laboratory.devices import DeviceError
 from sonolube.laboratory.drivers.output_limits import require_speed
 from sonolube.laboratory.drivers.switched_line import SwitchedLine
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 PLACEHOLDER: Final = "{speed}"
 """Text for which a command has the speed."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from sonolube.laboratory.devices import DeviceError, DriveSetting
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 WAVEFORMS: Final = ("sine", "square", "triangle", "sawtooth")
 _ROUNDING: Final = 1 + 1e-9

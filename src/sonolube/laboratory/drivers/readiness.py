@@ -13,7 +13,7 @@ from sonolube.laboratory.drivers.daqmx_library import DRIVER_REMEDY, daqmx_error
 from sonolube.laboratory.drivers.device_map import DeviceMap, read_device_map
 from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.set_points import impossibilities
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 BLOCK_DURATION = 0.1
 """Of the first look. [s]"""

@@ -14,7 +14,7 @@ from sonolube.laboratory.drivers.scpi_query import QueriedChannel, ScpiQueries
 from sonolube.laboratory.drivers.scpi_replies import ErrorQueue, Reply
 from sonolube.laboratory.drivers.scpi_source import ScpiSource, SourceCommands
 from sonolube.laboratory.drivers.visa_connection import TERMINATIONS, VisaConnection
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 
 def _with_value(text: str) -> str:

@@ -13,7 +13,7 @@ from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.devices import DeviceError, SamplesLost
 from sonolube.laboratory.drivers.scpi_replies import ErrorQueue, Reply, require_identity, send
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _LATE_PERIODS: Final = 1.0  # by which a query may begin late
 

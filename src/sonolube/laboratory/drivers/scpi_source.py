@@ -9,7 +9,7 @@ from sonolube.laboratory.drivers.output_limits import DriveLimits
 from sonolube.laboratory.drivers.scpi_replies import ErrorQueue, Reply, require_identity, send
 from sonolube.laboratory.drivers.switched_line import SwitchedLine
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _DIFFERENCE: Final = {"frequency": (1e-4, 0.0), "amplitude": (2e-3, 1e-3), "offset": (2e-3, 1e-3)}
 """Share, and absolute in V, by which a value that is read back may differ from the one that was set."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.errors import InvalidInput
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import unit_of
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,7 @@ from sonolube.facts.protocol import Check, step_at
 from sonolube.laboratory.checked_quantity import SPEED_CHANNEL, speed_checks
 from sonolube.laboratory.drive_sampling import drive_sampling, recorded_channels
 from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 STATIC_FRICTION_FACTOR = 1.35
 """Static over intrinsic sliding friction: 1.2 N before 0.89 N, D 4.1.2. []"""

@@ -27,7 +27,7 @@ from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint, PlannedReco
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
 from sonolube.rig.excitation import actuator_capacitance
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 
 def dry_run(

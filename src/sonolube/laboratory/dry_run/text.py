@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 
 def dry_run_lines(found: DryRun) -> list[str]:

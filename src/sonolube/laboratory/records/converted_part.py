@@ -10,7 +10,6 @@ from typing import Any, Final
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.files import locked_folder
 from sonolube.laboratory.records.documents import read_documents
 from sonolube.laboratory.records.part_clock import PartClock, part_clock
 from sonolube.laboratory.records.recorded_part import Floats, RecordedPart, recorded_part
@@ -25,6 +24,7 @@ from sonolube.laboratory.records.run_folder import (
 )
 from sonolube.laboratory.records.set_point_steps import SET_POINT_CHANNELS
 from sonolube.operating_system import remove_file
+from sonolube.storage.files import locked_folder
 from sonolube.vocabulary import quantities
 
 _ROWS: Final = 1 << 17

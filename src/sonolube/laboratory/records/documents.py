@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any, Final
 from uuid import uuid4
 
-from sonolube.growing_files import AppendedFile
 from sonolube.laboratory.block import Channel
 from sonolube.laboratory.records.run_folder import CLOCK_NAME, DOCUMENTS, RunFacts, raw_path
+from sonolube.storage.growing_files import AppendedFile
 
 Document = dict[str, Any]
 

@@ -12,12 +12,12 @@ import numpy as np
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import SetPoint, flattened, read_protocol
-from sonolube.files import is_locked
 from sonolube.laboratory.block import Block
 from sonolube.laboratory.records.documents import ReadDocuments, main_parts, part_clocks, part_name, read_documents
 from sonolube.laboratory.records.raw_blocks import RawPart, latest_samples
 from sonolube.laboratory.records.run import RUNNING, UNFINISHED, Note, note_of, run_folders, run_summary
 from sonolube.laboratory.records.run_folder import DOCUMENTS, PROTOCOL, RUN, RunFacts, raw_path, read_run_facts
+from sonolube.storage.files import is_locked
 
 MEAN_DURATION: Final = 1.0
 """Time of the samples whose mean is told. [s]"""

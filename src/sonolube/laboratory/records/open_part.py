@@ -5,12 +5,12 @@ from contextlib import suppress
 from pathlib import Path
 
 from sonolube.errors import InvalidInput
-from sonolube.growing_files import AppendedFile
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import DocumentLog, ReadDocuments
 from sonolube.laboratory.records.part_clock import PartClock
 from sonolube.laboratory.records.raw_blocks import raw_header, raw_record
 from sonolube.laboratory.records.run_folder import raw_path
+from sonolube.storage.growing_files import AppendedFile
 
 NoteGap = Callable[[int, Mapping[str, str | float]], None]
 """Takes the first missing sample, and what is known of the gap."""

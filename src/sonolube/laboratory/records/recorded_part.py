@@ -14,7 +14,7 @@ from sonolube.laboratory.records.part_clock import PartClock
 from sonolube.laboratory.records.raw_blocks import RawPart, read_raw_blocks, scan_raw
 from sonolube.laboratory.records.run_folder import Facts, raw_path
 from sonolube.laboratory.records.set_point_steps import SetPointSteps, set_point_steps
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
-from sonolube.files import locked_folder
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
 from sonolube.laboratory.records.open_part import OpenPart
@@ -31,6 +30,7 @@ from sonolube.laboratory.records.run_folder import (
     recording_path,
 )
 from sonolube.operating_system import remove_file
+from sonolube.storage.files import locked_folder
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,10 +12,10 @@ from typing import Any, Final, Protocol as Interface, Self
 
 import numpy as np
 
-from sonolube.files import unfinished_file
 from sonolube.laboratory.records.part_clock import PartClock
 from sonolube.laboratory.records.recorded_part import Floats
 from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts
+from sonolube.storage.files import unfinished_file
 from sonolube.vocabulary import quantities, unit_of
 
 _PACKED: Final[Mapping[str, Any]] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}

@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import clear_unfinished, is_locked, locked_folder, unfinished_file
-from sonolube.growing_files import AppendedFile
 from sonolube.laboratory.records.documents import DocumentLog, read_documents
 from sonolube.laboratory.records.raw_blocks import RawPart, scan_raw
 from sonolube.laboratory.records.recorded_part import recorded_part
@@ -29,6 +27,8 @@ from sonolube.laboratory.records.run_folder import (
     write_run_facts,
 )
 from sonolube.operating_system import remove_file
+from sonolube.storage.files import clear_unfinished, is_locked, locked_folder, unfinished_file
+from sonolube.storage.growing_files import AppendedFile
 
 _COPIED: Final = 1 << 20  # bytes at a time
 _PATIENCE: Final = 1.0  # s

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.files import is_locked
 from sonolube.laboratory.devices import SILENT
 from sonolube.laboratory.records.documents import (
     EXIT_STATUS,
@@ -33,6 +32,7 @@ from sonolube.laboratory.records.run_folder import (
     read_run_facts,
     recording_path,
 )
+from sonolube.storage.files import is_locked
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_atomically
-from sonolube.growing_files import new_folder
-from sonolube.printable_text import printable
+from sonolube.storage.files import write_atomically
+from sonolube.storage.growing_files import new_folder
+from sonolube.text.printable_text import printable
 
 PROTOCOL: Final = "protocol.toml"
 RUN: Final = "run.json"

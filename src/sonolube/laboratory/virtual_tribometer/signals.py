@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 
 _PULL_LOOPS = 5
 _PULL_PERIOD = 30.0  # s

@@ -19,7 +19,7 @@ from sonolube.laboratory.virtual_tribometer.simulation import (
     VirtualRig,
 )
 from sonolube.rig import Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

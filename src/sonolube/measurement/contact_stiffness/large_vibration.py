@@ -80,7 +80,7 @@ def decay_length_from_ratio(stiffness_ratio: float, *, vibration_amplitude: floa
     Examples
     --------
     >>> from sonolube.measurement import decay_length_from_ratio, equivalent_stiffness_ratio
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> ratio = equivalent_stiffness_ratio(vibration_amplitude=2.5e-6, decay_length=2e-6)
     >>> format_si(decay_length_from_ratio(float(ratio), vibration_amplitude=2.5e-6), "m")
     '2 um'

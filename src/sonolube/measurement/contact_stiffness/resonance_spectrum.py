@@ -11,7 +11,6 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.input_files import input_bytes
 from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.impedance.column_headings import ColumnHeading, parse_heading
 from sonolube.measurement.impedance.passivity import passive_spectrum
@@ -19,6 +18,7 @@ from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.limits import require_points
 from sonolube.measurement.numeric_text import detected_decimal_sign, parse_number
 from sonolube.measurement.time_series import require_equal_length
+from sonolube.storage.input_files import input_bytes
 
 _ORDERS = {"displacement": 0, "amplitude": 0, "receptance": 0, "velocity": 1, "mobility": 1, "acceleration": 2}
 _VIBRATION = re.compile(rf"\W*({'|'.join(_ORDERS)})\b", re.IGNORECASE)

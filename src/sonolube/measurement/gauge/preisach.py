@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import kernel
 
 _FEW = {"most": 100_000, "at_first": 1_000_000}  # samples times cells, a microsecond and a half each as plain Python
 

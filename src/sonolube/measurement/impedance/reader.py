@@ -5,11 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.input_files import input_bytes
 from sonolube.measurement.file_format import HEAD_SIZE, detect_format, refuse_unreadable
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, ImpedanceSweep, sorted_by_frequency
 from sonolube.measurement.limits import require_points
+from sonolube.storage.input_files import input_bytes
 
 _LARGEST_FILE = 1 << 28  # bytes; far above any sweep
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from sonolube.errors import InvalidInput
-from sonolube.input_files import require_file
 from sonolube.measurement.file_format import FileFormat, detect_format, read_head, refuse_unreadable
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawTable
+from sonolube.storage.input_files import require_file
 from sonolube.variants import VariantTable
 
 

@@ -11,8 +11,8 @@ from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName, suggestion
 from sonolube.measurement.recordings.repeated_labels import numbered_labels
 from sonolube.measurement.run_columns import TEXT_NAMES
-from sonolube.toml_text import read_toml
-from sonolube.units import to_si
+from sonolube.text.toml_text import read_toml
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantity
 
 AXIS_QUANTITIES = ("time", "revolutions")

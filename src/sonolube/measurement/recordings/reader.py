@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_atomically
-from sonolube.input_files import open_input
 from sonolube.measurement.recorded_digest import change_since_recorded
 from sonolube.measurement.recordings.dataset import recording_dataset, require_increasing_axis
 from sonolube.measurement.recordings.formats import StreamedRecordingFormat, recording_format
 from sonolube.measurement.recordings.instrument_mappings import recognised_mapping
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
 from sonolube.measurement.recordings.raw_table import RawTable, recorded_warnings
+from sonolube.storage.files import write_atomically
+from sonolube.storage.input_files import open_input
 
 if TYPE_CHECKING:
     import xarray as xr

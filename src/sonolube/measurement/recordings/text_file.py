@@ -4,8 +4,8 @@ import codecs
 from pathlib import Path
 
 from sonolube.errors import InvalidInput
-from sonolube.input_files import input_bytes
 from sonolube.measurement.file_format import refuse_unreadable
+from sonolube.storage.input_files import input_bytes
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 _FALLBACK = "cp1252"

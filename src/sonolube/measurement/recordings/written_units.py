@@ -2,7 +2,7 @@
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.units import convert
+from sonolube.text.units import convert
 
 _FAULT_VALUE = "value 0.0 "
 

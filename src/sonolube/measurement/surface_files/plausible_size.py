@@ -3,7 +3,7 @@
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _LARGEST_FIELD = 0.5  # m, which no profilometer scans
 _SMALLEST_FIELD = 1e-6  # m, below which only force microscopes scan

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.input_files import require_file
 from sonolube.measurement.file_format import detect_format, read_head, refuse_unreadable
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.measurement.surface_files.plausible_size import size_caveats
 from sonolube.measurement.surface_files.surface_reading import ASSUMED_METRES, GIVEN_BY_USER, SurfaceReading
 from sonolube.models.surfaces import HeightMap
-from sonolube.units import convert
+from sonolube.storage.input_files import require_file
+from sonolube.text.units import convert
 
 _LARGEST_SPACING = 1e6  # m, beyond which areas and slopes lose their digits
 _SPACING_ADVICE = "give spacing_x and spacing_y, the distances of columns and rows in m"

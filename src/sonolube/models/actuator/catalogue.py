@@ -13,7 +13,7 @@ from typing import Any
 from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
 from sonolube.models.actuator.stack import PiezoStack
-from sonolube.toml_text import read_toml
+from sonolube.text.toml_text import read_toml
 
 ACTUATOR_KINDS = ("stack", "flextensional")
 """Kinds of actuators in the catalogue."""

@@ -155,7 +155,7 @@ def peak_current(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
     Examples
     --------
     >>> from sonolube.models.actuator import peak_current
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(float(peak_current(admittance=[3e-3 + 4e-3j], voltage_amplitude=[14.0])), "A")
     '70 mA'
     """

@@ -83,7 +83,7 @@ def parallel_inductor(*, admittance: complex, frequency: float) -> MatchingNetwo
     Examples
     --------
     >>> from sonolube.models.actuator import parallel_inductor
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> network = parallel_inductor(admittance=2e-3 + 0.05j, frequency=22e3)
     >>> format_si(network.shunt_inductance, "H")
     '145 uH'

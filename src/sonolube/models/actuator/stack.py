@@ -157,7 +157,7 @@ def free_stroke(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
     Examples
     --------
     >>> from sonolube.models.actuator import catalogue_actuator, catalogue_stack, free_stroke
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> actuator = catalogue_actuator("sa050510")  # 14 um at 180 V
     >>> stack = catalogue_stack(actuator, frequency=22e3, mechanical_quality_factor=75.0)
     >>> format_si(float(free_stroke(stack, stack_voltage=90.0)), "m")

@@ -282,7 +282,7 @@ def free_bar_frequency(*, length: ArrayLike, wave_speed: ArrayLike, mode: int = 
     Examples
     --------
     >>> from sonolube.models.actuator import free_bar_frequency
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(float(free_bar_frequency(length=0.125, wave_speed=5000.0)), "Hz")  # half a wavelength
     '20 kHz'
     """

@@ -135,7 +135,7 @@ def contact_pair(*, softer: ElasticBody, harder: ElasticBody, yield_strength: fl
     Examples
     --------
     >>> from sonolube.models.contact import ElasticBody, contact_pair
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> aluminium = ElasticBody(youngs_modulus=73e9, poisson_ratio=0.33)
     >>> steel = ElasticBody(youngs_modulus=193e9, poisson_ratio=0.29)
     >>> pair = contact_pair(softer=aluminium, harder=steel, yield_strength=410e6)

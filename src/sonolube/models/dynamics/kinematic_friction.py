@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_non_negative
 from sonolube.errors import InvalidInput
+from sonolube.execution.threads import map_chunks
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.dynamics.friction_average.elliptic_kernel import (
     elliptic_averages,
@@ -32,7 +33,6 @@ from sonolube.models.dynamics.harmonic_balance.solver import MOST_HARMONICS
 from sonolube.models.dynamics.steady_state_response import steady_state
 from sonolube.models.dynamics.steady_states import Status, SteadyStates
 from sonolube.models.dynamics.structure import Structure
-from sonolube.threads import map_chunks
 
 # Additional nodes for a steep force: per decay length of amplitude, at least for laws with corners, and the choices.
 _NODES_PER_DECAY_LENGTH, _NODES_FOR_CORNERS = 2.0, 1024.0

@@ -15,6 +15,7 @@ from sonolube.checks import (
     require_positive,
 )
 from sonolube.errors import InvalidInput
+from sonolube.execution.threads import map_chunks
 from sonolube.models.dynamics.backend import Backend, usable_backend
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw
 from sonolube.models.dynamics.gap_laws.table import kernel_law
@@ -24,7 +25,6 @@ from sonolube.models.dynamics.harmonic_balance.solver import MOST_HARMONICS, sol
 from sonolube.models.dynamics.steady_states import Status, SteadyStates
 from sonolube.models.dynamics.structure import Structure
 from sonolube.models.dynamics.warm_up import compile_in_parallel
-from sonolube.threads import map_chunks
 
 
 def steady_state(

@@ -17,8 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numba.core.event import Event
 
-from sonolube.compilation import runs_plain
-from sonolube.interruption import undone_at_signal
+from sonolube.execution.compilation import runs_plain
 from sonolube.models.dynamics.friction_average.elliptic_kernel import (
     elliptic_averages,
     friction_workspace,
@@ -28,6 +27,7 @@ from sonolube.models.dynamics.friction_average.elliptic_quadrature import ellipt
 from sonolube.models.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms, period_workspace
 from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import newton_solve
 from sonolube.models.dynamics.kernels.contact_kernel import KernelVariant, LawParameters
+from sonolube.storage.interruption import undone_at_signal
 
 _KERNELS = (newton_solve, monodromy_power_norms, elliptic_averages)
 

@@ -12,6 +12,22 @@ from .mass_loading import (
     face_residual_compliance as face_residual_compliance,
     mass_loaded_frequencies as mass_loaded_frequencies,
 )
+from .mesh.element_order import change_order as change_order, transfer_field as transfer_field
+from .mesh.geometry import (
+    Geometry as Geometry,
+    bond as bond,
+    read_step as read_step,
+    step_text as step_text,
+    translate as translate,
+)
+from .mesh.grading import grade_reentrant_edges as grade_reentrant_edges
+from .mesh.mesh import Mesh as Mesh, box_mesh as box_mesh, face_triangulation as face_triangulation
+from .mesh.mesh_editing import (
+    add_face_patch as add_face_patch,
+    edge_nodes as edge_nodes,
+    transform_nodes as transform_nodes,
+)
+from .mesh.meshing import generate_mesh as generate_mesh
 from .parts.bodies import (
     PARTS as PARTS,
     Slot as Slot,
@@ -36,6 +52,13 @@ from .parts.transducers import (
     stack_from_bodies as stack_from_bodies,
     stack_transducer as stack_transducer,
 )
+from .results.postprocessing import (
+    gauss_point_stress as gauss_point_stress,
+    interpolate_at_points as interpolate_at_points,
+    nodal_average as nodal_average,
+    von_mises_stress as von_mises_stress,
+)
+from .results.vtk_export import vtu_text as vtu_text
 from .ritz import (
     CrossSection as CrossSection,
     annular_section as annular_section,
@@ -47,16 +70,7 @@ from .solver.convergence import (
     converged_modes as converged_modes,
     extrapolate_frequencies as extrapolate_frequencies,
 )
-from .solver.element_order import change_order as change_order, transfer_field as transfer_field
 from .solver.forced_vibration import forced_response as forced_response
-from .solver.geometry import (
-    Geometry as Geometry,
-    bond as bond,
-    read_step as read_step,
-    step_text as step_text,
-    translate as translate,
-)
-from .solver.grading import grade_reentrant_edges as grade_reentrant_edges
 from .solver.harmonic_analysis import (
     HarmonicResponse as HarmonicResponse,
     direct_response as direct_response,
@@ -69,13 +83,6 @@ from .solver.medium import (
     medium_from_material as medium_from_material,
     poled_medium as poled_medium,
 )
-from .solver.mesh import Mesh as Mesh, box_mesh as box_mesh, face_triangulation as face_triangulation
-from .solver.mesh_editing import (
-    add_face_patch as add_face_patch,
-    edge_nodes as edge_nodes,
-    transform_nodes as transform_nodes,
-)
-from .solver.meshing import generate_mesh as generate_mesh
 from .solver.model import (
     Electrodes as Electrodes,
     FaceSpring as FaceSpring,
@@ -88,12 +95,6 @@ from .solver.modes import (
     natural_modes as natural_modes,
     rigid_body_mode_count as rigid_body_mode_count,
 )
-from .solver.postprocessing import (
-    gauss_point_stress as gauss_point_stress,
-    interpolate_at_points as interpolate_at_points,
-    nodal_average as nodal_average,
-    von_mises_stress as von_mises_stress,
-)
 from .solver.reduction import Output as Output, ReducedModel as ReducedModel, reduce_model as reduce_model
 from .solver.resonances import (
     coupled_resonances as coupled_resonances,
@@ -102,4 +103,3 @@ from .solver.resonances import (
 from .solver.structure_conversion import contact_structure as contact_structure, with_free_body as with_free_body
 from .surface_trajectories import TrajectoryEllipse as TrajectoryEllipse, trajectory_ellipse as trajectory_ellipse
 from .tuning import NamedMode as NamedMode, TunedMode as TunedMode, named_mode as named_mode, tuned_mode as tuned_mode
-from .vtk_export import vtu_text as vtu_text

@@ -9,9 +9,9 @@ from scipy import sparse
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.models.fem.mesh.mesh import DIRECTIONS, Mesh
 from sonolube.models.fem.solver.assembly import scalar_mass_matrix
-from sonolube.models.fem.solver.mesh import Mesh
-from sonolube.models.fem.solver.model import DIRECTIONS, Model
+from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.modes import NaturalModes
 
 _DEGREE = 8  # of the Legendre polynomials along the axis, sufficient for modes of some three wavelengths

@@ -9,7 +9,7 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.fem.classification import mode_names
-from sonolube.models.fem.solver.element_order import change_order
+from sonolube.models.fem.mesh.element_order import change_order
 from sonolube.models.fem.solver.krylov import krylov_reduction
 from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.modes import NaturalModes, NotConverged

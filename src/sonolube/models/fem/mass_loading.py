@@ -4,8 +4,9 @@ import numpy as np
 from scipy.linalg import eigh
 
 from sonolube.checks import Floats, require_non_negative
+from sonolube.models.fem.mesh.mesh import DIRECTIONS
 from sonolube.models.fem.solver.assembly import tributary_areas
-from sonolube.models.fem.solver.model import DIRECTIONS, Model
+from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.modes import NaturalModes, spectral_shift
 from sonolube.models.fem.solver.reduction import Output, output_matrix
 from sonolube.models.fem.solver.system import LinearSolver, SystemMatrices, assemble_system, shift_invert_solver

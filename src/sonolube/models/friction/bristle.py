@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats, require_non_negative
-from sonolube.compilation import INNER, kernel
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import INNER, kernel
 
 __all__ = ["RIGID", "Holder"]  # the kernels serve this room only
 MAXIMUM_PERIODS = 4000

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.compilation import INNER, kernel
+from sonolube.execution.compilation import INNER, kernel
 
 _FEW = 20_000  # points for which plain Python takes less than compiling
 

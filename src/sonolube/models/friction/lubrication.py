@@ -104,7 +104,7 @@ def hersey_number(*, dynamic_viscosity: ArrayLike, sliding_speed: ArrayLike, nom
     Examples
     --------
     >>> from sonolube.models.friction import hersey_number
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(float(hersey_number(dynamic_viscosity=0.1, sliding_speed=0.02, nominal_pressure=1e6)), "m")
     '2 nm'
     """

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
-from sonolube.compilation import runs_plain
+from sonolube.execution.compilation import runs_plain
 
 _LARGEST = 700.0  # beyond it exp overflows, and the asymptotic series holds to 1e-14
 _SERIES = (3675 / 32768, 75 / 1024, 9 / 128, 1 / 8, 1.0)  # in 1/x, the highest power first

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sonolube.checks import Floats, Integers
-from sonolube.compilation import INNER, kernel
+from sonolube.execution.compilation import INNER, kernel
 
 __all__: list[str] = []  # for the tables of this room
 

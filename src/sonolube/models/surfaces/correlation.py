@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from sonolube.checks import Floats, require_finite
-from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import kernel
 from sonolube.models.surfaces.height_map import HeightMap
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats, require_within
-from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import kernel
 from sonolube.models.surfaces.grid_kernel import count_sum_and_extremes
 from sonolube.models.surfaces.height_map import HeightMap
 

@@ -111,7 +111,7 @@ def surface_finish(text: str) -> SurfaceFinish:
     Examples
     --------
     >>> from sonolube.models.surfaces import surface_finish
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> finish = surface_finish("N6")
     >>> format_si(finish.roughness_average_low, "m"), format_si(finish.roughness_average_high, "m")
     ('400 nm', '800 nm')
@@ -160,7 +160,7 @@ def rms_height_from_roughness_average(*, arithmetic_mean_height: float) -> RmsHe
     Examples
     --------
     >>> from sonolube.models.surfaces import rms_height_from_roughness_average
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(rms_height_from_roughness_average(arithmetic_mean_height=0.4e-6).rms_height, "m")
     '501 nm'
     """

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 
 __all__: list[str] = []  # used in this room only
 _LANES = 8  # running extremes side by side, one vector register

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from sonolube.checks import Complexes, Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 
 REACH = 3.2  # in widths of the weight, which is 1e-14 there
 _STRIP = 1 << 21  # pixels per strip, which bounds the memory

@@ -8,8 +8,8 @@ import numpy as np
 from scipy import fft
 
 from sonolube.checks import Floats, require_positive
-from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import kernel
 from sonolube.models.surfaces.height_map import HeightMap
 
 Window = Literal["hann", "none"]

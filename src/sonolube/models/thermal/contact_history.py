@@ -97,7 +97,7 @@ def frictional_heat_rate(*, friction_force: ArrayLike, sliding_speed: ArrayLike)
     Examples
     --------
     >>> from sonolube.models.thermal import frictional_heat_rate
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(float(frictional_heat_rate(friction_force=1.0, sliding_speed=20e-3)), "W")
     '20 mW'
     """

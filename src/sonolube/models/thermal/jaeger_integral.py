@@ -16,7 +16,7 @@ from numpy.polynomial import Chebyshev, Polynomial
 from scipy.special import digamma, factorial, k0e, k1e
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 
 __all__: list[str] = []  # used within this package only
 

@@ -69,7 +69,7 @@ def archard_wear_rate(law: ArchardWear, *, normal_load: ArrayLike) -> Floats:
     Examples
     --------
     >>> from sonolube.models.wear import ArchardWear, archard_wear_rate
-    >>> from sonolube.units import format_quantity
+    >>> from sonolube.text.units import format_quantity
     >>> law = ArchardWear(wear_coefficient=1e-4, hardness=1e9)
     >>> format_quantity(float(archard_wear_rate(law, normal_load=10.0)), "wear_rate")  # 1e-4 10 N/1 GPa
     '0.001 mm3/m'

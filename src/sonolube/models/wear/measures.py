@@ -60,7 +60,7 @@ def mass_loss(*, wear_volume: ArrayLike, density: ArrayLike) -> Floats:
     Examples
     --------
     >>> from sonolube.models.wear import mass_loss
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(float(mass_loss(wear_volume=2e-9, density=2700.0)), "kg")  # 2 mm3 of aluminium
     '5.4 mg'
     """

@@ -30,7 +30,7 @@ from sonolube.measurement.recordings.tdms import TDMS_FORMAT as TDMS
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.report.measured import friction_figures as figures, sheet
 from sonolube.report.measured.voltage_steps import step_sheet
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from sonolube.measurement.swept_impedance import swept_impedance
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.dynamics import Structure
 from sonolube.report.measured import impedance_figures as figures, sheet
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities
 
 

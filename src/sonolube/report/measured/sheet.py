@@ -10,7 +10,7 @@ from typing import ParamSpec
 from sonolube.charts import Chart
 from sonolube.errors import InvalidInput
 from sonolube.report.page import Drawing
-from sonolube.units import format_like, format_quantity, format_si
+from sonolube.text.units import format_like, format_quantity, format_si
 from sonolube.vocabulary import quantities, unit_of
 
 Cell = float | str | None

@@ -10,7 +10,7 @@ from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_
 from sonolube.models import surfaces
 from sonolube.report.measured import sheet, surface_figures as figures
 from sonolube.report.measured.profile import is_profile, profile_sheet
-from sonolube.units import format_si, to_si
+from sonolube.text.units import format_si, to_si
 
 _LABELS = {
     "arithmetic_mean_height": "Sa, arithmetic mean height",

@@ -7,7 +7,7 @@ from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction_analysis import analyse_rotation_speed, analyse_voltage_steps, channel_values
 from sonolube.measurement.recorded_sliding import speed_changes, speed_channel
 from sonolube.report.measured import friction_figures as figures, sheet
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

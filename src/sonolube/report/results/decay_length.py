@@ -4,7 +4,7 @@ from typing import Any
 
 from sonolube.identification import DecayLengthDecision, Interval, SwitchConditions, SwitchTable
 from sonolube.identification.decay_length.verdict import HYPOTHESES
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _FEW_DRAWS = 30.0  # effective, below which probabilities are coarse
 

@@ -9,7 +9,7 @@ from sonolube.laboratory.records import Run
 from sonolube.report.blocks import Block, Rows, Table, Verbatim
 from sonolube.report.results.next_step import next_command
 from sonolube.rig import Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
 SIMULATED = "friction is drawn from the prediction of the rig: no measurement"

@@ -10,7 +10,7 @@ from sonolube.laboratory.records import Run
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.ended_run import off_text
 from sonolube.rig import Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
 _SATURATED: Final = 0.5  # share of the time

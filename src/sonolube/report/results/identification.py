@@ -5,7 +5,7 @@ from typing import Any
 
 from sonolube.identification import Identification
 from sonolube.models.actuator import PiezoStack
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities, si, unit_of
 
 

@@ -9,7 +9,7 @@ from sonolube.facts.materials import Material, SourcedValue, material_families
 from sonolube.facts.published import Column, Correction, Table as PublishedTable
 from sonolube.models.actuator import CatalogueActuator
 from sonolube.report.blocks import Block, Rows, Table
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities, si
 
 _MATERIAL_HEADS: Final = ("Young's modulus", "hardness", "yield strength", "title")

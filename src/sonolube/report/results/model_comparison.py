@@ -7,7 +7,7 @@ from typing import Any
 
 from sonolube.report.blocks import Block, Table
 from sonolube.rig import FrictionPoint, Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.validation.comparison import DATA_SETS, ONLY_PREDICTED, ComparedFit, FittedParameter, RigPrediction
 from sonolube.validation.run_conditions import RunsTable
 from sonolube.validation.runs_comparison import RunsPrediction

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from sonolube.laboratory.records import Run
 from sonolube.operating_system import quoted
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 
 def next_command(run: Run) -> str:

@@ -6,7 +6,7 @@ from sonolube.laboratory.records import Observation
 from sonolube.operating_system import quoted
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.ended_run import SIMULATED
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import si, unit_of
 
 _QUIET: Final = 5.0  # s without a block or event that are reported

@@ -7,7 +7,7 @@ import numpy as np
 from sonolube.prediction.rig_statement import interval
 from sonolube.prediction.scores import PROBABILITIES
 from sonolube.rig.datasets import LabelledArrays
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity
 
 HEADS: Final = ["", "median", *(f"{100 * probability:.0f} %" for probability in PROBABILITIES)]

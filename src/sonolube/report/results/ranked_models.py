@@ -4,7 +4,7 @@ from typing import Any
 
 from sonolube.report.results.model_comparison import by_reason, finite, parameter_object
 from sonolube.rig import Rig, steady_vibration
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.validation.ranked_models import RankedModel
 from sonolube.validation.runs_fit import RunsFit
 from sonolube.validation.separating_condition import NextCondition

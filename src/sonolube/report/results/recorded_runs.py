@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.laboratory.catalogue import CatalogueEntry
 from sonolube.laboratory.records import Note, Run
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

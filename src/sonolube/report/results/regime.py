@@ -4,7 +4,7 @@ from typing import Any, Final
 
 from sonolube.models.wear import WearMechanismAssessment
 from sonolube.rig import LubricationPoint
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
 _QUANTITIES: Final = ("vibration_amplitude", "sliding_speed", "nominal_pressure", "asperity_load_fraction")

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     from sonolube.rig import Rig

@@ -5,7 +5,7 @@ from typing import Any
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import PreviousStudy, Statement
 from sonolube.rig import Rig, friction_point
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint
 from sonolube.vocabulary import quantity, unit_of
 

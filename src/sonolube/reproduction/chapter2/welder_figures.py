@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from sonolube.checks import Floats
-from sonolube.compilation import few_points
+from sonolube.execution.compilation import few_points
 from sonolube.facts.published import PrintedNumber, published_number, si_value
 from sonolube.figure import COLOURS, LINES, ReportFigure, subplots
 from sonolube.measurement.gauge.calibration import PreisachCalibration, fit_branches, fit_preisach, force_from_preisach

@@ -19,7 +19,7 @@ from sonolube.dong2015.collar_designs import (
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.errors import MissingPackage
 from sonolube.facts.published import ComputedValue, published_value, si_value
-from sonolube.models.fem.solver.cad import cad_kernel
+from sonolube.models.fem.mesh.cad import cad_kernel
 from sonolube.reproduction.chapter4.collar import (
     LOAD_AT_ENDS,
     PULL_SPEED,

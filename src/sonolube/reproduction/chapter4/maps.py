@@ -21,7 +21,7 @@ from sonolube.reproduction.chapter4 import power_map
 from sonolube.reproduction.plots import draw_printed, single_axes
 from sonolube.reproduction.row import Row, RowKind, comparison_row, undetermined_row
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
-from sonolube.units import convert
+from sonolube.text.units import convert
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTH
 
 if TYPE_CHECKING:

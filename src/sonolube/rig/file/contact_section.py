@@ -14,7 +14,7 @@ from sonolube.rig.file.plausible import DECAY_LENGTHS
 from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.stated_surface import height_of_finish
 from sonolube.rig.record import DecayLengthOrigin
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 Text = Annotated[str, Field(min_length=1, max_length=1000)]
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_atomically
 from sonolube.rig.file.derived import ALTERNATIVES, DERIVED_SUMMITS, REPLACED, ROUGHNESS, TYPICAL
 from sonolube.rig.file.toml_file import prefixed
 from sonolube.rig.record import Rig
+from sonolube.storage.files import write_atomically
 
 
 @dataclass(frozen=True, slots=True)

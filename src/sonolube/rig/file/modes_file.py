@@ -11,8 +11,8 @@ from sonolube.errors import InvalidInput, suggestion
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.structures import MODE_LISTS
 from sonolube.rig.file.toml_file import prefixed, validated
-from sonolube.toml_text import read_toml, text_of
-from sonolube.units import convert
+from sonolube.text.toml_text import read_toml, text_of
+from sonolube.text.units import convert
 
 _UNITS = {"natural_frequency": "Hz", "damping_ratio": "", "drive_participation": "N/V", "contact_participation": ""}
 _ORIGIN = {"command", "frequency_error", "assumptions"}

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from sonolube.errors import InvalidInput
-from sonolube.units import format_si, to_si
+from sonolube.text.units import format_si, to_si
 
 LIMITS: Mapping[str, tuple[float, float]] = MappingProxyType(
     {

@@ -24,7 +24,7 @@ from sonolube.rig.file.structures import ModesSection, PinOnDiscSection
 from sonolube.rig.file.toml_file import prefixed, validated
 from sonolube.rig.file.uncertainty import distributions_of
 from sonolube.rig.record import Rig
-from sonolube.toml_text import read_toml, require_plain_content
+from sonolube.text.toml_text import read_toml, require_plain_content
 
 
 def read_rig(path: str | Path, *, changes: Sequence[str] = ()) -> Rig:

@@ -18,7 +18,7 @@ from pydantic_core import CoreSchema, core_schema
 from sonolube.errors import SonolubeError
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.plausible import require_plausible
-from sonolube.units import to_si, unit_description
+from sonolube.text.units import to_si, unit_description
 from sonolube.variants import VariantTable
 from sonolube.vocabulary import Quantity, quantities
 

@@ -13,7 +13,7 @@ from sonolube.models.surfaces import (
     rms_height_from_roughness_average,
     surface_finish,
 )
-from sonolube.units import format_si, to_si
+from sonolube.text.units import format_si, to_si
 
 FINISH_FORMS: Final = (
     "write a process, an ISO grade, both, Ra or Rz: 'ground', 'lapped', 'turned', 'N6', 'ground N6', 'Ra 0.4um',"

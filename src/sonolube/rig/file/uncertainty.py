@@ -12,7 +12,7 @@ from sonolube.rig.distribution import Distribution, Law, LogNormal, Normal, Unif
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile
 from sonolube.rig.file.toml_file import prefixed
-from sonolube.units import format_si, to_si
+from sonolube.text.units import format_si, to_si
 from sonolube.vocabulary import Quantity
 
 EXAMPLES = (

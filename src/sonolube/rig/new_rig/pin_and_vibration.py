@@ -11,7 +11,7 @@ from sonolube.errors import InvalidInput
 from sonolube.models.actuator import CatalogueActuator
 from sonolube.models.contact import SphereOnFlat, hertz_contact_radius
 from sonolube.rig.record import STATED
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _STATED_AMPLITUDE: Final = 0.15
 _DATA_SHEET_STROKE: Final = 0.3

@@ -20,7 +20,7 @@ from sonolube.rig.new_rig.pin_and_vibration import (
     StatedAmplitude,
     Vibration,
 )
-from sonolube.units import format_si, to_si
+from sonolube.text.units import format_si, to_si
 
 SHAPE_FORMS: Final = (
     "'flat' with its diameter or 'ball' with its radius: 'flat 3mm', 'ball 5mm', 'ball radius 5mm',"

@@ -14,7 +14,7 @@ from sonolube.tasks.files import NamedBytes
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, optional_rig
 from sonolube.tasks.task import task
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint, study_chart
 from sonolube.validation.study_table import studies_of_runs, study_table
 

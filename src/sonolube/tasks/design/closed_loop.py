@@ -7,7 +7,7 @@ from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
 from sonolube.tasks.parameters import Number, Parameter
 from sonolube.tasks.task import in_si, shown
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 Delay = Annotated[Number, Parameter("Delay of the friction measurement.", unit="s")]
 Rate = Annotated[Number, Parameter("Sampling rate of the controller.", unit="Hz")]

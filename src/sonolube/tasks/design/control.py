@@ -21,7 +21,7 @@ from sonolube.tasks.design.control_answer import ControlAnswer
 from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.validation.efficiency import efficiency_line
 
 # arguments without meaning for a commanded amplitude

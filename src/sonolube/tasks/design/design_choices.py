@@ -13,7 +13,7 @@ from sonolube.tasks.design.closed_loop import friction_force
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.ranges import Values, ends_by_key, values_by_key
 from sonolube.tasks.task import shown
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _WAVEFORM = "drive.waveform"
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")

@@ -33,7 +33,7 @@ from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown
-from sonolube.units import format_si, to_si
+from sonolube.text.units import format_si, to_si
 from sonolube.vocabulary import unit_of
 
 if TYPE_CHECKING:

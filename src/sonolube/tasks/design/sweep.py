@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from sonolube import design
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
 from sonolube.errors import InvalidInput
-from sonolube.files import expect_files
 from sonolube.models.dynamics.backend import usable_backend
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
 from sonolube.report.blocks import Block
 from sonolube.report.results.design import sweep as results
 from sonolube.rig import Rig, operating_caveats
+from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.design.parametric_study import ParametricStudyAnswer, parametric_study
 from sonolube.tasks.parameters import Backend, Keep, Parameter, RigFile, Stop, Watch, kept, rig_of

@@ -14,8 +14,8 @@ from sonolube.design.horns.tuning import HornDesign, face_motion, section_motion
 from sonolube.facts import materials
 from sonolube.facts.materials import Material
 from sonolube.models.fem import generate_mesh, medium_from_material, step_text
-from sonolube.models.fem.figures import mode_figure, shaped_surface
-from sonolube.models.fem.part_modes import longest_axis
+from sonolube.models.fem.results.figures import mode_figure, shaped_surface
+from sonolube.models.fem.results.part_modes import longest_axis
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
 from sonolube.report.results.parts import tuned_horn as results
@@ -25,7 +25,7 @@ from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
 from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,14 +12,14 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.fem import Transducer
-from sonolube.models.fem.figures import impedance_chart
-from sonolube.models.fem.impedance_spectra import (
+from sonolube.models.fem.results.figures import impedance_chart
+from sonolube.models.fem.results.impedance_spectra import (
     SupportedSpectrum,
     coupled_modes_grid,
     spectrum_table,
     supported_spectra,
 )
-from sonolube.models.fem.part_modes import longest_axis, starting_size
+from sonolube.models.fem.results.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
 from sonolube.report.results.parts import impedance_spectra as results

@@ -13,7 +13,7 @@ from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import shown, task
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -21,7 +21,7 @@ from sonolube.tasks.lab.run_record import ControlDoor, device_file, run_stage
 from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 
 
 @task

@@ -13,7 +13,7 @@ from sonolube.report.results import held_friction as results
 from sonolube.report.results.ended_run import SIMULATED
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -22,7 +22,7 @@ def actuators(
     Examples
     --------
     >>> import sonolube as sl
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(sl.actuators("sa050510")["stroke"].item(), "m")
     '14 um'
     """

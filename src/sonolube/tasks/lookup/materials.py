@@ -22,7 +22,7 @@ def materials(
     Examples
     --------
     >>> import sonolube as sl
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> format_si(sl.materials("aluminium_2024")["youngs_modulus"].item(), "Pa")
     '73 GPa'
     """

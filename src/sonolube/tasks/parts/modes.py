@@ -10,8 +10,8 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.models.fem import ConvergedModes
-from sonolube.models.fem.figures import ShapedSurface, mode_figure, shaped_surface
-from sonolube.models.fem.mode_files import (
+from sonolube.models.fem.results.figures import ShapedSurface, mode_figure, shaped_surface
+from sonolube.models.fem.results.mode_files import (
     SupportedBody,
     elastic_rows,
     mode_animation,
@@ -20,7 +20,7 @@ from sonolube.models.fem.mode_files import (
     shapes_table,
     structure_modes,
 )
-from sonolube.models.fem.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
+from sonolube.models.fem.results.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
 from sonolube.operating_system import quoted
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
@@ -104,7 +104,7 @@ def modes(
     Examples
     --------
     >>> import sonolube as sl
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> answer = sl.modes("block", sizes={"length": "20mm", "width": "5mm", "thickness": "5mm"})
     >>> format_si(float(answer["natural_frequency"].sel(mode="axial 1")), "Hz")  # half a wavelength on 20 mm of steel
     '124 kHz'

@@ -23,7 +23,7 @@ from sonolube.models.fem import (
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import shown
-from sonolube.units import to_si
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
 Part = Annotated[

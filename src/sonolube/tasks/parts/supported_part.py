@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from sonolube.models.fem import FixedSupport
-from sonolube.models.fem.part_modes import SupportedPart
+from sonolube.models.fem.results.part_modes import SupportedPart
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.parts.named_parts import (
     ALL_TRANSDUCERS,
@@ -14,7 +14,7 @@ from sonolube.tasks.parts.named_parts import (
     part_name,
     solid_medium,
 )
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity
 
 DEFAULT_MATERIAL = "stainless_steel_304"

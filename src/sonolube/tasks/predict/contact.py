@@ -22,7 +22,7 @@ def contact(
     Examples
     --------
     >>> import sonolube as sl
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> answer = sl.contact("examples/rigs/tribometer.toml")
     >>> format_si(float(answer["normal_stiffness"]), "N/m")  # 3 N over a decay length of 2 um
     '1.5 MN/m'

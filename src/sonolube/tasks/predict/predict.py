@@ -17,7 +17,7 @@ from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
 from sonolube.tasks.task import task
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

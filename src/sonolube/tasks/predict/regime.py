@@ -16,7 +16,7 @@ from sonolube.rig.figures import lubrication_chart
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
 from sonolube.tasks.task import in_si, plausible, shown, task
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,7 +16,7 @@ from sonolube.rig.result_datasets import response_arrays
 from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.parameters import Number, Parameter, RestingRig, rig_of
 from sonolube.tasks.task import in_si, shown, task
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 
 @task
@@ -33,7 +33,7 @@ def response(
     Examples
     --------
     >>> import sonolube as sl
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> answer = sl.response("examples/rigs/tribometer.toml", lowest="15kHz", highest="35kHz")
     >>> format_si(float(answer["amplitude_per_volt"].idxmax()), "Hz")  # the resonance
     '22 kHz'

@@ -10,7 +10,7 @@ from sonolube.report.results.measured_on_rig import Measurement
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays, result_quantities, result_texts
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.units import format_quantity, format_si
+from sonolube.text.units import format_quantity, format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:

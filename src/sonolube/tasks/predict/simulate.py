@@ -20,7 +20,7 @@ def simulate(rig: RigFile, *, progress: Watch = None, cancelled: Stop = None) ->
     Examples
     --------
     >>> import sonolube as sl
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> answer = sl.simulate("examples/rigs/tribometer.toml")
     >>> format_si(float(answer["mean_displacement"]), "m", digits=2)
     '720 nm'

@@ -47,7 +47,7 @@ def thermal(
     Examples
     --------
     >>> import sonolube as sl
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> answer = sl.thermal("examples/rigs/tribometer.toml", pin="stainless_steel_316", disc="aluminium_2024")
     >>> format_si(float(answer["frictional_heat_rate"]), "W", digits=2)  # 0.36 N at 20.3 mm/s
     '7.3 mW'

@@ -14,7 +14,7 @@ from sonolube.tasks.answer import Answer, answer, si
 from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, task
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 
 _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "beat_frequency")
 
@@ -34,7 +34,7 @@ def transient(
     Examples
     --------
     >>> import sonolube as sl
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> answer = sl.transient("examples/rigs/tribometer.toml", duration="20ms")
     >>> format_si(answer.object()["settling_time"]["value"], "s", digits=2)
     '1.2 ms'

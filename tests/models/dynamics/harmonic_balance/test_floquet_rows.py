@@ -8,7 +8,7 @@ from pytest import MonkeyPatch, approx
 from tests.models.dynamics.tribometer_chain import TRIBOMETER
 
 from sonolube.checks import Floats
-from sonolube.compilation import Kernel, few_points
+from sonolube.execution.compilation import Kernel, few_points
 from sonolube.models.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap, steady_state
 from sonolube.models.dynamics.harmonic_balance import solver
 from sonolube.models.dynamics.harmonic_balance.floquet_exponent import floquet_exponents

@@ -27,7 +27,7 @@ from sonolube.models.fem import (
     rectangular_section,
     ritz_frequencies,
 )
-from sonolube.models.fem.solver.grading import grade_reentrant_edges
+from sonolube.models.fem.mesh.grading import grade_reentrant_edges
 
 STEEL = isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.29, density=7900.0)
 

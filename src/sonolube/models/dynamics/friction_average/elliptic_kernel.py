@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sonolube.checks import Floats, Integers
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.friction_average.elliptic_quadrature import NODES_PER_PASS, EllipticNodes
 from sonolube.models.dynamics.kernels.contact_kernel import CompileTimeInt, LawParameters, contact_force_rows
 from sonolube.models.dynamics.kernels.simd import INLINED, INNER, KERNEL, LANES, block_maximum, gather

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sonolube.checks import Complexes, Floats, Integers
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.friction_average.elliptic_kernel import EQUILIBRIUM, LOAD, MEAN, OMEGA
 from sonolube.models.dynamics.kernels.contact_kernel import CompileTimeInt, LawParameters, contact_force
 from sonolube.models.dynamics.kernels.simd import ALLOCATING_KERNEL, INNER

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sonolube.checks import Floats, Integers
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.kernels.contact_kernel import (
     CompileTimeInt,
     LawParameters,

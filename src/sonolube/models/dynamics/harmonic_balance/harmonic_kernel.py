@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sonolube.checks import Floats, Integers
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.harmonic_balance.newton_kernel import newton_step
 from sonolube.models.dynamics.harmonic_balance.receptance import contact_receptances
 from sonolube.models.dynamics.kernels.contact_kernel import (

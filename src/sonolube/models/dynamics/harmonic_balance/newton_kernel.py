@@ -3,7 +3,7 @@
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.kernels.contact_kernel import CompileTimeInt
 from sonolube.models.dynamics.kernels.simd import INLINED, INNER, LANES, subtract_product
 

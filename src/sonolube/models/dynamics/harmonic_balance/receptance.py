@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.first_order_modes import first_order_modes
 from sonolube.models.dynamics.kernels.simd import INNER, LANES
 from sonolube.models.dynamics.linear import modes, static_contact

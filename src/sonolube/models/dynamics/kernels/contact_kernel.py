@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.kernels.force_table import log_force_at
 from sonolube.models.dynamics.kernels.simd import INNER, LANES, exponentials
 

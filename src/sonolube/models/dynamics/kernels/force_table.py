@@ -9,7 +9,7 @@ start of its piece.
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.kernels.simd import INNER, KERNEL
 
 _NEWTON_STEPS = 60

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.kernels.simd import INNER, KERNEL
 
 _WEAK_HARMONICS = 0.5  # sum of k^3 |X_k|, k > 1, over |X_1| up to which the velocity has one maximum and one minimum

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from sonolube.checks import Floats, Integers
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 
 LANES = 128
 """Points per block. []"""

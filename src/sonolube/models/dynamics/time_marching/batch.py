@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.execution.threads import thread_pool
 from sonolube.models.dynamics.first_order_modes import FirstOrderModes
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw
 from sonolube.models.dynamics.gap_laws.table import kernel_law
@@ -16,7 +17,6 @@ from sonolube.models.dynamics.time_marching.integrator import ExponentialIntegra
 from sonolube.models.dynamics.time_marching.marching_kernel import march_lanes
 from sonolube.models.dynamics.time_marching.row_layout import LANES, STATISTICS, row_layout
 from sonolube.models.dynamics.waveform import StartUpRamp, Waveform, jump_phases
-from sonolube.threads import thread_pool
 
 _BLOCK = 32 * LANES  # points whose integrators are in memory together
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.kernels.contact_kernel import EXPONENTIAL, HERTZ, LINEAR
 from sonolube.models.dynamics.kernels.force_table import log_force_at
 from sonolube.models.dynamics.time_marching.row_layout import LANES, STATISTICS, row_layout

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 
 LANES = 32
 """Trajectories marched side by side. []"""

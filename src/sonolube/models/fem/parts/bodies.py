@@ -9,8 +9,8 @@ import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.solver.cad import MILLIMETRE, cad_kernel
-from sonolube.models.fem.solver.geometry import Geometry, single_body
+from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel
+from sonolube.models.fem.mesh.geometry import Geometry, single_body
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

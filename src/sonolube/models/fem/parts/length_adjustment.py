@@ -3,9 +3,9 @@
 from typing import Any
 
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.solver.cad import MILLIMETRE, cad_kernel
-from sonolube.models.fem.solver.geometry import Geometry, single_body
-from sonolube.models.fem.solver.model import DIRECTIONS
+from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel
+from sonolube.models.fem.mesh.geometry import Geometry, single_body
+from sonolube.models.fem.mesh.mesh import DIRECTIONS
 
 _NO_CHANGE = 1e-6  # mm
 

@@ -4,9 +4,9 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
+from sonolube.models.fem.mesh.cad import MILLIMETRE
+from sonolube.models.fem.mesh.geometry import Geometry, single_body
 from sonolube.models.fem.parts.bodies import body_of_revolution, hexagon
-from sonolube.models.fem.solver.cad import MILLIMETRE
-from sonolube.models.fem.solver.geometry import Geometry, single_body
 
 _ELEMENT_WIDTH = 2.5  # of the largest element in a disc, over its thickness
 

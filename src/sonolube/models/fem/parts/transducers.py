@@ -16,12 +16,12 @@ import numpy as np
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material, piezo_ceramic
+from sonolube.models.fem.mesh.geometry import Geometry, bond, translate
+from sonolube.models.fem.mesh.mesh import DIRECTIONS, Mesh
 from sonolube.models.fem.parts.bodies import cylinder, ring
 from sonolube.models.fem.parts.stack_material import homogenised_stack
-from sonolube.models.fem.solver.geometry import Geometry, bond, translate
 from sonolube.models.fem.solver.medium import Medium, medium_from_material, poled_medium
-from sonolube.models.fem.solver.mesh import Mesh
-from sonolube.models.fem.solver.model import DIRECTIONS, Electrodes, FixedSupport, Model
+from sonolube.models.fem.solver.model import Electrodes, FixedSupport, Model
 from sonolube.models.fem.solver.reduction import Output, ReducedModel
 
 _RINGS = 8  # even, so that both ends of a stack are grounded; 0.5 % in frequency for a quarter wave

@@ -21,10 +21,10 @@ from scipy import sparse
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.solver.mapping import adjugate, determinant, jacobian_matrices
-from sonolube.models.fem.solver.mesh import Mesh
+from sonolube.models.fem.mesh.mapping import adjugate, determinant, jacobian_matrices
+from sonolube.models.fem.mesh.mesh import Mesh
+from sonolube.models.fem.mesh.simplex import lagrange_nodes, shape_functions, simplex_quadrature
 from sonolube.models.fem.solver.model import FaceSpring, Model
-from sonolube.models.fem.solver.simplex import lagrange_nodes, shape_functions, simplex_quadrature
 
 POTENTIAL_SCALE = 1e10
 """Volts per unit of the scaled potential, which makes elastic and dielectric matrices of comparable size."""

@@ -7,8 +7,8 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.solver.element_order import change_order
-from sonolube.models.fem.solver.grading import grade_reentrant_edges
+from sonolube.models.fem.mesh.element_order import change_order
+from sonolube.models.fem.mesh.grading import grade_reentrant_edges
 from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.modes import NaturalModes, NotConverged, natural_modes
 

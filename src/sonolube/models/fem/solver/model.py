@@ -7,11 +7,8 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.models.fem.mesh.mesh import DIRECTIONS, Mesh
 from sonolube.models.fem.solver.medium import Medium
-from sonolube.models.fem.solver.mesh import Mesh
-
-DIRECTIONS = "xyz"
-"""Names of the coordinate directions, in the order of the components of a vector."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

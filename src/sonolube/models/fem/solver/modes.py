@@ -7,8 +7,8 @@ from scipy import sparse
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.models.fem.solver.mesh import Mesh
-from sonolube.models.fem.solver.model import DIRECTIONS, Model
+from sonolube.models.fem.mesh.mesh import DIRECTIONS, Mesh
+from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.system import (
     LinearSolver,
     SystemMatrices,

@@ -16,7 +16,7 @@ from scipy.linalg.lapack import dpotrf
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.solver.mesh import Mesh
+from sonolube.models.fem.mesh.mesh import Mesh
 
 _LEAF = 320  # nodes of the elements, counted in each, of a part that is not bisected further
 _LEAST_PART = 0.2  # of the elements, in the smaller part of a bisection

@@ -14,8 +14,9 @@ from scipy import sparse
 
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
+from sonolube.models.fem.mesh.mesh import DIRECTIONS
 from sonolube.models.fem.solver.assembly import tributary_areas
-from sonolube.models.fem.solver.model import DIRECTIONS, Model
+from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.modes import NaturalModes, lanczos_modes, spectral_shift
 from sonolube.models.fem.solver.system import (
     LinearSolver,

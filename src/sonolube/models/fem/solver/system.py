@@ -21,8 +21,9 @@ from scipy.sparse.linalg import splu
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
+from sonolube.models.fem.mesh.mesh import DIRECTIONS
 from sonolube.models.fem.solver.assembly import POTENTIAL_SCALE, assemble_matrices
-from sonolube.models.fem.solver.model import DIRECTIONS, Model
+from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.multifrontal import multifrontal_factor, nested_dissection
 
 LinearSolver = Callable[[NDArray[Any]], NDArray[Any]]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.friction.laws.sampled_motion import integrate_rows, require_increasing
 
 

@@ -6,8 +6,8 @@ from math import ceil, cos, exp, hypot, pi, sin, sqrt
 import numpy as np
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
-from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import kernel
 from sonolube.models.friction.bristle import Holder
 from sonolube.models.friction.laws.dahl import DahlFriction
 from sonolube.models.friction.laws.lugre import LuGreFriction

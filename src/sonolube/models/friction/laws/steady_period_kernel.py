@@ -3,7 +3,7 @@
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 
 __all__: list[str] = []  # kernel of this room
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Complexes, Floats, Integers, require_positive
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.contact.contact_motion import ContactMotion, GapMotionBatch, gap_harmonics
 from sonolube.models.contact.height_distribution import ExponentialHeights
 from sonolube.models.contact.period_mean import richardson_period_mean

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Complexes, Floats, require_positive
-from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import kernel
 from sonolube.models.contact.contact_motion import GapMotionBatch
 from sonolube.models.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
 from sonolube.models.friction.models.asperity_stick_slip_table import LOG_BETA, sine_table

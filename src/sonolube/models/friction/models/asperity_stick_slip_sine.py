@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.contact.rough import RoughContact, decay_length, separation
 from sonolube.models.friction.oscillating_contact.stick_slip_phases import half_stick_phase
 from sonolube.models.friction.scaled_bessel import scaled_bessel_i0

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.compilation import kernel
+from sonolube.execution.compilation import kernel
 from sonolube.models.contact.contact_motion import ContactMotion
 from sonolube.models.contact.period_mean import richardson_period_mean
 from sonolube.models.contact.rough import RoughContact

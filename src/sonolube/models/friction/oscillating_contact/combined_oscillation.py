@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.compilation import INNER, kernel
 from sonolube.errors import InvalidInput, OutsideRange, warn_of_range
+from sonolube.execution.compilation import INNER, kernel
 from sonolube.models.friction.oscillating_contact.spring_contact import SpringContact
 
 _MAXIMUM_PERIODS = 2000

@@ -22,7 +22,7 @@ from math import acos, cos, pi, sin, sqrt
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.compilation import INNER, kernel
+from sonolube.execution.compilation import INNER, kernel
 
 __all__: list[str] = []  # kernels of this room
 

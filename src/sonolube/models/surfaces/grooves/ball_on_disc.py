@@ -66,7 +66,7 @@ def disc_volume_loss(*, groove_diameter: ArrayLike, groove_width: ArrayLike, tip
     Examples
     --------
     >>> from sonolube.models.surfaces import disc_volume_loss
-    >>> from sonolube.units import format_si
+    >>> from sonolube.text.units import format_si
     >>> volume = disc_volume_loss(groove_diameter=50e-3, groove_width=0.5e-3, tip_radius=5e-3)
     >>> format_si(float(volume), "m3")  # about pi D d^3/(12 r)
     '0.327 mm3'

@@ -18,7 +18,7 @@ from sonolube.design.control.stick_slip import StickSlipSuppression
 from sonolube.report.page import PageTable
 from sonolube.report.results.rig_text import amplitude_object
 from sonolube.rig import AMPLITUDE, Rig, operating_caveats
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
 _LEAST_GAIN_MARGIN = 1.7  # lower limit of textbooks

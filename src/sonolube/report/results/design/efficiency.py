@@ -3,7 +3,7 @@
 from typing import Any
 
 from sonolube.design.efficiency import EfficiencyCalibration
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
 _PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D

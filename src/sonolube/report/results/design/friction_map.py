@@ -12,7 +12,7 @@ from sonolube.report.results.design.status_tables import status_tables
 from sonolube.report.results.design.uncertainty import in_sentence
 from sonolube.report.results.rig_text import amplitude_object, amplitude_rows, friction_model_text, rig_settings
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity, si
 
 if TYPE_CHECKING:

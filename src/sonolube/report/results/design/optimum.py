@@ -7,7 +7,7 @@ from typing import Any, Final
 from sonolube.design.optimisation import OWN_ACTUATOR, DesignPoint, DriveElectronics, MatchedNetwork, Optimum, Tolerance
 from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.models.actuator import MatchingNetwork
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity, si
 
 _DESIGN_QUANTITIES = (

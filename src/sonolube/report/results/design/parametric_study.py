@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.design.point_statistics import extreme_place, extreme_point
 from sonolube.rig import energy_balance, quantity_of_axis
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity, si
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from sonolube.design.test_plan.plan import TestPlan
 from sonolube.design.test_plan.run_order import RunState
 from sonolube.facts.protocol import Limits
 from sonolube.rig import Rig
-from sonolube.units import format_like, format_si
+from sonolube.text.units import format_like, format_si
 from sonolube.vocabulary import si
 
 POINT_HEADS: Final = (

@@ -12,7 +12,7 @@ from sonolube.report.results.design.parametric_study import OUTCOMES, power_bala
 from sonolube.report.results.design.status_tables import failure_objects, status_tables
 from sonolube.report.results.rig_text import amplitude_object, amplitude_rows
 from sonolube.rig import Rig
-from sonolube.units import format_quantity
+from sonolube.text.units import format_quantity
 from sonolube.vocabulary import si
 
 if TYPE_CHECKING:

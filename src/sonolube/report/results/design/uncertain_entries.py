@@ -7,7 +7,7 @@ import numpy as np
 from sonolube.design.identified_structure import IdentifiedStructure
 from sonolube.design.uncertainty_summary import BAND
 from sonolube.rig import Distribution, Rig
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:

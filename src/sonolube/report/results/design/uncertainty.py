@@ -14,7 +14,7 @@ from sonolube.report.results.design.status_tables import failure_objects, status
 from sonolube.report.results.design.uncertain_entries import distributions, entry_rows, free_lines, posterior_object
 from sonolube.report.results.rig_text import amplitude_object, amplitude_rows, rig_settings
 from sonolube.rig import Rig
-from sonolube.units import format_quantity
+from sonolube.text.units import format_quantity
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:

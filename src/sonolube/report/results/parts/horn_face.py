@@ -8,7 +8,7 @@ from sonolube.report.blocks import Block, Rows
 from sonolube.reproduction.chapter2.horn_friction import FACE_END, FaceFriction, transition_region
 from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS
 from sonolube.reproduction.cube import Horn
-from sonolube.units import format_like
+from sonolube.text.units import format_like
 from sonolube.vocabulary import si
 
 

@@ -5,9 +5,9 @@ from typing import Any
 
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.fem import Transducer
-from sonolube.models.fem.impedance_spectra import SupportedSpectrum
+from sonolube.models.fem.results.impedance_spectra import SupportedSpectrum
 from sonolube.report.blocks import Block, Table
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
 _HEADS = ("mode", "f_s", "f_p", "k_eff", "tip per volt")

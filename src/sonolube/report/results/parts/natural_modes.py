@@ -4,8 +4,8 @@ import tomllib
 from typing import Any
 
 from sonolube.models.fem import ConvergedModes
-from sonolube.models.fem.mode_files import elastic_rows, frequency_text
-from sonolube.models.fem.part_modes import PartModes
+from sonolube.models.fem.results.mode_files import elastic_rows, frequency_text
+from sonolube.models.fem.results.part_modes import PartModes
 from sonolube.report.blocks import Block, Rows
 from sonolube.vocabulary import si
 

@@ -6,7 +6,7 @@ from typing import Any
 from sonolube.design.horns.tuning import HornDesign, amplitude_limits, loaded_frequency
 from sonolube.facts.materials import Material
 from sonolube.report.blocks import Block, Rows
-from sonolube.units import format_si
+from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
 _NEAREST = 3  # neighbouring modes printed

@@ -1,0 +1,1 @@
+"""Execution: compiled kernels and threads."""

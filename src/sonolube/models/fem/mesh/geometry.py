@@ -1,0 +1,200 @@
+"""Solid geometry in the CAD kernel: named single bodies, translation, bonded assemblies and STEP files.
+
+The CAD kernel works in mm, for which its tolerances are set; everything else is in m. Plane faces at the ends of a body
+along an axis are named "-x", "+x", "-y", "+y", "-z" and "+z", all others "side".
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from sonolube.errors import InvalidInput
+from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel, captured_output
+from sonolube.models.fem.mesh.step_trial import try_step_file
+
+_AXES = "xyz"
+_LEAST_VOLUME = 1e-9  # of the bounding box, below which a body counts as having no thickness
+_TIME_OF_WRITING = re.compile(r"(?<=')\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?=')")
+_NUMBER_OF_WRITING = re.compile(r"(?<= STEP translator )([\d.]+) \d+(?=')")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Geometry:
+    """Solid bodies with conforming shared faces where they touch.
+
+    Parameters
+    ----------
+    shape : netgen.occ.TopoDS_Shape
+        Solids with lengths in mm.
+    regions : tuple of str
+        Names of the bodies, in the order of the shape's solids.
+    """
+
+    shape: Any
+    regions: tuple[str, ...]
+
+    @property
+    def volume(self) -> float:
+        """Total volume of the bodies, in m3."""
+        return float(sum(solid.mass for solid in self.shape.solids)) * MILLIMETRE**3
+
+
+def read_step(path: Path) -> Geometry:
+    """Solids of a STEP file as a geometry, bonded where they touch.
+
+    Parameters
+    ----------
+    path : Path
+        The STEP file.
+
+    Returns
+    -------
+    Geometry
+        Regions carry the names of the solids in the file, "body1", "body2", ... where these have none.
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be read, contains no closed solid, or its solids overlap.
+
+    Notes
+    -----
+    The CAD kernel ends the program, or never ends, on some damaged files. A process of its own with limits of time and
+    memory reads the file first.
+    """
+    if not path.is_file():
+        raise InvalidInput(f"{path}: no such file")
+    cad_kernel()  # a package that is missing is said before the trial
+    try_step_file(path)
+    return unguarded_step_geometry(path)
+
+
+def unguarded_step_geometry(path: Path) -> Geometry:
+    """Solids of a STEP file as `read_step`, in this process, which a damaged file can end."""
+    occ = cad_kernel()
+    try:
+        with captured_output():
+            shape = occ.OCCGeometry(str(path)).shape
+    except Exception as failure:  # the kernel raises no narrower class
+        raise InvalidInput(f"{path}: not a STEP file that can be read: {failure}") from None
+    solids = list(shape.solids)
+    if not solids:
+        raise InvalidInput(f"{path}: no closed solid in it; sew its surfaces into one before exporting")
+    parts = {
+        solid.name or f"body{k}": single_body(solid, solid.name or f"body{k}") for k, solid in enumerate(solids, 1)
+    }
+    return bond(parts) if len(parts) > 1 else next(iter(parts.values()))
+
+
+def step_text(geometry: Geometry) -> str:
+    """Content of a STEP file of a geometry, in mm, without time and number of writing.
+
+    Parameters
+    ----------
+    geometry : Geometry
+
+    Returns
+    -------
+    str
+    """
+    with TemporaryDirectory() as folder, captured_output():
+        path = Path(folder) / "solid.step"
+        geometry.shape.WriteStep(str(path))
+        text = path.read_text(encoding="utf-8")
+    return _NUMBER_OF_WRITING.sub(r"\1", _TIME_OF_WRITING.sub("1970-01-01T00:00:00", text, count=1))
+
+
+def translate(geometry: Geometry, *, by: tuple[float, float, float]) -> Geometry:
+    """Geometry translated by a vector.
+
+    Parameters
+    ----------
+    geometry : Geometry
+    by : tuple of three float
+        Translation vector, in m.
+
+    Returns
+    -------
+    Geometry
+    """
+    shift = tuple(component / MILLIMETRE for component in by)
+    return Geometry(shape=geometry.shape.Move(shift), regions=geometry.regions)
+
+
+def bond(parts: Mapping[str, Geometry]) -> Geometry:
+    """Assembly of bodies perfectly bonded where they touch: their contact faces become shared.
+
+    Parameters
+    ----------
+    parts : mapping of str to Geometry
+        One body each, by the name of its region in the assembly.
+
+    Returns
+    -------
+    Geometry
+        Free faces are named "part.+z", "part.side" and so on, shared ones "one|other".
+
+    Raises
+    ------
+    InvalidInput
+        If bodies overlap, or a part is not one body.
+    """
+    occ, shapes = cad_kernel(), []
+    for name, part in parts.items():
+        if len(part.regions) != 1:
+            raise InvalidInput(f"{name} must be one body, got {len(part.regions)}")
+        solid = part.shape.solids[0]
+        for face in solid.faces:
+            face.name = f"{name}.{face.name or 'side'}"
+        shapes.append(solid.mat(name))
+    glued = occ.Glue(shapes)
+    names = [solid.name for solid in glued.solids]
+    sum_of_parts = sum(shape.mass for shape in shapes)  # the kernel's mass is the volume
+    total = sum(solid.mass for solid in glued.solids)
+    if sorted(names) != sorted(parts) or abs(total - sum_of_parts) > 1e-6 * sum_of_parts:
+        raise InvalidInput(f"the bodies {', '.join(parts)} overlap; move them apart until they only touch")
+    return Geometry(shape=glued, regions=tuple(names))
+
+
+def single_body(shape: Any, name: str) -> Geometry:
+    """Geometry of one closed body, with its end faces named.
+
+    Parameters
+    ----------
+    shape : netgen.occ.TopoDS_Shape
+        The body, with lengths in mm.
+    name : str
+        Name of its region.
+
+    Returns
+    -------
+    Geometry
+
+    Raises
+    ------
+    InvalidInput
+        If the shape is open, empty or in several pieces.
+    """
+    solids = list(shape.solids)
+    if len(solids) != 1:
+        raise InvalidInput(f"{name} must be one closed body with a volume, got {len(solids)} solids")
+    solid = solids[0]
+    low, high = (np.array([corner.x, corner.y, corner.z]) for corner in solid.bounding_box)
+    if not solid.mass > _LEAST_VOLUME * np.prod(high - low):
+        raise InvalidInput(f"{name} must be one closed body with a volume: it has no thickness, or its faces cut it")
+    for face in solid.faces:
+        centre = np.array([face.center.x, face.center.y, face.center.z])
+        ends = [(axis, end) for axis in range(3) for end in (low, high) if _is_at(centre, end, high - low, axis)]
+        face.name = ("+" if ends[0][1] is high else "-") + _AXES[ends[0][0]] if ends else "side"
+    return Geometry(shape=solid.mat(name), regions=(name,))
+
+
+def _is_at(centre: Any, end: Any, extent: Any, axis: int) -> bool:
+    """Whether a face's centre lies at one end of the bounding box along an axis."""
+    # The kernel enlarges the bounding box of curved bodies by a few thousandths of its size.
+    return bool(abs(centre[axis] - end[axis]) < 0.008 * extent[axis])

@@ -1,0 +1,1 @@
+"""Text: units and numbers with them, TOML, wrapping, and text of users made printable."""
