@@ -67,7 +67,7 @@ HOSTILE = (
 """Formulas, markup, control characters, bytes that are no UTF-8, and numbers and units without end."""
 
 _LONGEST = 5.0  # s of the processor, which other programs do not lengthen
-_LONGEST_FAULT, _MOST_FAULTS = 320, 21  # characters of a line, lines
+_LONGEST_FAULT, _MAX_FAULTS = 320, 21  # characters of a line, lines
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
@@ -132,4 +132,4 @@ def _outcome(code: int, answer: str, errors: str) -> str:
 def _are_faults(head: str, faults: list[str]) -> bool:
     """Whether what follows the line of a refusal is nothing, or its faults: at most 21 indented lines."""
     listed = all(line.startswith("  ") and len(line) < _LONGEST_FAULT for line in faults)
-    return not faults or (head.endswith(" faults") and len(faults) <= _MOST_FAULTS and listed)
+    return not faults or (head.endswith(" faults") and len(faults) <= _MAX_FAULTS and listed)

@@ -8,7 +8,7 @@ from sphinx.application import Sphinx
 
 _NAME = re.compile(r'(?<=<span class="pre">)[^<]+(?=</span>)')
 _SEPARATOR = re.compile(r"(?<=\w[_./=])(?=\w)")
-_MOST_COLUMNS = 4  # that fit a phone side by side
+_MAX_COLUMNS = 4  # that fit a phone side by side
 
 
 def allow_breaks(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
@@ -21,7 +21,7 @@ def label_cells(app: Sphinx, doctree: nodes.document, page: str) -> None:
     """Give the cells of wide tables the heads of their columns, which are shown where cells are stacked."""
     for table in doctree.findall(nodes.table):
         heads = [entry.astext() for head in table.findall(nodes.thead) for entry in head.findall(nodes.entry)]
-        if len(heads) > _MOST_COLUMNS:
+        if len(heads) > _MAX_COLUMNS:
             table["classes"].append("stacked")
             for row in (row for body in table.findall(nodes.tbody) for row in body.findall(nodes.row)):
                 for head, entry in zip(heads, row.children, strict=False):

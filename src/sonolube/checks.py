@@ -18,24 +18,12 @@ _DOUBLE = np.dtype(np.float64)
 
 
 def require_finite(**values: ArrayLike) -> Floats:
-    """Return the first value as a float array; refuse any that is not a finite number.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the argument, the first offending value and its unit.
-    """
+    """First value as a float array; refuse any that is not a finite number."""
     return _require(np.isfinite, "must be finite", values)
 
 
 def require_finite_complex(**values: ArrayLike) -> Complexes:
-    """Return the first value as a complex array; refuse any that is not a finite number, real or complex.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the argument, the first offending value and its unit.
-    """
+    """First value as a complex array; refuse any that is not a finite number, real or complex."""
     for name, value in values.items():
         for part in _parts(value):
             require_finite(**{name: part})
@@ -43,42 +31,24 @@ def require_finite_complex(**values: ArrayLike) -> Complexes:
 
 
 def require_positive(**values: ArrayLike) -> Floats:
-    """Return the first value as a float array; refuse any that is zero, negative or not finite.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the argument, the first offending value and its unit.
-    """
+    """First value as a float array; refuse any that is zero, negative or not finite."""
     return _require(lambda array: array > 0, "must be positive", values)
 
 
 def require_non_negative(**values: ArrayLike) -> Floats:
-    """Return the first value as a float array; refuse any that is negative or not finite.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the argument, the first offending value and its unit.
-    """
+    """First value as a float array; refuse any that is negative or not finite."""
     return _require(lambda array: array >= 0, "must not be negative", values)
 
 
 def require_within(lower: float, upper: float, /, **values: ArrayLike) -> Floats:
-    """Return the first value as a float array; refuse any outside the closed range from `lower` to `upper`.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the argument, the first offending value and its unit.
-    """
+    """First value as a float array; refuse any outside the closed range from `lower` to `upper`."""
     return _require(
         lambda array: (array >= lower) & (array <= upper), f"must lie between {lower:g} and {upper:g}", values
     )
 
 
 def _require(accepts: Callable[[Any], Any], demand: str, values: Mapping[str, Any]) -> Floats:
-    """Return the first value as a float array; refuse any value that is not finite or not accepted."""
+    """First value as a float array; refuse any value that is not finite or not accepted."""
     for name, value in values.items():
         # the common case of one number, in a tenth of the time
         number = value.item() if type(value) is np.ndarray and not value.ndim and value.dtype is _DOUBLE else value
@@ -99,7 +69,7 @@ def _refuse_unless(accepted: NDArray[np.bool_], array: Floats, name: str, demand
 
 
 def _floats(name: str, value: ArrayLike) -> Floats:
-    """Return a value as a float array; refuse what is not a number or an array of numbers."""
+    """Value as a float array; refuse what is not a number or an array of numbers."""
     try:
         array = np.asarray(value)
     except ValueError:
@@ -110,7 +80,7 @@ def _floats(name: str, value: ArrayLike) -> Floats:
 
 
 def _parts(value: ArrayLike) -> tuple[ArrayLike, ...]:
-    """Return the real and imaginary part of a complex value, or the value itself."""
+    """Real and imaginary part of a complex value, or the value itself."""
     try:
         array = np.asarray(value)
     except ValueError:

@@ -55,7 +55,7 @@ class SeveralFaults(InvalidInput):
         return [*self.faults, *([f"... and {self.rest} more"] if self.rest else [])]
 
     def at(self, place: str) -> "SeveralFaults":
-        """Return the same faults with a place before what has them."""
+        """Same faults with a place before what has them."""
         where = f"{place}: {self.where}".removesuffix(": ")
         return SeveralFaults(self.faults, rest=self.rest, where=where, keys=self.keys)
 
@@ -81,21 +81,7 @@ class UnknownName(SonolubeError, LookupError):
 
     @classmethod
     def among(cls, known: Iterable[str], *, kind: str, name: str) -> "UnknownName":
-        """Return the error for an unknown name, with the closest known name as a suggestion.
-
-        Parameters
-        ----------
-        known : iterable of str
-            Accepted names.
-        kind : str
-            Kind of thing that the name denotes, such as "material".
-        name : str
-            The unknown name.
-
-        Returns
-        -------
-        UnknownName
-        """
+        """Error for an unknown name, with the closest known name as a suggestion."""
         names = sorted(known)
         return cls(f"unknown {kind} {name!r}; {suggestion(name, names) or 'known: ' + ', '.join(names)}")
 
@@ -122,6 +108,6 @@ def warn_of_range(message: str, *, stacklevel: int = 2) -> None:
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """Return "did you mean ...?" with the closest known name, or an empty text if none is close."""
+    """ "did you mean ...?" with the closest known name, or an empty text if none is close."""
     close = get_close_matches(name.lower(), list(known), n=1, cutoff=0.6)
     return f"did you mean {close[0]}?" if close else ""

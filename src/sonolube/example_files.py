@@ -74,34 +74,14 @@ class ExampleFile:
 
 @cache
 def example_files() -> Mapping[str, ExampleFile]:
-    """Example files by name, rigs first, without those that only belong to another.
-
-    Returns
-    -------
-    mapping of str to ExampleFile
-    """
+    """Example files by name, rigs first, without those that only belong to another."""
     belonging = {other.path for each in _every() for other in each.companions()}
     own = (each for each in _every() if each.path not in belonging)
     return MappingProxyType({each.name: each for each in sorted(own, key=lambda each: (not each.is_rig, each.path))})
 
 
 def example_file(name: str) -> ExampleFile:
-    """Example file by its name, or by the path in a help text.
-
-    Parameters
-    ----------
-    name : str
-        Such as tribometer, facts/tribometer or examples/rigs/tribometer.toml.
-
-    Returns
-    -------
-    ExampleFile
-
-    Raises
-    ------
-    UnknownName
-        If there is none; the closest name is suggested.
-    """
+    """Example file by its name, or by the path in a help text."""
     known = example_files()
     by_path = {each.path: each for each in known.values()}
     found = known.get(name) or by_path.get(name)

@@ -113,21 +113,7 @@ EXTRAS: Mapping[str, Extra] = MappingProxyType({extra.name: extra for extra in _
 
 
 def missing_package(name: str, *, context: str = "", remedy: str = "") -> MissingPackage:
-    """Error of an optional part that is not installed, in one line with the command that installs it.
-
-    Parameters
-    ----------
-    name : str
-        Key of `EXTRAS`.
-    context : str
-        What is refused, such as the path of a file, before the line.
-    remedy : str
-        Another way out, such as "take PNG or PDF", after the line.
-
-    Returns
-    -------
-    MissingPackage
-    """
+    """Error of an optional part that is not installed, in one line with the command that installs it."""
     extra = EXTRAS[name]
     line = f"{extra.needed_by} need {extra.package}, which {extra.obstacle or f'is not installed: {extra.command}'}"
     line = f"{context}: {line}" if context else line[:1].lower() + line[1:]
@@ -145,10 +131,7 @@ def _is_found(module: str) -> bool:
 def required_packages() -> dict[str, str]:
     """Versions of the packages that are required.
 
-    Returns
-    -------
-    dict of str to str
-        By the name of the package; empty where one is missing.
+    By the name of the package; empty where one is missing.
     """
     required = [each for each in requires("sonolube") or () if "extra ==" not in each]
     names = sorted(re.split(r"[^\w.-]", each)[0] for each in required)

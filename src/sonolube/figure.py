@@ -133,18 +133,7 @@ class ReportFigure:
 
 @contextmanager
 def figure_style(style: str | None) -> Iterator[None]:
-    """Draw all figures of this context in a style.
-
-    Parameters
-    ----------
-    style : str or None
-        Key of `FIGURE_STYLES`; that in use where None.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such style.
-    """
+    """Draw all figures of this context in a style."""
     global _in_use
     if style is None:
         style = _in_use
@@ -159,18 +148,7 @@ def figure_style(style: str | None) -> Iterator[None]:
 
 @contextmanager
 def publication_style(style: str | None = None) -> Iterator[None]:
-    """Apply the style of sonolube to figures drawn in this context.
-
-    Parameters
-    ----------
-    style : str, optional
-        Key of `FIGURE_STYLES`; that of the context of `figure_style` where absent, "journal" without one.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such style.
-    """
+    """Apply the style of sonolube to figures drawn in this context."""
     import matplotlib as mpl
     from cycler import cycler
 
@@ -181,21 +159,7 @@ def publication_style(style: str | None = None) -> Iterator[None]:
 
 
 def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options: Any) -> tuple["Figure", Any]:
-    """New figure with axes, which no state of matplotlib keeps.
-
-    Parameters
-    ----------
-    rows, columns : int
-    figsize : (float, float)
-        Width and height in inches.
-    **options : object
-        Of `matplotlib.figure.Figure.subplots`, and its `width_ratios` and `height_ratios`.
-
-    Returns
-    -------
-    Figure
-    Axes or ndarray of Axes
-    """
+    """New figure with axes, which no state of matplotlib keeps."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=figsize)
@@ -203,21 +167,13 @@ def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], *
 
 
 def shown_in_notebooks(figure: "Figure") -> "Figure":
-    """Return the figure, which a notebook shows as a picture where it is the value of a cell."""
+    """Figure, which a notebook shows as a picture where it is the value of a cell."""
     figure._repr_png_ = partial(render_figure, figure, "png")  # type: ignore[attr-defined]
     return figure
 
 
 def fit_to_style(figure: "Figure") -> None:
-    """Give a figure the width of a column or of the page of the style in use, and no text below its least size.
-
-    Parameters
-    ----------
-    figure : Figure
-        Changed in place, before it is first rendered. It gets the width of a column if it was drawn no wider than 4.7
-        inches, else that of the page. Its height stays within the greatest one; where the figure is made narrower, it
-        falls by the root of the ratio, for text does not shrink.
-    """
+    """Give a figure the width of a column or of the page of the style in use, and no text below its least size."""
     from matplotlib.text import Text
 
     style = FIGURE_STYLES[_in_use]
@@ -231,27 +187,14 @@ def fit_to_style(figure: "Figure") -> None:
 
 
 def inches_in_print(inches: float) -> float:
-    """Return the width that a figure of a width in inches gets in a journal: that of a column or of the page."""
+    """Width that a figure of a width in inches gets in a journal: that of a column or of the page."""
     style = FIGURE_STYLES["journal"]
     return (style.column_width if inches <= _NARROW else style.page_width) / _INCH
 
 
 def render_figure(figure: "Figure", file_format: str, *, resolution: float | None = None) -> bytes:
-    """Return a figure as the content of a file, reproducible byte for byte.
+    """Figure as the content of a file, reproducible byte for byte.
 
-    Parameters
-    ----------
-    figure : Figure
-    file_format : {"png", "svg", "pdf"}
-    resolution : float, optional
-        Dots per inch, instead of those of the style.
-
-    Returns
-    -------
-    bytes
-
-    Notes
-    -----
     The first call computes the layout; later calls reuse it, and are much faster. Text is drawn as it is written,
     without formulas, and control characters as escapes.
     """
@@ -351,23 +294,5 @@ def _printable_name(formatter: "FuncFormatter", value: float, place: int | None 
 def write_figure(
     figure: "Figure", *, folder: Path, name: str, file_formats: tuple[str, ...] = ("png", "svg")
 ) -> list[Path]:
-    """Write a figure once in each file format and return the paths.
-
-    Parameters
-    ----------
-    figure : Figure
-    folder : Path
-    name : str
-        File name without suffix.
-    file_formats : tuple of str
-
-    Returns
-    -------
-    list of Path
-
-    Raises
-    ------
-    InvalidInput
-        If the folder cannot be written to.
-    """
+    """Write a figure once in each file format and return the paths."""
     return [write_atomically(folder / f"{name}.{each}", render_figure(figure, each)) for each in file_formats]

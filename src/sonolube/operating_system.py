@@ -30,48 +30,17 @@ _KEPT: list[object] = []  # callbacks that the system calls
 
 
 def replace_file(source: Path, target: Path) -> None:
-    """Rename a file to another, which it replaces; on Windows again for a second while somebody has it open.
-
-    Parameters
-    ----------
-    source, target : Path
-
-    Raises
-    ------
-    OSError
-        If that is impossible.
-    """
+    """Rename a file to another, which it replaces; on Windows again for a second while somebody has it open."""
     _patiently(lambda: source.replace(target))
 
 
 def remove_file(path: Path) -> None:
-    """Remove a file where it exists; on Windows again for a second while somebody has it open.
-
-    Parameters
-    ----------
-    path : Path
-
-    Raises
-    ------
-    OSError
-        If that is impossible.
-    """
+    """Remove a file where it exists; on Windows again for a second while somebody has it open."""
     _patiently(lambda: path.unlink(missing_ok=True))
 
 
 def lock_file(handle: int, *, wait: bool = False) -> bool | None:
-    """Whether an open file could be locked; None on a file system without locks.
-
-    Parameters
-    ----------
-    handle : int
-    wait : bool
-        Whether to wait for a process that has it locked; not on Windows.
-
-    Returns
-    -------
-    bool or None
-    """
+    """Whether an open file could be locked; None on a file system without locks."""
     try:
         if ON_WINDOWS:
             console = import_module("msvcrt")
@@ -89,14 +58,7 @@ def lock_file(handle: int, *, wait: bool = False) -> bool | None:
 def quoted(word: str) -> str:
     """Word of a command as it is typed, in quotes where the shell needs them.
 
-    Parameters
-    ----------
-    word : str
-
-    Returns
-    -------
-    str
-        For a POSIX shell; on Windows by the rules of its C runtime.
+    For a POSIX shell; on Windows by the rules of its C runtime.
     """
     return subprocess.list2cmdline([word]) if ON_WINDOWS else shlex.quote(word)
 
@@ -141,24 +103,11 @@ class TypedLines:
 def at_console_close(act: Callable[[str], None]) -> Callable[[], None]:
     """Call a function before Windows ends this process: its console is closed, the user logs off, it shuts down.
 
-    Parameters
-    ----------
-    act : callable
-        Takes what happens, such as "ended with its console". Runs in a thread of the system; the process ends when it
-        returns, or after five seconds.
+    Ends this.
 
-    Returns
-    -------
-    callable
-        Ends this.
+    Windows reports neither log-off nor shutdown to a console program that has loaded user32 or gdi32.
 
-    Notes
-    -----
-    Windows reports neither log-off nor shutdown to a console program that has loaded user32 or gdi32. [1]_
-
-    References
-    ----------
-    .. [1] Microsoft, "SetConsoleCtrlHandler function", Windows console documentation.
+    Source: Microsoft, "SetConsoleCtrlHandler function", Windows console documentation.
     """
     if not ON_WINDOWS:
         return lambda: None
@@ -183,17 +132,7 @@ def at_console_close(act: Callable[[str], None]) -> Callable[[], None]:
 
 
 def process_start(process: int) -> str:
-    """Time at which a process has started, as the system writes it; empty where there is none.
-
-    Parameters
-    ----------
-    process : int
-        Number, which a later process may get again.
-
-    Returns
-    -------
-    str
-    """
+    """Time at which a process has started, as the system writes it; empty where there is none."""
     if ON_WINDOWS:
         return _windows_process_start(process)
     with suppress(OSError, IndexError):

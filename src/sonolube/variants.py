@@ -48,7 +48,7 @@ class VariantTable(Mapping[str, Variant], Generic[Variant]):
         return len(self._places)
 
     def named(self, name: str) -> Variant:
-        """Return the variant of a name.
+        """Variant of a name.
 
         Parameters
         ----------

@@ -50,7 +50,7 @@ class Quantity:
 
 @cache
 def quantities() -> Mapping[str, Quantity]:
-    """Return all quantities of the vocabulary by name."""
+    """All quantities of the vocabulary by name."""
     text = files("sonolube").joinpath("vocabulary.toml").read_text(encoding="utf-8")
     return MappingProxyType({name: _quantity(name, **entry) for name, entry in tomllib.loads(text).items()})
 
@@ -61,20 +61,7 @@ def _quantity(name: str, *, also: Sequence[str] = (), **entry: str) -> Quantity:
 
 
 def quantity(name: str) -> Quantity:
-    """Return the quantity of a name.
-
-    Parameters
-    ----------
-    name : str
-
-    Returns
-    -------
-    Quantity
-
-    Raises
-    ------
-    UnknownName
-        If the vocabulary has no such quantity.
+    """Quantity of a name.
 
     Examples
     --------
@@ -89,7 +76,7 @@ def quantity(name: str) -> Quantity:
 
 
 def unit_of(name: str) -> str:
-    """Return the SI unit of a name; empty for pure numbers and for names that are not in the vocabulary.
+    """SI unit of a name; empty for pure numbers and for names that are not in the vocabulary.
 
     Examples
     --------
@@ -104,22 +91,7 @@ def unit_of(name: str) -> str:
 def si(values: Mapping[str, float | None], *, unit: str | None = None) -> dict[str, Any]:
     """Quantities for JSON, each as its value with its SI unit.
 
-    Parameters
-    ----------
-    values : mapping of str to float or None
-        By name.
-    unit : str, optional
-        Of all values; that of the vocabulary for each name where absent.
-
-    Returns
-    -------
-    dict
-        Such as {"normal_load": {"value": 3.0, "unit": "N"}}.
-
-    Raises
-    ------
-    UnknownName
-        If a name is not in the vocabulary and no unit is given.
+    Such as {"normal_load": {"value": 3.0, "unit": "N"}}.
     """
     return {
         name: {"value": value, "unit": quantity(name).unit if unit is None else unit} for name, value in values.items()

@@ -13,7 +13,7 @@ import pytest
 from scipy.io import savemat
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.limits import MOST_CHANNELS, MOST_VALUES, ClippedReader, require_values
+from sonolube.measurement.limits import MAX_CHANNELS, MAX_VALUES, ClippedReader, require_values
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.measurement.surface_files.reader import read_height_map
 
@@ -53,7 +53,7 @@ HOSTILE: dict[str, tuple[Callable[[Any], object], str]] = {
     "shape": (lambda f: f.create_dataset("x", (2 * 10**9,), "f8"), "dataset 'x': states 2000000000 values"),
     "chunks": (lambda f: f.create_dataset("x", (10**7,), "f8", chunks=(1,)), "states 10000000 chunks"),
     "one chunk": (lambda f: f.create_dataset("x", (9,), "f8", chunks=(10**8,), maxshape=(None,)), "one chunk: states"),
-    "zeros": (lambda f: f.create_dataset("x", data=np.zeros(MOST_VALUES + 1, "i1"), compression=1), "states 20000001"),
+    "zeros": (lambda f: f.create_dataset("x", data=np.zeros(MAX_VALUES + 1, "i1"), compression=1), "states 20000001"),
     "deflated twice": (twice_deflated, "compressed twice over"),
     "chunk bomb": (chunk_bomb, "the chunk from value 0 unpacks to more than it states"),
     "virtual": (virtual, "'x' is virtual"),
@@ -133,7 +133,7 @@ def test_a_matlab_variable_that_states_or_unpacks_to_too_much_is_refused(tmp_pat
     with pytest.raises(InvalidInput, match="'x' states 1000000000 values and holds 10"):
         read_recording(matlab(tmp_path / "states.mat", size=10**9, held=10))
     with pytest.raises(InvalidInput, match="variable 'x': unpacks to 160000001 bytes or more"):
-        read_recording(matlab(tmp_path / "bomb.mat", size=MOST_VALUES + 9, held=MOST_VALUES + 9))
+        read_recording(matlab(tmp_path / "bomb.mat", size=MAX_VALUES + 9, held=MAX_VALUES + 9))
 
 
 def test_values_that_are_stored_without_compression_are_within_the_limit(tmp_path: Path) -> None:
@@ -187,6 +187,6 @@ def test_more_columns_than_channels_may_be_are_refused(tmp_path: Path) -> None:
     from sonolube.measurement.impedance.reader import read_impedance
 
     path = tmp_path / "wide.csv"
-    path.write_text("f," * (MOST_CHANNELS + 1) + "\n1")
+    path.write_text("f," * (MAX_CHANNELS + 1) + "\n1")
     with pytest.raises(InvalidInput, match="has 10002 columns or more"):
         read_impedance(path)

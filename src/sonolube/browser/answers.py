@@ -36,13 +36,7 @@ def offered_tasks() -> tuple[Task, ...]:
 
 
 def offered_task(name: str) -> Task:
-    """Return the task of a name, of those that a page may call; no other is imported.
-
-    Raises
-    ------
-    UnknownName
-        If there is none.
-    """
+    """Task of a name, of those that a page may call; no other is imported."""
     found = next((task for task in TASKS if task.name == name), None)
     if found is None or not _is_offered(found):
         raise UnknownName.among([task.name for task in offered_tasks()], kind="task", name=name)
@@ -52,23 +46,7 @@ def offered_task(name: str) -> Task:
 def answered(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Answer of a task as an object for JSON.
 
-    Parameters
-    ----------
-    task : Task
-    arguments : mapping
-        By the names that the arguments have in Python. A rig is an object with the `name` of an example or its `text`,
-        and `changes` by dotted key; a file has a `name`, and the name of its `upload` or its base64 `content`.
-    places : Places
-
-    Returns
-    -------
-    dict
-        The answer's JSON, blocks of text, charts, caveats, assumptions and reasons of refused inputs.
-
-    Raises
-    ------
-    InvalidInput
-        In one line that names the argument, the value and the remedy.
+    The answer's JSON, blocks of text, charts, caveats, assumptions and reasons of refused inputs.
     """
     with given_arguments(task, arguments, places) as given:
         return answer_object(called(task, given))
@@ -246,7 +224,7 @@ def _texts(value: Any) -> "Iterator[str]":
 
 
 def positional(task: Task) -> list[str]:
-    """Return the names of the arguments that are given by place."""
+    """Names of the arguments that are given by place."""
     from inspect import Parameter as Argument, signature
 
     arguments = signature(task.function).parameters.values()

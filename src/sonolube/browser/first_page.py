@@ -28,7 +28,7 @@ def shipped_answers() -> dict[str, Any]:
 
 
 def shipped_answer(kind: str, payload: Mapping[str, Any]) -> bytes | None:
-    """Return the JSON of a shipped answer; None for any other request."""
+    """JSON of a shipped answer; None for any other request."""
     return json.dumps(shipped_answers()[kind]).encode() if REQUESTS.get(kind) == payload else None
 
 

@@ -107,13 +107,7 @@ class Jobs:
         return [self.job(name) for name in names]
 
     def job(self, name: str) -> Job:
-        """Record of a job.
-
-        Raises
-        ------
-        InvalidInput
-            If there is none of this name.
-        """
+        """Record of a job."""
         request = self._read(name, _REQUEST)
         if request is None:
             raise InvalidInput(f"there is no job {name[:60]!r}; it may have been deleted")
@@ -143,13 +137,7 @@ class Jobs:
         return path.read_bytes()
 
     def file(self, name: str, file: str) -> Path:
-        """Path of a file of the answer of a job.
-
-        Raises
-        ------
-        InvalidInput
-            If the answer has none of this name.
-        """
+        """Path of a file of the answer of a job."""
         self.job(name)
         folder = (self.folder / name / "files").resolve()
         path = (folder / file).resolve()
@@ -158,13 +146,7 @@ class Jobs:
         return path
 
     def cancel(self, name: str) -> Job:
-        """Stop a job within a second; what it computed is gone.
-
-        Raises
-        ------
-        InvalidInput
-            If another workbench of this user runs it.
-        """
+        """Stop a job within a second; what it computed is gone."""
         if self.job(name).state == "running elsewhere":
             raise InvalidInput("another workbench of yours runs this job; stop it there")
         if name in self._waiting:

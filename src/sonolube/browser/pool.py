@@ -99,23 +99,7 @@ class Pool:
         longest: float = _LONGEST,
         is_gone: Callable[[], Awaitable[bool]] | None = None,
     ) -> tuple[int, bytes]:
-        """Status and JSON of the answer to a request.
-
-        Parameters
-        ----------
-        kind : str
-            Of `KINDS`.
-        payload : mapping
-        places : Places
-        longest : float
-            Seconds, after which the worker is ended and a refusal is returned.
-        is_gone : callable
-            Asked now and then whether nobody waits for the answer any more; the worker is then ended.
-
-        Returns
-        -------
-        (int, bytes)
-        """
+        """Status and JSON of the answer to a request."""
         self._widen()
         place = await self._free.get()
         try:

@@ -78,22 +78,8 @@ class RigField:
 def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Rig of a request as an object for JSON.
 
-    Parameters
-    ----------
-    payload : mapping
-        With `rig`: name or text, and changes.
-    places : Places
-
-    Returns
-    -------
-    dict
-        Title, source, fields by table, what a drawing shows, assumptions, the rigs that may be chosen, and the studies
-        and maps that the rig has.
-
-    Raises
-    ------
-    InvalidInput
-        If the file or a change is refused.
+    Title, source, fields by table, what a drawing shows, assumptions, the rigs that may be chosen, and the studies and
+    maps that the rig has.
     """
     with ExitStack() as stack:
         path, changes = requested_file(payload.get("rig"), places, stack)
@@ -116,21 +102,7 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
 def rig_fields(
     content: Mapping[str, Any], original: Mapping[str, Any], assumptions: Mapping[str, str]
 ) -> Iterator[RigField]:
-    """Entries of a rig file as fields.
-
-    Parameters
-    ----------
-    content : mapping
-        As `rig_content` returns it.
-    original : mapping
-        The same without changes, about whose values sliders run.
-    assumptions : mapping of str to str
-        Reasons by key.
-
-    Yields
-    ------
-    RigField
-    """
+    """Entries of a rig file as fields."""
     before = dict(_entries(original))
     for key, value in _entries(content):
         name = key.rpartition(".")[2]

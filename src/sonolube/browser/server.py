@@ -140,13 +140,7 @@ def _listening(host: str, port: int) -> socket.socket:
 
 
 def token_of_file(path: Path) -> str:
-    """Token in a file that only its owner can read.
-
-    Raises
-    ------
-    InvalidInput
-        If others can read it, or it is shorter than 32 characters.
-    """
+    """Token in a file that only its owner can read."""
     try:
         text = path.read_text(encoding="utf-8").strip()
     except OSError as failure:

@@ -37,17 +37,7 @@ class _Kept:
 
 
 async def static_file(request: Request) -> Response:
-    """File below `static` of a request, by its path; 404 where there is none, 304 where the browser has it.
-
-    Parameters
-    ----------
-    request : Request
-        With a path parameter `name`.
-
-    Returns
-    -------
-    Response
-    """
+    """File below `static` of a request, by its path; 404 where there is none, 304 where the browser has it."""
     name = request.path_params["name"]
     if name not in _names():
         return Response("There is no such file.", status_code=404, media_type="text/plain")

@@ -28,21 +28,7 @@ _NOTEBOOK: Final = {"nbformat": 4, "nbformat_minor": 5, "metadata": {"language_i
 def taken(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """File to take away.
 
-    Parameters
-    ----------
-    payload : mapping
-        With `form`, `task` and `arguments`.
-    places : Places
-
-    Returns
-    -------
-    dict
-        Its name, kind of content, and text. Command line and Python name the files that have to lie beside them.
-
-    Raises
-    ------
-    InvalidInput
-        If the task refuses its arguments, or has nothing of this form.
+    Its name, kind of content, and text. Command line and Python name the files that have to lie beside them.
     """
     task, form = offered_task(str(payload.get("task", ""))), str(payload.get("form", ""))
     if form not in _FORMS:
@@ -108,23 +94,7 @@ def rig_toml(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[s
 
 
 def changed_text(text: str, changes: Mapping[str, str]) -> str:
-    """Return the text of a rig file with some entries replaced, its comments kept.
-
-    Parameters
-    ----------
-    text : str
-    changes : mapping of str to str
-        Values by dotted key.
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    InvalidInput
-        If a key is none of a rig file.
-    """
+    """Text of a rig file with some entries replaced, its comments kept."""
     import tomlkit
 
     from sonolube.rig.file.entries import set_entry

@@ -29,21 +29,7 @@ class Uploads:
     async def keep(self, content: AsyncIterator[bytes], *, length: int | None) -> str:
         """Write a file as its bytes come in.
 
-        Parameters
-        ----------
-        content : async iterator of bytes
-        length : int or None
-            As announced.
-
-        Returns
-        -------
-        str
-            Its name here.
-
-        Raises
-        ------
-        InvalidInput
-            If it is too large; nothing of it is kept.
+        Its name here.
         """
         if length is not None and length > self._largest:
             raise InvalidInput(self._refusal(length))

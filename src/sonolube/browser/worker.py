@@ -33,17 +33,7 @@ def limit_process(*, memory: int = 2 * _GIBIBYTE, file_size: int = _GIBIBYTE, cp
 
 
 def serve(connection: Connection, folder: str, warm: Connection) -> None:
-    """Answer requests from a connection until it ends.
-
-    Parameters
-    ----------
-    connection : Connection
-        Sends (kind, payload, places), gets (status, JSON as bytes).
-    folder : str
-        Empty one, in which relative names of requests lie.
-    warm : Connection
-        Gets one message once what most requests need is imported.
-    """
+    """Answer requests from a connection until it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends its workers
     os.chdir(folder)
     limit_process()
@@ -87,7 +77,7 @@ def reply(kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, b
 
 
 def encoded(content: Any) -> bytes:
-    """Return JSON as bytes; numbers that JSON lacks become null."""
+    """JSON as bytes; numbers that JSON lacks become null."""
     try:
         return json.dumps(content, allow_nan=False).encode()
     except ValueError:

@@ -286,7 +286,7 @@ class Chart:
     shares_y: bool = False
 
     def with_parts(self, place: int, *parts: Part) -> "Chart":
-        """Return the chart with further parts in one of its panels."""
+        """Chart with further parts in one of its panels."""
         changed = replace(self.panels[place], parts=(*self.panels[place].parts, *parts))
         return replace(self, panels=(*self.panels[:place], changed, *self.panels[place + 1 :]))
 

@@ -14,7 +14,7 @@ _DIGITS = 6  # significant ones, more than a screen resolves
 
 
 def chart_object(chart: Chart) -> dict[str, Any]:
-    """Return a chart as an object for JSON.
+    """Chart as an object for JSON.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def chart_object(chart: Chart) -> dict[str, Any]:
 
 
 def chart_tables(chart: Chart) -> list[dict[str, Any]]:
-    """Return the numbers of a chart as tables, one for each part with numbers.
+    """Numbers of a chart as tables, one for each part with numbers.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def _numbers(values: Any) -> Any:
 
 
 def colour_code(colour: int | str) -> str:
-    """Return a colour as "#rrggbb"."""
+    """Colour as "#rrggbb"."""
     if isinstance(colour, int):
         return COLOURS[colour % len(COLOURS)].lower()
     return "#" + f"{round(255 * float(colour)):02x}" * 3

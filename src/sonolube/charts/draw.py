@@ -25,8 +25,8 @@ _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MARKER = 4.5  # points
 _NUMBER_WIDTH, _NUMBER_HEIGHT = 0.38, 0.22  # inches that a number at a tick takes
 _RATIO = 3.0  # of the ends of a logarithmic axis, below which also 1.2, 1.4, ... are numbered
-_MOST_EDGED = 30  # bars
-_MOST_WIDE = 70  # characters of a line of a title per 5 inches
+_MAX_EDGED = 30  # bars
+_MAX_WIDE = 70  # characters of a line of a title per 5 inches
 
 
 def draw_chart(chart: Chart) -> "Figure":
@@ -254,7 +254,7 @@ def _bars(part: Bars, axes: "Axes") -> None:
         color=_colour(part.colour),
         hatch=part.hatch or None,
         edgecolor="white",
-        linewidth=1.0 if len(part.places) <= _MOST_EDGED else 0.0,
+        linewidth=1.0 if len(part.places) <= _MAX_EDGED else 0.0,
         error_kw={"elinewidth": 1, "capsize": 2},
         label=part.label or None,
         **{f"{part.along}err": part.error},
@@ -393,5 +393,5 @@ def _draw_texts(figure: "Figure", grid: Any, chart: Chart) -> None:
 
 def _wrapped(text: str, width: float) -> str:
     """Title in lines that fit a width in inches."""
-    most = max(14, int(_MOST_WIDE * width / 5))
+    most = max(14, int(_MAX_WIDE * width / 5))
     return "\n".join(part for line in text.split("\n") for part in wrap(line, most) or [""])

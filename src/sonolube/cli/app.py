@@ -31,17 +31,7 @@ _MISSING_FILE = re.compile(r"(examples/[\w./-]+): (?:cannot be read: )?no such f
 
 
 def program(arguments: Sequence[str]) -> typer.Typer:
-    """Program with all commands of the table, of which only the one that is called is imported.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        Arguments of the program, which begin with the name of a command.
-
-    Returns
-    -------
-    typer.Typer
-    """
+    """Program with all commands of the table, of which only the one that is called is imported."""
     words = [*arguments, *_words_to_complete()]
     called = [command for command in COMMANDS if _is_called(command, words)] or COMMANDS
     app = typer.Typer(

@@ -79,21 +79,7 @@ def command_of(
 ) -> Callable[..., None]:
     """Function of a command by its task, as typer reads it.
 
-    Parameters
-    ----------
-    task : Task
-    more : sequence of Extra
-        Arguments that only the terminal has.
-    complete : callable, optional
-        Returns the arguments of the task from those that were given and everything that was typed; none is required of
-        typer then.
-    delivery : callable, optional
-        Called with the answer and everything that was typed, in place of `deliver`.
-
-    Returns
-    -------
-    callable
-        With the arguments of the task, those of the rig's file, and those of the delivery.
+    With the arguments of the task, those of the rig's file, and those of the delivery.
     """
     function = task.function
     marks = marks_of(function)

@@ -44,13 +44,7 @@ class ChunkStore:
 
     @contextmanager
     def opened(self) -> Iterator[None]:
-        """Lock the folder inside a `with` block; create its manifest, or check that it is of the same sweep.
-
-        Raises
-        ------
-        InvalidInput
-            If another process sweeps into the folder, or it holds another sweep.
-        """
+        """Lock the folder inside a `with` block; create its manifest, or check that it is of the same sweep."""
         with locked_folder(self.folder, purpose="sweep"):
             self._check_manifest()
             clear_unfinished(self.folder, *_EARLIER)
@@ -68,13 +62,7 @@ class ChunkStore:
         return batch
 
     def write(self, chunk: int, batch: PointBatch) -> None:
-        """Write a chunk to its file.
-
-        Raises
-        ------
-        InvalidInput
-            If the folder cannot be written to.
-        """
+        """Write a chunk to its file."""
         content = _encoded(batch)
         write_atomically(self.folder / _file_name(chunk, content), content)
 

@@ -70,32 +70,6 @@ def calibrate_efficiency(
 ) -> EfficiencyCalibration:
     r"""Least-squares line of the efficiency coefficient over sliding speed, and the power for a target friction.
 
-    Parameters
-    ----------
-    rig : Rig
-        Gives load, nominal area and intrinsic friction where the runs do not.
-    runs : xarray.Dataset
-        Over `run`, with `friction_reduction`, `sliding_speed` and `actuator_power`.
-    friction_force : float or None
-        Target of the friction. [N]
-    sliding_speed : float or None
-        Sliding speed of that target; the rig's where absent. [m/s]
-    confidence_level : float
-        Of the bands and of the interval of the power. []
-
-    Returns
-    -------
-    EfficiencyCalibration
-
-    Raises
-    ------
-    InvalidInput
-        If a column is missing, or the runs determine no line.
-    OutsideRange
-        If the speed is beyond those of the runs.
-
-    Notes
-    -----
     The efficiency coefficient of a run (D 4.1), with nominal area A_n, load F_N and power P, is
 
     .. math:: e = \frac{(F_{t0} - F_t)\,v\,A_n}{F_N\,P}
@@ -152,14 +126,7 @@ def calibrate_efficiency(
 def efficiency_dataset(calibration: EfficiencyCalibration) -> "xr.Dataset":
     """Efficiency line with its confidence band and the prediction band of one more run, over sliding speed.
 
-    Parameters
-    ----------
-    calibration : EfficiencyCalibration
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `sliding_speed`, from the lowest to the highest speed of the runs.
+    Over `sliding_speed`, from the lowest to the highest speed of the runs.
     """
     fit = calibration.fit
     v = np.linspace(fit.lowest_speed, fit.highest_speed, _SPEEDS)

@@ -7,16 +7,7 @@ _PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
 
 
 def efficiency_chart(calibration: EfficiencyCalibration) -> Chart:
-    """Efficiency coefficients of runs over sliding speed, with the line, its band and the prediction band.
-
-    Parameters
-    ----------
-    calibration : EfficiencyCalibration
-
-    Returns
-    -------
-    Chart
-    """
+    """Efficiency coefficients of runs over sliding speed, with the line, its band and the prediction band."""
     line = efficiency_dataset(calibration)
     v = 1e3 * line["sliding_speed"].values
     level = f"{100 * calibration.confidence_level:g} %"

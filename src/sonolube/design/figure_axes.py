@@ -16,18 +16,7 @@ _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)  # between contour levels, times a power of 
 def scaled_axis(name: str, values: ArrayLike) -> tuple[float, Axis]:
     """Scale from SI to a unit that suits the values of a quantity, and the axis in that unit.
 
-    Parameters
-    ----------
-    name : str
-        Of a quantity of the vocabulary; another name is its own label.
-    values : array_like, any shape
-        In SI.
-
-    Returns
-    -------
-    scale : float
-    axis : Axis
-        Such as "Sliding speed" in "mm/s"; logarithmic where the values are a geometric sequence.
+    `axis`: Such as "Sliding speed" in "mm/s"; logarithmic where the values are a geometric sequence.
     """
     array = np.asarray(values, dtype=np.float64)
     known = quantities().get(name)
@@ -50,17 +39,7 @@ def scaled_axis(name: str, values: ArrayLike) -> tuple[float, Axis]:
 def contour_levels(values: Floats, *, steps: int = 18) -> Floats:
     """Round levels of contours about all known values, ascending by equal steps.
 
-    Parameters
-    ----------
-    values : ndarray, any shape
-        NaN where not known.
-    steps : int
-        Greatest number of steps between the ends of the values.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Two at least.
+    Two at least.
     """
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)

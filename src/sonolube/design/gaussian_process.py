@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 from sonolube.checks import Floats, require_finite, require_non_negative
 from sonolube.errors import InvalidInput
 
-FEWEST_RUNS = 6
+MIN_RUNS = 6
 """Least number of measured runs that are interpolated."""
 
 # logarithms of the hyperparameters: both length scales, signal variance, noise variance
@@ -112,8 +112,8 @@ def gaussian_process_map(
         )
     if not (np.isfinite(x).all() and np.isfinite(x_star).all()):
         raise InvalidInput("runs and points must be finite")
-    if z.size < FEWEST_RUNS:
-        raise InvalidInput(f"a map needs {FEWEST_RUNS} runs or more, got {z.size}")
+    if z.size < MIN_RUNS:
+        raise InvalidInput(f"a map needs {MIN_RUNS} runs or more, got {z.size}")
     centre, width = x.mean(axis=0), x.std(axis=0)
     if not np.all(width > 0):
         raise InvalidInput("all runs agree in a coordinate: a map needs runs that differ in both")

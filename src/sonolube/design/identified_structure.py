@@ -34,26 +34,7 @@ class IdentifiedStructure:
 def identified_structure(
     rig: Rig, *, seed: int, advance: Callable[[int, int], None] | None = None
 ) -> IdentifiedStructure:
-    """Posterior of the tribometer's masses, springs and dampers, given the published facts that are consistent.
-
-    Parameters
-    ----------
-    rig : Rig
-        With the tribometer's stack.
-    seed : int
-        Of identification and draws.
-    advance : callable, optional
-        Called with the number of facts done and their total.
-
-    Returns
-    -------
-    IdentifiedStructure
-
-    Raises
-    ------
-    InvalidInput
-        If the rig has another stack.
-    """
+    """Posterior of the tribometer's masses, springs and dampers, given the published facts that are consistent."""
     stack, test = rig.stack, tribometer_test()
     if stack is None or not all(
         own == expected or (own and expected and abs(own / expected - 1) < _STACK_TOLERANCE)

@@ -48,16 +48,8 @@ def map_layout(computed: "xr.Dataset") -> tuple[str, str, str | None]:
 def same_panels(computed: "xr.Dataset") -> bool:
     """Whether every panel of a map shows the same friction reduction.
 
-    Parameters
-    ----------
-    computed : xarray.Dataset
-        Result of a function of `MAPS`.
-
-    Returns
-    -------
-    bool
-        True where the panels, of which there are several, differ nowhere by more than 0.005, a tenth of a contour step,
-        and lack a result at the same points.
+    True where the panels, of which there are several, differ nowhere by more than 0.005, a tenth of a contour step, and
+    lack a result at the same points.
     """
     panel = map_layout(computed)[2]
     if panel is None or computed.sizes[panel] < 2:
@@ -70,17 +62,7 @@ def same_panels(computed: "xr.Dataset") -> bool:
 
 
 def panels_text(computed: "xr.Dataset") -> str:
-    """Sentence that stands for the panels of a map where all are the same; empty where they differ.
-
-    Parameters
-    ----------
-    computed : xarray.Dataset
-        Result of a function of `MAPS`.
-
-    Returns
-    -------
-    str
-    """
+    """Sentence that stands for the panels of a map where all are the same; empty where they differ."""
     if not same_panels(computed):
         return ""
     panel = map_layout(computed)[2]

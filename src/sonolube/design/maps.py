@@ -362,23 +362,8 @@ def map_kinds(quantity: CommandedQuantity) -> tuple[str, ...]:
 def default_axes(rig: Rig, *, kind: str) -> dict[str, Floats]:
     """Values of every axis of a map about the operating point of a rig.
 
-    Parameters
-    ----------
-    rig : Rig
-        With a drive.
-    kind : str
-        One of `map_kinds` of its commanded quantity.
-
-    Returns
-    -------
-    dict of str to ndarray
-        By quantity: speeds from 10 to 200 mm/s, loads from 0.6 to 1.8 of the rig's, voltages or amplitudes up to the
-        rig's, frequencies within a fifth of the rig's.
-
-    Raises
-    ------
-    InvalidInput
-        If the map is over frequency and the rig has none.
+    By quantity: speeds from 10 to 200 mm/s, loads from 0.6 to 1.8 of the rig's, voltages or amplitudes up to the rig's,
+    frequencies within a fifth of the rig's.
     """
     quantity, own = commanded_quantity(rig), own_level(rig)
     wanted = inspect.signature(MAPS[kind]).parameters

@@ -9,36 +9,14 @@ if TYPE_CHECKING:
 
 
 def status_counts(points: "xr.Dataset") -> dict[str, int]:
-    """Number of points of each status.
-
-    Parameters
-    ----------
-    points : xarray.Dataset
-        With `status` as text, or as a code that its attribute `flag_meanings` names.
-
-    Returns
-    -------
-    dict of str to int
-    """
+    """Number of points of each status."""
     values, counts = np.unique(points["status"].values, return_counts=True)
     names = points["status"].attrs.get("flag_meanings", "").split()
     return {str(names[value] if names else value): int(count) for value, count in zip(values, counts, strict=True)}
 
 
 def failure_counts(points: "xr.Dataset", *, outcome: str) -> dict[str, int]:
-    """Number of points without a result, by the reason.
-
-    Parameters
-    ----------
-    points : xarray.Dataset
-        With `reason` as text, or as a code that indexes `reason_text`.
-    outcome : str
-        Variable that is NaN where a point has no result.
-
-    Returns
-    -------
-    dict of str to int
-    """
+    """Number of points without a result, by the reason."""
     failed = np.isnan(points[outcome].values)
     reasons, counts = np.unique(points["reason"].values[failed], return_counts=True)
     if "reason_text" in points:
@@ -49,18 +27,7 @@ def failure_counts(points: "xr.Dataset", *, outcome: str) -> dict[str, int]:
 def extreme_place(points: "xr.Dataset", *, outcome: str, highest: bool = False) -> int | None:
     """Flat index of the point at which an outcome is least or greatest.
 
-    Parameters
-    ----------
-    points : xarray.Dataset
-    outcome : str
-        Variable over all dimensions of the points.
-    highest : bool
-        Whether the greatest value is sought rather than the least.
-
-    Returns
-    -------
-    int or None
-        In row-major order; None where no point has a result.
+    In row-major order; None where no point has a result.
     """
     values = points[outcome].values
     if np.isnan(values).all():
@@ -71,18 +38,7 @@ def extreme_place(points: "xr.Dataset", *, outcome: str, highest: bool = False) 
 def extreme_point(points: "xr.Dataset", *, outcome: str, highest: bool = False) -> "xr.Dataset | None":
     """Point at which an outcome is least or greatest.
 
-    Parameters
-    ----------
-    points : xarray.Dataset
-    outcome : str
-        Variable over all dimensions of the points.
-    highest : bool
-        Whether the greatest value is sought rather than the least.
-
-    Returns
-    -------
-    xarray.Dataset or None
-        The dataset at that point; None where no point has a result.
+    The dataset at that point; None where no point has a result.
     """
     place = extreme_place(points, outcome=outcome, highest=highest)
     if place is None:

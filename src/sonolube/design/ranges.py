@@ -19,24 +19,7 @@ _COUNT = re.compile(r"\d{1,18}")
 def values_of(key: str, text: str, *, option: str = "over") -> "Values":
     """Values of a key of a rig file: first:last:count, first:last:count:log or one,two,...
 
-    Parameters
-    ----------
-    key : str
-        Dotted, such as "drive.frequency".
-    text : str
-        Quantities with their units, or words for keys that are no quantity.
-    option : str
-        How a message calls what was given.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Numbers in SI, or text.
-
-    Raises
-    ------
-    InvalidInput
-        If the text cannot be read.
+    Numbers in SI, or text.
     """
     import numpy as np
 
@@ -58,24 +41,7 @@ def values_of(key: str, text: str, *, option: str = "over") -> "Values":
 def ends_of(key: str, text: str, *, option: str = "over") -> tuple[float, float]:
     """Lowest and highest value of a key of a rig file: first:last.
 
-    Parameters
-    ----------
-    key : str
-        Dotted, such as "drive.frequency".
-    text : str
-        Two quantities with their units.
-    option : str
-        How a message calls what was given.
-
-    Returns
-    -------
-    low, high : float
-        In SI.
-
-    Raises
-    ------
-    InvalidInput
-        If the text cannot be read.
+    In SI.
     """
     parts = text.split(":")
     if len(parts) != 2:

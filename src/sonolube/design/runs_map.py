@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.gaussian_process import FEWEST_RUNS, gaussian_process_map
+from sonolube.design.gaussian_process import MIN_RUNS, gaussian_process_map
 from sonolube.design.map_layouts import MAP_LAYOUTS, map_layout, same_panels
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import run_caveats
@@ -24,56 +24,23 @@ _UNCERTAINTY = "friction_reduction_uncertainty"
 
 
 def require_mappable(runs: "xr.Dataset", *, kind: str, commanded: CommandedQuantity) -> None:
-    """Raise if measured runs cannot be drawn on a kind of map.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`, as `read_runs` returns them.
-    kind : str
-        Key of `MAP_LAYOUTS`, such as "velocity-power".
-    commanded : CommandedQuantity
-        Of the rig of the map.
-
-    Raises
-    ------
-    InvalidInput
-        If a column of an axis is missing, or the runs are of several panels.
-    """
+    """Raise if measured runs cannot be drawn on a kind of map."""
     across, up, panel = MAP_LAYOUTS[kind]
     panel = commanded.name if panel == VOLTAGE.name else panel
     for axis in (across, up):
         if axis not in runs and _STAND_INS.get(axis) not in runs and axis not in _BY_THE_RIG:
             raise InvalidInput(f"measured runs need a column {axis} for a {kind} map")
     several = panel is not None and panel in runs and np.unique(runs[panel].values).size > 1
-    if several and runs.sizes["run"] >= FEWEST_RUNS:
+    if several and runs.sizes["run"] >= MIN_RUNS:
         raise InvalidInput(f"measured runs at several values of {panel} make several maps: give one file to each")
 
 
 def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
     """Measured runs with the quantities of both axes of a map, and caveats about those without a place on it.
 
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`, as `read_runs` returns them.
-    rig : Rig
-        Whose nominal area gives a stress from a load, its own load where the runs state none.
-    computed : xarray.Dataset
-        Result of a function of `MAPS`, whose powers give that of a voltage.
-
-    Returns
-    -------
-    xarray.Dataset
-        The runs with a place, each with the number of its `panel`, -1 for none, and `shown_friction_reduction`: as
-        measured where its load or voltage is that of the panel, else moved to the nearest panel by the difference of
-        the model (`is_moved`).
-    tuple of str
-
-    Raises
-    ------
-    InvalidInput
-        If no run has a place.
+    The runs with a place, each with the number of its `panel`, -1 for none, and `shown_friction_reduction`: as measured
+    where its load or voltage is that of the panel, else moved to the nearest panel by the difference of the model
+    (`is_moved`).
     """
     across, up, _ = map_layout(computed)
     if up == "actuator_power":
@@ -141,18 +108,8 @@ def _model(computed: "xr.Dataset", runs: "xr.Dataset", at: Floats) -> Floats:
 def runs_map(runs: "xr.Dataset", *, kind: str) -> "xr.Dataset | None":
     """Friction reduction between measured runs over the axes of a map, with its uncertainty.
 
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`, as `read_runs` returns them.
-    kind : str
-        Key of `MAP_LAYOUTS`, such as "velocity-power".
-
-    Returns
-    -------
-    xarray.Dataset or None
-        Over both axes of the map, with the scatter of the runs and their leave-one-out error as attributes; None for
-        fewer than `FEWEST_RUNS` runs.
+    Over both axes of the map, with the scatter of the runs and their leave-one-out error as attributes; None for fewer
+    than `MIN_RUNS` runs.
 
     See Also
     --------
@@ -160,7 +117,7 @@ def runs_map(runs: "xr.Dataset", *, kind: str) -> "xr.Dataset | None":
     """
     import xarray as xr
 
-    if runs.sizes["run"] < FEWEST_RUNS:
+    if runs.sizes["run"] < MIN_RUNS:
         return None
     across, up, _ = MAP_LAYOUTS[kind]
     x, y = (np.linspace(float(runs[axis].min()), float(runs[axis].max()), _POINTS) for axis in (across, up))

@@ -12,7 +12,7 @@ SUBSEQUENCES = 16
 """Number of consecutive subsequences of a sample, each a digital net itself, for intervals by sectioning."""
 
 _MARGIN = 2.0**-54  # distance from 0 and 1, at which a normal distribution has no finite quantile
-_FEWEST_ROWS = 32
+_MIN_ROWS = 32
 _INTERVAL = (0.025, 0.975)
 _RESAMPLED_NUMBERS = 4_000_000  # at a time; bounds the memory of the bootstrap
 
@@ -78,8 +78,8 @@ def sobol_sample(inputs: int, *, samples: int, seed: int = 0) -> tuple[Floats, N
     """
     if inputs < 1:
         raise InvalidInput(f"inputs must be at least 1, got {inputs}")
-    if samples < _FEWEST_ROWS:
-        raise InvalidInput(f"samples must be at least {_FEWEST_ROWS}, got {samples}")
+    if samples < _MIN_ROWS:
+        raise InvalidInput(f"samples must be at least {_MIN_ROWS}, got {samples}")
     power = int(np.ceil(np.log2(samples)))
     from scipy.stats import qmc
 
@@ -175,8 +175,8 @@ def sobol_indices(outcomes: ArrayLike, *, resamples: int = 1000, seed: int = 0) 
     valid = np.asarray(outcomes, dtype=np.float64)
     valid = valid[:, np.all(np.isfinite(valid), axis=0)]
     rows = valid.shape[1]
-    if rows < _FEWEST_ROWS:
-        raise InvalidInput(f"indices need at least {_FEWEST_ROWS} rows with a result, got {rows}")
+    if rows < _MIN_ROWS:
+        raise InvalidInput(f"indices need at least {_MIN_ROWS} rows with a result, got {rows}")
     terms = _row_terms(valid)
     first, total, variance = _indices_from_means(terms.mean(axis=1))
     random = np.random.default_rng(seed)

@@ -121,13 +121,7 @@ class NetCDFDatasetWriter:
             variable.attrs.update(_labels(name))
 
     def write(self, start: int, batch: PointBatch) -> None:
-        """Write a chunk from a flat index on.
-
-        Raises
-        ------
-        InvalidInput
-            If the disk is full.
-        """
+        """Write a chunk from a flat index on."""
         codes: dict[str, NDArray[Any]] = {"status": batch.status, "reason": self._reasons.codes(batch)}
         columns = {**batch.numbers, **codes}
         try:

@@ -21,12 +21,12 @@ _LABELS = {
     "actuator_power": "Power of the amplifier",
     "dissipated_power": "Power dissipated",
 }
-_MOST_SAMPLED = 50_000  # points from which quantiles are computed
-_MOST_DRAWN = 3_000  # of these, drawn in a panel
+_MAX_SAMPLED = 50_000  # points from which quantiles are computed
+_MAX_DRAWN = 3_000  # of these, drawn in a panel
 _FAMILY_SIZE = 7  # values up to which each is drawn as a curve of its own
 _BINS = 20
 _MARGIN = 0.05  # of the friction ratio, beyond its ends
-_MOST_MARKED = 60  # points of a curve up to which each has a marker
+_MAX_MARKED = 60  # points of a curve up to which each has a marker
 
 
 def sweep_chart(swept: "xr.Dataset") -> Chart:
@@ -124,7 +124,7 @@ def _scatter(swept: "xr.Dataset", names: list[str]) -> Chart:
     sampled = _sampled_points(ratio.size)
     indices = dict(zip(ratio.dims, np.unravel_index(sampled, ratio.shape), strict=True))
     y = ratio.values.ravel()[sampled]
-    drawn = np.random.default_rng(0).permutation(sampled.size)[:_MOST_DRAWN]
+    drawn = np.random.default_rng(0).permutation(sampled.size)[:_MAX_DRAWN]
     panels = []
     for name in names:
         values, axis = _axis(swept, name)
@@ -151,7 +151,7 @@ def _height(ratio: Floats) -> Axis:
 
 def _marker(x: Floats, number: int) -> int | None:
     """Number of the marker of a curve; none where it has many points."""
-    return number if x.size <= _MOST_MARKED else None
+    return number if x.size <= _MAX_MARKED else None
 
 
 def _binned_quantiles(x: Floats, y: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -172,9 +172,9 @@ def _binned_quantiles(x: Floats, y: Floats) -> tuple[Floats, Floats, Floats, Flo
 
 def _sampled_points(points: int) -> NDArray[np.intp]:
     """Flat indices of all points, or of a random subset of many."""
-    if points <= _MOST_SAMPLED:
+    if points <= _MAX_SAMPLED:
         return np.arange(points)
-    return np.unique(np.random.default_rng(0).integers(0, points, _MOST_SAMPLED))
+    return np.unique(np.random.default_rng(0).integers(0, points, _MAX_SAMPLED))
 
 
 def _axis(swept: "xr.Dataset", name: str) -> tuple[Floats, Axis]:

@@ -17,7 +17,7 @@ BAND = (0.05, 0.5, 0.95)
 """Probabilities of the quantiles that bound and halve a band."""
 
 _SHARES = ("first_order", "total_order", "first_order_interval", "total_order_interval")
-_LEAST_SHARE = 0.005  # of the variance, which is printed as 0 %
+_MIN_SHARE = 0.005  # of the variance, which is printed as 0 %
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -80,15 +80,7 @@ class RankedEntry:
 def outcome_indices(propagated: "xr.Dataset") -> SobolIndices:
     """Sobol indices of the outcome of a propagation that was made for them.
 
-    Parameters
-    ----------
-    propagated : xarray.Dataset
-        Result of `propagate` with `indices=True`.
-
-    Returns
-    -------
-    SobolIndices
-        Estimates and intervals cut off at 0 and 1, between which all indices lie.
+    Estimates and intervals cut off at 0 and 1, between which all indices lie.
     """
     found = sobol_indices(propagated[propagated.attrs["outcome"]].values, seed=propagated.attrs["seed"])
     return replace(found, **{name: np.clip(getattr(found, name), 0.0, 1.0) for name in _SHARES})
@@ -97,17 +89,6 @@ def outcome_indices(propagated: "xr.Dataset") -> SobolIndices:
 def ranked_entries(propagated: "xr.Dataset") -> list[RankedEntry]:
     r"""Uncertain entries by falling first-order Sobol index, then by falling total index.
 
-    Parameters
-    ----------
-    propagated : xarray.Dataset
-        Result of `propagate` with `indices=True`.
-
-    Returns
-    -------
-    list of RankedEntry
-
-    Notes
-    -----
     With the standard deviation :math:`\sigma` of the outcome and the first-order index :math:`S_i` of an entry, the
     deviation that remains were the entry known is :math:`\sigma \sqrt{1 - S_i}`.
     """
@@ -118,7 +99,7 @@ def ranked_entries(propagated: "xr.Dataset") -> list[RankedEntry]:
             first=IntervalEstimate(value=first, lower=first_ends[0], upper=first_ends[1]),
             total=IntervalEstimate(value=total, lower=total_ends[0], upper=total_ends[1]),
             deviation_if_known=indices.standard_deviation * float(np.sqrt(1 - first)),
-            matters=total_ends[0] > _LEAST_SHARE,
+            matters=total_ends[0] > _MIN_SHARE,
         )
         for key, first, first_ends, total, total_ends in zip(
             propagated.attrs["uncertain"],
@@ -135,15 +116,7 @@ def ranked_entries(propagated: "xr.Dataset") -> list[RankedEntry]:
 def contact_loss_probability(propagated: "xr.Dataset") -> float | None:
     """Fraction of the points with a vibration that lose contact for part of the time. []
 
-    Parameters
-    ----------
-    propagated : xarray.Dataset
-        Result of `propagate`.
-
-    Returns
-    -------
-    float or None
-        None where contact loss was not computed.
+    None where contact loss was not computed.
     """
     if "contact_loss_fraction" not in propagated:
         return None
@@ -155,17 +128,7 @@ def contact_loss_probability(propagated: "xr.Dataset") -> float | None:
 def outcome_quantiles(propagated: "xr.Dataset", probabilities: Sequence[float]) -> Floats:
     """Quantiles of an outcome over the samples.
 
-    Parameters
-    ----------
-    propagated : xarray.Dataset
-        Result of `propagate`.
-    probabilities : sequence of float
-        Of the quantiles.
-
-    Returns
-    -------
-    ndarray
-        One row per probability; NaN where no sample has a result.
+    One row per probability; NaN where no sample has a result.
     """
     samples = propagated[propagated.attrs["outcome"]].values
     valid = np.isfinite(samples).any(axis=0)
@@ -175,17 +138,7 @@ def outcome_quantiles(propagated: "xr.Dataset", probabilities: Sequence[float]) 
 
 
 def outcome_band(propagated: "xr.Dataset") -> Band:
-    """Median and 90 % interval of an outcome where the interval is narrowest and widest, and its mean width.
-
-    Parameters
-    ----------
-    propagated : xarray.Dataset
-        Result of `propagate` over swept keys.
-
-    Returns
-    -------
-    Band
-    """
+    """Median and 90 % interval of an outcome where the interval is narrowest and widest, and its mean width."""
     outcome = propagated[propagated.attrs["outcome"]]
     low, median, high = outcome_quantiles(propagated, BAND)
     if np.isnan(median).all():

@@ -107,11 +107,8 @@ def cutter_head(
 def cutter_head_quarter() -> Transducer:
     """Quarter of the cutter head of default sizes, of positive x and y.
 
-    Returns
-    -------
-    Transducer
-        Its modes are those of the head that are even about both planes, among them all axisymmetric ones, in a third of
-        the time.
+    Its modes are those of the head that are even about both planes, among them all axisymmetric ones, in a third of the
+    time.
     """
     whole = cutter_head()
     quadrant = cad_kernel().Box((0, 0, -_FAR), (_FAR, _FAR, _FAR))

@@ -76,22 +76,11 @@ class Kernel(Generic[P, R]):
         return cast("Callable[P, R]", self._with_globals(inner | self._plain))
 
     def for_points(self, count: int, *, most: int = 4, at_first: int = 0) -> Callable[P, R]:
-        """Return the way to run that suits a number of points, and count them.
-
-        Parameters
-        ----------
-        count : int
-            Number of points, or of any unit of work.
-        most : int
-            Largest number for which, inside `few_points`, plain Python takes less than loading the compiled kernel.
-        at_first : int
-            Largest number, of all calls inside `few_points`, for which plain Python takes less than compiling the
-            kernel. It runs so where the compiled kernel is there too, lest the last digits depend on that.
-        """
+        """Way to run that suits a number of points; counts them."""
         return self._guarded if self.takes_few(count, most=most, at_first=at_first) else self.compiled
 
     def takes_few(self, count: int, *, most: int = 4, at_first: int = 0) -> bool:
-        """Return whether this many points are not to be compiled for, and count them; arguments of `for_points`."""
+        """Whether this many points are not to be compiled for; counts them; arguments of `for_points`."""
         run = _POINTS_RUN.get()
         if run is None or not self._runs_plain(count, most, at_first):
             return False
@@ -99,11 +88,11 @@ class Kernel(Generic[P, R]):
         return True
 
     def lanes(self, count: int, compiled: int, *, most: int = 4, at_first: int = 0) -> int:
-        """Return the points of a block of SIMD lanes: one where `for_points` runs as plain Python."""
+        """Points of a block of SIMD lanes: one where `for_points` runs as plain Python."""
         return 1 if self._runs_plain(count, most, at_first) else compiled
 
     def _runs_plain(self, count: int, most: int, at_first: int) -> bool:
-        """Return whether this many further points run as plain Python."""
+        """Whether this many further points run as plain Python."""
         run = _POINTS_RUN.get()
         if run is None:
             return False
@@ -121,13 +110,13 @@ class Kernel(Generic[P, R]):
             return self.compiled(*arguments, **named)
 
     def _kernels(self) -> dict[str, "Kernel[..., Any]"]:
-        """Return the kernels that the function calls, by their names in its module."""
+        """Kernels that the function calls, by their names in its module."""
         known = self.py_func.__globals__
         found = ((name, known.get(name)) for name in self.py_func.__code__.co_names)
         return {name: each for name, each in found if isinstance(each, Kernel)}
 
     def _with_globals(self, changed: dict[str, Any]) -> Any:
-        """Return a copy of the function for which names of its module have other values."""
+        """Copy of the function for which names of its module have other values."""
         own = self.py_func
         copy = FunctionType(own.__code__, own.__globals__ | changed, own.__name__, own.__defaults__, own.__closure__)
         copy.__module__, copy.__qualname__ = own.__module__, own.__qualname__
@@ -135,12 +124,9 @@ class Kernel(Generic[P, R]):
 
 
 def private_folder() -> str:
-    """Return a folder among temporary files that nobody else can write, for compiled kernels and the like.
+    """Folder among temporary files that nobody else can write, for compiled kernels and the like.
 
-    Returns
-    -------
-    str
-        Its path; empty without one.
+    Its path; empty without one.
     """
     import stat
     import tempfile
@@ -158,19 +144,7 @@ def private_folder() -> str:
 
 
 def kernel(*, plain: dict[str, Any] | None = None, **options: Any) -> Callable[[Callable[P, R]], Kernel[P, R]]:
-    """Return a decorator that makes a function a kernel.
-
-    Parameters
-    ----------
-    plain : dict, optional
-        As of `Kernel`.
-    **options
-        Of `numba.njit`.
-
-    Returns
-    -------
-    callable
-    """
+    """Decorator that makes a function a kernel."""
     return lambda function: Kernel(function, options, plain or {})
 
 
@@ -189,7 +163,7 @@ def few_points() -> Iterator[None]:
 
 
 def thread_initializer() -> Callable[[], None] | None:
-    """Return a function that a thread calls first, so that it shares the `few_points` of its creator; None outside."""
+    """Function that a thread calls first, so that it shares the `few_points` of its creator; None outside."""
     run = _POINTS_RUN.get()
     if run is None:
         return None
@@ -201,5 +175,5 @@ def thread_initializer() -> Callable[[], None] | None:
 
 
 def runs_plain(count: int, *, most: int = 4) -> bool:
-    """Return whether so few points run without compiled code or special functions, which would have to be loaded."""
+    """Whether so few points run without compiled code or special functions, which would have to be loaded."""
     return _POINTS_RUN.get() is not None and count <= most

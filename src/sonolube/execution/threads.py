@@ -17,20 +17,7 @@ _LARGEST_CHUNK = 16384  # points that a thread treats together at most, to bound
 
 @contextmanager
 def thread_pool(workers: int, *, few_points: bool = False) -> Iterator[ThreadPoolExecutor]:
-    """Provide a thread pool whose exit waits for submitted work, except after a keyboard interrupt.
-
-    Parameters
-    ----------
-    workers : int
-        Number of threads, at least 1.
-    few_points : bool
-        Whether all tasks together are of few points. Inside `sonolube.execution.compilation.few_points` one thread then does them
-        in their order, and shares it.
-
-    Yields
-    ------
-    concurrent.futures.ThreadPoolExecutor
-    """
+    """Provide a thread pool whose exit waits for submitted work, except after a keyboard interrupt."""
     initializer = thread_initializer() if few_points else None
     pool, interrupted = ThreadPoolExecutor(1 if initializer else workers, _NAME, initializer), False
     try:
@@ -43,31 +30,14 @@ def thread_pool(workers: int, *, few_points: bool = False) -> Iterator[ThreadPoo
 
 
 def threads_running() -> bool:
-    """Return whether threads of an interrupted run are still at work, which Python would wait for at exit."""
+    """Whether threads of an interrupted run are still at work, which Python would wait for at exit."""
     return any(thread.name.startswith(_NAME) for thread in threading.enumerate())
 
 
 def map_chunks(function: Callable[[slice], Result], points: int, workers: int) -> list[Result]:
-    """Return the results of a function for consecutive chunks of a batch, evaluated by several threads.
+    """Results of a function for consecutive chunks of a batch, evaluated by several threads.
 
-    Parameters
-    ----------
-    function : callable
-        Takes the slice of a chunk.
-    points : int
-        Size of the batch; an empty batch is one empty chunk.
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    list
-        In the order of the points.
-
-    Raises
-    ------
-    InvalidInput
-        If there is not at least one worker.
+    In the order of the points.
     """
     if workers < 1:
         raise InvalidInput(f"workers must be at least 1, got {workers!r}")

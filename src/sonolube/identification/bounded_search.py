@@ -20,7 +20,7 @@ _GENERATIONS, _EVALUATIONS = 100, 60
 _POPULATION_SPREAD = 0.05  # standard deviation over mean of the population's costs at which the evolution ends
 _STEP = 1e-5  # of central differences, in the logarithm of a parameter
 _TARGET = 0.99  # of the tolerance, so that a search that has only just converged still ends inside
-_LEAST_IMPROVEMENT = 1e-2  # relative, of a step of a search that has not yet reached the feasible set
+_MIN_IMPROVEMENT = 1e-2  # relative, of a step of a search that has not yet reached the feasible set
 _PRIOR_WEIGHT = 1e-3  # residual of a parameter at the end of its bounds, which fixes what no fact determines
 _PENALTY = 30.0  # weight of a residual beyond the tolerance, over that within it
 
@@ -75,25 +75,11 @@ class BoundedModel:
 def find_feasible_point(bounded: BoundedModel, facts: Sequence[Fact], *, seed: int) -> Floats | None:
     """Point at which every fact holds within its tolerance, by global search over the bounds.
 
-    Parameters
-    ----------
-    bounded : BoundedModel
-    facts : sequence of Fact
-    seed : int
-        Seed of the random numbers; where the feasible set is small another seed may succeed where one fails.
+    Logarithms of the parameters; None where no feasible point was found, which does not prove that there is none.
 
-    Returns
-    -------
-    ndarray, shape (parameters,), or None
-        Logarithms of the parameters; None where no feasible point was found, which does not prove that there is none.
-
-    Notes
-    -----
     Differential evolution of the sum of constraint violations, then least squares from its best point.
 
-    References
-    ----------
-    .. [1] R. Storn and K. Price, J. Glob. Optim. 11, 341 (1997). doi:10.1023/A:1008202821328
+    Source: R. Storn and K. Price, J. Glob. Optim. 11, 341 (1997). doi:10.1023/A:1008202821328
     """
     evolved = differential_evolution(
         lambda points: _violations(facts, bounded.observables(points.T)).sum(axis=1),
@@ -115,26 +101,14 @@ def find_feasible_point_near(
 ) -> Floats | None:
     """Point at which every fact holds within its tolerance, by least squares from a starting point.
 
-    Parameters
-    ----------
-    bounded : BoundedModel
-    facts : sequence of Fact
-    start : ndarray, shape (parameters,)
-        Logarithms of the parameters to start from.
-    fixed : mapping of int to float, optional
-        Logarithms of parameters that keep this value, by index.
-
-    Returns
-    -------
-    ndarray, shape (parameters,), or None
-        Logarithms of the parameters; None where no feasible point was found.
+    Logarithms of the parameters; None where no feasible point was found.
     """
     found = _least_squares(
         bounded,
         start,
         lambda points: _violations(facts, bounded.observables(points)),
         fixed=fixed or {},
-        ftol=_LEAST_IMPROVEMENT,
+        ftol=_MIN_IMPROVEMENT,
     )
     return found if np.abs(bounded.residuals(facts, found[np.newaxis])).max() <= 1 else None
 
@@ -142,20 +116,8 @@ def find_feasible_point_near(
 def least_squares_point(bounded: BoundedModel, facts: Sequence[Fact], *, starts: Sequence[Floats]) -> Floats:
     r"""Regularised least-squares estimate of the parameters, penalised outside the tolerances.
 
-    Parameters
-    ----------
-    bounded : BoundedModel
-    facts : sequence of Fact
-    starts : sequence of ndarray, shape (parameters,)
-        Logarithms of the parameters to start from; with a feasible start the estimate is feasible.
+    Logarithms of the parameters of least cost over all starts.
 
-    Returns
-    -------
-    ndarray, shape (parameters,)
-        Logarithms of the parameters of least cost over all starts.
-
-    Notes
-    -----
     With the normalised residuals :math:`r_i`, the logarithms :math:`x_j` of the parameters, the middle
     :math:`\bar x_j` and half width :math:`h_j` of their bounds, the cost is
 
@@ -178,16 +140,7 @@ def least_squares_point(bounded: BoundedModel, facts: Sequence[Fact], *, starts:
 def residual_jacobian(bounded: BoundedModel, facts: Sequence[Fact], point: Floats) -> Floats:
     """Jacobian of the normalised residuals with respect to the logarithms of the parameters, by central differences.
 
-    Parameters
-    ----------
-    bounded : BoundedModel
-    facts : sequence of Fact
-    point : ndarray, shape (parameters,)
-        Logarithms of the parameters.
-
-    Returns
-    -------
-    ndarray, shape (facts, parameters)
+    Shape (facts, parameters).
     """
     return _central_differences(lambda points: bounded.residuals(facts, points), point, np.arange(len(point)))
 

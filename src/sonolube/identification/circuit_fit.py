@@ -36,11 +36,11 @@ from sonolube.models.actuator import (
     circuit_resonances,
 )
 
-_MOST_BRANCHES = 8
+_MAX_BRANCHES = 8
 _TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
 _LOWEST_QUALITY, _HIGHEST_QUALITY = 3.0, 1e7
 _ROUNDING = 1e-9  # current of a branch over the total, below which it is rounding
-_MOST_CANDIDATES = 3  # fitted for the next branch
+_MAX_CANDIDATES = 3  # fitted for the next branch
 _CORRELATED = 3.0  # residuals over independent ones, from which on a warning is given
 _POINTS_PER_BRANCH = 4
 _MOSTLY = 0.5  # of the points
@@ -124,38 +124,10 @@ def fit_circuit(
 ) -> CircuitFit:
     r"""Butterworth-Van Dyke circuit of an impedance spectrum, by rational approximation and nonlinear least squares.
 
-    Parameters
-    ----------
-    spectrum : ImpedanceSpectrum
-    branches : int or None
-        Number of branches (modes); None takes as many as lower the Bayesian information criterion.
-    residual : str
-        "log-complex", "log-magnitude" or "linear-magnitude" (see `residual_named`); they give different quality factors
-        where the circuit does not describe the spectrum fully. Without a measured phase "log-complex" is replaced by
-        "log-magnitude".
-    series_resistance : float
-        Known resistance of the leads. [ohm]
-    confidence_level : float
-        Of the intervals. []
-
-    Returns
-    -------
-    CircuitFit
-
-    Raises
-    ------
-    InvalidInput
-        If the spectrum has fewer than 8 points or shows no capacitance or no resonance, or `branches` is not 1 to 8 or
-        more than its points allow.
-    UnknownName
-        If the residual is none of `RESIDUALS`.
-
     See Also
     --------
     sonolube.identification.stack_fit.fit_stack : Stack parameters, where the structure about the stack is known.
 
-    Notes
-    -----
     With the parallel capacitance :math:`C_0` and, for each branch, the series frequency :math:`f_s`, quality factor
     :math:`Q` and capacitance :math:`C`, the admittance behind the leads is
 
@@ -183,7 +155,7 @@ def fit_circuit(
     require_non_negative(series_resistance=series_resistance)
     require_within(0.5, 0.9999, confidence_level=confidence_level)
     points = spectrum.frequency.size
-    most = min(_MOST_BRANCHES, points // _POINTS_PER_BRANCH - 1)
+    most = min(_MAX_BRANCHES, points // _POINTS_PER_BRANCH - 1)
     if most < 1:
         raise InvalidInput(f"spectrum must have at least {2 * _POINTS_PER_BRANCH} points, got {points}")
     if branches is not None and not 1 <= branches <= most:
@@ -256,7 +228,7 @@ def _capacitance(spectrum: _Spectrum) -> float:
 def _with_one_more_branch(spectrum: _Spectrum, logarithms: Floats) -> LogParameterFit | None:
     """Best fit with one branch more, or None where every candidate leaves the sweep or is not resonant."""
     fits = []
-    for candidate in _candidates(spectrum, logarithms)[:_MOST_CANDIDATES]:
+    for candidate in _candidates(spectrum, logarithms)[:_MAX_CANDIDATES]:
         fit = fit_log_parameters(spectrum.residuals, np.concatenate([logarithms, candidate]))
         if spectrum.resolves(fit.logarithms):
             fits.append(fit)

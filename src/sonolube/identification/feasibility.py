@@ -33,24 +33,6 @@ class ConsistentFacts:
 def consistent_facts(bounded: BoundedModel, facts: Sequence[Fact], *, seed: int) -> ConsistentFacts:
     """Minimal conflicts and maximal consistent subsets of facts under a bounded model.
 
-    Parameters
-    ----------
-    bounded : BoundedModel
-    facts : sequence of Fact
-    seed : int
-        Seed of the searches.
-
-    Returns
-    -------
-    ConsistentFacts
-
-    Raises
-    ------
-    InvalidInput
-        If there are more than 16 facts, or a fact that no parameters within the bounds satisfy even alone.
-
-    Notes
-    -----
     A search that fails proves nothing. So every minimal conflict is confirmed by ten more searches at the end, and
     where one of them finds a feasible point, the subsets are enumerated again with that knowledge.
     """

@@ -5,7 +5,7 @@ import numpy as np
 from sonolube.checks import Complexes, Floats
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 
-_MOST_POINTS = 5000  # of which the phase is computed; between them it is interpolated
+_MAX_POINTS = 5000  # of which the phase is computed; between them it is interpolated
 
 
 def admittance_with_phase(spectrum: ImpedanceSpectrum) -> Complexes:
@@ -18,33 +18,19 @@ def admittance_with_phase(spectrum: ImpedanceSpectrum) -> Complexes:
 def minimum_phase_admittance(magnitude: Floats, *, frequency: Floats) -> Complexes:
     r"""Admittance of a capacitive one-port from its magnitude, by the relation of gain and phase.
 
-    Parameters
-    ----------
-    magnitude : ndarray, shape (n,)
-        Of the admittance in S, positive.
-    frequency : ndarray, shape (n,)
-        Increasing. [Hz]
+    Complex, of the given magnitude.
 
-    Returns
-    -------
-    ndarray, shape (n,)
-        Complex, of the given magnitude.
-
-    Notes
-    -----
     An admittance of passive parts has neither poles nor zeros in the right half-plane, so that its phase follows from
-    its magnitude [1]_. With :math:`g = \ln(|Y|/f)`, which is constant far from resonances,
+    its magnitude With :math:`g = \ln(|Y|/f)`, which is constant far from resonances,
 
     .. math:: \varphi(f) = \frac{\pi}{2} + \frac{2f}{\pi} \int_0^\infty \frac{g(\nu) - g(f)}{\nu^2 - f^2}\,d\nu .
 
     Beyond the sweep g is continued as constant, so the phase is approximate near the ends of a sweep that begins or
     ends close to a resonance.
 
-    References
-    ----------
-    .. [1] H. W. Bode, Network Analysis and Feedback Amplifier Design, Van Nostrand (1945), chapter 14.
+    Source: H. W. Bode, Network Analysis and Feedback Amplifier Design, Van Nostrand (1945), chapter 14.
     """
-    step = -(-frequency.size // _MOST_POINTS)
+    step = -(-frequency.size // _MAX_POINTS)
     f = frequency[::step]
     phase = np.interp(frequency, f, _phase(np.log(magnitude[::step] / f), f))
     return np.asarray(magnitude * np.exp(1j * np.clip(phase, -np.pi / 2, np.pi / 2)))

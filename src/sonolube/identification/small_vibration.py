@@ -233,33 +233,13 @@ class SmallVibration:
 
 
 def quality_factor_of(pole: Complexes) -> Floats:
-    r"""Quality factor of a mode from its pole, :math:`|s|/(-2 \operatorname{Re} s)`.
-
-    Parameters
-    ----------
-    pole : ndarray, any shape
-        Poles s in 1/s.
-
-    Returns
-    -------
-    ndarray, shape of `pole`
-    """
+    r"""Quality factor of a mode from its pole, :math:`|s|/(-2 \operatorname{Re} s)`."""
     modulus = np.abs(pole)
     return np.asarray(modulus / np.maximum(-2 * pole.real, modulus / _HIGHEST_QUALITY + _TINY))
 
 
 def settling_time_of(pole: Complexes) -> Floats:
-    r"""Time in which a transient decays to 2 %, :math:`\ln 50/(-\operatorname{Re} s)`. [s]
-
-    Parameters
-    ----------
-    pole : ndarray, any shape
-        Poles s in 1/s.
-
-    Returns
-    -------
-    ndarray, shape of `pole`
-    """
+    r"""Time in which a transient decays to 2 %, :math:`\ln 50/(-\operatorname{Re} s)`. [s]"""
     return np.asarray(math.log(1 / _SETTLED) / np.maximum(-pole.real, _TINY))
 
 

@@ -70,22 +70,6 @@ def inductive_caveats(spectrum: ImpedanceSpectrum, fitted: Complexes) -> tuple[s
 def residual_named(name: str) -> Callable[[Complexes, Complexes], Floats]:
     r"""Residual function of a name, which takes a model's admittance and the measured one.
 
-    Parameters
-    ----------
-    name : str
-        "log-complex", "log-magnitude" or "linear-magnitude".
-
-    Returns
-    -------
-    callable
-
-    Raises
-    ------
-    UnknownName
-        If it is none of `RESIDUALS`.
-
-    Notes
-    -----
     For the model's admittance :math:`Y_i` and the measured one :math:`\hat Y_i`, "log-complex" is
 
     .. math:: \left(\operatorname{Re} \ln \frac{Y_i}{\hat Y_i},\ \operatorname{Im} \ln \frac{Y_i}{\hat Y_i}\right),

@@ -23,7 +23,7 @@ from sonolube.models.dynamics.structure import Structure, electrical_admittance
 
 _STIFFNESS_FACTORS = np.geomspace(1 / 30, 30, 121)
 _DAMPING_FACTORS = (0.1, 1.0, 10.0)
-_FEWEST_POINTS = 8
+_MIN_POINTS = 8
 _CORRELATED = 3.0
 
 
@@ -72,37 +72,10 @@ def fit_stack(
 ) -> StackFit:
     r"""Stack parameters from the impedance spectrum of its structure, the contact free, by nonlinear least squares.
 
-    Parameters
-    ----------
-    spectrum : ImpedanceSpectrum
-        Measured over a resonance in which the stack takes part.
-    stack : PiezoStack
-        Initial values: as its maker states them, or guessed.
-    in_structure : callable
-        Structure for a given stack; everything else about the structure is known.
-    residual : str
-        "log-complex", "log-magnitude" or "linear-magnitude"; see `residual_named`. Without a measured phase
-        "log-complex" is replaced by "log-magnitude".
-    confidence_level : float
-        Of the intervals. []
-
-    Returns
-    -------
-    StackFit
-
-    Raises
-    ------
-    InvalidInput
-        If the spectrum has fewer than 8 points, or no stack within 30 times the initial stiffness fits it.
-    UnknownName
-        If the residual is none of `RESIDUALS`.
-
     See Also
     --------
     sonolube.identification.circuit_fit.fit_circuit : Equivalent circuit, without knowledge of the structure.
 
-    Notes
-    -----
     The admittance of the structure is
 
     .. math:: Y(\omega) = i\omega \left[C_S + (N d_{33} k_p)^2\, h(\omega; k_p, c_p)\right]
@@ -113,14 +86,12 @@ def fit_stack(
     follow by non-negative linear least squares. A relative error of the masses causes the same relative error of the
     stiffness.
 
-    References
-    ----------
-    .. [1] D 3.3.4, figure 3.12, where the parameters were found by matching the curves by eye.
+    Source: D 3.3.4, figure 3.12, where the parameters were found by matching the curves by eye.
     """
     residual_named(residual)
     require_within(0.5, 0.9999, confidence_level=confidence_level)
-    if spectrum.frequency.size < _FEWEST_POINTS:
-        raise InvalidInput(f"spectrum must have at least {_FEWEST_POINTS} points, got {spectrum.frequency.size}")
+    if spectrum.frequency.size < _MIN_POINTS:
+        raise InvalidInput(f"spectrum must have at least {_MIN_POINTS} points, got {spectrum.frequency.size}")
 
     spectrum, turned = passive_spectrum(spectrum)
     residual = residual_for(spectrum, residual)

@@ -17,7 +17,7 @@ StructureBuilder = Callable[[Mapping[str, float]], Structure]
 
 _Arrays = Callable[[Mapping[str, Floats], Mapping[str, float]], Floats]
 
-_MOST_PARAMETERS = 12  # all corners of the bounds are checked
+_MAX_PARAMETERS = 12  # all corners of the bounds are checked
 _AFFINE = 1e-9  # largest deviation of an affine array, over its largest element
 _MECHANICAL = {"kg": 1.0, "N/m": 1e6, "N s/m": 1e3}  # reference values by SI unit
 
@@ -117,8 +117,8 @@ def reference_parameters(build: StructureBuilder, *, bounds: Bounds) -> dict[str
         If there are more than 12 parameters, or a corner of the bounds is no possible structure, such as a stack whose
         coupling factor would exceed 1.
     """
-    if len(bounds) > _MOST_PARAMETERS:
-        raise InvalidInput(f"at most {_MOST_PARAMETERS} parameters can be free, got {len(bounds)}; fix some of them")
+    if len(bounds) > _MAX_PARAMETERS:
+        raise InvalidInput(f"at most {_MAX_PARAMETERS} parameters can be free, got {len(bounds)}; fix some of them")
     for corner in product(*bounds.values()):
         values = dict(zip(bounds, corner, strict=True))
         try:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from sonolube.errors import InvalidInput
 
-_MOST_CONSTRAINTS = 16  # the search enumerates all 2^16 subsets
+_MAX_CONSTRAINTS = 16  # the search enumerates all 2^16 subsets
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,9 +55,9 @@ def consistent_subsets(names: Sequence[str], is_satisfiable: Callable[[frozenset
     ----------
     .. [1] M. H. Liffiton and K. A. Sakallah, J. Autom. Reason. 40, 1 (2008). doi:10.1007/s10817-007-9084-z
     """
-    if len(names) > _MOST_CONSTRAINTS:
+    if len(names) > _MAX_CONSTRAINTS:
         raise InvalidInput(
-            f"at most {_MOST_CONSTRAINTS} facts can be checked for consistency, got {len(names)}; leave out the least"
+            f"at most {_MAX_CONSTRAINTS} facts can be checked for consistency, got {len(names)}; leave out the least"
             " reliable ones"
         )
     conflicts: list[frozenset[str]] = []

@@ -112,21 +112,7 @@ class Block:
 
 
 def quantity_of(channel: str) -> str:
-    """Quantity of the vocabulary that a channel of a protocol measures.
-
-    Parameters
-    ----------
-    channel : str
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    UnknownName
-        If no channel has the name.
-    """
+    """Quantity of the vocabulary that a channel of a protocol measures."""
     try:
         return CHANNEL_QUANTITIES[channel]
     except KeyError:

@@ -61,22 +61,7 @@ class CheckedValue:
 
 
 def speed_of(check: Check, *, rotation_speed: float, groove_diameter: float, is_set: bool) -> CheckedValue:
-    """Speed that is checked, by that of the disc.
-
-    Parameters
-    ----------
-    check : Check
-        Of one of `SPEEDS`.
-    rotation_speed : float
-        Of the disc. [1/s]
-    groove_diameter : float
-        Of the circle under the pin. [m]
-    is_set : bool
-
-    Returns
-    -------
-    CheckedValue
-    """
+    """Speed that is checked, by that of the disc."""
     slides = check.quantity == "sliding_speed"
     value = rotation_speed * pi * groove_diameter if slides else rotation_speed
     return CheckedValue(check=check, value=value, is_set=is_set)
@@ -85,14 +70,7 @@ def speed_of(check: Check, *, rotation_speed: float, groove_diameter: float, is_
 def speed_checks(protocol: Protocol) -> tuple[str, ...]:
     """Steps that check a speed.
 
-    Parameters
-    ----------
-    protocol : Protocol
-
-    Returns
-    -------
-    tuple of str
-        Each place once.
+    Each place once.
     """
     checks = {point.step: step_at(protocol, point.step) for point in flattened(protocol) if point.kind == "check"}
     return tuple(place for place, step in checks.items() if isinstance(step, Check) and step.quantity in SPEEDS)

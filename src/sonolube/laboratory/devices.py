@@ -152,13 +152,7 @@ class OutputGuard(Protocol):
         """Allow the outputs, and begin to wait for renewals."""
 
     def renew(self) -> None:
-        """Begin to wait anew.
-
-        Raises
-        ------
-        DeviceError
-            If the permission has run out meanwhile.
-        """
+        """Begin to wait anew."""
 
     def disable(self) -> None:
         """Take the outputs off; safe to call at any time, from any thread."""

@@ -44,52 +44,21 @@ class DriveSampling:
         return self.sample_rate >= SAMPLES_PER_PERIOD * self.frequency * (1 - 1e-9)
 
     def of(self, channel: Channel | None) -> "DriveSampling":
-        """Sampling by a channel, which may have a sample rate of its own; this one for None.
-
-        Parameters
-        ----------
-        channel : Channel or None
-
-        Returns
-        -------
-        DriveSampling
-        """
+        """Sampling by a channel, which may have a sample rate of its own; this one for None."""
         if channel is None or channel.sample_rate is None:
             return self
         highest = max(self.frequency, self.frequency_maximum)
         return replace(self, sample_rate=channel.sample_rate, frequency=highest)
 
     def caveat_of(self, names: Iterable[str], channels: Mapping[str, Channel]) -> str:
-        """What channels do not show, as `caveat`, each at its own rate.
-
-        Parameters
-        ----------
-        names : iterable of str
-            Recorded or watched.
-        channels : mapping of str to Channel
-            Of the devices.
-
-        Returns
-        -------
-        str
-        """
+        """What channels do not show, as `caveat`, each at its own rate."""
         by_rate: dict[DriveSampling, list[str]] = {}
         for name in names:
             by_rate.setdefault(self.of(channels.get(name)), []).append(name)
         return "; ".join(filter(None, (sampling.caveat(them) for sampling, them in by_rate.items())))
 
     def caveat(self, channels: Iterable[str]) -> str:
-        """What the channels voltage and current among others do not show, in one line; empty where they show it.
-
-        Parameters
-        ----------
-        channels : iterable of str
-            Recorded or watched.
-
-        Returns
-        -------
-        str
-        """
+        """What the channels voltage and current among others do not show, in one line; empty where they show it."""
         blind = [name for name in _WAVES if name in set(channels)]
         if self.is_resolved or not blind:
             return ""
@@ -98,16 +67,7 @@ class DriveSampling:
 
 
 def drive_sampling(protocol: Protocol) -> DriveSampling | None:
-    """Sampling of the drive of a protocol, where it is sampled the least; None without a drive.
-
-    Parameters
-    ----------
-    protocol : Protocol
-
-    Returns
-    -------
-    DriveSampling or None
-    """
+    """Sampling of the drive of a protocol, where it is sampled the least; None without a drive."""
     points = flattened(protocol)
     driven = [(rate, point.frequency) for rate, point in _sampled(points) if point.frequency is not None]
     if not driven:
@@ -134,16 +94,7 @@ def recorded_channels(protocol: Protocol) -> tuple[str, ...]:
 
 
 def idle_rate(points: Sequence[SetPoint]) -> float:
-    """Sample rate after the last recording: that of the last one, else `IDLE_RATE`. [Hz]
-
-    Parameters
-    ----------
-    points : sequence of SetPoint
-
-    Returns
-    -------
-    float
-    """
+    """Sample rate after the last recording: that of the last one, else `IDLE_RATE`. [Hz]"""
     rates = [point.sample_rate for point in points if point.sample_rate is not None]
     return rates[-1] if rates else IDLE_RATE
 

@@ -22,18 +22,7 @@ class RunEnded(SonolubeError):
 
 
 def ending(failure: BaseException) -> tuple[Event, str]:
-    """Event and reason by which a run ends.
-
-    Parameters
-    ----------
-    failure : BaseException
-        Raised while the run was at work.
-
-    Returns
-    -------
-    Event
-    str
-    """
+    """Event and reason by which a run ends."""
     if isinstance(failure, RunEnded):
         return failure.event, str(failure)
     if isinstance(failure, DeviceError):
@@ -46,17 +35,7 @@ def ending(failure: BaseException) -> tuple[Event, str]:
 def release_devices(devices: Devices, *before: Callable[[], object]) -> list[str]:
     """Release all devices, each whatever becomes of the others; never raises.
 
-    Parameters
-    ----------
-    devices : Devices
-        With their outputs off.
-    *before : callable
-        Called first, such as the end of the sampling.
-
-    Returns
-    -------
-    list of str
-        What has failed.
+    What has failed.
     """
     return tried(*before, devices.drive.close, devices.motor.close, devices.acquisition.close)
 
@@ -64,14 +43,7 @@ def release_devices(devices: Devices, *before: Callable[[], object]) -> list[str
 def tried(*calls: Callable[[], object]) -> list[str]:
     """Make calls, each whatever becomes of the others; never raises.
 
-    Parameters
-    ----------
-    *calls : callable
-
-    Returns
-    -------
-    list of str
-        What has failed.
+    What has failed.
     """
     failures = []
     for call in calls:

@@ -28,7 +28,7 @@ from sonolube.text.units import format_si
 _CONNECTING: Final = 60.0  # s
 _ENDING: Final = 10.0  # s, to stop and release a device
 _POLL: Final = 0.1  # s
-_MOST_WAITING: Final = 10_000  # blocks that nobody has taken
+_MAX_WAITING: Final = 10_000  # blocks that nobody has taken
 
 
 class OwnClocks:
@@ -166,7 +166,7 @@ class _Reader:
         self._failure: SonolubeError | None = None
         self._rate = self._due = 0.0
         self._latest: Block | None = None
-        self._waiting: deque[tuple[Block, float]] = deque(maxlen=_MOST_WAITING)
+        self._waiting: deque[tuple[Block, float]] = deque(maxlen=_MAX_WAITING)
         self._alarm: Callable[[str], None] | None = None
         self._stands_since = 0.0
         self._recorded: list[str] = []

@@ -25,20 +25,7 @@ class DeviceInUse(DeviceError):
 
 @contextmanager
 def reserved(resources: Sequence[str]) -> Iterator[None]:
-    """Keep other runs of this user from devices inside a `with` block; a dead process keeps nobody out.
-
-    Parameters
-    ----------
-    resources : sequence of str
-        Canonical names of devices, as in `Devices.resources`.
-
-    Raises
-    ------
-    DeviceInUse
-        If a run, of this process or of another, has one of them; nothing was opened then.
-    InvalidInput
-        If the folder of states of this user cannot be written.
-    """
+    """Keep other runs of this user from devices inside a `with` block; a dead process keeps nobody out."""
     with ExitStack() as held:
         for resource in sorted(set(resources)):
             held.enter_context(_reserved(resource))
@@ -46,16 +33,7 @@ def reserved(resources: Sequence[str]) -> Iterator[None]:
 
 
 def require_free(resources: Sequence[str]) -> None:
-    """Raise where a run has one of these devices.
-
-    Parameters
-    ----------
-    resources : sequence of str
-
-    Raises
-    ------
-    DeviceInUse
-    """
+    """Raise where a run has one of these devices."""
     with reserved(resources):
         pass
 

@@ -48,16 +48,7 @@ class RunPlan:
     facts: Mapping[str, str | float] = field(default_factory=dict)
 
     def unresolved(self, devices: Devices) -> str:
-        """What record and limits do not show of the drive, in one line; empty where they show it.
-
-        Parameters
-        ----------
-        devices : Devices
-
-        Returns
-        -------
-        str
-        """
+        """What record and limits do not show of the drive, in one line; empty where they show it."""
         drive = self.drive or drive_sampling(self.protocol)
         if drive is None:
             return ""
@@ -69,26 +60,7 @@ class RunPlan:
 def begin_record(
     plan: RunPlan, devices: Devices, *, out: Path, facts: Mapping[str, str | float] | None = None
 ) -> RunRecorder:
-    """Begin the record of a plan below a folder, with its files and what is known of it.
-
-    Parameters
-    ----------
-    plan : RunPlan
-    devices : Devices
-    out : Path
-        Folder of all runs.
-    facts : mapping of str to str or float, optional
-        What is known besides.
-
-    Returns
-    -------
-    RunRecorder
-
-    Raises
-    ------
-    InvalidInput
-        If the folder cannot be written.
-    """
+    """Begin the record of a plan below a folder, with its files and what is known of it."""
     return new_run(
         out,
         title=plan.protocol.title,

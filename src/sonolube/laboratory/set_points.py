@@ -64,33 +64,12 @@ def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
 
 
 def groove_diameter(protocol: Protocol, devices: Devices) -> float:
-    """Diameter of the circle under the pin, of the protocol or else of the rig. [m]
-
-    Parameters
-    ----------
-    protocol : Protocol
-    devices : Devices
-
-    Returns
-    -------
-    float
-    """
+    """Diameter of the circle under the pin, of the protocol or else of the rig. [m]"""
     return protocol.metadata.groove_diameter or devices.groove_diameter
 
 
 def rotation_speed(point: SetPoint, diameter: float) -> float:
-    """Speed of the disc that a set point asks for. [1/s]
-
-    Parameters
-    ----------
-    point : SetPoint
-    diameter : float
-        Of the circle under the pin, in m.
-
-    Returns
-    -------
-    float
-    """
+    """Speed of the disc that a set point asks for. [1/s]"""
     if point.rotation_speed is not None:
         return point.rotation_speed
     return (point.sliding_speed or 0.0) / (pi * diameter)
@@ -99,14 +78,7 @@ def rotation_speed(point: SetPoint, diameter: float) -> float:
 def drive_setting(point: SetPoint) -> DriveSetting | None:
     """Output of the drive source that a set point asks for.
 
-    Parameters
-    ----------
-    point : SetPoint
-
-    Returns
-    -------
-    DriveSetting or None
-        None for off.
+    None for off.
     """
     if point.frequency is None or point.voltage_peak_to_peak == 0:
         return None

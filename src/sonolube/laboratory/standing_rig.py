@@ -49,20 +49,7 @@ class StandingRig:
 
     @contextmanager
     def watched(self, control: RunControl) -> Iterator[None]:
-        """Watch inside a `with` block, by a thread, from when outputs were switched off.
-
-        Parameters
-        ----------
-        control : RunControl
-            Asked to end the run where something is wrong.
-
-        Raises
-        ------
-        RunEnded
-            At the end of the block, if a temperature is beyond its limit, or an output is on.
-        BaseException
-            At the end of the block, whatever the inputs have raised.
-        """
+        """Watch inside a `with` block, by a thread, from when outputs were switched off."""
         if not self._names:
             yield
             return
@@ -106,17 +93,7 @@ class StandingRig:
 
 
 def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
-    """Bounds of channels that show whether motor or drive are off, with what is off within them.
-
-    Parameters
-    ----------
-    devices : Devices
-    limits : Limits
-
-    Returns
-    -------
-    list of (str, Interlock)
-    """
+    """Bounds of channels that show whether motor or drive are off, with what is off within them."""
     channels = devices.channels
     volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
     at_rest = {

@@ -103,27 +103,7 @@ class Supervisor:
         return time.monotonic() if self._hardware.clock is None else self._hardware.clock()
 
     def call(self, what: str, function: Callable[[], Any], *, limit: float, otherwise: str = "") -> Any:
-        """Answer of a call to a device.
-
-        Parameters
-        ----------
-        what : str
-            Device and call in words.
-        function : callable
-        limit : float
-            Time that it may last, in s.
-        otherwise : str
-            What is the case where it lasts longer; that it did not return by default.
-
-        Returns
-        -------
-        object
-
-        Raises
-        ------
-        Late
-            If it has not returned in time, or the run was late before.
-        """
+        """Answer of a call to a device."""
         call = _Call(function)
         missed = otherwise or f"{what} did not return within {format_si(limit, 's', digits=3)}"
         with self._changed:
@@ -147,18 +127,7 @@ class Supervisor:
         return value
 
     def release(self, what: str, function: Callable[[], Any]) -> None:
-        """Call what switches off or releases, in a thread of its own where the run was late.
-
-        Parameters
-        ----------
-        what : str
-        function : callable
-
-        Raises
-        ------
-        DeviceError
-            If it does not return.
-        """
+        """Call what switches off or releases, in a thread of its own where the run was late."""
         if not self.reason:
             self.call(what, function, limit=_SWITCHING)
             return
@@ -204,12 +173,7 @@ class Supervisor:
         return bool(self.reason) and not self._not_off
 
     def halt(self) -> list[str]:
-        """Switch the outputs off by calls that wait for no other; returns what failed, and never raises.
-
-        Returns
-        -------
-        list of str
-        """
+        """Switch the outputs off by calls that wait for no other; returns what failed, and never raises."""
         outputs = (self._hardware.drive, self._hardware.motor)
         first = [] if self._guard is None else [(f"{self._guard.name}: disable", self._guard.disable)]
         calls = [(f"{each.name}: off", getattr(each, "halt", each.off)) for each in outputs]

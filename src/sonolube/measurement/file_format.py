@@ -27,19 +27,7 @@ class FileFormat(Protocol):
     suffixes: ClassVar[tuple[str, ...]]
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the first bytes of a file carry the signature of the format.
-
-        Parameters
-        ----------
-        head : bytes
-            The first `HEAD_SIZE` bytes of the file, fewer if the file is shorter.
-        path : Path
-            Of the file, for formats whose suffix is part of their definition.
-
-        Returns
-        -------
-        bool
-        """
+        """Whether the first bytes of a file carry the signature of the format."""
 
 
 FormatT = TypeVar("FormatT", bound=FileFormat)
@@ -55,13 +43,7 @@ def refuse_unreadable(path: Path) -> Iterator[None]:
 
 
 def read_head(path: Path) -> bytes:
-    """Return the first `HEAD_SIZE` bytes of a file.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file, if it cannot be read or is empty.
-    """
+    """First `HEAD_SIZE` bytes of a file."""
     with refuse_unreadable(path), open_input(path) as stream:
         head = stream.read(HEAD_SIZE)
     if not head:
@@ -70,22 +52,9 @@ def read_head(path: Path) -> bytes:
 
 
 def detect_format(formats: Sequence[FormatT], head: bytes, path: Path) -> FormatT | None:
-    """Return the format of a file: by signature, else by suffix, else the last of the table where it accepts the file.
+    """Format of a file: by signature, else by suffix, else the last of the table where it accepts the file.
 
-    Parameters
-    ----------
-    formats : sequence of FileFormat
-        In order of precedence. The last one is the fallback, which no signature and no suffix identifies, such as
-        delimited text.
-    head : bytes
-        The first bytes of the file, from `read_head`.
-    path : Path
-        Of the file.
-
-    Returns
-    -------
-    FileFormat or None
-        None where no format of the table fits.
+    None where no format of the table fits.
     """
     *specific, fallback = formats
     for known in specific:
@@ -98,6 +67,6 @@ def detect_format(formats: Sequence[FormatT], head: bytes, path: Path) -> Format
 
 
 def first_lines(head: bytes) -> list[str]:
-    """Return the first lines of a text file, decoded as UTF-8 with any byte order mark removed; the last may be cut."""
+    """First lines of a text file, decoded as UTF-8 with any byte order mark removed; the last may be cut."""
     text = head.decode("utf-8-sig", errors="ignore")
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

@@ -12,23 +12,7 @@ _PATTERN: Final = re.compile(r"[*?[]")  # of a shell, where it did not replace t
 
 
 def selected_files(given: Iterable[Path]) -> list[Path]:
-    """Files, folders and patterns replaced by their files in the order of their names, numbers by their size.
-
-    Parameters
-    ----------
-    given : iterable of Path
-        Of a folder all files but hidden ones are taken; of a run of the laboratory its recordings by the clock of the
-        run.
-
-    Returns
-    -------
-    list of Path
-
-    Raises
-    ------
-    InvalidInput
-        If a folder is empty.
-    """
+    """Files, folders and patterns replaced by their files in the order of their names, numbers by their size."""
     files: list[Path] = []
     for path in given:
         is_pattern = _PATTERN.search(path.name) and path.parent.is_dir() and not path.exists()

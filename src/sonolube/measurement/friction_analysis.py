@@ -65,7 +65,7 @@ class FrictionCycles:
 
 
 def channel_values(recording: "xr.Dataset", name: str) -> Floats:
-    """Return the values of a channel, or of the axis, of a recording.
+    """Values of a channel, or of the axis, of a recording.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def channel_values(recording: "xr.Dataset", name: str) -> Floats:
 def analyse_windows(
     recording: "xr.Dataset", *, of: str = "friction_force", window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> WindowStatistics:
-    """Return mean and fluctuation of a channel in consecutive windows.
+    """Mean and fluctuation of a channel in consecutive windows.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def analyse_windows(
 def analyse_running_in(
     recording: "xr.Dataset", *, sliding_speed: float, window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> RunningIn:
-    """Return the onset of the steady state of friction and of its fluctuation.
+    """Onset of the steady state of friction and of its fluctuation.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def analyse_voltage_steps(
     rotation: DiscRotation | None = None,
     rotation_speed: float | None = None,
 ) -> tuple[VoltageStep, ...]:
-    """Return friction, its reduction and stick-slip at each step of the drive voltage.
+    """Friction, its reduction and stick-slip at each step of the drive voltage.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def analyse_voltage_steps(
 
 
 def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:
-    """Return the rotational speed of the disc by the wobble in its friction at voltage steps; None where unknown. [1/s]
+    """Rotational speed of the disc by the wobble in its friction at voltage steps; None where unknown. [1/s]
 
     Parameters
     ----------
@@ -224,13 +224,13 @@ def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:
 
 
 def _voltage(recording: "xr.Dataset") -> Floats:
-    """Return the peak-to-peak voltage of a recording; refuse one without, with the channels it has."""
+    """Peak-to-peak voltage of a recording; refuse one without, with the channels it has."""
     voltage = recorded_voltage(recording)
     return channel_values(recording, "stack_voltage") if voltage is None else voltage
 
 
 def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
-    """Return the frictional work of a recording, and that of each cycle of a reciprocating motion.
+    """Frictional work of a recording, and that of each cycle of a reciprocating motion.
 
     Parameters
     ----------
@@ -259,7 +259,7 @@ def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
 
 
 def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = None) -> StickSlipEstimate:
-    """Return whether there is stick-slip, its frequency, the fall of the force in a slip, and when it happens.
+    """Whether there is stick-slip, its frequency, the fall of the force in a slip, and when it happens.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = 
 def analyse_rotation(
     recording: "xr.Dataset", *, groove_diameter: float, magnets: int = 1, prominence: float = 0.25
 ) -> DiscRotation:
-    """Return the rotation of the disc from a Hall probe signal.
+    """Rotation of the disc from a Hall probe signal.
 
     Parameters
     ----------
@@ -325,7 +325,7 @@ def analyse_wobble(
     rotation_speed: float | None = None,
     harmonics: int = 3,
 ) -> WobbleCorrection:
-    """Return the friction force without its harmonics of the rotation, which the disc's wobble causes.
+    """Friction force without its harmonics of the rotation, which the disc's wobble causes.
 
     Parameters
     ----------
@@ -367,7 +367,7 @@ def analyse_wobble(
 def analyse_motor_current(
     recording: "xr.Dataset", *, motor: MotorCalibration, window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> MotorFrictionTrace:
-    """Return the friction force from the motor current in consecutive windows.
+    """Friction force from the motor current in consecutive windows.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from typing import Any
 from sonolube.errors import InvalidInput
 from sonolube.measurement.limits import require_channels, require_values
 
-_MOST_LINKS = 30_000  # names of groups and datasets in a file
+_MAX_LINKS = 30_000  # names of groups and datasets in a file
 _DEEPEST = 64  # groups within groups
 _CHUNKS_OF_ANY_FILE = 100_000
 _BYTES_PER_CHUNK = 16  # a stored chunk takes more in the index of its dataset
@@ -28,27 +28,8 @@ def numeric_datasets(
 ) -> Iterator[tuple[str, Any]]:
     """Yield label and dataset of each wanted array of numbers in an HDF5 file, once each, in order of the labels.
 
-    Parameters
-    ----------
-    file : h5py.File
-        Open for reading.
-    path : Path
-        Of the file, for messages.
-    wanted : callable
-        Whether a dataset of numbers with its label is read; it sees no values.
-
-    Yields
-    ------
-    label : str
-        Names of the groups and of the dataset, divided by "/".
-    dataset : h5py.Dataset
-        Stored in this file; all of them together are within the limits of `sonolube.measurement.limits`.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the dataset, if a link leads to another file, values lie in another file or another dataset
-        (external storage, virtual dataset), or the file states to hold more than one of its size may.
+    `label`: Names of the groups and of the dataset, divided by "/". `dataset`: Stored in this file; all of them
+    together are within the limits of `sonolube.measurement.limits`.
     """
     values = channels = 0
     for label, dataset in _datasets(file, path):
@@ -63,7 +44,7 @@ def numeric_datasets(
 
 
 def attributes_of(item: Any, names: Iterable[str], path: Path) -> dict[str, Any]:
-    """Return those attributes of an HDF5 object that it has among some names; refuse one that states to be large."""
+    """Those attributes of an HDF5 object that it has among some names; refuse one that states to be large."""
     found = {}
     for name in names:
         if name in item.attrs:
@@ -91,9 +72,9 @@ def _datasets(file: Any, path: Path) -> Iterator[tuple[str, Any]]:
             groups.pop()
             continue
         links += 1
-        if links > _MOST_LINKS or len(groups) > _DEEPEST:
+        if links > _MAX_LINKS or len(groups) > _DEEPEST:
             raise InvalidInput(
-                f"{path}: holds more than {_MOST_LINKS} objects, or groups more than {_DEEPEST} deep;"
+                f"{path}: holds more than {_MAX_LINKS} objects, or groups more than {_DEEPEST} deep;"
                 " save those that are needed in a file of their own"
             )
         link = group.get(name, getlink=True)
@@ -112,7 +93,7 @@ def _datasets(file: Any, path: Path) -> Iterator[tuple[str, Any]]:
 
 
 def _address(item: Any) -> int:
-    """Return the address of an object in its file."""
+    """Address of an object in its file."""
     import h5py
 
     return int(h5py.h5o.get_info(item.id).addr)
@@ -160,7 +141,7 @@ def _require_true_chunks(dataset: Any, part: str, path: Path, *, most: int) -> N
 
 
 def _deflates_beyond(stored: bytes, most: int) -> bool:
-    """Return whether deflated bytes unpack to more than `most` bytes; False where they are not deflated."""
+    """Whether deflated bytes unpack to more than `most` bytes; False where they are not deflated."""
     try:
         return len(zlib.decompressobj().decompress(stored, most + 1)) > most
     except zlib.error:

@@ -11,43 +11,28 @@ from pathlib import Path
 
 from sonolube.errors import InvalidInput
 
-MOST_VALUES = 20_000_000
+MAX_VALUES = 20_000_000
 """Numbers that a file of any size may hold: 160 MB as floats, below 1 GB with the copies of conversion and checks."""
 
-MOST_VALUES_PER_BYTE = 2
+MAX_VALUES_PER_BYTE = 2
 """Numbers that a byte of a large file may hold. A sampled signal with noise of a few steps of its converter has four
 bits a sample however well it is compressed, and a number stored without compression a byte or more; compressed zeros
 have a thousand numbers a byte."""
 
-MOST_CHANNELS = 10_000
+MAX_CHANNELS = 10_000
 """Columns, channels, variables or data sets of one file."""
 
-MOST_POINTS = 500_000
+MAX_POINTS = 500_000
 """Points of one impedance sweep, ten times as many as any analyser measures."""
 
 
 def most_values(path: Path) -> int:
-    """Return how many numbers a file may hold: `MOST_VALUES`, or `MOST_VALUES_PER_BYTE` where that is more."""
-    return max(MOST_VALUES, MOST_VALUES_PER_BYTE * path.stat().st_size)
+    """How many numbers a file may hold: `MAX_VALUES`, or `MAX_VALUES_PER_BYTE` where that is more."""
+    return max(MAX_VALUES, MAX_VALUES_PER_BYTE * path.stat().st_size)
 
 
 def require_values(count: int, path: Path, *, part: str = "") -> None:
-    """Refuse a file that states more values than one of its size may hold.
-
-    Parameters
-    ----------
-    count : int
-        Values that the file, or all parts of it up to this one, states to hold.
-    path : Path
-        Of the file.
-    part : str
-        Of the file, for the message, such as "data set 'force'".
-
-    Raises
-    ------
-    InvalidInput
-        With what the file states, the limit and the remedy.
-    """
+    """Refuse a file that states more values than one of its size may hold."""
     limit = most_values(path)
     if count > limit:
         raise InvalidInput(
@@ -57,46 +42,16 @@ def require_values(count: int, path: Path, *, part: str = "") -> None:
 
 
 def require_channels(count: int, path: Path, *, kind: str = "channels") -> None:
-    """Refuse a file with more channels (columns, variables, data sets) than `MOST_CHANNELS`.
-
-    Parameters
-    ----------
-    count : int
-        Channels that the file states or that were counted so far.
-    path : Path
-        Of the file.
-    kind : str
-        What is counted, in the plural, for the message.
-
-    Raises
-    ------
-    InvalidInput
-        With what the file states, the limit and the remedy.
-    """
-    if count > MOST_CHANNELS:
+    """Refuse a file with more channels (columns, variables, data sets) than `MAX_CHANNELS`."""
+    if count > MAX_CHANNELS:
         raise InvalidInput(
-            f"{path}: has {_amount(count)} {kind} or more, but at most {MOST_CHANNELS} are read;"
+            f"{path}: has {_amount(count)} {kind} or more, but at most {MAX_CHANNELS} are read;"
             " save only those that are needed"
         )
 
 
 def require_unpacked_bytes(count: int, path: Path, *, part: str = "") -> None:
-    """Refuse a compressed file that unpacks to more bytes than the values of `most_values` take as doubles.
-
-    Parameters
-    ----------
-    count : int
-        Bytes that the file, or all parts of it up to this one, unpacks to.
-    path : Path
-        Of the file.
-    part : str
-        Of the file, for the message.
-
-    Raises
-    ------
-    InvalidInput
-        With what the file states, the limit and the remedy.
-    """
+    """Refuse a compressed file that unpacks to more bytes than the values of `most_values` take as doubles."""
     limit = most_unpacked_bytes(path)
     if count > limit:
         raise InvalidInput(
@@ -106,16 +61,16 @@ def require_unpacked_bytes(count: int, path: Path, *, part: str = "") -> None:
 
 
 def require_points(count: int, path: Path, *, line: int) -> None:
-    """Refuse an impedance file with more points than `MOST_POINTS`, naming the line that has or ends them."""
-    if count > MOST_POINTS:
+    """Refuse an impedance file with more points than `MAX_POINTS`, naming the line that has or ends them."""
+    if count > MAX_POINTS:
         raise InvalidInput(
-            f"{path}: line {line}: is one of {count} lines or values, but a sweep has at most {MOST_POINTS} points;"
+            f"{path}: line {line}: is one of {count} lines or values, but a sweep has at most {MAX_POINTS} points;"
             " save the range about the resonance"
         )
 
 
 def most_unpacked_bytes(path: Path) -> int:
-    """Return to how many bytes a compressed file may unpack: doubles of `most_values`."""
+    """To how many bytes a compressed file may unpack: doubles of `most_values`."""
     return 8 * most_values(path)
 
 
@@ -138,11 +93,11 @@ class ClippedReader(io.BufferedReader):
         self._size = path.stat().st_size
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """Return up to `size` bytes, all of the rest where it is negative or None."""
+        """Up to `size` bytes, all of the rest where it is negative or None."""
         rest = max(0, self._size - self.tell())
         return super().read(rest if size is None or size < 0 else min(size, rest))
 
 
 def _amount(count: int) -> str:
-    """Return a count in digits, in powers of ten where it is long."""
+    """Count in digits, in powers of ten where it is long."""
     return str(count) if count < 10**12 else f"{float(min(count, 10**300)):.3g}"

@@ -15,7 +15,7 @@ from sonolube.measurement.run_table import RunTable, assigned_columns, run_table
 if TYPE_CHECKING:
     import xarray as xr
 
-_MOST_LINES = 6  # named in a caveat
+_MAX_LINES = 6  # named in a caveat
 _VIBRATIONS = ("vibration_amplitude", "voltage_peak_to_peak", "vibration_velocity")
 
 
@@ -56,18 +56,7 @@ def read_runs(path: str | Path, *, mapping: RecordingMapping | Path | None = Non
 
 
 def runs_of_rows(path: Path, rows: Sequence[list[str]]) -> "xr.Dataset":
-    """Measured runs from the rows of a table, its header first, as `read_runs`.
-
-    Parameters
-    ----------
-    path : Path
-        Of the table, for messages and title.
-    rows : sequence of list of str
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Measured runs from the rows of a table, its header first, as `read_runs`."""
     header, *body = rows
     return _runs(assigned_columns(path, 1, header, list(enumerate(body, 2))), path)
 
@@ -92,7 +81,7 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
 
 
 def run_caveats(runs: "xr.Dataset") -> tuple[str, ...]:
-    """Return the caveats of the reading of a table of runs, a line each."""
+    """Caveats of the reading of a table of runs, a line each."""
     return tuple(line for line in str(runs.attrs.get("caveats", "")).split("\n") if line)
 
 
@@ -167,5 +156,5 @@ def _derive_uncertainty(columns: dict[str, Floats]) -> None:
 def _skipped(empty: np.ndarray, lines: Sequence[int]) -> str:
     """Caveat about the rows without a result."""
     left_out = [str(lines[int(row)]) for row in np.flatnonzero(empty)]
-    named = ", ".join(left_out[:_MOST_LINES]) + (", ..." if len(left_out) > _MOST_LINES else "")
+    named = ", ".join(left_out[:_MAX_LINES]) + (", ..." if len(left_out) > _MAX_LINES else "")
     return f"{len(left_out)} of {empty.size} runs have no friction yet and are left out (line {named})"

@@ -13,17 +13,9 @@ _EVIDENCE = 50  # decimal numbers by which the sign is told
 
 
 def detected_decimal_sign(cells: Iterable[str]) -> str:
-    """Return the decimal sign, "." or ",", that the first decimal numbers among cells of text have more often.
+    """Decimal sign, "." or ",", that the first decimal numbers among cells of text have more often.
 
-    Parameters
-    ----------
-    cells : iterable of str
-        As written; those that are no decimal numbers count for neither.
-
-    Returns
-    -------
-    str
-        "." where no cell has a decimal sign.
+    "." where no cell has a decimal sign.
     """
     commas = points = 0
     for cell in cells:
@@ -35,19 +27,7 @@ def detected_decimal_sign(cells: Iterable[str]) -> str:
 
 
 def parse_number(cell: str, *, decimal_sign: str) -> float | None:
-    """Return the number in a cell of text, or None where it holds none.
-
-    Parameters
-    ----------
-    cell : str
-        As written.
-    decimal_sign : str
-        "." or ","; the other one is refused, so that a separator of thousands is never read as a decimal sign.
-
-    Returns
-    -------
-    float or None
-    """
+    """Number in a cell of text, or None where it holds none."""
     text = cell.strip()
     if decimal_sign == ",":
         if "." in text:
@@ -63,22 +43,9 @@ def parse_number(cell: str, *, decimal_sign: str) -> float | None:
 
 
 def parse_numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str]) -> tuple[Floats, int | None]:
-    """Return the numbers of a column of text, and the first row that holds neither a number nor a missing-value text.
+    """Numbers of a column of text, and the first row that holds neither a number nor a missing-value text.
 
-    Parameters
-    ----------
-    cells : list of str
-        As written.
-    decimal_sign : str
-        "." or ",".
-    missing : frozenset of str
-        Texts that stand for a missing value, beside empty cells.
-
-    Returns
-    -------
-    values : ndarray, shape (rows,)
-        NaN for missing values; only the rows before `invalid_row` where there is one.
-    invalid_row : int or None
+    `values`: NaN for missing values; only the rows before `invalid_row` where there is one.
     """
     values = np.empty(len(cells))
     for row, cell in enumerate(cells):

@@ -10,17 +10,7 @@ _LARGEST = 1 << 24  # bytes
 def change_since_recorded(path: Path, digest: str) -> tuple[str, ...]:
     """Caveat where a recording is not as the run of its folder wrote it.
 
-    Parameters
-    ----------
-    path : Path
-        Of the recording.
-    digest : str
-        Its SHA-256 now.
-
-    Returns
-    -------
-    tuple of str
-        Empty where it is as it was written, or no record beside it tells.
+    Empty where it is as it was written, or no record beside it tells.
     """
     record = path.parent / _RECORD
     try:

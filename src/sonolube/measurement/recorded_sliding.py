@@ -21,14 +21,7 @@ _CHANGES: Final = 0.1  # of the highest speed
 def recorded_voltage(recording: "xr.Dataset") -> Floats | None:
     """Peak-to-peak voltage of a recording, from the alternating voltage where it is not recorded; None without both.
 
-    Parameters
-    ----------
-    recording : xarray.Dataset
-
-    Returns
-    -------
-    ndarray, shape (samples,), or None
-        [V]
+    [V]
     """
     if "voltage_peak_to_peak" in recording:
         return _values(recording, "voltage_peak_to_peak")
@@ -38,16 +31,7 @@ def recorded_voltage(recording: "xr.Dataset") -> Floats | None:
 
 
 def speed_channel(recording: "xr.Dataset") -> str | None:
-    """Name of the channel that tells the speed: one that was measured, else one that was set; None without any.
-
-    Parameters
-    ----------
-    recording : xarray.Dataset
-
-    Returns
-    -------
-    str or None
-    """
+    """Name of the channel that tells the speed: one that was measured, else one that was set; None without any."""
     names = (name for name in (*_MEASURED, *_SET) if name in recording)
     return next((name for name in names if np.isfinite(_values(recording, name)).any()), None)
 
@@ -55,14 +39,7 @@ def speed_channel(recording: "xr.Dataset") -> str | None:
 def recorded_speed(recording: "xr.Dataset") -> Floats | None:
     """Speed of a recording: one that was measured, else the one that was set, 0 where the motor was off.
 
-    Parameters
-    ----------
-    recording : xarray.Dataset
-
-    Returns
-    -------
-    ndarray, shape (samples,), or None
-        In m/s; 1/s of a rotational speed, 1 of a motor that is on. None where no channel tells it.
+    In m/s; 1/s of a rotational speed, 1 of a motor that is on. None where no channel tells it.
     """
     name = speed_channel(recording)
     if name is None:
@@ -76,14 +53,7 @@ def recorded_speed(recording: "xr.Dataset") -> Floats | None:
 def speed_of_one_direction(recording: "xr.Dataset") -> Floats | None:
     """Speed of a recording by which its steps are told apart; None for one that reciprocates, or where it is unknown.
 
-    Parameters
-    ----------
-    recording : xarray.Dataset
-
-    Returns
-    -------
-    ndarray, shape (samples,), or None
-        As `recorded_speed`.
+    As `recorded_speed`.
     """
     speed = recorded_speed(recording)
     if speed is None:
@@ -95,14 +65,7 @@ def speed_of_one_direction(recording: "xr.Dataset") -> Floats | None:
 def speed_changes(recording: "xr.Dataset") -> bool:
     """Whether a recording has several sliding speeds, by over a tenth.
 
-    Parameters
-    ----------
-    recording : xarray.Dataset
-
-    Returns
-    -------
-    bool
-        False where the speed is not known.
+    False where the speed is not known.
     """
     speed = recorded_speed(recording)
     if speed is None:
@@ -115,13 +78,7 @@ def speed_changes(recording: "xr.Dataset") -> bool:
 def recorded_rest(recording: "xr.Dataset") -> Mask:
     """Whether the surfaces rest at each sample of a recording with `friction_force`, as `at_rest`.
 
-    Parameters
-    ----------
-    recording : xarray.Dataset
-
-    Returns
-    -------
-    ndarray of bool, shape (samples,)
+    Shape (samples,).
     """
     return at_rest(
         time=_values(recording, "time"),

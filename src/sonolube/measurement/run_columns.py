@@ -105,20 +105,11 @@ FRICTION_COLUMNS: Final = (
 
 
 def heading(name: str) -> str:
-    """Return the heading of a column of `RUN_COLUMNS`, its usual unit in brackets."""
+    """Heading of a column of `RUN_COLUMNS`, its usual unit in brackets."""
     return _BY_NAME[name].heading
 
 
 def runs_help(beginning: str) -> str:
-    """Return a help text of an option that takes a table of runs: a beginning, then the columns.
-
-    Parameters
-    ----------
-    beginning : str
-
-    Returns
-    -------
-    str
-    """
+    """Help text of an option that takes a table of runs: a beginning, then the columns."""
     settings = ", ".join(heading(name) for name in ("vibration_amplitude", "voltage_peak_to_peak", "sliding_speed"))
     return f"{beginning}: {FRICTION_COLUMNS}; {settings}, normal_load and others where they vary; cells may be empty."

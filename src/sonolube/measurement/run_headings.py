@@ -54,18 +54,7 @@ class RunHeading:
 
 
 def run_heading(label: str) -> RunHeading | None:
-    """Quantity and unit of the heading of a column; None where it is not known.
-
-    Parameters
-    ----------
-    label : str
-        Such as "sliding_speed [mm/s]", "Speed / mm s-1", "Normalkraft (N)", "load in N" or "load_N": a name or another
-        heading (`Quantity.also`) in any case, with blanks or underscores, then the unit.
-
-    Returns
-    -------
-    RunHeading or None
-    """
+    """Quantity and unit of the heading of a column; None where it is not known."""
     text = label.strip()
     own = _OWN.fullmatch(text)
     if own and (own[1] in quantities() or own[1] in TEXT_NAMES):

@@ -14,27 +14,13 @@ if TYPE_CHECKING:
 
 _LARGEST_RATIO: Final = 2.0  # beyond it, vibration along the normal is not what changed
 _SMALLEST_RATIO: Final = -0.2  # of a force whose zero is off
-_MOST_LINES: Final = 6  # named in a caveat
+_MAX_LINES: Final = 6  # named in a caveat
 
 
 def checked_ratios(runs: "xr.Dataset", *, title: str) -> Floats:
-    """Return the friction ratio of each run.
+    """Friction ratio of each run.
 
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`, as `read_runs` returns them.
-    title : str
-        Of the rig or the table, in refusals.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-
-    Raises
-    ------
-    InvalidInput
-        If a ratio is beyond what vibration does: below -0.2 or above 2.
+    Shape (n,).
     """
     ratio = 1 - np.asarray(runs["friction_reduction"].to_numpy(), float)
     outside = (ratio < _SMALLEST_RATIO) | (ratio > _LARGEST_RATIO)
@@ -49,15 +35,7 @@ def checked_ratios(runs: "xr.Dataset", *, title: str) -> Floats:
 def copies_caveat(runs: "xr.Dataset") -> tuple[str, ...]:
     """Caveat about runs that equal an earlier one in every digit, which count as repeats.
 
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`; names of runs, where they have some, tell equal rows apart.
-
-    Returns
-    -------
-    tuple of str
-        Empty where there is no such run.
+    Empty where there is no such run.
     """
     numbers = [runs[name].to_numpy() for name in runs.data_vars if runs[name].dtype.kind == "f"]
     columns = [np.nan_to_num(np.asarray(column, float), nan=np.inf) for column in numbers]
@@ -74,18 +52,9 @@ def copies_caveat(runs: "xr.Dataset") -> tuple[str, ...]:
 
 
 def setting(runs: "xr.Dataset", name: str, otherwise: ArrayLike) -> Floats:
-    """Return a column of the runs, with another value where it is missing or its cell is empty.
+    """Column of the runs, with another value where it is missing or its cell is empty.
 
-    Parameters
-    ----------
-    runs : xarray.Dataset
-    name : str
-        Of the column.
-    otherwise : array_like, shape () or (n,)
-
-    Returns
-    -------
-    ndarray, shape (n,)
+    Shape (n,).
     """
     other = np.broadcast_to(np.asarray(otherwise, float), (runs.sizes["run"],))
     if name not in runs:
@@ -95,24 +64,7 @@ def setting(runs: "xr.Dataset", name: str, otherwise: ArrayLike) -> Floats:
 
 
 def with_columns(runs: "xr.Dataset", *names: str) -> tuple["xr.Dataset", tuple[str, ...]]:
-    """Return the runs whose cells in some columns are filled in, and a caveat about the others.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-    *names : str
-        Of the columns.
-
-    Returns
-    -------
-    xarray.Dataset
-    tuple of str
-
-    Raises
-    ------
-    InvalidInput
-        If a column is missing, or no run has all of them.
-    """
+    """Runs whose cells in some columns are filled in, and a caveat about the others."""
     for name in names:
         if name not in runs:
             raise InvalidInput(f"measured runs need a column {name}: add {heading(name)}")

@@ -28,9 +28,9 @@ from sonolube.vocabulary import quantities
 _PREAMBLE: Final = re.compile(r'"?\s*(?:[#%](?!\s*[;,\t|])|//)|[\s;,"|]*\Z')  # comments, and lines without any text
 _SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)  # with which Excel tells its separator
 _LARGEST: Final = 1e30  # in any unit; keeps squares of quantities within the range of floats
-_MOST_RUNS: Final = 100_000
+_MAX_RUNS: Final = 100_000
 _QUOTED: Final = 40  # characters of a cell in an error message
-_MOST_NAMED: Final = 12  # columns in a caveat
+_MAX_NAMED: Final = 12  # columns in a caveat
 _SPREADSHEET: Final = b"PK\x03\x04"
 
 
@@ -80,27 +80,7 @@ class _Assignment:
 
 
 def run_table(path: Path, *, mapping: RecordingMapping | None = None) -> RunTable:
-    """Columns of a table of runs in a text file.
-
-    Parameters
-    ----------
-    path : Path
-        Text as `DelimitedText` reads it, in UTF-8, UTF-16 or Windows-1252, between commas, semicolons, tabs or bars,
-        with either decimal sign. Lines before the headings that begin with #, % or //, or are empty, are passed over.
-    mapping : RecordingMapping or None
-        Names columns that their headings do not, and those to leave out.
-
-    Returns
-    -------
-    RunTable
-
-    Raises
-    ------
-    InvalidInput
-        In one line with the file, the line and the column, if the file is no text, a heading of unknown meaning looks
-        like a setting, a direction, a lubricant or a unit, a unit is missing, unknown or of another kind, a cell is no
-        number, or two columns are one quantity.
-    """
+    """Columns of a table of runs in a text file."""
     table, caveats = run_text(path, mapping)
     found = assigned_columns(path, table.line, table.labels, table.rows, mapping=mapping, separator=table.separator)
     return replace(found, caveats=(*caveats, *found.caveats))
@@ -123,8 +103,8 @@ def run_text(path: Path, mapping: RecordingMapping | None = None) -> tuple[TextT
     table = tables[0]
     if not table.rows:
         raise InvalidInput(f"{path}: needs a head and at least one run")
-    if len(table.rows) > _MOST_RUNS:
-        raise InvalidInput(f"{path}: has {len(table.rows)} rows, but at most {_MOST_RUNS} runs are read")
+    if len(table.rows) > _MAX_RUNS:
+        raise InvalidInput(f"{path}: has {len(table.rows)} rows, but at most {_MAX_RUNS} runs are read")
     require_rows(table, mapping.rows if mapping else {}, path)
     return table, caveats
 
@@ -138,26 +118,7 @@ def assigned_columns(
     mapping: RecordingMapping | None = None,
     separator: str = ",",
 ) -> RunTable:
-    """Columns of a table of runs by its labels and rows.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file, for messages.
-    line : int
-        Of the labels.
-    labels : sequence of str
-    rows : sequence of (int, list of str)
-        Line and cells of each; cells at the end may be missing.
-    mapping : RecordingMapping or None
-        As `run_table`.
-    separator : str
-        Between cells; behind commas a decimal sign is a point.
-
-    Returns
-    -------
-    RunTable
-    """
+    """Columns of a table of runs by its labels and rows."""
     assigned = _by_mapping(path, labels, mapping) if mapping else _Assignment()
     _by_headings(path, line, labels, assigned, mapping)
     layout = mapping.text if mapping else TextLayout()
@@ -300,7 +261,7 @@ def _left_out_caveat(labels: Sequence[str]) -> tuple[str, ...]:
     """Caveat about the columns that are not read."""
     if not labels:
         return ()
-    named = ", ".join(map(_quoted, labels[:_MOST_NAMED])) + (", ..." if len(labels) > _MOST_NAMED else "")
+    named = ", ".join(map(_quoted, labels[:_MAX_NAMED])) + (", ..." if len(labels) > _MAX_NAMED else "")
     return (f"{len(labels)} {'column is' if len(labels) == 1 else 'columns are'} left out: {named}",)
 
 

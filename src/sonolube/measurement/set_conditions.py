@@ -44,15 +44,7 @@ class SetConditions:
 def set_conditions(recording: "xr.Dataset") -> tuple[SetConditions, ...]:
     """Stretches of a recording at constant conditions, in the order of time.
 
-    Parameters
-    ----------
-    recording : xarray.Dataset
-        Of the laboratory, with `motor_on`, `sliding_speed_set` and further set points.
-
-    Returns
-    -------
-    tuple of SetConditions
-        Empty where the recording has no set points of the motor.
+    Empty where the recording has no set points of the motor.
     """
     if "motor_on" not in recording:
         return ()

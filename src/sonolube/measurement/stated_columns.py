@@ -17,32 +17,14 @@ from sonolube.vocabulary import quantities
 LEFT_OUT: Final = "-"
 """Statement that leaves a column out."""
 
-_MOST_CELLS: Final = 3  # that tell what a column holds
+_MAX_CELLS: Final = 3  # that tell what a column holds
 
 Meaning = RunHeading | str
 """Quantity and unit of a column, or `LEFT_OUT`."""
 
 
 def stated_columns(table: TextTable, statements: Mapping[str, str], path: Path) -> dict[str, Meaning | None]:
-    """Meaning of each column by its label: as stated, else by its heading; None where neither tells it with its unit.
-
-    Parameters
-    ----------
-    table : TextTable
-    statements : mapping of str to str
-        Quantity and unit, or `LEFT_OUT`, by label.
-    path : Path
-        Of the file, for messages.
-
-    Returns
-    -------
-    dict of str to RunHeading, str or None
-
-    Raises
-    ------
-    InvalidInput
-        If a column has no label, a label is that of no column, or a statement cannot be read.
-    """
+    """Meaning of each column by its label: as stated, else by its heading; None where neither tells it with its unit."""
     labels = numbered_labels(table.labels)
     if "" in labels:
         place = labels.index("") + 1
@@ -53,25 +35,7 @@ def stated_columns(table: TextTable, statements: Mapping[str, str], path: Path) 
 
 
 def meaning(text: str, label: str) -> Meaning:
-    """Quantity and unit that a text such as "friction_force N" states, or `LEFT_OUT`.
-
-    Parameters
-    ----------
-    text : str
-    label : str
-        Of the column, for messages.
-
-    Returns
-    -------
-    RunHeading or str
-
-    Raises
-    ------
-    UnknownName
-        If there is no such quantity.
-    InvalidInput
-        If the unit is missing, unknown or of another kind.
-    """
+    """Quantity and unit that a text such as "friction_force N" states, or `LEFT_OUT`."""
     if text.strip() == LEFT_OUT:
         return LEFT_OUT
     name, _, unit = text.strip().partition(" ")
@@ -88,20 +52,10 @@ def meaning(text: str, label: str) -> Meaning:
 
 
 def samples(table: TextTable, label: str) -> list[str]:
-    """First cells of a column that are not empty.
-
-    Parameters
-    ----------
-    table : TextTable
-    label : str
-
-    Returns
-    -------
-    list of str
-    """
+    """First cells of a column that are not empty."""
     place = numbered_labels(table.labels).index(label)
     filled = [cells[place].strip() for _, cells in table.rows if "".join(cells[place : place + 1]).strip()]
-    return filled[:_MOST_CELLS]
+    return filled[:_MAX_CELLS]
 
 
 def _by_heading(label: str) -> RunHeading | None:
@@ -111,18 +65,7 @@ def _by_heading(label: str) -> RunHeading | None:
 
 
 def mapping_of_columns(table: TextTable, columns: Mapping[str, Meaning]) -> RecordingMapping:
-    """Mapping of the columns of a table; a time is the axis, which tables of runs have no use for.
-
-    Parameters
-    ----------
-    table : TextTable
-    columns : mapping of str to RunHeading or str
-        Quantity and unit, or `LEFT_OUT`, by label.
-
-    Returns
-    -------
-    RecordingMapping
-    """
+    """Mapping of the columns of a table; a time is the axis, which tables of runs have no use for."""
     sources = {
         found.name: ChannelSource(column=label, unit=None if found.name in TEXT_NAMES else found.unit)
         for label, found in columns.items()

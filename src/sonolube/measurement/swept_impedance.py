@@ -24,23 +24,8 @@ _MOST: Final = 1 << 16  # samples of a step that are fitted
 def swept_impedance(path: Path) -> ImpedanceSpectrum | None:
     """Impedance spectrum of a recording of a sweep.
 
-    Parameters
-    ----------
-    path : Path
-        Of a recording with `stack_voltage`, `stack_current` and `frequency_set`, the set point of the frequency.
+    None where the file is no recording with these channels.
 
-    Returns
-    -------
-    ImpedanceSpectrum or None
-        None where the file is no recording with these channels.
-
-    Raises
-    ------
-    InvalidInput
-        If its rate does not resolve the drive, or no frequency is held long enough.
-
-    Notes
-    -----
     At each frequency voltage and current are fitted by a sine, a cosine and a constant, least squares; the impedance is
     the ratio of the amplitudes as complex numbers. The clock of a generator deviates by parts in 1e5 from that of the
     acquisition, which turns both phases alike and leaves the ratio.

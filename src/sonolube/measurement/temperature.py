@@ -68,7 +68,7 @@ class TemperatureResponse:
 def fit_temperature_response(
     *, time: ArrayLike, temperature: ArrayLike, exponentials: int | None = None, confidence_level: float = 0.95
 ) -> TemperatureResponse:
-    r"""Return the exponential step response fitted to a temperature after a step of the heat at the first sample.
+    r"""Exponential step response fitted to a temperature after a step of the heat at the first sample.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def temperature_rise_by_stage(
     reference_temperature: ArrayLike,
     stages: ArrayLike,
 ) -> tuple[TemperatureRise, ...]:
-    """Return the temperature rise over a test without vibration, stage by stage.
+    """Temperature rise over a test without vibration, stage by stage.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def temperature_rise_by_stage(
 
 
 def _span_mean(t: Floats, value: Floats, span: tuple[float, float], name: str) -> tuple[float, float]:
-    """Return the mean over a time span and its standard error."""
+    """Mean over a time span and its standard error."""
     start, end = span
     inside = (t >= start) & (t <= end) & np.isfinite(value)
     if np.count_nonzero(inside) < 2:
@@ -189,18 +189,18 @@ def _span_mean(t: Floats, value: Floats, span: tuple[float, float], name: str) -
 
 
 def _basis(t: Floats, logarithms: Floats) -> Floats:
-    """Return the columns of the linear parameters: a constant and the decaying exponentials."""
+    """Columns of the linear parameters: a constant and the decaying exponentials."""
     return np.stack([np.ones_like(t), *(np.exp(-t / tau) for tau in np.exp(logarithms))], axis=-1)
 
 
 def _projected_residuals(t: Floats, value: Floats, logarithms: Floats) -> Floats:
-    """Return the residuals after the linear parameters are eliminated."""
+    """Residuals after the linear parameters are eliminated."""
     columns = _basis(t, logarithms)
     return np.asarray(columns @ np.linalg.lstsq(columns, value, rcond=None)[0] - value)
 
 
 def _log_time_constants(t: Floats, value: Floats, count: int) -> Floats:
-    """Return the logarithms of the fitted time constants, the shorter first."""
+    """Logarithms of the fitted time constants, the shorter first."""
     duration, shortest = float(t[-1]), float(np.median(np.diff(t)))
     lower, upper = np.log([shortest / 3, 30 * duration])
     initial = np.geomspace(2 * shortest, 2 * duration, _INITIAL_TIME_CONSTANTS)
@@ -211,14 +211,14 @@ def _log_time_constants(t: Floats, value: Floats, count: int) -> Floats:
 
 
 def _information_criterion(t: Floats, value: Floats, logarithms: Floats) -> float:
-    """Return the Bayesian information criterion of a fit, up to a constant of the data."""
+    """Bayesian information criterion of a fit, up to a constant of the data."""
     residuals, rounding = _projected_residuals(t, value, logarithms), 1e-10 * float(np.ptp(value))
     mean_square = max(float(np.mean(residuals**2)), rounding**2)
     return t.size * float(np.log(mean_square)) + (1 + 2 * logarithms.size) * float(np.log(t.size))
 
 
 def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: float) -> TemperatureResponse:
-    """Return the response of fitted time constants with its confidence intervals."""
+    """Response of fitted time constants with its confidence intervals."""
     count = logarithms.size
     columns = _basis(t, logarithms)
     amplitudes = np.linalg.lstsq(columns, value, rcond=None)[0]
@@ -233,7 +233,7 @@ def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: fl
     quantile = float(stats.t.ppf((1 + confidence_level) / 2, max(1.0, t.size / inefficiency - jacobian.shape[1])))
 
     def interval(direction: Floats) -> ConfidenceInterval:
-        """Return the interval of a linear combination of the amplitudes."""
+        """Interval of a linear combination of the amplitudes."""
         estimate = float(direction @ amplitudes)
         half = quantile * float(np.sqrt(direction @ covariance[: count + 1, : count + 1] @ direction))
         return ConfidenceInterval(value=estimate, lower=estimate - half, upper=estimate + half)
@@ -256,7 +256,7 @@ def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: fl
 
 
 def _caveats(longest: float, duration: float) -> tuple[str, ...]:
-    """Return the caveat of a time constant that exceeds the record."""
+    """Caveat of a time constant that exceeds the record."""
     if longest <= duration:
         return ()
     return (

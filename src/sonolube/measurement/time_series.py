@@ -18,25 +18,9 @@ _ROUNDED = 1.0  # intervals by which a rounded clock deviates
 
 
 def require_time_series(*, time: ArrayLike, **signals: ArrayLike) -> tuple[Floats, ...]:
-    """Return the time and the signals over it as arrays, validated; NaN in a signal is a missing value and stays.
+    """Time and the signals over it as arrays, validated; NaN in a signal is a missing value and stays.
 
-    Parameters
-    ----------
-    time : array_like, shape (samples,)
-        Increasing. [s]
-    **signals : array_like, shape (samples,)
-        By their names in the vocabulary.
-
-    Returns
-    -------
-    tuple of ndarray
-        The time, then the signals in their order.
-
-    Raises
-    ------
-    InvalidInput
-        If the time has fewer than two samples, is not finite or does not increase, or a signal has another length, an
-        infinite value, or no value at all.
+    The time, then the signals in their order.
     """
     t = require_finite(time=time)
     if t.ndim != 1 or t.size < 2:
@@ -48,13 +32,7 @@ def require_time_series(*, time: ArrayLike, **signals: ArrayLike) -> tuple[Float
 
 
 def require_equal_length(**vectors: Floats | Complexes) -> None:
-    """Refuse vectors that are not one-dimensional, equal in length and of one value at least.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the vectors and their shapes.
-    """
+    """Refuse vectors that are not one-dimensional, equal in length and of one value at least."""
     shapes = [vector.shape for vector in vectors.values()]
     if len(shapes[0]) != 1 or len(set(shapes)) > 1 or shapes[0] == (0,):
         demand = f"{' and '.join(vectors)} must be one-dimensional and equal in length"
@@ -62,7 +40,7 @@ def require_equal_length(**vectors: Floats | Complexes) -> None:
 
 
 def _signal(name: str, values: ArrayLike, samples: int) -> Floats:
-    """Return a signal as a float array; refuse another length, infinite values and a signal of NaN only."""
+    """Signal as a float array; refuse another length, infinite values and a signal of NaN only."""
     array = np.asarray(values)
     if array.dtype.kind not in "fiu" or array.shape != (samples,):
         raise InvalidInput(f"{name} must hold {samples} numbers, got shape {array.shape} of {array.dtype}")
@@ -75,22 +53,7 @@ def _signal(name: str, values: ArrayLike, samples: int) -> Floats:
 
 
 def uniform_sample_interval(*, time: Floats) -> float:
-    """Return the sample interval of a uniformly sampled time; refuse one with gaps. [s]
-
-    Parameters
-    ----------
-    time : ndarray, shape (samples,)
-        Increasing. [s]
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        If an interval differs from the mean by more than 5 %, with the time of the first one.
-    """
+    """Sample interval of a uniformly sampled time; refuse one with gaps. [s]"""
     interval = float(time[-1] - time[0]) / (time.size - 1)
     uneven = np.abs(np.diff(time) - interval) > _INTERVAL_TOLERANCE * interval
     if uneven.any():
@@ -102,22 +65,8 @@ def uniform_sample_interval(*, time: Floats) -> float:
 def even_stretches(*, time: Floats, fewest: int) -> tuple[float, list[slice]]:
     """Sample interval of a recording, and the stretches that are sampled at it without a gap.
 
-    Parameters
-    ----------
-    time : ndarray, shape (samples,)
-        Increasing. [s]
-    fewest : int
-        Samples of a stretch; shorter ones are left out.
+    Mean interval of the longest stretch. [s] Empty where there is none.
 
-    Returns
-    -------
-    float
-        Mean interval of the longest stretch. [s]
-    list of slice
-        Empty where there is none.
-
-    Notes
-    -----
     A stretch ends where an interval exceeds 2.5 local medians, or where their median changes by half. A clock that was
     rounded or that jitters by less than that is even on average; stretches of other rates are left out.
     """
@@ -141,20 +90,8 @@ def even_stretches(*, time: Floats, fewest: int) -> tuple[float, list[slice]]:
 def evenly_sampled(*, time: Floats, signal: Floats, sample_interval: float) -> tuple[Floats, Floats]:
     """Stretch of a signal at even times: as it is where they are, else interpolated between its samples.
 
-    Parameters
-    ----------
-    time : ndarray, shape (samples,)
-        Increasing, without gaps. [s]
-    signal : ndarray, shape (samples,)
-        Without missing values.
-    sample_interval : float
-        [s]
-
-    Returns
-    -------
-    tuple of ndarray
-        Time and signal. Times that deviate from even ones by less than an interval are a rounded clock: the samples
-        stay as they are.
+    Time and signal. Times that deviate from even ones by less than an interval are a rounded clock: the samples stay as
+    they are.
     """
     even = np.linspace(time[0], time[-1], time.size)
     if np.max(np.abs(time - even)) < _ROUNDED * sample_interval:

@@ -9,7 +9,7 @@ from scipy import stats
 from sonolube.checks import Complexes, Floats, require_finite, require_finite_complex, require_positive, require_within
 from sonolube.errors import InvalidInput
 
-_LEAST_PERIODS = 1.0
+_MIN_PERIODS = 1.0
 _LARGEST_CONDITION = 1e6  # of the least-squares columns, beyond which the frequency aliases
 
 
@@ -71,7 +71,7 @@ class OperatingDeflectionShape:
 def amplitude_per_volt(
     *, voltage_peak_to_peak: ArrayLike, vibration_amplitude: ArrayLike, confidence_level: float = 0.95
 ) -> AmplitudePerVolt:
-    r"""Return the vibration amplitude per volt by regression through the origin, with an F test of curvature.
+    r"""Vibration amplitude per volt by regression through the origin, with an F test of curvature.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def amplitude_per_volt(
 
 
 def complex_amplitudes(*, time: ArrayLike, signals: ArrayLike, frequency: float) -> Complexes:
-    r"""Return the complex amplitudes of signals at a known frequency by linear least squares.
+    r"""Complex amplitudes of signals at a known frequency by linear least squares.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def complex_amplitudes(*, time: ArrayLike, signals: ArrayLike, frequency: float)
     omega = 2 * np.pi * float(require_positive(frequency=frequency))
     if t.ndim != 1 or t.size < 4 or x.ndim != 2 or x.shape[1] != t.size:
         raise InvalidInput(f"signals must have one sample per time in each row, got shapes {x.shape} and {t.shape}")
-    if np.ptp(t) * frequency < _LEAST_PERIODS:
+    if np.ptp(t) * frequency < _MIN_PERIODS:
         raise InvalidInput(f"time covers {np.ptp(t) * frequency:.2g} periods of {frequency:g} Hz; one is needed")
     columns = np.stack([np.ones_like(t), np.cos(omega * (t - t[0])), -np.sin(omega * (t - t[0]))], axis=-1)
     if np.linalg.cond(columns) > _LARGEST_CONDITION:
@@ -187,7 +187,7 @@ def complex_amplitudes(*, time: ArrayLike, signals: ArrayLike, frequency: float)
 
 
 def operating_deflection_shape(amplitudes: ArrayLike) -> OperatingDeflectionShape:
-    r"""Return the operating deflection shape of points from their complex amplitudes.
+    r"""Operating deflection shape of points from their complex amplitudes.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def operating_deflection_shape(amplitudes: ArrayLike) -> OperatingDeflectionShap
 
 
 def modal_assurance_criterion(first: ArrayLike, second: ArrayLike) -> Floats:
-    r"""Return the modal assurance criterion (MAC) of each shape of one set with each of another.
+    r"""Modal assurance criterion (MAC) of each shape of one set with each of another.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ def modal_assurance_criterion(first: ArrayLike, second: ArrayLike) -> Floats:
 
 
 def _unit_shapes(name: str, value: ArrayLike) -> Complexes:
-    """Return shapes as columns of unit norm; refuse zero shapes."""
+    """Shapes as columns of unit norm; refuse zero shapes."""
     shapes = require_finite_complex(**{name: value})
     shapes = shapes[:, np.newaxis] if shapes.ndim == 1 else shapes
     greatest = np.abs(shapes).max(axis=0) if shapes.ndim == 2 and shapes.size else np.zeros(1)

@@ -85,7 +85,7 @@ class WearReduction:
 
 
 def measure_wear_track(scans: Iterable[HeightMap], *, groove_diameter: float, sliding_distance: float) -> WearTrack:
-    """Return the wear of a track from the grooves in scans around it.
+    """Wear of a track from the grooves in scans around it.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def measure_wear_track(scans: Iterable[HeightMap], *, groove_diameter: float, sl
 def wear_track_from_grooves(
     grooves: Sequence[Groove | str], *, groove_diameter: float, sliding_distance: float
 ) -> WearTrack:
-    r"""Return the wear of a track from the measured grooves of its scans.
+    r"""Wear of a track from the measured grooves of its scans.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def wear_track_from_grooves(
 
 
 def wear_reduction_between_tracks(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> WearReduction:
-    r"""Return the wear reduction between tracks worn without and with vibration, with Fieller's interval.
+    r"""Wear reduction between tracks worn without and with vibration, with Fieller's interval.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def wear_reduction_between_tracks(without: Sequence[WearTrack], with_vibration: 
 
 
 def _wear_rates(tracks: Sequence[WearTrack], between: bool) -> Floats:
-    """Return the wear rate of each specimen, or of each scan, in m2."""
+    """Wear rate of each specimen, or of each scan, in m2."""
     if between:
         return np.array([track.wear_rate for track in tracks])
     return np.concatenate(

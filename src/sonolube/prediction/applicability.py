@@ -23,7 +23,7 @@ _METALS: Final = frozenset(
         *("stainless_steel", "steel", "titanium", "zinc"),
     }
 )
-_LEAST_DRY_FRICTION: Final = 0.15  # coefficient of metals on metals in air
+_MIN_DRY_FRICTION: Final = 0.15  # coefficient of metals on metals in air
 _MARGIN: Final = 1.05  # beyond the ends of a range
 
 
@@ -49,18 +49,6 @@ class Applicability:
 def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
     """Direction, bodies, lubricant and frequency of a rig against what predictions are learned from.
 
-    Parameters
-    ----------
-    rig : Rig
-    lubricant : bool
-        Whether the contact is lubricated.
-
-    Returns
-    -------
-    Applicability
-
-    Notes
-    -----
     Refused are a vibration with a part in the plane of contact, and soft bodies: polymers, rubber, felt, skin, foam,
     or an effective modulus below 10 GPa where not both materials are named. A coefficient of friction below 0.15 of
     metals, or of hard bodies without names, counts as that of a lubricated contact.
@@ -104,9 +92,9 @@ def _lubrication(rig: Rig, *, lubricant: bool) -> tuple[str, ...]:
     coefficient, hard = rig.friction_coefficient, all(body.family in _METALS for body in named_bodies(rig))
     if lubricant:
         why = "the contact is lubricated"
-    elif hard and coefficient < _LEAST_DRY_FRICTION:
+    elif hard and coefficient < _MIN_DRY_FRICTION:
         why = (
-            f"a coefficient of friction of {coefficient:.3g} without vibration is below {_LEAST_DRY_FRICTION:g}, the"
+            f"a coefficient of friction of {coefficient:.3g} without vibration is below {_MIN_DRY_FRICTION:g}, the"
             " least of dry metals, so that the contact counts as lubricated"
         )
     else:
@@ -132,15 +120,7 @@ def _frequency(rig: Rig) -> tuple[str, ...]:
 def extrapolation_caveats(rig: Rig, inputs: RigInputs) -> tuple[str, ...]:
     """Sentence that names the conditions of a rig that lie outside the published tests.
 
-    Parameters
-    ----------
-    rig : Rig
-    inputs : RigInputs
-
-    Returns
-    -------
-    tuple of str
-        Empty where all conditions lie within.
+    Empty where all conditions lie within.
     """
     outside = [
         f"{label} {format_si(value, unit)} ({format_si(low, unit)} to {format_si(high, unit)})"

@@ -37,14 +37,7 @@ class NamedBody:
 def named_bodies(rig: Rig) -> tuple[NamedBody, ...]:
     """Bodies of a rig whose materials are named, the pin or the softer one first.
 
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    tuple of NamedBody
-        None, one or two.
+    None, one or two.
     """
     tables = _body_tables(rig)
     found = [

@@ -164,17 +164,7 @@ def calibrations() -> tuple[Calibration, ...]:
 
 @cache
 def blind_calibration(groups: tuple[tuple[str, ...], ...] = ()) -> Calibration:
-    """Calibration of the prediction with nothing that a user would not have before a test.
-
-    Parameters
-    ----------
-    groups : tuple of tuple of str
-        Sets left out together, such as `SAME_TRIBOMETER`; each set alone where empty.
-
-    Returns
-    -------
-    Calibration
-    """
+    """Calibration of the prediction with nothing that a user would not have before a test."""
     return population_calibration(BLIND, published_population(), published_rigs(), groups=groups)
 
 
@@ -186,21 +176,7 @@ def mean_ratio_calibration(groups: tuple[tuple[str, ...], ...] = ()) -> Calibrat
 def population_calibration(
     name: str, population: Population, rigs: Sequence[TestedRig], *, groups: tuple[tuple[str, ...], ...] = ()
 ) -> Calibration:
-    """Every rig left out in turn, with what was learned from the others alone.
-
-    Parameters
-    ----------
-    name : str
-    population : Population
-        Of these rigs.
-    rigs : sequence of TestedRig
-    groups : tuple of tuple of str
-        Names of rigs left out together; each alone where empty.
-
-    Returns
-    -------
-    Calibration
-    """
+    """Every rig left out in turn, with what was learned from the others alone."""
     predictions: list[UnseenPrediction] = []
     for group in groups or tuple((rig.name,) for rig in rigs):
         places = tuple(place for place, rig in enumerate(rigs) if rig.name in group)

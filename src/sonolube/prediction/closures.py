@@ -66,19 +66,7 @@ class UncertainConditions:
     amplitude_factor: float = 1.0
 
     def log_length_factor(self, *, length_factor: Floats, length_spread: Floats, deviates: Floats) -> Floats:
-        """Logarithm of the factor on decay length over amplitude, on which friction models depend.
-
-        Parameters
-        ----------
-        length_factor, length_spread : ndarray
-            Logarithms of the median factor of the population and of its scatter between rigs.
-        deviates : ndarray, broadcast against them
-            Standard normal deviates.
-
-        Returns
-        -------
-        ndarray, shape of the broadcast arguments
-        """
+        """Logarithm of the factor on decay length over amplitude, on which friction models depend."""
         offset = -log(self.amplitude_factor)
         if self.decay_length_spread is not None:
             return np.asarray(offset + hypot(self.decay_length_spread, self.amplitude_spread) * deviates)

@@ -48,12 +48,6 @@ class TestedRig:
 def published_rigs() -> tuple[TestedRig, ...]:
     """Sets A to H of the published tests as rigs, of whose decay lengths nothing is known.
 
-    Returns
-    -------
-    tuple of TestedRig
-
-    Notes
-    -----
     No roughness enters: printed ones, worn or not, do not order the decay lengths that the tests ask for, and the 6 um
     of most records is a guess by comparison standards. On the flextensional actuator of set H the amplitude at
     resonance was not measured: it is the quasi-static stroke times 2, within a factor of 2 (one standard deviation).
@@ -71,15 +65,7 @@ def _tested_logs() -> tuple[Floats, Floats]:
 def distance_from_tests(at: Conditions) -> Floats:
     """Distance of conditions from the range of the published tests in logarithms of amplitude, speed and frequency.
 
-    Parameters
-    ----------
-    at : Conditions
-        Of n tests.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        0 within the range, and towards no vibration, whose limit is known.
+    0 within the range, and towards no vibration, whose limit is known.
     """
     logs, (low, high) = _logs(at), _tested_logs()
     below, above = low[:, None] - logs, logs - high[:, None]
@@ -94,12 +80,7 @@ def _logs(at: Conditions) -> Floats:
 
 @cache
 def rigs_by_records() -> tuple[TestedRig, ...]:
-    """Sets A to H with the decay length R_q/lambda of their records as reference, which no user has before a test.
-
-    Returns
-    -------
-    tuple of TestedRig
-    """
+    """Sets A to H with the decay length R_q/lambda of their records as reference, which no user has before a test."""
     lengths: dict[str, list[float]] = {}
     for test in friction_tests():
         at_rest = separation(test.contact, normal_load=test.normal_load)

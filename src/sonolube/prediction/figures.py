@@ -74,16 +74,7 @@ def _highest(prediction: "xr.Dataset | LabelledArrays") -> float:
 def ratio_bands(places: Floats, quantiles: Floats) -> tuple[Part, ...]:
     """Central intervals and median along one axis.
 
-    Parameters
-    ----------
-    places : ndarray, shape (n,)
-        In the unit of the axis.
-    quantiles : ndarray, shape (7, n)
-        Of the probabilities `LEVELS`.
-
-    Returns
-    -------
-    tuple of Part
+    `quantiles` has shape (7, n).
     """
     bands = [
         Band(

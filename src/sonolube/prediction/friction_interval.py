@@ -39,14 +39,7 @@ class FrictionInterval:
 def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
     """Interval of the friction ratio of a rig at its operating point, without own runs.
 
-    Parameters
-    ----------
-    rig : Rig or ResolvedRig
-
-    Returns
-    -------
-    FrictionInterval
-        Equal to that of `predict`.
+    Equal to that of `predict`.
     """
     resolved = resolved_rig(rig)
     try:

@@ -38,7 +38,7 @@ OWN_DEVIATES: Final = 3
 """Number of standard normal deviates of one rig: of ln theta, of ln l/a, of the scale of the discrepancy."""
 
 _FULL_DISCREPANCY: Final = 0.2  # reduction from which the discrepancy is as large as it becomes
-_LEAST_DISCREPANCY: Final = 0.25  # share of it without a reduction
+_MIN_DISCREPANCY: Final = 0.25  # share of it without a reduction
 _PER_DISTANCE: Final = 0.5  # rise of that share with the distance from the published tests
 _FARTHEST: Final = 7.0  # deviates of the scale of the discrepancy, whose degrees of freedom nu are 4
 _NODES: Final = 64  # of the integral over what one rig has of its own
@@ -78,26 +78,12 @@ POPULATION_PRIOR: Final = Prior()
 def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
     r"""Standard normal numbers that fill the space more evenly than random ones.
 
-    Parameters
-    ----------
-    count : int
-    columns : int
-    seed : int
-        Of the shift of each column.
+    Shape (count, columns). Not writable, since it is kept for the next call.
 
-    Returns
-    -------
-    ndarray, shape (count, columns)
-        Not writable, since it is kept for the next call.
-
-    Notes
-    -----
     Additive recurrence :math:`u_{nk} = u_{0k} + n\, g^{-k} \bmod 1` with the real root g > 1 of
     :math:`g^{d+1} = g + 1` in d dimensions, and the normal quantiles of u.
 
-    References
-    ----------
-    .. [1] H. Niederreiter, Random Number Generation and Quasi-Monte Carlo Methods, SIAM 1992, chapter 3.
+    Source: H. Niederreiter, Random Number Generation and Quasi-Monte Carlo Methods, SIAM 1992, chapter 3.
     """
     root = 2.0
     for _ in range(50):
@@ -141,15 +127,7 @@ class OwnParameters:
 def own_parameters(hyperparameters: Floats, deviates: Floats, at: UncertainConditions) -> OwnParameters:
     """Parameters of one rig from hyperparameters and standard normal deviates.
 
-    Parameters
-    ----------
-    hyperparameters : ndarray, shape (..., 6)
-    deviates : ndarray, shape (..., 3), broadcast against them
-    at : UncertainConditions
-
-    Returns
-    -------
-    OwnParameters
+    `hyperparameters` has shape (..., 6). `deviates` has shape (..., 3).
     """
     mu, kappa, tau, tau_l, sigma, _ = np.moveaxis(hyperparameters, -1, 0)
     factor = at.log_length_factor(length_factor=kappa, length_spread=tau_l, deviates=deviates[..., 1])
@@ -184,14 +162,7 @@ def _scale_table() -> tuple[Floats, Floats]:
 def squared_distances(one: Conditions, other: Conditions) -> Floats:
     """Squared distances of conditions in the logarithms of amplitude and speed, over which a discrepancy decays.
 
-    Parameters
-    ----------
-    one, other : Conditions
-        Of n and of m tests.
-
-    Returns
-    -------
-    ndarray, shape (n, m)
+    Shape (n, m).
     """
     return np.asarray(
         np.log(one.vibration_amplitude[:, None] / other.vibration_amplitude) ** 2
@@ -270,18 +241,7 @@ def _place(values: Floats, grid: Floats) -> tuple[Integers, Floats]:
 def covariance_of_tests(ratio: Floats, rig: TestedRig, *, log_discrepancy: Floats, log_length: Floats) -> Floats:
     """Covariance of the measured ratios of a rig about those of a friction model.
 
-    Parameters
-    ----------
-    ratio : ndarray, shape (..., n)
-        By the friction model.
-    rig : TestedRig
-        Of n tests.
-    log_discrepancy, log_length : ndarray, shape (...)
-        Logarithms of the standard deviation of the discrepancy and of its correlation length.
-
-    Returns
-    -------
-    ndarray, shape (..., n, n)
+    `ratio` has shape (..., n). Shape (..., n, n).
     """
     at = rig.at.conditions
     side = discrepancy_deviation(ratio, at, log_discrepancy=log_discrepancy)
@@ -298,21 +258,10 @@ def discrepancy_correlation(one: Conditions, other: Conditions, *, log_length: A
 def discrepancy_deviation(ratio: Floats, at: Conditions, *, log_discrepancy: Floats) -> Floats:
     """Standard deviation of the discrepancy at conditions.
 
-    Parameters
-    ----------
-    ratio : ndarray, shape (..., n)
-        By the friction model.
-    at : Conditions
-        Of n tests.
-    log_discrepancy : ndarray, shape (...)
-        Logarithm of the largest within the range of the published tests.
-
-    Returns
-    -------
-    ndarray, shape (..., n)
+    `ratio` has shape (..., n).
     """
     distance = distance_from_tests(at)
-    least = np.minimum(_LEAST_DISCREPANCY + _PER_DISTANCE * distance, 1.0)
+    least = np.minimum(_MIN_DISCREPANCY + _PER_DISTANCE * distance, 1.0)
     share = np.clip((1 - ratio) / _FULL_DISCREPANCY, least, 1.0) * np.sqrt(1 + distance**2)
     return np.asarray(np.exp(log_discrepancy)[..., None] * share)
 
@@ -320,14 +269,7 @@ def discrepancy_deviation(ratio: Floats, at: Conditions, *, log_discrepancy: Flo
 def log_normal_density(residual: Floats, covariance: Floats) -> Floats:
     """Logarithm of the density of a multivariate normal distribution.
 
-    Parameters
-    ----------
-    residual : ndarray, shape (..., n)
-    covariance : ndarray, shape (..., n, n)
-
-    Returns
-    -------
-    ndarray, shape (...)
+    `residual` has shape (..., n). `covariance` has shape (..., n, n). Shape (...).
     """
     factor = np.linalg.cholesky(covariance)
     scaled = np.linalg.solve(factor, residual[..., None])[..., 0]

@@ -104,7 +104,7 @@ class RigInputs:
         return self.decay, self.amplitude, self.friction
 
     def with_input(self, known: Input) -> "RigInputs":
-        """Return the inputs with the uncertain one of the same name replaced."""
+        """Inputs with the uncertain one of the same name replaced."""
         length, amplitude, friction = (known if known.name == each.name else each for each in self.uncertain)
         return replace(self, decay=length, amplitude=amplitude, friction=friction)
 
@@ -129,21 +129,7 @@ class RigInputs:
 
 
 def rig_inputs(rig: Rig | ResolvedRig) -> RigInputs:
-    """Inputs of a prediction from a rig file: its own distributions where it has them, else usual ones.
-
-    Parameters
-    ----------
-    rig : Rig or ResolvedRig
-
-    Returns
-    -------
-    RigInputs
-
-    Raises
-    ------
-    InvalidInput
-        If the rig does not vibrate, does not slide or states no frequency.
-    """
+    """Inputs of a prediction from a rig file: its own distributions where it has them, else usual ones."""
     resolved = resolved_rig(rig)
     rig = resolved.rig
     if rig.drive is None:

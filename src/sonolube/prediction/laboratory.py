@@ -66,19 +66,7 @@ class Laboratory:
 
 
 def laboratory(population: Posterior, rigs: Sequence[TestedRig], *, seed: int = 0) -> Laboratory:
-    """Population of the rigs of a laboratory from own runs of some of them.
-
-    Parameters
-    ----------
-    population : Posterior
-        Of the published tests.
-    rigs : sequence of TestedRig
-    seed : int
-
-    Returns
-    -------
-    Laboratory
-    """
+    """Population of the rigs of a laboratory from own runs of some of them."""
     laboratories = _drawn(population.hyperparameters, seed=seed)
     logs = np.zeros(len(laboratories))
     taught, contradicting = [], []

@@ -40,23 +40,9 @@ def ensemble_draws(
 ) -> Floats:
     """Draws of emcee's affine-invariant ensemble, thinned to some thousand.
 
-    Parameters
-    ----------
-    log_density : callable
-        Of rows.
-    start : tuple of ndarray
-        Means and standard deviations about which the walkers begin.
-    steps : int
-        Of each walker.
-    seed : int
+    Shape (draws, dimensions).
 
-    Returns
-    -------
-    ndarray, shape (draws, dimensions)
-
-    References
-    ----------
-    .. [1] D. Foreman-Mackey, D. W. Hogg, D. Lang and J. Goodman, PASP 125, 306 (2013). doi:10.1086/670067
+    Source: D. Foreman-Mackey, D. W. Hogg, D. Lang and J. Goodman, PASP 125, 306 (2013). doi:10.1086/670067
     """
     import emcee
 

@@ -15,9 +15,9 @@ from sonolube.prediction.inputs import Input, RigInputs
 if TYPE_CHECKING:
     import xarray as xr
 
-_MOST_RUNS: Final = 200
+_MAX_RUNS: Final = 200
 _USUAL_UNCERTAINTY: Final = 0.05  # of a friction ratio, where neither column nor repeats state it
-_FEWEST_REPEATS: Final = 4  # from which the scatter of repeats is taken
+_MIN_REPEATS: Final = 4  # from which the scatter of repeats is taken
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,30 +45,10 @@ class OwnRuns:
 
 
 def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
-    """Measured runs of a rig with what they do not state taken from the rig.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`, in SI: `friction_reduction`, with `friction_reduction_uncertainty` where it is known;
-        `vibration_amplitude` or `voltage_peak_to_peak`, `sliding_speed`, `normal_load`,
-        where they are not the rig's; `intrinsic_friction_force`; `wear_rate_ratio` or `wear_reduction`.
-    inputs : RigInputs
-    title : str
-        Of the rig.
-
-    Returns
-    -------
-    OwnRuns
-
-    Raises
-    ------
-    InvalidInput
-        If a ratio is beyond what vibration does, or a speed, amplitude or uncertainty is not positive.
-    """
+    """Measured runs of a rig with what they do not state taken from the rig."""
     count = runs.sizes["run"]
-    if count > _MOST_RUNS:
-        raise InvalidInput(f"{title}: {count} runs; at most {_MOST_RUNS} update a prediction: average repeats")
+    if count > _MAX_RUNS:
+        raise InvalidInput(f"{title}: {count} runs; at most {_MAX_RUNS} update a prediction: average repeats")
     ratio, copies = checked_ratios(runs, title=title), copies_caveat(runs)
     if np.any(np.isfinite(setting(runs, "vibration_direction", np.nan))):
         raise InvalidInput(f"{title}: a prediction is of vibration along the normal; leave out runs with a direction")
@@ -117,7 +97,7 @@ def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Fl
     keys = np.round(np.log(np.stack([amplitude, speed])), 2)
     _, group, counts = np.unique(keys, axis=1, return_inverse=True, return_counts=True)
     free = ratio.size - counts.size
-    if free + 1 >= _FEWEST_REPEATS:
+    if free + 1 >= _MIN_REPEATS:
         means = np.bincount(group.ravel(), weights=ratio) / counts
         scatter = float(np.sqrt(np.sum((ratio - means[group.ravel()]) ** 2) / free))
         return np.where(np.isnan(stated), scatter, stated), ()

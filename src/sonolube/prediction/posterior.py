@@ -128,17 +128,7 @@ class Population:
         return cls(closure=closure, draws=draws, log_likelihoods=logs)
 
     def posterior(self, *, without: tuple[int, ...] = ()) -> Posterior:
-        """Posterior by all rigs but some, by importance resampling of the draws.
-
-        Parameters
-        ----------
-        without : tuple of int
-            Places of the rigs left out.
-
-        Returns
-        -------
-        Posterior
-        """
+        """Posterior by all rigs but some, by importance resampling of the draws."""
         total = np.delete(self.log_likelihoods, without, axis=1).sum(axis=1)
         share = np.exp(total - np.logaddexp.reduce(total))
         rows = np.random.default_rng(0).choice(share.size, size=share.size, p=share)
@@ -147,12 +137,7 @@ class Population:
 
 @cache
 def published_population() -> Population:
-    """Population of the published rigs under the friction model that predicts.
-
-    Returns
-    -------
-    Population
-    """
+    """Population of the published rigs under the friction model that predicts."""
     return Population.of(CLOSURES[0], published_rigs())
 
 

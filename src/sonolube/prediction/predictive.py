@@ -40,15 +40,7 @@ class RigPrediction:
     def ratios(self, at: Conditions) -> Floats:
         """Friction ratios at conditions, equally probable.
 
-        Parameters
-        ----------
-        at : Conditions
-            Of m points.
-
-        Returns
-        -------
-        ndarray, shape (count, m)
-            Not negative; one normal deviate of the discrepancy a draw, so that curves are smooth.
+        Shape (count, m). Not negative; one normal deviate of the discrepancy a draw, so that curves are smooth.
         """
         mean, deviation = self.draws.normals(at)
         rows = np.arange(self.count) % len(mean)
@@ -62,29 +54,11 @@ def rig_prediction(
 ) -> RigPrediction:
     """Distribution of the friction ratio of a rig that is none of those learned from.
 
-    Parameters
-    ----------
-    posterior : Posterior
-    at : UncertainConditions
-        Whose spreads are those of the rig.
-    count : int
-    seed : int
-    own : TestedRig, optional
-        Tests of the rig's own.
-
-    Returns
-    -------
-    RigPrediction
-
-    Notes
-    -----
     Draws from the population are conditioned on the own tests; the discrepancy follows from its conditional
     distribution. Errors of four or more tests are Student's with 2 degrees of freedom, by weights of each test that
     follow from its deviation from the others (expectation maximisation).
 
-    References
-    ----------
-    .. [1] K. L. Lange, R. J. A. Little and J. M. G. Taylor, J. Am. Stat. Assoc. 84, 881 (1989).
+    Source: K. L. Lange, R. J. A. Little and J. M. G. Taylor, J. Am. Stat. Assoc. 84, 881 (1989).
     """
     draws = rig_draws(posterior, at, count=count, seed=seed, own=own)
     if own is None:

@@ -31,12 +31,7 @@ _MAX_SUBSETS: Final = 6  # of own runs for each predicted test
 
 
 def published_prediction_figures() -> Iterator[ReportFigure]:
-    """Figures of the prediction of published tests.
-
-    Returns
-    -------
-    iterator of ReportFigure
-    """
+    """Figures of the prediction of published tests."""
     yield ReportFigure(
         name="prediction-blind",
         title="Every published test predicted from the other rigs, with nothing that a user would not have",
@@ -104,12 +99,7 @@ def blind_figure() -> "Figure":
 
 
 def unseen_chart() -> Chart:
-    """Tables 2.3 and 4.2 with the prediction from the other rigs.
-
-    Returns
-    -------
-    Chart
-    """
+    """Tables 2.3 and 4.2 with the prediction from the other rigs."""
     panels = []
     for name, condition, scale, label, unit, title in _PANELS:
         rig, posterior = _unseen(name)
@@ -125,12 +115,7 @@ def unseen_chart() -> Chart:
 
 
 def runs_figure() -> "Figure":
-    """Draw the width of the interval of a test, and the coverage, against the number of other tests known of its rig.
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw the width of the interval of a test, and the coverage, against the number of other tests known of its rig."""
     counts, widths, shares = zip(*_widths_by_runs(), strict=True)
     figure, (left, right) = subplots(1, 2, figsize=(6.85, 2.9))
     left.plot(counts, widths, MARKERS[0] + "-", color=COLOURS[0])

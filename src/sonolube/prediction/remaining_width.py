@@ -69,19 +69,7 @@ class OwnLogarithms:
 
 
 def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> OwnLogarithms:
-    """Draws of decay length and amplitude of a rig, split from those of their ratio on which friction depends.
-
-    Parameters
-    ----------
-    found : RigPrediction
-    intrinsic : ndarray, shape (draws,)
-        Coefficient of friction without vibration.
-    seed : int
-
-    Returns
-    -------
-    OwnLogarithms
-    """
+    """Draws of decay length and amplitude of a rig, split from those of their ratio on which friction depends."""
     draws = found.draws
     at, rows = draws.at, np.arange(found.count) % draws.rows.size
     if at.decay_length_spread is None:
@@ -100,19 +88,6 @@ def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> Own
 def expected_width(target: Floats, *, observed: Floats, noise: float) -> float:
     """Expected width of the 80 % interval of a target after a measurement.
 
-    Parameters
-    ----------
-    target, observed : ndarray, shape (draws,)
-        Of one draw each: what is predicted, and what is measured.
-    noise : float
-        Standard deviation of the measurement.
-
-    Returns
-    -------
-    float
-
-    Notes
-    -----
     Draws are weighed by the normal density of each of 24 evenly probable outcomes of the measurement.
     """
     order = np.argsort(target)
@@ -142,22 +117,7 @@ def share_left(target: Floats, *, observed: Floats, noise: float) -> float:
 def measures(
     found: RigPrediction, inputs: RigInputs, *, ratio: Floats, probes: Sequence[Probe], seed: int
 ) -> tuple[Measure, ...]:
-    """Measurements that would narrow the prediction at the operating point: a run first, then the contact stiffness.
-
-    Parameters
-    ----------
-    found : RigPrediction
-    inputs : RigInputs
-    ratio : ndarray, shape (draws,)
-        Friction ratio at the operating point.
-    probes : sequence of Probe
-        Resonances of the rig that may tell the contact stiffness.
-    seed : int
-
-    Returns
-    -------
-    tuple of Measure
-    """
+    """Measurements that would narrow the prediction at the operating point: a run first, then the contact stiffness."""
     near, far = _two_points(found, inputs)
     made = [
         Measure(label="one run at this point", share_left=share_left(near, observed=near, noise=_RUN)),

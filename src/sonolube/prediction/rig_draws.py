@@ -32,7 +32,7 @@ from sonolube.prediction.posterior import Posterior
 _POOL: Final = 8192  # draws that are weighed
 _ENOUGH: Final = 1000  # effective draws from which weighing alone does
 _MOVED: Final = 2048  # draws that are moved, for up to some tens of tests
-_LEAST_MOVED: Final = 256  # for very many
+_MIN_MOVED: Final = 256  # for very many
 _ENTRIES: Final = 4e6  # of all covariances of the tests, to bound time and memory
 _KEPT: Final = 0.5  # effective share of the draws that a step keeps
 _MOVES: Final = 4  # of each kind after each step
@@ -123,23 +123,11 @@ def rig_draws(
 ) -> RigDraws:
     """Draws of a friction model for a rig that is none of those learned from, conditioned on its own tests.
 
-    Parameters
-    ----------
-    posterior : Posterior
-    at : UncertainConditions
-        Whose spreads are those of the rig.
-    count : int
-    seed : int
-    own : TestedRig, optional
-
-    Returns
-    -------
-    RigDraws
-        Of `count` draws without own tests, else of as many as are moved: from 256 to 2048.
+    Of `count` draws without own tests, else of as many as are moved: from 256 to 2048.
     """
     if own is None:
         return _from_population(posterior, at, count=count, seed=seed)
-    moved = int(np.clip(_ENTRIES / own.friction_ratio.size**2, _LEAST_MOVED, _MOVED))
+    moved = int(np.clip(_ENTRIES / own.friction_ratio.size**2, _MIN_MOVED, _MOVED))
     pool = replace(_from_population(posterior, at, count=_POOL * moved // _MOVED, seed=seed), own=own)
     density = pool.log_density()
     if _effective(density) * _MOVED >= _ENOUGH * moved:

@@ -58,17 +58,7 @@ class RunCheck:
 def student_weights(before: RigDraws, after: RigDraws, own: TestedRig) -> Floats:
     """Weights (nu+1)/(nu+z^2) of the runs under Student's errors; 1 for fewer than four runs.
 
-    Parameters
-    ----------
-    before, after : RigDraws
-        Of the population, and conditioned on the runs.
-    own : TestedRig
-        The runs with their stated uncertainty.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        z^2 is what the squared deviation of a run from the others exceeds their prediction by, over its squared noise.
+    z^2 is what the squared deviation of a run from the others exceeds their prediction by, over its squared noise.
     """
     if own.friction_ratio.size < _FEWEST:
         return np.ones(own.friction_ratio.size)
@@ -79,20 +69,7 @@ def student_weights(before: RigDraws, after: RigDraws, own: TestedRig) -> Floats
 
 
 def checked_runs(before: RigDraws, after: RigDraws, own: TestedRig) -> RunCheck:
-    """Check of runs by draws before and after them.
-
-    Parameters
-    ----------
-    before : RigDraws
-        Of the population.
-    after : RigDraws
-        Conditioned on the runs.
-    own : TestedRig
-
-    Returns
-    -------
-    RunCheck
-    """
+    """Check of runs by draws before and after them."""
     count = own.friction_ratio.size
     seen = replace(before.taken(np.arange(min(before.rows.size, _COMPARED))), own=own)
     means = seen.means(own.at.conditions)

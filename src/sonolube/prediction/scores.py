@@ -16,15 +16,7 @@ LEVELS: Final = (0.025, 0.1, 0.25, 0.5, 0.75, 0.9, 0.975)
 def central_interval(draws: Floats, probability: float) -> tuple[Floats, Floats]:
     """Ends of the interval between equal tails.
 
-    Parameters
-    ----------
-    draws : ndarray, shape (draws, ...)
-    probability : float
-        Within the interval.
-
-    Returns
-    -------
-    low, high : ndarray, shape (...)
+    `draws` has shape (draws, ...). Shape (...).
     """
     low, high = np.quantile(draws, [(1 - probability) / 2, (1 + probability) / 2], axis=0)
     return low, high
@@ -33,24 +25,11 @@ def central_interval(draws: Floats, probability: float) -> tuple[Floats, Floats]
 def continuous_ranked_probability_score(draws: Floats, measured: float) -> float:
     r"""Continuous ranked probability score (CRPS): 0 for a certain and right prediction, in the unit of the quantity.
 
-    Parameters
-    ----------
-    draws : ndarray, shape (draws,)
-    measured : float
-
-    Returns
-    -------
-    float
-
-    Notes
-    -----
     .. math:: \langle |X - y| \rangle - \tfrac12 \langle |X - X'| \rangle
 
     over independent draws X and X'.
 
-    References
-    ----------
-    .. [1] T. Gneiting and A. E. Raftery, J. Am. Stat. Assoc. 102, 359 (2007). doi:10.1198/016214506000001437
+    Source: T. Gneiting and A. E. Raftery, J. Am. Stat. Assoc. 102, 359 (2007). doi:10.1198/016214506000001437
     """
     ordered, n = np.sort(draws), draws.size
     spread = np.sum((2 * np.arange(1, n + 1) - n - 1) * ordered) / n**2
@@ -60,24 +39,9 @@ def continuous_ranked_probability_score(draws: Floats, measured: float) -> float
 def interval_score(draws: Floats, measured: float, *, probability: float = 0.8) -> float:
     r"""Interval score: width of the central interval, and a penalty for what lies outside it.
 
-    Parameters
-    ----------
-    draws : ndarray, shape (draws,)
-    measured : float
-    probability : float
-        Within the interval.
-
-    Returns
-    -------
-    float
-
-    Notes
-    -----
     .. math:: (h - l) + \frac{2}{1 - p}\left[(l - y)_+ + (y - h)_+\right]
 
-    References
-    ----------
-    .. [1] T. Gneiting and A. E. Raftery, J. Am. Stat. Assoc. 102, 359 (2007), equation 43.
+    Source: T. Gneiting and A. E. Raftery, J. Am. Stat. Assoc. 102, 359 (2007), equation 43.
     """
     low, high = central_interval(draws, probability)
     outside = max(float(low) - measured, 0.0) + max(measured - float(high), 0.0)
@@ -85,16 +49,7 @@ def interval_score(draws: Floats, measured: float, *, probability: float = 0.8) 
 
 
 def binomial_interval(successes: int, trials: int) -> tuple[float, float]:
-    """95 % interval of a share by Clopper and Pearson.
-
-    Parameters
-    ----------
-    successes, trials : int
-
-    Returns
-    -------
-    low, high : float
-    """
+    """95 % interval of a share by Clopper and Pearson."""
     from scipy.stats import binomtest
 
     found = binomtest(successes, trials).proportion_ci(0.95)

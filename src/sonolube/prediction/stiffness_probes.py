@@ -73,36 +73,13 @@ def stiffness_probes(
 ) -> tuple[Probe, ...]:
     r"""Resonances of a structure whose shift between free and pressed tells the stiffness of its contact.
 
-    Parameters
-    ----------
-    structure : Structure
-        Of the rig, without its contact.
-    normal_load : float
-        Force pressing the bodies together. [N]
-    decay_length : array_like, shape (n,)
-        Decay lengths of the contact's force to compare; the stiffness is load over decay length. [m]
-    resolution : float
-        Standard uncertainty of a measured resonance frequency over its half width.
-    modal_mass_deviation : float
-        Standard deviation of the logarithm of the modal mass at the contact, by which the structure may err.
-
-    Returns
-    -------
-    tuple of Probe
-        One a mode that moves the contact, in order of frequency.
-
-    Raises
-    ------
-    InvalidInput
-        If a decay length or the resolution is not positive.
+    One a mode that moves the contact, in order of frequency.
 
     See Also
     --------
     probe_sentences : the same in words.
     sonolube.measurement.contact_stiffness.stiffness_estimate.contact_stiffness : the stiffness from measured shifts.
 
-    Notes
-    -----
     With resolution r, half widths :math:`h = \zeta f` and the slope by central differences,
 
     .. math::
@@ -159,17 +136,7 @@ def stiffness_probes(
 def told_probes(probes: Sequence[Probe], *, frequency: float) -> tuple[Probe, ...]:
     """The two probes of least uncertainty, and the mode nearest to a frequency of vibration.
 
-    Parameters
-    ----------
-    probes : sequence of Probe
-        Of `stiffness_probes`.
-    frequency : float
-        Of the vibration. [Hz]
-
-    Returns
-    -------
-    tuple of Probe
-        Up to three, the one of least uncertainty first.
+    Up to three, the one of least uncertainty first.
     """
     if not probes:
         return ()
@@ -182,15 +149,7 @@ def told_probes(probes: Sequence[Probe], *, frequency: float) -> tuple[Probe, ..
 def probe_sentences(probes: Sequence[Probe]) -> tuple[str, ...]:
     """Which resonances of a rig can tell the stiffness of its contact, one sentence each.
 
-    Parameters
-    ----------
-    probes : sequence of Probe
-        Of `stiffness_probes`.
-
-    Returns
-    -------
-    tuple of str
-        The probe of least uncertainty first; one sentence where no probe is known.
+    The probe of least uncertainty first; one sentence where no probe is known.
     """
     if not probes:
         return ("no structure is known, so no resonance can be named whose shift tells the stiffness of the contact",)

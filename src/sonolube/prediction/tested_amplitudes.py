@@ -13,24 +13,15 @@ _MARGIN = 1.05  # of the largest tested one
 
 @cache
 def amplitude_ratios_of_tests() -> tuple[float, float]:
-    """Return the smallest and the largest amplitude of the published tests over the decay length. []"""
+    """Smallest and the largest amplitude of the published tests over the decay length. []"""
     ratios = [_amplitude_ratio(one.contact, one.normal_load, one.vibration_amplitude) for one in friction_tests()]
     return float(np.min(ratios)), float(np.max(ratios))
 
 
 def large_amplitude_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tuple[str, ...]:
-    """Return a sentence where an amplitude is more decay lengths of a rig's contact than any published test had.
+    """Sentence where an amplitude is more decay lengths of a rig's contact than any published test had.
 
-    Parameters
-    ----------
-    resolved : ResolvedRig
-    vibration_amplitude : float
-        Zero to peak. [m]
-
-    Returns
-    -------
-    tuple of str
-        Empty for amplitudes within the tests.
+    Empty for amplitudes within the tests.
     """
     ratio = vibration_amplitude / resolved.decay_length
     low, high = amplitude_ratios_of_tests()
@@ -43,6 +34,6 @@ def large_amplitude_caveats(resolved: ResolvedRig, *, vibration_amplitude: float
 
 
 def _amplitude_ratio(contact: RoughContact, normal_load: float, amplitude: float) -> float:
-    """Return an amplitude over the decay length of a contact under its load. []"""
+    """Amplitude over the decay length of a contact under its load. []"""
     at_rest = separation(contact, normal_load=normal_load)
     return amplitude / float(decay_length(contact, separation=at_rest))

@@ -62,12 +62,6 @@ class WearPair:
 def published_wear() -> tuple[WearPair, ...]:
     """Pairs of materials worn with and without vibration, D sections 2.3 to 2.5.
 
-    Returns
-    -------
-    tuple of WearPair
-
-    Notes
-    -----
     For both pairs with a titanium disc D states in words that wear was not reduced; that is a ratio of 1, uncertain.
     """
     speeds = [1 - si_value(f"table-2.5-wear_reduction-{row}") for row in (1, 2, 3)]
@@ -92,22 +86,7 @@ def published_wear() -> tuple[WearPair, ...]:
 
 
 def published_pair(name: str) -> WearPair:
-    """Published pair of materials of a name.
-
-    Parameters
-    ----------
-    name : str
-        Such as "titanium on titanium".
-
-    Returns
-    -------
-    WearPair
-
-    Raises
-    ------
-    UnknownName
-        If no pair has this name.
-    """
+    """Published pair of materials of a name."""
     known = {pair.name: pair for pair in published_wear()}
     if name not in known:
         raise UnknownName.among(known, kind="published pair of materials", name=name)
@@ -117,33 +96,16 @@ def published_pair(name: str) -> WearPair:
 def vibration_weight(*, friction_ratio: ArrayLike, seed: int = 0) -> Floats:
     r"""Share of the effect of the published wear tests that a vibration has on wear, w. []
 
-    Parameters
-    ----------
-    friction_ratio : array_like, shape (draws, ...)
-        Draws of friction with vibration over friction without; further axes are conditions of one rig. []
-    seed : int
-        Draws of the same seed are of the same rig.
+    `friction_ratio` has shape (draws, ...).
 
-    Returns
-    -------
-    ndarray, shape of `friction_ratio`
-        0 for a ratio of 1 and more, 1 for 0.707 and less.
+    0 for a ratio of 1 and more, 1 for 0.707 and less.
 
-    Raises
-    ------
-    InvalidInput
-        If a ratio is negative or not finite.
-
-    Notes
-    -----
     .. math:: w = \frac{u}{u + k (1 - u)}, \qquad u = \frac{1 - R}{1 - R_t}, \qquad \ln k \sim N(0, \ln^2 5)
 
     with u limited to 0 to 1, and the smallest friction reduction of the published wear tests,
-    :math:`1 - R_t = 0.293`. [1]_
+    :math:`1 - R_t = 0.293`.
 
-    References
-    ----------
-    .. [1] D Table 2.5, at 87 mm/s.
+    Source: D Table 2.5, at 87 mm/s.
     """
     ratio = require_non_negative(friction_ratio=friction_ratio)
     share = np.clip((1 - ratio) / si_value("table-2.5-friction_reduction-3"), 0.0, 1.0)
@@ -155,17 +117,8 @@ def vibration_weight(*, friction_ratio: ArrayLike, seed: int = 0) -> Floats:
 def log_wear_posterior(hyperparameters: Floats, pairs: tuple[WearPair, ...]) -> Floats:
     r"""Logarithm of the posterior density, but for a constant, of rows of `WEAR_HYPERPARAMETERS`.
 
-    Parameters
-    ----------
-    hyperparameters : ndarray, shape (h, 3)
-    pairs : tuple of WearPair
+    `hyperparameters` has shape (h, 3). Shape (h,).
 
-    Returns
-    -------
-    ndarray, shape (h,)
-
-    Notes
-    -----
     The logarithms of the n ratios of a pair are normal about the mean of the pair with the variance s^2 + u^2, and the
     means of pairs about M with T^2, so that those of one pair have the covariance :math:`T^2 + (s^2+u^2)\,\delta_{ij}`.
     """
@@ -205,32 +158,8 @@ class WearPosterior:
     ) -> Floats:
         r"""Draws of the mean wear rate ratio of a rig that is none of the published.
 
-        Parameters
-        ----------
-        count : int
-        measured : ndarray, shape (n,)
-            Own ratios of the rig, if any; each is one test. []
-        weight : array_like, shape () or (count,)
-            Share w of the effect of the published wear tests, by `vibration_weight`.
-        measured_weight : array_like, shape () or (count,)
-            The same under the conditions of the own tests, on average.
-        pair : str, optional
-            Name of a published pair of the same materials, whose tests count then.
-        seed : int
+        Shape (count,).
 
-        Returns
-        -------
-        ndarray, shape (count,)
-
-        Raises
-        ------
-        InvalidInput
-            If a weight is not within 0 to 1 or not one for each draw, or a measured ratio not positive.
-        UnknownName
-            If no published pair has the name.
-
-        Notes
-        -----
         ln ratio is w x, and x normal about M with T^2; after the n tests of a published pair, of mean y and with
         own variance s^2 + u^2, about :math:`M + b (y - M)` with :math:`T^2 (1 - b) + 0.3^2`, where
         :math:`b = n T^2 / (n T^2 + s^2 + u^2)` and 0.3 is the deviation between rigs of one pair. Own tests condition

@@ -48,15 +48,8 @@ class WornBody:
 def pair_of(rig: Rig) -> str | None:
     """Name of the published pair of materials of a rig, in either order.
 
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    str or None
-        Of `published_wear`; the pair that names most of both materials. None where no published pair is of these
-        materials or their families, or where the rig does not name both.
+    Of `published_wear`; the pair that names most of both materials. None where no published pair is of these materials
+    or their families, or where the rig does not name both.
     """
     bodies = named_bodies(rig)
     if len(bodies) < 2:
@@ -69,16 +62,6 @@ def pair_of(rig: Rig) -> str | None:
 def worn_body(rig: Rig) -> WornBody:
     """Body of a rig that wears: the softer one.
 
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    WornBody
-
-    Notes
-    -----
     By indentation hardness. Where one is less than 1.25 times the other, both may wear: tempers of one alloy and
     hardening by work differ by more.
     """
@@ -110,19 +93,8 @@ def worn_body(rig: Rig) -> WornBody:
 def wear_statement(draws: Floats, *, pair: str | None, worn_body: WornBody) -> str:
     """Change of the wear rate in words, with the body that wears.
 
-    Parameters
-    ----------
-    draws : ndarray, shape (draws,)
-        Wear rates with vibration over those without, equally probable.
-    pair : str or None
-        Published pair of the materials, by `pair_of`.
-    worn_body : WornBody
-
-    Returns
-    -------
-    str
-        Two sentences or three. Where the 80 % interval holds both an increase and a decrease by more than a tenth,
-        the change is said to be not known.
+    Two sentences or three. Where the 80 % interval holds both an increase and a decrease by more than a tenth, the
+    change is said to be not known.
     """
     low, high = (float(end) for end in central_interval(1 - np.asarray(draws), _PROBABILITY))
     return f"{_change(low, high, pair=pair, are_named=bool(worn_body.names))} {worn_body.sentence}"

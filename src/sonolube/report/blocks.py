@@ -54,18 +54,7 @@ Block = str | Rows | Table | Verbatim
 
 
 def text_lines(blocks: Iterable[Block], *, line_length: int | None = None) -> list[str]:
-    """Lines of text of blocks.
-
-    Parameters
-    ----------
-    blocks : iterable of Block
-    line_length : int, optional
-        Longest line; cells and lines are wrapped to it where that leaves them readable.
-
-    Returns
-    -------
-    list of str
-    """
+    """Lines of text of blocks."""
     lines: list[str] = []
     for block in blocks:
         if isinstance(block, Rows):
@@ -80,16 +69,7 @@ def text_lines(blocks: Iterable[Block], *, line_length: int | None = None) -> li
 
 
 def block_html(block: Block) -> str:
-    """Block as HTML, all texts escaped.
-
-    Parameters
-    ----------
-    block : Block
-
-    Returns
-    -------
-    str
-    """
+    """Block as HTML, all texts escaped."""
     if isinstance(block, Rows):
         rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in block.rows)
         return f"<table><tbody>{rows}</tbody></table>"

@@ -96,18 +96,7 @@ class Page:
 
 
 def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
-    """Content of the files of a figure, by format.
-
-    Parameters
-    ----------
-    drawing : Drawing
-    forms : sequence of str
-        Formats; the layout is that of the first.
-
-    Returns
-    -------
-    dict of str to bytes
-    """
+    """Content of the files of a figure, by format."""
     figure = drawing.figure()
     return {form: render_figure(figure, form) for form in forms}
 
@@ -160,19 +149,7 @@ def embedded(png: bytes) -> str:
 
 
 def html(template: str, **values: Any) -> str:
-    """Text of a page from one of the templates of this package, all values escaped and without control characters.
-
-    Parameters
-    ----------
-    template : str
-        File name below `templates`.
-    **values
-        By the names that the template uses.
-
-    Returns
-    -------
-    str
-    """
+    """Text of a page from one of the templates of this package, all values escaped and without control characters."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(

@@ -124,18 +124,8 @@ def pin_on_disc_rows(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> dict[str,
 def pin_on_disc_checklist(known: Mapping[str, Mapping[str, str]]) -> list[tuple[str, str, str]]:
     """Items that the report of a pin-on-disc test states, in the order of ASTM G99, with what is known before it.
 
-    Parameters
-    ----------
-    known : mapping of str to mapping of str to str
-        By section (parameters, pin, disc, test) and key, as in `PinOnDiscSheet`.
+    Part of the report, item, and its value; empty where it is still to be stated.
 
-    Returns
-    -------
-    list of (str, str, str)
-        Part of the report, item, and its value; empty where it is still to be stated.
-
-    Notes
-    -----
     The public scope of ASTM G99-17 (1.3) asks to state all test parameters, and to say that its procedure was followed
     with parameters of one's own where they are not those of its interlaboratory study [1]_. The items of bodies,
     apparatus, wear and friction are those of `PinOnDiscSheet` and of D 2.3.2 [2]_; the clause on the report itself is

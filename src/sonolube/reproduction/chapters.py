@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 
 @cache
 def published_comparison() -> tuple[ComparedFit, ...]:
-    """Return all model variants compared on all published tests."""
+    """All model variants compared on all published tests."""
     return compare_models()
 
 
@@ -110,7 +110,7 @@ SECTIONS: Final = (
 def reproduction(
     *, chapter: int | None = None, advance: Callable[[str, int, int], None] = lambda what, done, total: None
 ) -> Reproduction:
-    """Return the findings on the claims, and the published numbers beside the computed ones, with figures.
+    """Findings on the claims, and the published numbers beside the computed ones, with figures.
 
     Parameters
     ----------

@@ -73,37 +73,19 @@ class Finding:
 
 
 def finding(claim: Claim, rows: Mapping[str, Row]) -> Finding:
-    """Return the finding on a claim.
-
-    Parameters
-    ----------
-    claim : Claim
-    rows : mapping of str to Row
-        Rows by id, those that decide about the claim among them.
-
-    Returns
-    -------
-    Finding
-    """
+    """Finding on a claim."""
     decisive = [rows[name] for name in claim.decisive]
     claimed, found = claim.summary(decisive)
     return Finding(claim=claim, verdict=verdict_of(decisive), claimed=claimed, found=found)
 
 
 def verdict_of(rows: Sequence[Row]) -> ClaimVerdict:
-    """Return the verdict of a claim that rests on rows.
+    """Verdict of a claim that rests on rows.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-
-    Returns
-    -------
-    ClaimVerdict
-        `NOT_COMPUTED` if a part for one of the rows is missing here, `UNDETERMINED` if an input of all is not printed.
-        Over the others: `REPRODUCED` if each agrees and one does so by neither fit nor triviality, `FITTED` or
-        `MET_TRIVIALLY` if each agrees by fits, or trivially, alone, `NOT_REPRODUCED` if one disagrees and none is
-        reproduced, else `PARTLY_REPRODUCED`.
+    `NOT_COMPUTED` if a part for one of the rows is missing here, `UNDETERMINED` if an input of all is not printed. Over
+    the others: `REPRODUCED` if each agrees and one does so by neither fit nor triviality, `FITTED` or `MET_TRIVIALLY`
+    if each agrees by fits, or trivially, alone, `NOT_REPRODUCED` if one disagrees and none is reproduced, else
+    `PARTLY_REPRODUCED`.
     """
     count = Counter(row.verdict for row in rows)
     judged = len(rows) - count[Verdict.UNDETERMINED]
@@ -120,17 +102,10 @@ def verdict_of(rows: Sequence[Row]) -> ClaimVerdict:
 
 
 def numbers(rows: Sequence[Row]) -> tuple[str, str]:
-    """Return the printed and the computed numbers of rows as text, those of one unit together.
+    """Printed and the computed numbers of rows as text, those of one unit together.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-
-    Returns
-    -------
-    tuple of str
-        The second says how many of the rows are fitted or met trivially, if any, and gives a number whose inputs are
-        not all printed with its possible values.
+    The second says how many of the rows are fitted or met trivially, if any, and gives a number whose inputs are not
+    all printed with its possible values.
     """
     found = [_by_unit(rows, _computed)]
     for verdict, text in ((Verdict.FITTED, "fitted"), (Verdict.TRIVIALLY_MET, "met trivially")):
@@ -140,13 +115,13 @@ def numbers(rows: Sequence[Row]) -> tuple[str, str]:
 
 
 def counts(rows: Sequence[Row]) -> tuple[str, str]:
-    """Return the number of statements that rows test, and how many of them are reproduced, as text."""
+    """Number of statements that rows test, and how many of them are reproduced, as text."""
     reproduced = sum(row.verdict is Verdict.REPRODUCED for row in rows)
     return f"{len(rows)} statements", f"{reproduced} of {len(rows)}"
 
 
 def _by_unit(rows: Sequence[Row], text: Callable[[Row], str]) -> str:
-    """Return the texts of rows without repetition, each unit once after its numbers."""
+    """Texts of rows without repetition, each unit once after its numbers."""
     units: dict[str, dict[str, None]] = {}
     for row in rows:
         units.setdefault(row.unit, {})[text(row)] = None
@@ -154,13 +129,13 @@ def _by_unit(rows: Sequence[Row], text: Callable[[Row], str]) -> str:
 
 
 def _printed(row: Row) -> str:
-    """Return a printed number without its scatter, with the sign of an upper limit."""
+    """Printed number without its scatter, with the sign of an upper limit."""
     mean = row.printed.partition("±")[0]
     return f"< {mean}" if row.is_upper_limit else mean
 
 
 def _computed(row: Row) -> str:
-    """Return a computed number, with its possible values where it is undetermined."""
+    """Computed number, with its possible values where it is undetermined."""
     if row.computed is None:
         return "-"
     if row.verdict is Verdict.UNDETERMINED and row.possible_low is not None and row.possible_high is not None:
@@ -169,5 +144,5 @@ def _computed(row: Row) -> str:
 
 
 def _digits(value: float) -> str:
-    """Return a number to three digits, zero below a two-hundredth."""
+    """Number to three digits, zero below a two-hundredth."""
     return f"{value:.3g}" if abs(value) >= 0.005 else "0"

@@ -125,17 +125,9 @@ CLAIMS: Final = (
 
 
 def findings(rows: Iterable[Row]) -> tuple[Finding, ...]:
-    """Return the findings on all claims whose rows were computed.
+    """Findings on all claims whose rows were computed.
 
-    Parameters
-    ----------
-    rows : iterable of Row
-        Rows of one chapter or of all.
-
-    Returns
-    -------
-    tuple of Finding
-        In the order of `CLAIMS`.
+    In the order of `CLAIMS`.
     """
     by_id = {row.id: row for row in rows}
     return tuple(finding(claim, by_id) for claim in CLAIMS if by_id.keys() >= set(claim.decisive))

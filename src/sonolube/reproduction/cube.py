@@ -29,25 +29,7 @@ def poisson_friction_ratio(
     axial_amplitude: float,
     yield_strength: float = STEEL_YIELD_STRENGTH,
 ) -> Floats:
-    """Return the friction ratio at the centre of the waveguide by the cube over the separating half period, D 3.15. []
-
-    Parameters
-    ----------
-    bodies : str
-        Pair in contact.
-    horn : str
-        Material of the waveguide.
-    normal_load : ndarray
-        Force pressing the bodies together. [N]
-    axial_amplitude : float
-        Axial amplitude at the ends of the waveguide. [m]
-    yield_strength : float
-        Yield strength of steel on steel. [Pa]
-
-    Returns
-    -------
-    ndarray, shape of `normal_load`
-    """
+    """Friction ratio at the centre of the waveguide by the cube over the separating half period, D 3.15. []"""
     waveguide = poisson_waveguide(horn, axial_amplitude=axial_amplitude, frequency=si_value("3.1.4-frequency"))
     contact = poisson_contact(bodies=bodies, yield_strength=yield_strength)
     return dong_2015_half_period_ratio(
@@ -56,21 +38,7 @@ def poisson_friction_ratio(
 
 
 def poisson_waveguide(horn: Horn, *, axial_amplitude: float, frequency: float) -> BarWaveguide:
-    """Waveguide of the Poisson-effect tests, a uniform bar.
-
-    Parameters
-    ----------
-    horn : {"aluminium", "steel"}
-        Material of the waveguide.
-    axial_amplitude : float
-        Axial amplitude at its ends. [m]
-    frequency : float
-        Frequency of the vibration. [Hz]
-
-    Returns
-    -------
-    BarWaveguide
-    """
+    """Waveguide of the Poisson-effect tests, a uniform bar."""
     return BarWaveguide(
         length=si_value("2.1.2-waveguide-length"),
         thickness=si_value("2.1.2-waveguide-thickness"),
@@ -81,5 +49,5 @@ def poisson_waveguide(horn: Horn, *, axial_amplitude: float, frequency: float) -
 
 
 def without_yielding(contact: RoughContact) -> RoughContact:
-    """Return a contact with purely elastic asperities."""
+    """Contact with purely elastic asperities."""
     return replace(contact, asperity=ASPERITY_LAWS["elastic"])

@@ -14,7 +14,7 @@ Formula = Callable[..., float]
 
 
 def _positional(function: Callable[..., ArrayLike], *names: str) -> Formula:
-    """Return a function of keyword arguments as a function of positional numbers in the order of the names."""
+    """Function of keyword arguments as a function of positional numbers in the order of the names."""
 
     @wraps(function)
     def formula(*values: float) -> float:
@@ -57,5 +57,5 @@ contact_count: Final = _positional(vibration_contact_count, "frequency", "durati
 
 
 def groove_diameter(distance: float, turns: float) -> float:
-    """Return the diameter of a groove from sliding distance and revolutions. [m]"""
+    """Diameter of a groove from sliding distance and revolutions. [m]"""
     return distance / (pi * turns)

@@ -133,35 +133,13 @@ def comparison_row(
     possible: tuple[float, float] | None = None,
     alternatives: Mapping[str, tuple[Computed, str]] | None = None,
 ) -> Row:
-    """Return the row that compares a computed with a published number.
+    """Row that compares a computed with a published number.
 
-    Parameters
-    ----------
-    published : PublishedValue or str
-        Published value, or its id.
-    computed : ComputedValue or float
-        Computed value, in SI.
-    note : str
-        Method of the computation.
-    kind : RowKind
-        Class of the comparison.
-    suffix : str
-        Suffix of the row's id, where several numbers are computed for one published number.
-    fitted : str
-        What of the computation was fitted to, or chosen by, the published number itself; empty for nothing.
-    possible : tuple of float, optional
-        Lowest and highest computed value over what an input that is not printed can be, in SI.
-    alternatives : mapping of str to (ComputedValue or float, str), optional
-        Values of other models, in SI, each with its note, by name.
-
-    Returns
-    -------
-    Row
-        `undetermined` if some possible values agree with the print and others do not. Else `reproduced` within the
-        interval that print, scatter and rounding leave, `fitted` if the number itself entered the computation,
-        `trivially_met` if a reduction of zero is left open, as "less than 10 %" does, and none is computed. Outside it,
-        `misprint` if the row is of a published formula, a correction with evidence is on record and the computed number
-        agrees with it; else `not_reproduced`: that a model misses a test says nothing against the print.
+    `undetermined` if some possible values agree with the print and others do not. Else `reproduced` within the interval
+    that print, scatter and rounding leave, `fitted` if the number itself entered the computation, `trivially_met` if a
+    reduction of zero is left open, as "less than 10 %" does, and none is computed. Outside it, `misprint` if the row is
+    of a published formula, a correction with evidence is on record and the computed number agrees with it; else
+    `not_reproduced`: that a model misses a test says nothing against the print.
     """
     published = published_value(published) if isinstance(published, str) else published
     computed = _with_interval(computed)
@@ -194,127 +172,65 @@ def comparison_row(
 def formula_row(
     published: PublishedValue | str, note: str, formula: Callable[..., float], *inputs: PrintedNumber | str
 ) -> Row:
-    """Return the row of a published number that follows from others by a formula, with their rounding propagated.
-
-    Parameters
-    ----------
-    published : PublishedValue or str
-        The published number, or its id.
-    note : str
-        Formula in words.
-    formula : callable
-        Function of the inputs.
-    *inputs : PrintedNumber or str
-        Published numbers, or their ids.
-
-    Returns
-    -------
-    Row
-    """
+    """Row of a published number that follows from others by a formula, with their rounding propagated."""
     return comparison_row(published, propagate_rounding(formula, *inputs), note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def range_rows(
     published: str, low: Computed, high: Computed, note: str, *, kind: RowKind, high_note: str = ""
 ) -> Iterator[Row]:
-    """Yield the rows of the limits of a published range.
-
-    Parameters
-    ----------
-    published : str
-        Id of the published range.
-    low, high : ComputedValue or float
-        Computed limits, in SI.
-    note : str
-        Method of the computation.
-    kind : RowKind
-        Class of the comparison.
-    high_note : str
-        Method of the computation of the upper limit, if another.
-
-    Yields
-    ------
-    Row
-    """
+    """Yield the rows of the limits of a published range."""
     lower, upper = published_value(published).limits()
     yield comparison_row(lower, low, note, kind=kind)
     yield comparison_row(upper, high, high_note or note, kind=kind)
 
 
 def undetermined_row(published: str, missing: str, *, kind: RowKind = RowKind.PUBLISHED_FORMULA) -> Row:
-    """Return the row of a published number that nobody can compute, for an input of it is not printed.
-
-    Parameters
-    ----------
-    published : str
-        Id of the published number.
-    missing : str
-        Inputs that are not printed.
-    kind : RowKind
-        Class of the comparison that they would allow.
-
-    Returns
-    -------
-    Row
-    """
+    """Row of a published number that nobody can compute, for an input of it is not printed."""
     return _row_without_number(published, Verdict.UNDETERMINED, f"Missing: {missing}", kind=kind)
 
 
 def not_computed_row(published: str, missing: str, *, kind: RowKind) -> Row:
-    """Return the row of a published number that this installation cannot compute.
-
-    Parameters
-    ----------
-    published : str
-        Id of the published number.
-    missing : str
-        Part that is not installed, and how to install it.
-    kind : RowKind
-        Class of the comparison that the part would allow.
-
-    Returns
-    -------
-    Row
-    """
+    """Row of a published number that this installation cannot compute."""
     return _row_without_number(published, Verdict.NOT_COMPUTED, f"Not computed: {missing}", kind=kind)
 
 
 def _row_without_number(published: str, verdict: Verdict, note: str, *, kind: RowKind) -> Row:
-    """Return a row without a computed number."""
+    """Row without a computed number."""
     value = published_value(published)
     return _row(value, "", (value.number.low, value.number.high), None, verdict, note, kind=kind)
 
 
 def _with_interval(computed: Computed) -> ComputedValue:
-    """Return a computed number with its interval, empty if none is given."""
+    """Computed number with its interval, empty if none is given."""
     if isinstance(computed, ComputedValue):
         return computed
     return ComputedValue(value=computed, low=computed, high=computed)
 
 
 def _met(published: PublishedValue, computed: ComputedValue, *, fitted: str) -> Verdict:
-    """Return the verdict of a computed number that agrees with the print."""
+    """Verdict of a computed number that agrees with the print."""
     if fitted:
         return Verdict.FITTED
     return Verdict.TRIVIALLY_MET if _is_trivial(published, computed) else Verdict.REPRODUCED
 
 
 def _is_open(number: PrintedNumber, computed: ComputedValue, possible: tuple[float, float]) -> bool:
-    """Return whether some, and not all, of the possible values agree with a printed number."""
+    """Whether some, and not all, of the possible values agree with a printed number."""
     low, high = _interval(number, computed)
     least, most = min(*possible, computed.value), max(*possible, computed.value)
     return least <= high and low <= most and not (low <= least and most <= high)
 
 
 def _meets_correction(published: PublishedValue, computed: ComputedValue) -> bool:
-    """Return whether there is evidence against a print, and its correction, unless in words, is the computed number."""
+    """Whether there is evidence against a print, and its correction, unless in words, is the computed number."""
     if not published.evidence:
         return False
     return not published.corrected or any(_agree(corrected, computed) for corrected in published.corrected)
 
 
 def _is_trivial(published: PublishedValue, computed: ComputedValue) -> bool:
-    """Return whether print and scatter leave a reduction of zero open, as "less than 10 %", and no more is computed."""
+    """Whether print and scatter leave a reduction of zero open, as "less than 10 %", and no more is computed."""
     number = published.number
     return (
         published.quantity.endswith("_reduction")
@@ -324,19 +240,19 @@ def _is_trivial(published: PublishedValue, computed: ComputedValue) -> bool:
 
 
 def _interval(number: PrintedNumber, computed: ComputedValue) -> tuple[float, float]:
-    """Return the interval of a printed number, widened by that of the computed one, in SI."""
+    """Interval of a printed number, widened by that of the computed one, in SI."""
     return number.low - (computed.high - computed.value), number.high + (computed.value - computed.low)
 
 
 def _agree(number: PrintedNumber, computed: ComputedValue) -> bool:
-    """Return whether a computed number lies in the widened interval of a printed one."""
+    """Whether a computed number lies in the widened interval of a printed one."""
     low, high = _interval(number, computed)
     slack = 1e-9 * max(abs(low), abs(high))  # binary rounding of decimal halves
     return low - slack <= computed.value <= high + slack
 
 
 def _printed(published: PublishedValue, value: float) -> float:
-    """Return a value in the printed unit."""
+    """Value in the printed unit."""
     return convert(value, from_unit=unit_of(published.quantity), to_unit=published.unit)
 
 
@@ -351,7 +267,7 @@ def _row(
     kind: RowKind,
     alternatives: Mapping[str, Alternative] | None = None,
 ) -> Row:
-    """Return a row, its numbers converted to the printed unit."""
+    """Row, its numbers converted to the printed unit."""
     low, high = interval
     return Row(
         id=f"{published.id}-{suffix}" if suffix else published.id,

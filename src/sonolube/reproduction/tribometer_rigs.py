@@ -20,22 +20,12 @@ IDENTIFIED_NOTE: Final = (
 
 @cache
 def identified_structure() -> Structure:
-    """Return the structure of the tribometer with the parameters identified from published facts."""
+    """Structure of the tribometer with the parameters identified from published facts."""
     return chain_structure(pin_on_disc_chain(tribometer_stack(), **IDENTIFIED))
 
 
 def tribometer_rig(*, friction_model: str = "asperity_stick_slip") -> DrivenRig:
-    """Return the tribometer of section 2.3 for the multi-scale model of section 3.3, driven as in the tests.
-
-    Parameters
-    ----------
-    friction_model : str
-        Name of the friction model.
-
-    Returns
-    -------
-    DrivenRig
-    """
+    """Tribometer of section 2.3 for the multi-scale model of section 3.3, driven as in the tests."""
     stack, load = tribometer_stack(), si_value("table-2.2-normal_load-1")
     voltage = 2 * si_value("A.3.1.3-voltage-amplitude") * si_value("A.3.1.5-gain")
     return DrivenRig(
@@ -57,7 +47,7 @@ def tribometer_rig(*, friction_model: str = "asperity_stick_slip") -> DrivenRig:
 
 
 def plate_rig() -> DrivenRig:
-    """Return the tribometer with the uncoated steel plates of section 4.1, at the settings of its example test."""
+    """Tribometer with the uncoated steel plates of section 4.1, at the settings of its example test."""
     rig, highest = tribometer_rig(), si_value("table-4.1-voltage_peak_to_peak-15")
     load = si_value("4.1.2-normal-load")
     return replace(

@@ -48,13 +48,13 @@ class ResolvedVibration:
     per_volt: float | None = None
 
     def amplitude_at(self, voltage_peak_to_peak: float) -> float:
-        """Return the amplitude of the sine at a drive voltage, proportional to it where the rig has one. [m]"""
+        """Amplitude of the sine at a drive voltage, proportional to it where the rig has one. [m]"""
         assert self.sine_amplitude is not None
         return self.sine_amplitude if self.per_volt is None else self.per_volt * voltage_peak_to_peak
 
 
 def available_sources(rig: Rig) -> tuple[AmplitudeSource, ...]:
-    """Return the sources that a rig has for its amplitude, the one taken by default first.
+    """Sources that a rig has for its amplitude, the one taken by default first.
 
     Parameters
     ----------
@@ -76,13 +76,7 @@ def available_sources(rig: Rig) -> tuple[AmplitudeSource, ...]:
 
 
 def chosen_source(rig: Rig, sources: tuple[AmplitudeSource, ...]) -> AmplitudeSource:
-    """Source of a rig's amplitude among those that it has: the one that it names, else the first.
-
-    Raises
-    ------
-    InvalidInput
-        If the rig has none, or not the one that it names.
-    """
+    """Source of a rig's amplitude among those that it has: the one that it names, else the first."""
     source = rig.amplitude_source or next(iter(sources), None)
     if source is None:
         raise InvalidInput(
@@ -97,26 +91,6 @@ def chosen_source(rig: Rig, sources: tuple[AmplitudeSource, ...]) -> AmplitudeSo
 def scaled_vibration(rig: DrivenRig, *, voltage: DriveVoltage, gap_law: GapLaw) -> ResolvedVibration:
     """Vibration of a rig with a structure by its measured amplitude, which fixes the scale of its drive.
 
-    Parameters
-    ----------
-    rig : DrivenRig
-        With a measured amplitude.
-    voltage : DriveVoltage
-        Of its own drive.
-    gap_law : GapLaw
-        Of its contact.
-
-    Returns
-    -------
-    ResolvedVibration
-
-    Raises
-    ------
-    InvalidInput
-        If no drive gives the measured amplitude.
-
-    Notes
-    -----
     Force and charge per volt are multiplied by the factor at which the computed amplitude, under voltage, frequency and
     load of the measurement, is the measured one; a measurement whose drive is stated was under a sine. Shape, mean gap
     and their change with voltage, frequency and load are computed.
@@ -209,7 +183,7 @@ def _listed(sources: tuple[AmplitudeSource, ...]) -> str:
 
 
 def _conditions(rig: Rig) -> MeasuredUnder:
-    """Return drive and load of the measurement, those that are not stated taken from the rig."""
+    """Drive and load of the measurement, those that are not stated taken from the rig."""
     stated = rig.measured_under or MeasuredUnder()
     drive = rig.drive
     voltage, frequency = (None, None) if drive is None else (drive.voltage_peak_to_peak, drive.frequency)
@@ -228,7 +202,7 @@ def _measured_here(rig: Rig) -> bool:
 
 
 def _calibrated(rig: DrivenRig, voltage: DriveVoltage, gap_law: GapLaw) -> DrivenRig:
-    """Return the rig with force and charge per volt at which the computed amplitude is the measured one."""
+    """Rig with force and charge per volt at which the computed amplitude is the measured one."""
     if rig.calibration is not None:
         return rig
     assert rig.vibration_amplitude is not None
@@ -288,7 +262,7 @@ class _Excited:
 
 @lru_cache(maxsize=64)
 def _drive_scale(excited: _Excited, amplitude: float) -> float | None:
-    """Return the factor on the drive at which the computed amplitude is the measured one, by secants; None for none."""
+    """Factor on the drive at which the computed amplitude is the measured one, by secants; None for none."""
     scale, last = 1.0, (0.0, -amplitude)
     for _ in range(_ROUNDS):
         error = _amplitude(excited, scale) - amplitude
@@ -302,7 +276,7 @@ def _drive_scale(excited: _Excited, amplitude: float) -> float | None:
 
 @lru_cache(maxsize=256)
 def _amplitude(excited: _Excited, scale: float) -> float:
-    """Return the computed amplitude under a drive and load, the drive scaled; NaN where none was found. [m]"""
+    """Computed amplitude under a drive and load, the drive scaled; NaN where none was found. [m]"""
     rig, volts, load = excited.rig, excited.voltage_peak_to_peak, excited.normal_load
     states = steady_state(
         rig.structure,

@@ -87,7 +87,7 @@ class TemperaturePoint:
 
 
 def thermal_solid(name: str) -> ThermalSolid:
-    """Return the thermal properties of a material of the catalogue.
+    """Thermal properties of a material of the catalogue.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def temperature_point(
     friction_ratio: float | None = None,
     flash_model: str = "quadrature",
 ) -> TemperaturePoint:
-    """Return the temperature of the rig's contact, taken as circular, over a test from ambient temperature.
+    """Temperature of the rig's contact, taken as circular, over a test from ambient temperature.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def temperature_point(
 
 
 def _steps(duration: float, dry_duration: float, levels: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """Return times, heat of the vibration in each interval [W], and whether it vibrates in it; levels last as long."""
+    """Times, heat of the vibration in each interval [W], and whether it vibrates in it; levels last as long."""
     edges = np.linspace(dry_duration, duration, levels.size + 1)
     times = np.unique(np.concatenate([np.linspace(0.0, duration, _STEPS + 1), edges]))
     middle = (times[1:] + times[:-1]) / 2

@@ -70,7 +70,7 @@ class LabelledArrays:
     attrs: Mapping[str, Any]
 
     def __getitem__(self, name: str) -> LabelledArray:
-        """Return a variable or coordinate by its name."""
+        """Variable or coordinate by its name."""
         return self.variables[name] if name in self.variables else self.coordinates[name]
 
     def __contains__(self, name: str) -> bool:
@@ -87,11 +87,11 @@ class LabelledArrays:
         }
 
     def assign_attrs(self, **attrs: Any) -> "LabelledArrays":
-        """Return the same arrays with further attributes."""
+        """Same arrays with further attributes."""
         return replace(self, attrs={**self.attrs, **attrs})
 
     def dataset(self) -> "xr.Dataset":
-        """Return the arrays as an xarray dataset."""
+        """Arrays as an xarray dataset."""
         import xarray as xr
 
         return xr.Dataset(
@@ -101,7 +101,7 @@ class LabelledArrays:
         )
 
     def netcdf(self) -> bytes:
-        """Return the content of a netCDF file, with fill values and dimensions as xarray writes them."""
+        """Content of a netCDF file, with fill values and dimensions as xarray writes them."""
         import h5netcdf
         from h5py import string_dtype
 
@@ -124,7 +124,7 @@ class LabelledArrays:
 
 
 def dataset(values: Mapping[str, Floats], *, along: str, title: str) -> "xr.Dataset":
-    """Return arrays of one length as a dataset, each with units and long names of the vocabulary.
+    """Arrays of one length as a dataset, each with units and long names of the vocabulary.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def dataset(values: Mapping[str, Floats], *, along: str, title: str) -> "xr.Data
 
 
 def labelled(values: Mapping[str, Floats], *, along: str, title: str) -> LabelledArrays:
-    """Return what `dataset` does, without xarray."""
+    """What `dataset` does, without xarray."""
     others = {name: array for name, array in values.items() if name != along}
     return _labelled_grid(others, axes={along: values[along]}, title=title, about=_NOTHING)
 
@@ -160,7 +160,7 @@ def gridded(
     title: str,
     about: Mapping[str, str] = _NOTHING,
 ) -> "xr.Dataset":
-    """Return arrays over a grid as a dataset, each with units and long names of the vocabulary.
+    """Arrays over a grid as a dataset, each with units and long names of the vocabulary.
 
     Parameters
     ----------
@@ -187,13 +187,7 @@ def gridded(
 
 
 def labels(name: str) -> dict[str, str]:
-    """Return the attributes of a variable of a dataset: unit and meaning of the quantity of its name.
-
-    Raises
-    ------
-    UnknownName
-        If the name is not in the vocabulary.
-    """
+    """Attributes of a variable of a dataset: unit and meaning of the quantity of its name."""
     if name in _TEXTS:
         return {"long_name": _TEXTS[name]}
     known = quantity(name)
@@ -233,15 +227,7 @@ def _labelled_grid(
 def result_quantities(record: Any) -> dict[str, float | None]:
     """Fields of a record that are quantities of the vocabulary, in SI.
 
-    Parameters
-    ----------
-    record : dataclass
-        Such as a `Simulation`, with the records of friction and wear within it.
-
-    Returns
-    -------
-    dict of str to float or None
-        None for values outside the range of a model; fields that are not known are left out.
+    None for values outside the range of a model; fields that are not known are left out.
     """
     known = quantities()
     return {

@@ -10,17 +10,17 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_positive, require_within
 from sonolube.errors import InvalidInput
 
-_MOST_CUT = 0.5
+_MAX_CUT = 0.5
 
 
 class Law(Protocol):
     """Continuous probability distribution of one number."""
 
     def below(self, value: ArrayLike) -> Floats:
-        """Return the cumulative probability at a value. []"""
+        """Cumulative probability at a value. []"""
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the quantile of a probability."""
+        """Quantile of a probability."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,13 +42,13 @@ class Normal:
         require_positive(deviation=self.deviation)
 
     def below(self, value: ArrayLike) -> Floats:
-        """Return the cumulative probability at a value. []"""
+        """Cumulative probability at a value. []"""
         from scipy.special import ndtr
 
         return np.asarray(ndtr((np.asarray(value) - self.middle) / self.deviation))
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the quantile of a probability."""
+        """Quantile of a probability."""
         from scipy.special import ndtri
 
         return np.asarray(self.middle + self.deviation * ndtri(share))
@@ -75,14 +75,14 @@ class LogNormal:
             raise InvalidInput(f"factor must be above 1, got {self.factor:g}")
 
     def below(self, value: ArrayLike) -> Floats:
-        """Return the cumulative probability at a value. []"""
+        """Cumulative probability at a value. []"""
         from scipy.special import ndtr
 
         with np.errstate(divide="ignore"):
             return np.asarray(ndtr(np.log(np.maximum(value, 0) / self.median) / math.log(self.factor)))
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the quantile of a probability."""
+        """Quantile of a probability."""
         from scipy.special import ndtri
 
         return np.asarray(self.median * np.exp(math.log(self.factor) * ndtri(share)))
@@ -106,11 +106,11 @@ class Uniform:
             raise InvalidInput(f"the lower end, {self.low:g}, must lie below the upper one, {self.high:g}, both finite")
 
     def below(self, value: ArrayLike) -> Floats:
-        """Return the cumulative probability at a value. []"""
+        """Cumulative probability at a value. []"""
         return np.clip((np.asarray(value) - self.low) / (self.high - self.low), 0.0, 1.0)
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the quantile of a probability."""
+        """Quantile of a probability."""
         return self.low + (self.high - self.low) * np.asarray(share, dtype=np.float64)
 
 
@@ -138,7 +138,7 @@ class Distribution:
     text: str = ""
 
     def __post_init__(self) -> None:
-        if self.truncated_fraction > _MOST_CUT:
+        if self.truncated_fraction > _MAX_CUT:
             raise InvalidInput(
                 f"{self.truncated_fraction:.0%} lies outside {self.lowest:g} to {self.highest:g}, the possible"
             )
@@ -150,7 +150,7 @@ class Distribution:
         return float(low + 1 - high)
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the quantile of a probability.
+        """Quantile of a probability.
 
         Parameters
         ----------

@@ -56,21 +56,7 @@ class DrivenRig(Rig):
 
 
 def require_drive(rig: Rig) -> Drive:
-    """Return the drive of a rig whose drive voltage is known.
-
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    Drive
-
-    Raises
-    ------
-    InvalidInput
-        If the rig has no drive voltage.
-    """
+    """Drive of a rig whose drive voltage is known."""
     if rig.drive is None or rig.drive.voltage_peak_to_peak is None:
         raise InvalidInput(
             f"{rig.title}: drive.voltage_peak_to_peak is missing; give the voltage under which its amplitude holds, or"
@@ -80,21 +66,9 @@ def require_drive(rig: Rig) -> Drive:
 
 
 def driven_rig(rig: Rig) -> DrivenRig:
-    """Return a rig as one whose motion can be computed.
+    """Rig as one whose motion can be computed.
 
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    DrivenRig
-        The rig itself where it is one already.
-
-    Raises
-    ------
-    InvalidInput
-        If its stack, structure or drive voltage is missing.
+    The rig itself where it is one already.
     """
     if isinstance(rig, DrivenRig):
         return rig

@@ -25,13 +25,7 @@ NO_DISSIPATED_POWER = (
 
 
 def waveform_of(drive: Drive) -> Waveform:
-    """Return the shape of the drive voltage.
-
-    Raises
-    ------
-    InvalidInput
-        If samples are fewer than two, all equal or not finite.
-    """
+    """Shape of the drive voltage."""
     return WAVEFORMS[drive.waveform] if drive.waveform_samples is None else sampled_waveform(drive.waveform_samples)
 
 
@@ -76,19 +70,7 @@ class DriveVoltage:
         voltage_offset: ArrayLike | None = None,
         frequency: ArrayLike | None = None,
     ) -> Floats:
-        """Power that a linear amplifier supplies to a capacitance, its rail at the highest voltage, D 1.9. [W]
-
-        Parameters
-        ----------
-        capacitance : float
-            Capacitance of the actuator. [F]
-        voltage_peak_to_peak, voltage_offset, frequency : array_like, optional
-            Instead of the drive's own. [V, V, Hz]
-
-        Returns
-        -------
-        ndarray, shape of the broadcast arguments
-        """
+        """Power that a linear amplifier supplies to a capacitance, its rail at the highest voltage, D 1.9. [W]"""
         lowest, highest = self.range(voltage_peak_to_peak=voltage_peak_to_peak, voltage_offset=voltage_offset)
         return linear_amplifier_power(
             capacitance=capacitance,
@@ -113,12 +95,12 @@ def voltage_harmonics(waveform: Waveform) -> Complexes:
 
 
 def actuator_capacitance(rig: Rig) -> float | None:
-    """Return the capacitance that an amplifier drives: that of the stack, else of the actuator. [F]"""
+    """Capacitance that an amplifier drives: that of the stack, else of the actuator. [F]"""
     return rig.capacitance if rig.stack is None else rig.stack.free_capacitance
 
 
 def energy_balance(*, actuator_power: float | None, dissipated_power: float | None) -> str | None:
-    """Return how the power of the amplifier and the dissipated power compare, and why, in one line.
+    """How the power of the amplifier and the dissipated power compare, and why, in one line.
 
     Parameters
     ----------

@@ -31,8 +31,8 @@ from sonolube.rig.file.toml_file import prefixed, validated
 from sonolube.text.toml_text import read_toml
 from sonolube.text.units import to_si, unit_description
 
-_MOST_FACTS = 16
-_LEAST_NUMBER, _LARGEST_NUMBER = 1e-9, 1e9  # of a pure number
+_MAX_FACTS = 16
+_MIN_NUMBER, _LARGEST_NUMBER = 1e-9, 1e9  # of a pure number
 _FREE = [
     name
     for section in (PinOnDiscSection, StackSection)
@@ -76,31 +76,11 @@ class FactsFile(Section):
     source: Text
     parameters: Annotated[dict[str, list[str]], Field(min_length=1)]
     conditions: ConditionsSection = ConditionsSection()
-    facts: Annotated[list[FactSection], Field(min_length=1, max_length=_MOST_FACTS)]
+    facts: Annotated[list[FactSection], Field(min_length=1, max_length=_MAX_FACTS)]
 
 
 def read_facts(path: str | Path) -> IdentificationProblem:
-    """Identification problem from a TOML file of facts.
-
-    Parameters
-    ----------
-    path : str or Path
-        File with `title`, `source`, and the tables `parameters` (lower and upper bound of each free entry of a rig
-        file's tables `structure` and `stack`; of a chain "masses.NAME", "springs.INDEX.spring_stiffness" and
-        "dampers.INDEX.viscous_damping" with the index from 0), `conditions` (of all observations) and `facts` (an array
-        of tables, in the order of trust among equals of rank). Quantities are text with a unit.
-
-    Returns
-    -------
-    IdentificationProblem
-
-    Raises
-    ------
-    InvalidInput
-        In one line that names the file, the key and the value: the file cannot be read, is larger than 1 MB or no TOML,
-        a key is unknown or missing, a value has a wrong unit or is not plausible, an observable is unknown, or two
-        facts have one name.
-    """
+    """Identification problem from a TOML file of facts."""
     path = Path(path)
     with prefixed(str(path)):
         return _problem(validated(FactsFile, read_toml(path, kind="a file of facts")))
@@ -109,22 +89,7 @@ def read_facts(path: str | Path) -> IdentificationProblem:
 def rig_forward_model(path: str | Path, problem: IdentificationProblem) -> ForwardModel:
     """Forward model of a rig for the observations of an identification problem.
 
-    Parameters
-    ----------
-    path : str or Path
-        The rig's file, with the tables `stack` and `structure`; entries that are not free keep their values.
-    problem : IdentificationProblem
-
-    Returns
-    -------
-    callable
-        See `sonolube.identification.structure_model`.
-
-    Raises
-    ------
-    InvalidInput
-        As `read_rig`, or if the file lacks the tables, the bounds allow impossible structures, or a condition that an
-        observable requires is missing.
+    See `sonolube.identification.structure_model`.
     """
     stack, structure = _stack_and_structure(path)
     entries = structure.entries()
@@ -145,22 +110,7 @@ def rig_forward_model(path: str | Path, problem: IdentificationProblem) -> Forwa
 def identified_tables(path: str | Path, identification: Identification) -> str:
     """Tables `stack` and `structure` of a rig with identified parameters, as text for `with_tables`.
 
-    Parameters
-    ----------
-    path : str or Path
-        The rig's file, with both tables; entries that were not identified keep their values.
-    identification : Identification
-        Of entries of the two tables.
-
-    Returns
-    -------
-    str
-        TOML, with comments on facts and feasible intervals.
-
-    Raises
-    ------
-    InvalidInput
-        As `read_rig`, or if the file lacks the tables.
+    TOML, with comments on facts and feasible intervals.
     """
     stack, structure = _stack_and_structure(path)
     return rig_tables(
@@ -173,24 +123,7 @@ def identify_from_facts(
 ) -> tuple[Identification, PiezoStack, str]:
     """Identification of a rig from a file of facts, the rig's stack, and the identified tables.
 
-    Parameters
-    ----------
-    path : str or Path
-        The rig's file, with the tables `stack` and `structure`.
-    facts : str or Path
-        The file of facts; see `read_facts`.
-    seed : int
-        Of the search; equal seeds give equal results.
-
-    Returns
-    -------
-    tuple of Identification, PiezoStack and str
-        The last as `identified_tables`.
-
-    Raises
-    ------
-    InvalidInput
-        As `read_facts` and `rig_forward_model`.
+    The last as `identified_tables`.
     """
     problem = read_facts(facts)
     found = identify(rig_forward_model(path, problem), facts=problem.facts, bounds=problem.bounds, seed=seed)
@@ -255,8 +188,8 @@ def _quantity(key: str, value: str | float, unit: str) -> float:
             raise InvalidInput(f"{key} {value!r} has no unit; expected {unit_description(unit)}, in quotes")
         return plausible_si(value, unit=unit, name=key)
     number = to_si(value, unit="", name=key) if isinstance(value, str) else value
-    if not _LEAST_NUMBER <= number <= _LARGEST_NUMBER:
-        raise InvalidInput(f"{key} must lie between {_LEAST_NUMBER:g} and {_LARGEST_NUMBER:g}, got {value}")
+    if not _MIN_NUMBER <= number <= _LARGEST_NUMBER:
+        raise InvalidInput(f"{key} must lie between {_MIN_NUMBER:g} and {_LARGEST_NUMBER:g}, got {value}")
     return number
 
 

@@ -26,15 +26,7 @@ _LAST_POINTS = 801  # points drawn of those periods
 def simulation_chart(result: "xr.Dataset | LabelledArrays") -> Chart:
     """Displacement of the tip and contact force over one repetition of the steady vibration.
 
-    Parameters
-    ----------
-    result : xarray.Dataset or LabelledArrays
-        As `simulation_arrays` returns it.
-
-    Returns
-    -------
-    Chart
-        Two panels over time; intervals without contact are shaded.
+    Two panels over time; intervals without contact are shaded.
     """
     time = 1e6 * result["time"].to_numpy()
     displacement, normal_force = result["displacement"].to_numpy(), result["normal_force"].to_numpy()
@@ -74,18 +66,7 @@ def _zones(time: Floats, inside: "np.ndarray[tuple[int], np.dtype[np.bool_]]", *
 
 
 def response_chart(rig: "Rig", result: "FrequencyResponse") -> Chart:
-    """Amplitude per volt, electrical impedance and phase of the linear response over frequency.
-
-    Parameters
-    ----------
-    rig : Rig
-    result : FrequencyResponse
-        Result of `linear_response` for the same rig.
-
-    Returns
-    -------
-    Chart
-    """
+    """Amplitude per volt, electrical impedance and phase of the linear response over frequency."""
     kilohertz = 1e-3 * result.frequency
     drive = () if rig.drive is None else (Rule(value=1e-3 * rig.drive.frequency, label="drive"),)
     x = Axis(label="Frequency", unit="kHz")
@@ -104,19 +85,6 @@ def response_chart(rig: "Rig", result: "FrequencyResponse") -> Chart:
 def start_up_chart(rig: "Rig", result: "StartUp") -> Chart:
     """Displacement of the tip from rest over the whole start-up and over its last four periods.
 
-    Parameters
-    ----------
-    rig : Rig
-        With a drive.
-    result : StartUp
-        Result of `start_up` for the same rig.
-
-    Returns
-    -------
-    Chart
-
-    Notes
-    -----
     Between steps of the time integration the last periods are drawn by cubic Hermite interpolation of displacement
     and velocity.
     """
@@ -140,18 +108,7 @@ def start_up_chart(rig: "Rig", result: "StartUp") -> Chart:
 
 
 def temperature_chart(rig: "Rig", result: "TemperaturePoint") -> Chart:
-    """Temperature rise of the contact and of the bulk of the pin over a test, with and without vibration.
-
-    Parameters
-    ----------
-    rig : Rig
-    result : TemperaturePoint
-        Result of `heat_point` for the same rig.
-
-    Returns
-    -------
-    Chart
-    """
+    """Temperature rise of the contact and of the bulk of the pin over a test, with and without vibration."""
     lines = [
         Line(x=history.time, y=rise, label=f"{body}, {label}", colour=place, dash=dash)
         for place, (label, history) in enumerate(
@@ -168,20 +125,7 @@ def temperature_chart(rig: "Rig", result: "TemperaturePoint") -> Chart:
 
 
 def lubrication_chart(rig: "Rig", result: "LubricationPoint", surroundings: "LubricationMap") -> Chart:
-    """Map of the method of least friction over sliding speed and nominal pressure, with the rig on it.
-
-    Parameters
-    ----------
-    rig : Rig
-    result : LubricationPoint
-        Result of `regime_point` for the same rig.
-    surroundings : LubricationMap
-        Result of `regime_map` for the same rig and lubricant.
-
-    Returns
-    -------
-    Chart
-    """
+    """Map of the method of least friction over sliding speed and nominal pressure, with the rig on it."""
     names = [str(method) for method in LubricationMethod]
     places = {name: float(place) for place, name in enumerate(names)}
     best = np.array([[places[str(name)] for name in row] for row in surroundings.best])

@@ -22,7 +22,7 @@ _RISING_WEAR_MODEL = "dong_2015_load_balanced"
 
 
 def friction_ratios(rig: Rig, motion: ContactMotion, *, sliding_speed: ArrayLike) -> CheckedRatio:
-    """Return friction with vibration over friction without, by the rig's friction model at some sliding speeds. []
+    """Friction with vibration over friction without, by the rig's friction model at some sliding speeds. []
 
     Parameters
     ----------
@@ -52,20 +52,9 @@ def friction_ratios(rig: Rig, motion: ContactMotion, *, sliding_speed: ArrayLike
 
 
 def friction_at_speeds(rig: Rig, moving: ContactMotion, speeds: Floats) -> CheckedRatio:
-    """Return the friction ratio at each of some sliding speeds, and the reason where there is none.
+    """Friction ratio at each of some sliding speeds, and the reason where there is none.
 
-    Parameters
-    ----------
-    rig : Rig
-    moving : ContactMotion
-        Motion of its contact.
-    speeds : ndarray, shape (n,)
-        Macroscopic relative speeds, in m/s.
-
-    Returns
-    -------
-    CheckedRatio
-        NaN also at speeds that the model refuses, such as zero.
+    NaN also at speeds that the model refuses, such as zero.
     """
     try:
         return friction_ratios(rig, moving, sliding_speed=speeds)
@@ -84,29 +73,7 @@ def friction_at_speeds(rig: Rig, moving: ContactMotion, speeds: Floats) -> Check
 def prescribed_sine(
     rig: Rig, *, vibration_amplitude: float, frequency: float | None = None, normal_load: float | None = None
 ) -> ContactMotion:
-    """Return a sine of the gap of a rig, about the mean that its friction model is meant for.
-
-    Parameters
-    ----------
-    rig : Rig
-    vibration_amplitude : float
-        Zero to peak. [m]
-    frequency : float, optional
-        Frequency instead of that of its drive. [Hz]
-    normal_load : float, optional
-        Load instead of its own. [N]
-
-    Returns
-    -------
-    ContactMotion
-
-    Raises
-    ------
-    InvalidInput
-        If the model depends on the rate of the motion and the rig has no frequency.
-    OutsideRange
-        If the amplitude leaves the range of the height law.
-    """
+    """Sine of the gap of a rig, about the mean that its friction model is meant for."""
     model = rig.friction_model
     if rig.drive is None and frequency is None and model.rate_dependent:
         raise InvalidInput(f"{rig.title}: drive.frequency is missing; friction model {model.name} needs it")
@@ -121,26 +88,15 @@ def prescribed_sine(
 
 
 def wear_model_of(rig: Rig) -> str:
-    """Return the name of the wear model: that of the friction model's name where there is one, else the default."""
+    """Name of the wear model: that of the friction model's name where there is one, else the default."""
     name = rig.friction_model.name
     return name if name in WEAR_MODELS else DEFAULT_WEAR_MODEL
 
 
 def mean_friction(rig: Rig, motions: tuple[ContactMotion, ...], *, sliding_speed: ArrayLike) -> CheckedRatio:
-    """Return the mean friction ratio over several motions; that of the first outside the model's range withholds it.
+    """Mean friction ratio over several motions; that of the first outside the model's range withholds it.
 
-    Parameters
-    ----------
-    rig : Rig
-    motions : tuple of ContactMotion
-        One after the other, each of its own duration.
-    sliding_speed : array_like, any shape
-        Macroscopic relative speed. [m/s]
-
-    Returns
-    -------
-    CheckedRatio
-        Of the shape of `sliding_speed`.
+    Of the shape of `sliding_speed`.
     """
     every = [friction_ratios(rig, motion, sliding_speed=sliding_speed) for motion in motions]
     mean, raw = (
@@ -156,7 +112,7 @@ def mean_friction(rig: Rig, motions: tuple[ContactMotion, ...], *, sliding_speed
 
 
 def mean_over_time(values: Sequence[Floats], motions: tuple[ContactMotion, ...]) -> Floats:
-    """Return the mean over time of a quantity of several motions of unequal duration."""
+    """Mean over time of a quantity of several motions of unequal duration."""
     return np.asarray(np.average(np.stack(values), axis=0, weights=[1 / motion.frequency for motion in motions]))
 
 
@@ -167,22 +123,9 @@ def mean_wear(
     wear_model: str,
     vibration_amplitude: float | None = None,
 ) -> tuple[float, str | None]:
-    """Return the mean wear ratio over several motions about the mean gap of a wear model, and why it does not hold.
+    """Mean wear ratio over several motions about the mean gap of a wear model, and why it does not hold.
 
-    Parameters
-    ----------
-    resolved : ResolvedRig
-    motions : tuple of ContactMotion
-        One after the other, each of its own duration.
-    wear_model : str
-        Of `sonolube.models.wear.WEAR_MODELS`.
-    vibration_amplitude : float, optional
-        Amplitude of a motion that is a sine; None for other motions. [m]
-
-    Returns
-    -------
-    tuple of float and str or None
-        None where the ratio is within the range of the model.
+    None where the ratio is within the range of the model.
     """
     ratio, smallest = _raw_wear_ratio(resolved, motions, wear_model, vibration_amplitude)
     if smallest > 0:
@@ -209,37 +152,16 @@ def mean_wear(
 def wear_model_that_holds(
     resolved: ResolvedRig, motions: tuple[ContactMotion, ...], *, vibration_amplitude: float | None = None
 ) -> str | None:
-    """Return the wear model within whose range some motions lie, the one about the risen mean gap first.
+    """Wear model within whose range some motions lie, the one about the risen mean gap first.
 
-    Parameters
-    ----------
-    resolved : ResolvedRig
-    motions : tuple of ContactMotion
-    vibration_amplitude : float, optional
-        Amplitude of a motion that is a sine; None for other motions. [m]
-
-    Returns
-    -------
-    str or None
-        None where no model holds.
+    None where no model holds.
     """
     names = sorted(WEAR_MODELS, key=lambda name: name != _RISING_WEAR_MODEL)
     return next((name for name in names if _raw_wear_ratio(resolved, motions, name, vibration_amplitude)[1] > 0), None)
 
 
 def rise_caveats(motions: tuple[ContactMotion, ...], *, wear_model: str) -> tuple[str, ...]:
-    """Return the line on the rise of computed motions, which wear about the gap at rest leaves out.
-
-    Parameters
-    ----------
-    motions : tuple of ContactMotion
-    wear_model : str
-        Of `sonolube.models.wear.WEAR_MODELS`.
-
-    Returns
-    -------
-    tuple of str
-    """
+    """Line on the rise of computed motions, which wear about the gap at rest leaves out."""
     rise = float(mean_over_time([np.asarray(motion.displacement.mean()) for motion in motions], motions))
     if wear_model == _RISING_WEAR_MODEL or not rise > 0:
         return ()
@@ -250,19 +172,7 @@ def rise_caveats(motions: tuple[ContactMotion, ...], *, wear_model: str) -> tupl
 
 
 def range_text(holding: list[tuple[float, str]], of: str) -> str:
-    """Return the range of ratios by the models that hold, in words.
-
-    Parameters
-    ----------
-    holding : list of tuple of float and str
-        Ratio and name of each.
-    of : str
-        What they are models of, such as "wear".
-
-    Returns
-    -------
-    str
-    """
+    """Range of ratios by the models that hold, in words."""
     if not holding:
         return f"no {of} model holds for this vibration"
     (low, first), (high, last) = min(holding), max(holding)
@@ -274,7 +184,7 @@ def range_text(holding: list[tuple[float, str]], of: str) -> str:
 def _raw_wear_ratio(
     resolved: ResolvedRig, motions: tuple[ContactMotion, ...], model: str, vibration_amplitude: float | None
 ) -> tuple[float, float]:
-    """Return the wear ratio by the formula of a model, and the smallest gap of the motion that it is for. [m]"""
+    """Wear ratio by the formula of a model, and the smallest gap of the motion that it is for. [m]"""
     rig, load = resolved.rig, resolved.rig.normal_load
     smallest = resolved.separation + min(_lowest_displacement(rig, motion, model) for motion in motions)
     if vibration_amplitude is not None and model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
@@ -285,7 +195,7 @@ def _raw_wear_ratio(
 
 
 def _lowest_displacement(rig: Rig, motion: ContactMotion, model: str) -> float:
-    """Return the lowest displacement of a motion about the mean gap of a wear model. [m]"""
+    """Lowest displacement of a motion about the mean gap of a wear model. [m]"""
     if model == _RISING_WEAR_MODEL:
         return float(load_balanced_motion(rig.contact, motion).displacement.min())
     return float(motion.displacement.min() - motion.displacement.mean())

@@ -30,7 +30,7 @@ def least_power_study(
     voltage_maximum: float = 200.0,
     advance: Advance | None = None,
 ) -> "xr.Dataset":
-    """Return the drive voltage and power at which friction falls to a ratio, at each drive frequency.
+    """Drive voltage and power at which friction falls to a ratio, at each drive frequency.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def least_power_study(
 def _search(
     resolved: ResolvedRig, f: Floats, target: float, at_top: Floats, top: float, advance: Advance | None
 ) -> Floats:
-    """Return the logarithm of the voltage that gives the friction ratio at each frequency, by the Illinois method."""
+    """Logarithm of the voltage that gives the friction ratio at each frequency, by the Illinois method."""
     low, high = np.full(f.shape, top + np.log(_LOWEST)), np.full(f.shape, top)
     above, below = np.full(f.shape, 1.0) - target, at_top - target
     last = np.zeros(f.shape)

@@ -37,7 +37,7 @@ class FrequencyResponse:
 
 
 def frequency_response(rig: Rig | ResolvedRig, *, frequency: ArrayLike) -> FrequencyResponse:
-    """Return the frequency response of a rig to small voltages, with the contact linearised at rest.
+    """Frequency response of a rig to small voltages, with the contact linearised at rest.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def frequency_response(rig: Rig | ResolvedRig, *, frequency: ArrayLike) -> Frequ
 
 
 def structure_in_contact(rig: Rig | ResolvedRig) -> Structure:
-    """Return the structure of a rig with the contact as a spring of its stiffness at rest.
+    """Structure of a rig with the contact as a spring of its stiffness at rest.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def structure_in_contact(rig: Rig | ResolvedRig) -> Structure:
 def frequency_grid(
     rig: Rig | ResolvedRig, *, lowest: float, highest: float, points: int = 2000, resonance_points: int = 201
 ) -> Floats:
-    """Return frequencies spaced evenly on a logarithmic axis, and more densely at the resonances.
+    """Frequencies spaced evenly on a logarithmic axis, and more densely at the resonances.
 
     Parameters
     ----------

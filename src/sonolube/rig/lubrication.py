@@ -89,7 +89,7 @@ class LubricationMap:
 def lubrication_point(
     rig: Rig | ResolvedRig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0
 ) -> LubricationPoint:
-    """Return the friction of a rig's contact by each method of lubrication at its load and speed, and the best method.
+    """Friction of a rig's contact by each method of lubrication at its load and speed, and the best method.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def lubrication_point(
 def lubrication_map(
     rig: Rig | ResolvedRig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0
 ) -> LubricationMap:
-    """Return the best method of lubrication over a decade to either side of a rig's speed and pressure.
+    """Best method of lubrication over a decade to either side of a rig's speed and pressure.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def lubrication_map(
 
 
 def wear_of_materials(first: Material, second: Material) -> WearMechanismAssessment:
-    """Return the wear mechanism and the effect of vibration for two materials of the catalogue, by rule.
+    """Wear mechanism and the effect of vibration for two materials of the catalogue, by rule.
 
     Raises
     ------

@@ -210,29 +210,14 @@ class OperatingConditions:
 
     @classmethod
     def of_columns(cls, columns: Floats) -> "OperatingConditions":
-        """Return settings from their rows, in the order of the fields."""
+        """Settings from their rows, in the order of the fields."""
         return cls(**dict(zip(CONDITIONS, columns, strict=True)))
 
 
 def conditions_of(
     rig: Rig, given: Sequence[ArrayLike | None], *, vibration_amplitude: ArrayLike | None = None
 ) -> tuple[Floats, Floats]:
-    """Return the settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast.
-
-    Parameters
-    ----------
-    rig : Rig
-        Without a drive voltage it has 0 V, without a drive any frequency.
-    given : sequence of array_like or None
-        Peak-to-peak voltage, offset and frequency of the drive, load and sliding speed; None is the rig's own.
-    vibration_amplitude : array_like, optional
-        Amplitude that is commanded; it stands in the row of the voltage, which such a rig does not have. [m]
-
-    Returns
-    -------
-    ndarray
-    ndarray
-    """
+    """Settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast."""
     voltage, offset, f, load, speed = given
     drive = rig.drive or Drive(frequency=ANY_FREQUENCY)
     if drive.voltage_peak_to_peak is None and not (voltage is None and offset is None):
@@ -263,18 +248,7 @@ def conditions_of(
 
 
 def points_by_vibration(points: NDArray[np.intp], vibration: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    """Return the indices of the points of each vibration, in the order of the vibrations.
-
-    Parameters
-    ----------
-    points : ndarray of int, shape (k,)
-    vibration : ndarray of int, shape (n,)
-        Vibration of every point.
-
-    Returns
-    -------
-    list of ndarray of int
-    """
+    """Indices of the points of each vibration, in the order of the vibrations."""
     if not points.size:
         return []
     order = points[np.argsort(vibration[points], kind="stable")]

@@ -175,7 +175,7 @@ class WearPoint:
 def contact_point(
     rig: Rig | ResolvedRig, *, tangential_stiffness_model: str = DEFAULT_TANGENTIAL_STIFFNESS
 ) -> ContactPoint:
-    """Return the state of the contact under the rig's load, without vibration.
+    """State of the contact under the rig's load, without vibration.
 
     Parameters
     ----------
@@ -239,26 +239,7 @@ def friction_under(
     caveats: tuple[str, ...],
     others: str = "",
 ) -> FrictionPoint:
-    """Return the friction of a rig at a friction ratio.
-
-    Parameters
-    ----------
-    rig : Rig
-    ratio : CheckedRatio, shape ()
-        Friction with vibration over friction without.
-    vibration : VibrationOrigin
-        Amplitude and where it comes from.
-    actuator_power : float or None
-        Power drawn by the actuator, where it is known. [W]
-    caveats : tuple of str
-        Reasons for caution about the numbers.
-    others : str
-        Range of the models that hold where this one does not.
-
-    Returns
-    -------
-    FrictionPoint
-    """
+    """Friction of a rig at a friction ratio."""
     intrinsic, valid = rig.friction_coefficient * rig.normal_load, float(ratio.friction_ratio)
     return FrictionPoint(
         friction_force=valid * intrinsic,
@@ -288,26 +269,7 @@ def wear_under(
     caveats: tuple[str, ...],
     reason: str | None = None,
 ) -> WearPoint:
-    """Return the wear of a rig at a wear ratio.
-
-    Parameters
-    ----------
-    rig : Rig
-    ratio : float
-        Wear rate with vibration over that without, dimensionless.
-    model : str
-        Name of the wear model.
-    vibration : VibrationOrigin
-        Amplitude and where it comes from.
-    caveats : tuple of str
-        Reasons for caution about the numbers.
-    reason : str or None
-        Why the ratio is outside the range of the model; None inside it.
-
-    Returns
-    -------
-    WearPoint
-    """
+    """Wear of a rig at a wear ratio."""
     still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
     valid = float("nan") if reason else ratio
     return WearPoint(

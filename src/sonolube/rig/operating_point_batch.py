@@ -92,7 +92,7 @@ def point_batch(
     backend: Backend = "cpu",
     friction_tolerance: float = 1e-7,
 ) -> PointBatch:
-    """Return operating points of a rig in a very large batch; settings that are absent are the rig's own.
+    """Operating points of a rig in a very large batch; settings that are absent are the rig's own.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def point_batch(
 
 
 def _columns(points: OperatingPoints) -> PointBatch:
-    """Return operating points as columns and codes."""
+    """Operating points as columns and codes."""
     reasons, reason = np.unique(points.reason.ravel(), return_inverse=True)
     codes = {name: code for code, name in enumerate(STATUSES)}
     return PointBatch(
@@ -191,7 +191,7 @@ def _columns(points: OperatingPoints) -> PointBatch:
 
 
 def _distinct(columns: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the index of the first of each set of equal columns, and the set of every column."""
+    """Index of the first of each set of equal columns, and the set of every column."""
     mixed = np.zeros(columns.shape[1], dtype=np.uint64)
     for row in columns:
         bits = np.ascontiguousarray(row).view(np.uint64)
@@ -206,7 +206,7 @@ def _distinct(columns: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 def _refusals(
     resolved: ResolvedRig, settings: OperatingConditions, rest: Floats
 ) -> tuple[NDArray[np.int16], tuple[str, ...]]:
-    """Return the number of the reason against each drive and load, from 1, 0 without one; and the reasons."""
+    """Number of the reason against each drive and load, from 1, 0 without one; and the reasons."""
     stack = resolved.moved.stack
     low, high = stack.lowest_voltage, stack.highest_voltage
     lowest, highest = resolved.voltage.range(
@@ -225,7 +225,7 @@ def _refusals(
 
 
 def _shifted(reason: NDArray[np.int16], refusal: NDArray[np.int16]) -> NDArray[np.int16]:
-    """Return indices into all reasons, in which refusals follow statuses."""
+    """Indices into all reasons, in which refusals follow statuses."""
     return np.where(refusal > 0, refusal + len(_REASONS) - 1, reason).astype(np.int16)
 
 
@@ -238,7 +238,7 @@ def _measures(states: SteadyStates) -> Floats:
 
 
 def _no_friction(count: int) -> CheckedRatio:
-    """Return as many points without a friction ratio, to be filled in."""
+    """As many points without a friction ratio, to be filled in."""
     ratio, raw = np.full((2, count), np.nan)
     return CheckedRatio(friction_ratio=ratio, raw_friction_ratio=raw, reason=np.full(count, "", dtype=object))
 
@@ -246,7 +246,7 @@ def _no_friction(count: int) -> CheckedRatio:
 def _friction(
     rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: Floats, tolerance: float
 ) -> CheckedRatio:
-    """Return the friction ratio at each point, and the reason of points that vibrate but have none."""
+    """Friction ratio at each point, and the reason of points that vibrate but have none."""
     found = _no_friction(speeds.size)
     open_points = np.flatnonzero(place >= 0)
     moving = open_points[speeds[open_points] > 0]
@@ -271,7 +271,7 @@ def _fill(found: CheckedRatio, members: NDArray[np.intp], part: CheckedRatio) ->
 def _batched_friction(
     rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: Floats, tolerance: float
 ) -> CheckedRatio:
-    """Return the friction ratio at each of some moving points by the model's batched form; NaN where it has none."""
+    """Friction ratio at each of some moving points by the model's batched form; NaN where it has none."""
     known = states.status != Status.NOT_CONVERGED
     mean_force_ratio = states.mean_normal_force / states.normal_load
     motions = GapMotionBatch(

@@ -139,7 +139,7 @@ def operating_points(
     advance: Advance | None = None,
     backend: Backend = "cpu",
 ) -> OperatingPoints:
-    """Return operating points of a rig over arrays of settings; settings that are absent are the rig's own.
+    """Operating points of a rig over arrays of settings; settings that are absent are the rig's own.
 
     Parameters
     ----------
@@ -221,22 +221,7 @@ def operating_points(
 def friction_and_power(
     resolved: ResolvedRig, columns: Floats, *, friction_ratio: Floats, raw_friction_ratio: Floats
 ) -> dict[str, Floats]:
-    """Return friction force, coefficient, reduction and amplifier power from friction ratio and settings, by name.
-
-    Parameters
-    ----------
-    resolved : ResolvedRig
-    columns : ndarray
-        Settings as `conditions_of` returns them.
-    friction_ratio : ndarray
-        At each point. []
-    raw_friction_ratio : ndarray
-        By the formula of the model, also outside its range. []
-
-    Returns
-    -------
-    dict of str to ndarray
-    """
+    """Friction force, coefficient, reduction and amplifier power from friction ratio and settings, by name."""
     u, offset, f, load = columns
     coefficient = resolved.rig.friction_coefficient
     return {
@@ -250,7 +235,7 @@ def friction_and_power(
 
 
 def _supplied_power(resolved: ResolvedRig, **drive: Floats) -> Floats:
-    """Return the power of a linear amplifier, NaN where voltage or capacitance is not known. [W]"""
+    """Power of a linear amplifier, NaN where voltage or capacitance is not known. [W]"""
     rig = resolved.rig
     capacitance = actuator_capacitance(rig)
     if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
@@ -265,7 +250,7 @@ def steady_states(
     voltage_offset: ArrayLike | None = None,
     relative_tolerance: float = 1e-6,
 ) -> SteadyStates:
-    """Return the steady vibrations of a rig under some voltages, harmonics and all.
+    """Steady vibrations of a rig under some voltages, harmonics and all.
 
     Parameters
     ----------
@@ -309,7 +294,7 @@ def _outcome(rig: Rig, vibration: PointVibration, speeds: Floats) -> _Outcome:
 
 
 def friction_status(objection: str) -> str:
-    """Return the status of a point without friction from the reason, empty where there is friction."""
+    """Status of a point without friction from the reason, empty where there is friction."""
     if not objection:
         return ""
     return OUTSIDE_MODEL_RANGE if objection.startswith(OUTSIDE_MODEL_RANGE) else REFUSED

@@ -46,7 +46,7 @@ def steady_states_of(
     backend: Backend = "cpu",
     relative_tolerance: float = 1e-6,
 ) -> SteadyStates:
-    """Return the steady vibrations of a rig under drives and loads, given the separations at rest."""
+    """Steady vibrations of a rig under drives and loads, given the separations at rest."""
     return steady_state(
         resolved.moved.structure,
         resolved.gap_law,
@@ -61,7 +61,7 @@ def steady_states_of(
 
 
 def computed_vibrations(resolved: ResolvedRig, distinct: Floats, backend: Backend) -> VibrationAt:
-    """Return the function that gives the vibration of each drive and load, all solved at once."""
+    """Function that gives the vibration of each drive and load, all solved at once."""
     settings = OperatingConditions.of_columns(distinct)
     rest = separation(resolved.rig.contact, normal_load=settings.normal_load)
     refusals = _refusals(resolved, settings, rest)
@@ -98,7 +98,7 @@ def _of_state(states: SteadyStates, point: int) -> PointVibration:
 
 
 def stated_vibrations(resolved: ResolvedRig, distinct: Floats, *, commanded: bool) -> VibrationAt:
-    """Return the function that gives a sine under each drive and load, of the stated or the commanded amplitude."""
+    """Function that gives a sine under each drive and load, of the stated or the commanded amplitude."""
     rig, used = resolved.rig, resolved.vibration
 
     def vibration_at(setting: int) -> PointVibration:
@@ -136,7 +136,7 @@ def _no_separation(load: float) -> str:
 
 
 def _refusals(resolved: ResolvedRig, settings: OperatingConditions, rest: Floats) -> list[str]:
-    """Return the reason against each drive and load that the stack or the contact rules out, else empty text."""
+    """Reason against each drive and load that the stack or the contact rules out, else empty text."""
     refusals = []
     stack = resolved.moved.stack
     extremes = resolved.voltage.range(

@@ -39,7 +39,7 @@ _POINT = ("status", "reason", *(name for name in NUMBERS if name != "friction_co
 
 
 def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
-    """Return operating points over drive voltage, with one period of the contact at each.
+    """Operating points over drive voltage, with one period of the contact at each.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
 
 
 def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
-    """Return operating points over vibration amplitude, with one period of the contact at each.
+    """Operating points over vibration amplitude, with one period of the contact at each.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def speed_study(
     vibration_amplitude: ArrayLike | None = None,
     advance: Advance | None = None,
 ) -> "xr.Dataset":
-    """Return operating points over sliding speed at some drive voltages, or amplitudes of a rig without a voltage.
+    """Operating points over sliding speed at some drive voltages, or amplitudes of a rig without a voltage.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def frequency_study(
     voltage_peak_to_peak: ArrayLike | None = None,
     advance: Advance | None = None,
 ) -> "xr.Dataset":
-    """Return the rig over drive frequencies, at some drive voltages.
+    """Rig over drive frequencies, at some drive voltages.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def frequency_study(
 
 
 def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) -> "xr.Dataset":
-    """Return the rig under each named waveform at its own voltage, and one period of its contact under each.
+    """Rig under each named waveform at its own voltage, and one period of its contact under each.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) ->
 
 
 def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
-    """Return operating points over normal load; of a structure, by weights that add to the mass they hang on.
+    """Operating points over normal load; of a structure, by weights that add to the mass they hang on.
 
     Parameters
     ----------
@@ -313,7 +313,7 @@ def _curves(
 
 
 def _computed_periods(resolved: ResolvedRig, volts: Floats) -> tuple[Floats, Floats]:
-    """Return displacement and normal force of the contact over a period at each voltage; NaN where not converged."""
+    """Displacement and normal force of the contact over a period at each voltage; NaN where not converged."""
     states = steady_states(resolved, **level_settings(resolved, volts))
     displacement, normal_force = np.full((2, volts.size, _PHASES), np.nan)
     for point in np.flatnonzero(states.status != Status.NOT_CONVERGED):
@@ -323,7 +323,7 @@ def _computed_periods(resolved: ResolvedRig, volts: Floats) -> tuple[Floats, Flo
 
 
 def _sine_periods(rig: Rig, points: OperatingPoints) -> tuple[Floats, Floats]:
-    """Return displacement and normal force of the contact over a period of each sine; NaN where there is none."""
+    """Displacement and normal force of the contact over a period of each sine; NaN where there is none."""
     displacement, normal_force = np.full((2, points.vibration_amplitude.size, _PHASES), np.nan)
     for point in np.flatnonzero(np.isfinite(points.vibration_amplitude)):
         period = prescribed_sine(rig, vibration_amplitude=float(points.vibration_amplitude[point]))
@@ -333,7 +333,7 @@ def _sine_periods(rig: Rig, points: OperatingPoints) -> tuple[Floats, Floats]:
 
 
 def _weighted(rig: DrivenRig, load: float) -> DrivenRig:
-    """Return the rig with another dead load, whose weights add to the masses where it hangs."""
+    """Rig with another dead load, whose weights add to the masses where it hangs."""
     structure = rig.structure
     if structure.load_vector is None:
         raise InvalidInput(f"{rig.title}: structure.loaded is missing; name the mass that the weights hang on")

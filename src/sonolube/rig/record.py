@@ -83,7 +83,7 @@ class RigEntries(Protocol):
         """Entries that were replaced when it was read."""
 
     def replaced(self, key: str, value: str | float) -> "Rig":
-        """Return the rig of the file with one entry replaced."""
+        """Rig of the file with one entry replaced."""
 
     def write(self, path: str | Path) -> Path:
         """Write the file with its entries."""
@@ -188,7 +188,7 @@ class Rig:
             raise InvalidInput("title must not be empty")
 
     def replace(self, key: str, value: str | float) -> "Rig":
-        """Return the rig with one entry of its file replaced.
+        """Rig with one entry of its file replaced.
 
         Parameters
         ----------
@@ -239,7 +239,7 @@ class Rig:
         return self._file().write(path)
 
     def content(self) -> dict[str, Any]:
-        """Return the content of the rig's file, its entries as they are written.
+        """Content of the rig's file, its entries as they are written.
 
         Raises
         ------
@@ -266,7 +266,7 @@ class Rig:
         return "-".join("".join(each if each.isalnum() else " " for each in self.title.lower()).split()) or "rig"
 
     def table(self) -> list[tuple[str, str]]:
-        """Return the main quantities of the rig with their units, as rows of name and text."""
+        """Main quantities of the rig with their units, as rows of name and text."""
         pair, roughness = self.contact.pair, self.contact.roughness
         rows = [
             ("normal load", format_si(self.normal_load, "N")),

@@ -126,7 +126,7 @@ class ResolvedRig:
         return self
 
     def with_friction_model(self, friction_model: FrictionModel) -> "ResolvedRig":
-        """Return the rig with another friction model, on which nothing else that is resolved depends."""
+        """Rig with another friction model, on which nothing else that is resolved depends."""
         other = copy(self)
         object.__setattr__(other, "rig", replace(self.rig, friction_model=friction_model))
         return other
@@ -135,26 +135,13 @@ class ResolvedRig:
 def resolved_rig(rig: Rig | ResolvedRig) -> ResolvedRig:
     """Rig with the parts of its operating condition, to be made once and passed on.
 
-    Parameters
-    ----------
-    rig : Rig or ResolvedRig
-
-    Returns
-    -------
-    ResolvedRig
-        The one given where it is one already. Nothing is evaluated, so that no rig is refused.
+    The one given where it is one already. Nothing is evaluated, so that no rig is refused.
     """
     return rig if isinstance(rig, ResolvedRig) else ResolvedRig(rig=rig)
 
 
 def drive_and_load(resolved: ResolvedRig) -> dict[str, Any]:
-    """Arguments, by name, with which a structure in contact is marched in time under a rig's drive and load.
-
-    Raises
-    ------
-    UnknownName
-        If the shape of the start-up ramp is unknown.
-    """
+    """Arguments, by name, with which a structure in contact is marched in time under a rig's drive and load."""
     drive = resolved.voltage.drive
     return {
         "normal_load": resolved.rig.normal_load,
@@ -204,18 +191,7 @@ def amplitude_labels(rig: Rig | ResolvedRig) -> dict[str, str]:
 
 
 def source_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tuple[str, ...]:
-    """Line where the amplitudes of two sources of a rig differ by more than their error, at its own drive.
-
-    Parameters
-    ----------
-    resolved : ResolvedRig
-    vibration_amplitude : float
-        By the source by which the rig vibrates. [m]
-
-    Returns
-    -------
-    tuple of str
-    """
+    """Line where the amplitudes of two sources of a rig differ by more than their error, at its own drive."""
     taken = resolved.vibration.source
     found = {source: resolved.amplitude_by(source) for source in resolved.sources if source != taken}
     error = {source: AMPLITUDE_ERROR * max(other, vibration_amplitude) for source, other in found.items()}

@@ -16,17 +16,8 @@ from sonolube.rig.vibration import SteadyVibration
 def simulation_arrays(rig: Rig, result: Simulation) -> LabelledArrays:
     """One repetition of the steady vibration, and the friction and wear under it.
 
-    Parameters
-    ----------
-    rig : Rig
-    result : Simulation
-        Result of `simulate` for the same rig.
-
-    Returns
-    -------
-    LabelledArrays
-        Displacement and contact force over `time`; every quantity of the result as a scalar, NaN outside the range of a
-        model. Attributes hold the texts of the result, its caveats and the assumptions of the rig.
+    Displacement and contact force over `time`; every quantity of the result as a scalar, NaN outside the range of a
+    model. Attributes hold the texts of the result, its caveats and the assumptions of the rig.
     """
     vibration = result.vibration
     motion = vibration.motions[0]
@@ -57,16 +48,7 @@ def simulation_arrays(rig: Rig, result: Simulation) -> LabelledArrays:
 def response_arrays(rig: Rig, result: FrequencyResponse) -> LabelledArrays:
     """Linear response over frequency: amplitude per volt, magnitude and phase of the impedance.
 
-    Parameters
-    ----------
-    rig : Rig
-    result : FrequencyResponse
-        Result of `linear_response` for the same rig.
-
-    Returns
-    -------
-    LabelledArrays
-        Over `frequency`.
+    Over `frequency`.
     """
     names = ("frequency", "amplitude_per_volt", "impedance", "phase")
     values = {name: getattr(result, name) for name in names}
@@ -76,16 +58,7 @@ def response_arrays(rig: Rig, result: FrequencyResponse) -> LabelledArrays:
 def start_up_arrays(rig: Rig, result: StartUp) -> LabelledArrays:
     """Start-up from rest: displacement and contact force at every step of the time integration.
 
-    Parameters
-    ----------
-    rig : Rig
-    result : StartUp
-        Result of `start_up` for the same rig.
-
-    Returns
-    -------
-    LabelledArrays
-        Over `time`.
+    Over `time`.
     """
     values = {
         "time": result.trajectory.time,

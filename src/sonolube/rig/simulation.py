@@ -79,7 +79,7 @@ class VibratedFriction:
 
 
 def simulate(rig: Rig | ResolvedRig) -> Simulation:
-    """Return the steady vibration of a rig by the source of its amplitude, and friction and wear under it.
+    """Steady vibration of a rig by the source of its amplitude, and friction and wear under it.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def simulate(rig: Rig | ResolvedRig) -> Simulation:
 
 
 def friction_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> FrictionPoint:
-    """Return the friction of a rig under its vibration, by the source of its amplitude.
+    """Friction of a rig under its vibration, by the source of its amplitude.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def friction_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> Frict
 
 
 def wear_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> WearPoint:
-    """Return the wear of a rig with and without its vibration, by the source of its amplitude.
+    """Wear of a rig with and without its vibration, by the source of its amplitude.
 
     Parameters
     ----------
@@ -209,23 +209,7 @@ def wear_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> WearPoint
 
 
 def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> VibratedFriction:
-    """Return the friction ratios of a rig under its vibration at some sliding speeds.
-
-    Parameters
-    ----------
-    rig : Rig or ResolvedRig
-    sliding_speed : array_like, any shape
-        Macroscopic relative speed. [m/s]
-
-    Returns
-    -------
-    VibratedFriction
-
-    Raises
-    ------
-    InvalidInput
-        If a speed is not positive, or the rig has no amplitude by the source it names.
-    """
+    """Friction ratios of a rig under its vibration at some sliding speeds."""
     resolved = resolved_rig(rig)
     used = resolved.vibration
     try:
@@ -243,14 +227,14 @@ def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> Vi
 
 
 def friction_model_named(rig: Rig, name: str) -> FrictionModel:
-    """Return the friction model of a name, with those parameters of the rig's model that it has too."""
+    """Friction model of a name, with those parameters of the rig's model that it has too."""
     model = FRICTION_MODELS.named(name)
     shared = {each.name for each in model.parameters()} & {each.name for each in rig.friction_model.parameters()}
     return model(**{key: getattr(rig.friction_model, key) for key in shared})
 
 
 def operating_caveats(rig: Rig | ResolvedRig) -> tuple[str, ...]:
-    """Return the caveats of a rig at its own operating point, for results over many points about it.
+    """Caveats of a rig at its own operating point, for results over many points about it.
 
     Parameters
     ----------
@@ -314,7 +298,7 @@ def _wear_point(
 
 
 def _models_that_hold(resolved: ResolvedRig, vibration: SteadyVibration | None = None) -> str:
-    """Return the range of the friction ratio by the other friction models that hold for a rig's vibration."""
+    """Range of the friction ratio by the other friction models that hold for a rig's vibration."""
     holding, rig = [], resolved.rig
     for name in FRICTION_MODELS:
         if name == rig.friction_model.name:
@@ -357,7 +341,7 @@ def _amplifier_power(resolved: ResolvedRig) -> float | None:
 
 
 def _caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:
-    """Return the caveats of contact, amplitude, stack and gap."""
+    """Caveats of contact, amplitude, stack and gap."""
     return (
         *resting_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
         *source_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),

@@ -47,7 +47,7 @@ class StartUp:
 
 
 def start_up(rig: Rig | ResolvedRig, *, duration: float) -> StartUp:
-    """Return the start-up transient of a rig from rest, with the drive switched on at once or by its ramp.
+    """Start-up transient of a rig from rest, with the drive switched on at once or by its ramp.
 
     Parameters
     ----------

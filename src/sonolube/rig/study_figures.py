@@ -22,7 +22,7 @@ _TIP = Axis(label="Tip displacement", unit="µm")
 
 
 def command_chart(study: "xr.Dataset") -> Chart:
-    """Return displacement and normal force over a period, friction ratio and amplitude over voltage or amplitude."""
+    """Displacement and normal force over a period, friction ratio and amplitude over voltage or amplitude."""
     quantity, levels = _level(study)
     motions, forces = [], []
     for place, point in enumerate(np.unique(np.linspace(0, levels.size - 1, _PERIODS + 1).astype(int)[1:])):
@@ -48,7 +48,7 @@ def command_chart(study: "xr.Dataset") -> Chart:
 
 
 def speed_chart(study: "xr.Dataset") -> Chart:
-    """Return the friction ratio over sliding speed and over velocity ratio."""
+    """Friction ratio over sliding speed and over velocity ratio."""
     axes = (
         ("sliding_speed", Axis(label="Sliding speed", unit="m/s", logarithmic=True)),
         ("velocity_ratio", Axis(label="Sliding speed over peak vibration velocity", logarithmic=True)),
@@ -58,7 +58,7 @@ def speed_chart(study: "xr.Dataset") -> Chart:
 
 
 def frequency_chart(study: "xr.Dataset") -> Chart:
-    """Return amplitude and friction ratio over frequency, and friction ratio over the power of the amplifier."""
+    """Amplitude and friction ratio over frequency, and friction ratio over the power of the amplifier."""
     tips = [
         (float(curve["actuator_power"][best]), float(curve["friction_ratio"][best]))
         for curve in _curves(study)
@@ -84,7 +84,7 @@ def frequency_chart(study: "xr.Dataset") -> Chart:
 
 
 def power_chart(study: "xr.Dataset") -> Chart:
-    """Return the voltage and the power that one friction ratio takes over frequency."""
+    """Voltage and the power that one friction ratio takes over frequency."""
     kilohertz = 1e-3 * study["frequency"].values
     watts = (
         Line(x=kilohertz, y=study["actuator_power"].values, label="amplifier, D 1.9"),
@@ -103,7 +103,7 @@ def power_chart(study: "xr.Dataset") -> Chart:
 
 
 def waveform_chart(study: "xr.Dataset") -> Chart:
-    """Return one period of the tip under each waveform, and the friction ratio each gives."""
+    """One period of the tip under each waveform, and the friction ratio each gives."""
     names = [str(name) for name in study["waveform"].values]
     periods = []
     for place, name in enumerate(names):
@@ -131,7 +131,7 @@ def waveform_chart(study: "xr.Dataset") -> Chart:
 
 
 def load_chart(study: "xr.Dataset") -> Chart:
-    """Return friction reduction and, of a structure, the arm's natural frequency over normal load."""
+    """Friction reduction and, of a structure, the arm's natural frequency over normal load."""
     loads = study["normal_load"].values
     reduction = Axis(label="Friction reduction", unit="%", lowest=0.0, highest=100.0)
     panels = [Panel(x=_LOAD, y=reduction, parts=(Line(x=loads, y=100 * study["friction_reduction"].values),))]
@@ -183,7 +183,7 @@ def _family(study: "xr.Dataset", x: str, y: str, x_scale: float = 1.0, y_scale: 
 
 
 def _whole_period(values: Floats) -> tuple[Floats, Floats]:
-    """Return time over the period, and the values with the first one again at its end."""
+    """Time over the period, and the values with the first one again at its end."""
     return np.linspace(0, 1, values.size + 1), np.append(values, values[0])
 
 

@@ -92,7 +92,7 @@ class SteadyVibration:
 
 
 def steady_vibration(rig: Rig | ResolvedRig) -> SteadyVibration:
-    """Return the steady vibration of a rig by the source of its amplitude, after transients have decayed.
+    """Steady vibration of a rig by the source of its amplitude, after transients have decayed.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def steady_vibration(rig: Rig | ResolvedRig) -> SteadyVibration:
 
 
 def _sine(resolved: ResolvedRig) -> SteadyVibration:
-    """Return a sine of the stated amplitude, about the mean gap that the friction model is meant for."""
+    """Sine of the stated amplitude, about the mean gap that the friction model is meant for."""
     rig, used = resolved.require_separation().rig, resolved.vibration
     assert used.sine_amplitude is not None
     motion = prescribed_sine(rig, vibration_amplitude=used.sine_amplitude)
@@ -150,12 +150,12 @@ def _sine(resolved: ResolvedRig) -> SteadyVibration:
 
 
 def contact_loss_fraction(motion: ContactMotion) -> float:
-    """Return the share of a period in which the contact carries less than a hundredth of the load. []"""
+    """Share of a period in which the contact carries less than a hundredth of the load. []"""
     return float(np.mean(motion.normal_force < _CONTACT_LOSS * motion.normal_load))
 
 
 def _of_structure(resolved: ResolvedRig, rig: DrivenRig) -> SteadyVibration:
-    """Return the steady vibration that the structure of a rig takes up under its drive, scaled where measured."""
+    """Steady vibration that the structure of a rig takes up under its drive, scaled where measured."""
     _refuse_drive_beyond_contact(resolved, rig)
     balanced = _balanced(resolved, rig, upper_branch=False)
     if balanced.status == Status.PERIODIC:
@@ -194,7 +194,7 @@ def _refuse_drive_beyond_contact(resolved: ResolvedRig, rig: DrivenRig) -> None:
 
 
 def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> ContactMotion:
-    """Return one steady vibration as a sampled motion of the gap.
+    """One steady vibration as a sampled motion of the gap.
 
     Parameters
     ----------
@@ -325,7 +325,7 @@ def _of_march(
 def _segments(
     rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], attained: LongTimeResponse, frequency: float
 ) -> list[ContactMotion]:
-    """Return segments of a motion that does not repeat, cut at the widest gaps and made periodic by a linear term."""
+    """Segments of a motion that does not repeat, cut at the widest gaps and made periodic by a linear term."""
     steps, slow = attained.steps_per_period, float(attained.attractor.beat_frequency)
     whole = attained.periods * steps
     beat = round(steps * frequency / slow) if slow > 0 else whole

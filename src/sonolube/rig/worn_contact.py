@@ -44,7 +44,7 @@ class DecayLengthPopulation:
         return exp(self.log_spread)
 
     def central_range(self, *, share: float = CENTRAL_SHARE) -> tuple[float, float]:
-        """Return the central range that holds a share of the contacts, in m."""
+        """Central range that holds a share of the contacts, in m."""
         from statistics import NormalDist  # scipy.special takes a tenth of a second to load
 
         if not 0 < share < 1:
@@ -62,7 +62,7 @@ lengths that the tests ask for."""
 
 
 def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | None = None) -> str | None:
-    """Return the caveat against a decay length by roughness that worn contacts of published tests do not have.
+    """Caveat against a decay length by roughness that worn contacts of published tests do not have.
 
     Parameters
     ----------
@@ -93,30 +93,14 @@ def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | 
 
 
 def resting_caveats(resolved: ResolvedRig, *, vibration_amplitude: float | None = None) -> tuple[str, ...]:
-    """Return the caveats of the contact of a rig under its load, that of its decay length included.
-
-    Parameters
-    ----------
-    resolved : ResolvedRig
-    vibration_amplitude : float, optional
-        As of `decay_length_caveat`. [m]
-
-    Returns
-    -------
-    tuple of str
-
-    Raises
-    ------
-    OutsideRange
-        If the surfaces would be pressed through each other, so that no separation is left.
-    """
+    """Caveats of the contact of a rig under its load, that of its decay length included."""
     caveat = decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
     own = contact_caveats(resolved.rig.contact, separation=resolved.separation)
     return (*own, *(() if caveat is None else (caveat,)))
 
 
 def _ratios_text(resolved: ResolvedRig, amplitude: float | None) -> str:
-    """Return the friction ratios by the decay length of the roughness and by that of published tests, in words."""
+    """Friction ratios by the decay length of the roughness and by that of published tests, in words."""
     if amplitude is None:
         amplitude = _stated_amplitude(resolved)
     if amplitude is None:
@@ -131,7 +115,7 @@ def _ratios_text(resolved: ResolvedRig, amplitude: float | None) -> str:
 
 
 def _stated_amplitude(resolved: ResolvedRig) -> float | None:
-    """Return the amplitude that a rig states or measured, not one that has to be computed. [m]"""
+    """Amplitude that a rig states or measured, not one that has to be computed. [m]"""
     try:
         used = resolved.vibration
     except SonolubeError:
@@ -142,7 +126,7 @@ def _stated_amplitude(resolved: ResolvedRig) -> float | None:
 
 
 def _friction_ratio(rig: Rig, amplitude: float) -> float | None:
-    """Return the friction ratio of a rig under a sine; None outside the range of its friction model."""
+    """Friction ratio of a rig under a sine; None outside the range of its friction model."""
     try:
         motion = prescribed_sine(rig, vibration_amplitude=amplitude)
         ratio = float(friction_ratios(rig, motion, sliding_speed=rig.sliding_speed).friction_ratio)

@@ -66,13 +66,7 @@ class UnfinishedFile(io.FileIO):
             raise refusal(self._path, self._failure.strerror)
 
     def complete(self) -> None:
-        """Replace the target, whose permissions are kept.
-
-        Raises
-        ------
-        InvalidInput
-            If a write has failed, or the target cannot be replaced.
-        """
+        """Replace the target, whose permissions are kept."""
         self.check()
         with _refused_as(self._path):
             os.fsync(self.fileno())  # network file systems refuse here what did not fit
@@ -88,22 +82,7 @@ class UnfinishedFile(io.FileIO):
 def write_atomically(path: Path, content: bytes | str) -> Path:
     """Write a file atomically: readers get either the old content or the new one, never a part of it.
 
-    Parameters
-    ----------
-    path : Path
-        Path of the file; a missing folder is created. Where it is a link to a file, that file is replaced.
-    content : bytes or str
-        Content; text is encoded as UTF-8.
-
-    Returns
-    -------
-    Path
-        `path`.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be written, is no regular file, or is an input of the running command.
+    `path`.
     """
     with unfinished_file(path) as file:
         file.write(content.encode() if isinstance(content, str) else content)
@@ -115,20 +94,7 @@ def write_atomically(path: Path, content: bytes | str) -> Path:
 def unfinished_file(path: Path) -> Iterator[UnfinishedFile]:
     """Provide a file that replaces another when its method `complete` is called, and is removed otherwise.
 
-    Parameters
-    ----------
-    path : Path
-        As in `write_atomically`.
-
-    Yields
-    ------
-    UnfinishedFile
-        Open for writing and reading; libraries that write to a file object take it.
-
-    Raises
-    ------
-    InvalidInput
-        As `write_atomically`.
+    Open for writing and reading; libraries that write to a file object take it.
     """
     target = resolved_target(path)
     with _refused_as(path):
@@ -139,35 +105,13 @@ def unfinished_file(path: Path) -> Iterator[UnfinishedFile]:
 
 
 def expect_file(path: Path) -> None:
-    """Raise, before anything is computed, if a file cannot be written.
-
-    Parameters
-    ----------
-    path : Path
-
-    Raises
-    ------
-    InvalidInput
-        As `write_atomically`, and if two outputs of a command are one file.
-    """
+    """Raise, before anything is computed, if a file cannot be written."""
     expect_target(path)
     _require_writable(path.parent, path)
 
 
 def expect_files(folder: Path, patterns: Sequence[str]) -> None:
-    """Raise, before anything is computed, if files in a folder cannot be written; remove what killed runs left there.
-
-    Parameters
-    ----------
-    folder : Path
-    patterns : sequence of str
-        Names of the files below the folder, with * for what is not known yet.
-
-    Raises
-    ------
-    InvalidInput
-        As `expect_file`.
-    """
+    """Raise, before anything is computed, if files in a folder cannot be written; remove what killed runs left there."""
     for place in dict.fromkeys((folder, *(folder / Path(pattern).parent for pattern in patterns))):
         _require_writable(place, place)
     for pattern in map(folder.joinpath, patterns):
@@ -178,14 +122,7 @@ def expect_files(folder: Path, patterns: Sequence[str]) -> None:
 
 
 def clear_unfinished(folder: Path, *patterns: str) -> None:
-    """Remove the unfinished files that killed processes have left in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-    *patterns : str
-        Further names of unfinished files.
-    """
+    """Remove the unfinished files that killed processes have left in a folder."""
     for pattern in (f"{_UNFINISHED}*", *patterns):
         for path in folder.glob(pattern):
             with suppress(OSError):
@@ -194,20 +131,7 @@ def clear_unfinished(folder: Path, *patterns: str) -> None:
 
 @contextmanager
 def locked_folder(folder: Path, *, purpose: str) -> Iterator[None]:
-    """Keep other processes from working in a folder inside a `with` block; a dead process keeps nobody out.
-
-    Parameters
-    ----------
-    folder : Path
-        Made where it is missing.
-    purpose : str
-        What is done in it, such as "sweep".
-
-    Raises
-    ------
-    InvalidInput
-        If another process is at work in it, or the folder cannot be written to.
-    """
+    """Keep other processes from working in a folder inside a `with` block; a dead process keeps nobody out."""
     place = folder / _LOCK
     with _refused_as(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -224,10 +148,7 @@ def locked_folder(folder: Path, *, purpose: str) -> Iterator[None]:
 def user_state_folder() -> Path:
     """Folder of states of this user, which outlive a program.
 
-    Returns
-    -------
-    Path
-        `sonolube` below $XDG_STATE_HOME, %LOCALAPPDATA% or ~/.local/state.
+    `sonolube` below $XDG_STATE_HOME, %LOCALAPPDATA% or ~/.local/state.
     """
     base = os.environ.get("XDG_STATE_HOME") or (os.environ.get("LOCALAPPDATA") if ON_WINDOWS else None)
     return Path(base or Path.home() / ".local" / "state") / "sonolube"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _FLAGS: Final = os.O_RDWR | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 _SYNC_INTERVAL: Final = 1.0  # s, between two requests that the disk keeps what was appended
-_MOST_NAMES: Final = 10_000
+_MAX_NAMES: Final = 10_000
 
 
 class AppendedFile:
@@ -63,17 +63,7 @@ class AppendedFile:
         self.close()
 
     def append(self, content: bytes) -> None:
-        """Append a piece.
-
-        Parameters
-        ----------
-        content : bytes
-
-        Raises
-        ------
-        InvalidInput
-            If it does not fit, or the disk has not kept an earlier piece; the file then ends with the piece before.
-        """
+        """Append a piece."""
         rest = memoryview(content)
         try:
             self._request_sync()
@@ -87,13 +77,7 @@ class AppendedFile:
         self.length += len(content)
 
     def close(self) -> None:
-        """Have the disk keep everything, and close the file; harmless where that was done before.
-
-        Raises
-        ------
-        InvalidInput
-            If the disk has not kept what was appended.
-        """
+        """Have the disk keep everything, and close the file; harmless where that was done before."""
         if self._handle < 0:
             return
         handle, self._handle = self._handle, -1
@@ -120,31 +104,14 @@ class AppendedFile:
 
 
 def new_folder(parent: Path, name: str) -> Path:
-    """Make a folder that did not exist before.
-
-    Parameters
-    ----------
-    parent : Path
-        Made where it is missing.
-    name : str
-        Wanted; with -2, -3, ... behind it where there is such a file or folder.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    InvalidInput
-        If no folder can be made there.
-    """
+    """Make a folder that did not exist before."""
     for number in count(1):
         folder = parent / (name if number == 1 else f"{name}-{number}")
         try:
             parent.mkdir(parents=True, exist_ok=True)
             folder.mkdir()
         except FileExistsError:
-            if number < _MOST_NAMES and parent.is_dir():
+            if number < _MAX_NAMES and parent.is_dir():
                 continue
             raise refusal(folder, "the name is taken") from None
         except OSError as failure:
@@ -157,20 +124,7 @@ def new_folder(parent: Path, name: str) -> Path:
 def database(path: Path | None) -> "Iterator[Connection]":
     """Provide a database of SQLite, made where it is missing; changes are kept at the end of the `with` block.
 
-    Parameters
-    ----------
-    path : Path or None
-        None for one in memory.
-
-    Yields
-    ------
-    sqlite3.Connection
-        With a log beside the file (WAL), so that readers need not wait for a writer.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be written, or is no database or a damaged one.
+    With a log beside the file (WAL), so that readers need not wait for a writer.
     """
     import sqlite3
 
@@ -186,13 +140,7 @@ def database(path: Path | None) -> "Iterator[Connection]":
 
 
 def set_database_aside(path: Path) -> None:
-    """Give a damaged database another name, and remove its log.
-
-    Raises
-    ------
-    InvalidInput
-        If the folder cannot be written.
-    """
+    """Give a damaged database another name, and remove its log."""
     try:
         replace_file(path, path.with_name(f"{path.name}.damaged"))
         for ending in ("-wal", "-shm"):

@@ -30,25 +30,7 @@ _PIPES: dict[tuple[Path, int, int], bytes] = {}  # what pipes gave, by path, dev
 
 
 def input_bytes(path: Path, *, most: int = LARGEST_INPUT) -> bytes:
-    """Return the bytes of a file or a pipe.
-
-    Parameters
-    ----------
-    path : Path
-        A pipe is read once; its bytes are kept, so that later calls return them again.
-    most : int
-        Bytes of a pipe, beyond which it is refused.
-
-    Returns
-    -------
-    bytes
-
-    Raises
-    ------
-    OSError
-        If the path is a folder, device or socket, or cannot be read; if a pipe gives more than `most` bytes, or none
-        for a minute.
-    """
+    """Bytes of a file or a pipe."""
     return _pipe_bytes(path, most) if _is_pipe(path) else path.read_bytes()
 
 
@@ -58,7 +40,7 @@ def open_input(path: Path, *, most: int = LARGEST_INPUT) -> io.BytesIO | io.Buff
 
 
 def input_text(path: Path, *, most: int = LARGEST_INPUT) -> str:
-    """Return the text of a file or a pipe, UTF-8 with or without a byte order mark; errors as of `input_bytes`."""
+    """Text of a file or a pipe, UTF-8 with or without a byte order mark; errors as of `input_bytes`."""
     with io.TextIOWrapper(open_input(path, most=most), encoding="utf-8-sig") as stream:
         return stream.read()
 
@@ -70,7 +52,7 @@ def require_file(path: Path) -> None:
 
 
 def _is_pipe(path: Path) -> bool:
-    """Return whether a path is a pipe; refuse what is neither that nor a regular file."""
+    """Whether a path is a pipe; refuse what is neither that nor a regular file."""
     mode = path.stat().st_mode
     for is_kind, reason in _KINDS:
         if is_kind(mode):
@@ -79,7 +61,7 @@ def _is_pipe(path: Path) -> bool:
 
 
 def _pipe_bytes(path: Path, most: int) -> bytes:
-    """Return what a pipe gives until its writer closes it, or gave when it was read."""
+    """What a pipe gives until its writer closes it, or gave when it was read."""
     if ON_WINDOWS:
         raise OSError(errno.ESPIPE, "is a pipe, which cannot be read on Windows; save it to a file", str(path))
     found = path.stat()
@@ -94,7 +76,7 @@ def _pipe_bytes(path: Path, most: int) -> bytes:
 
 
 def _until_closed(handle: int, path: Path, most: int) -> bytes:
-    """Return what a pipe gives, saying so where it lets wait."""
+    """What a pipe gives, saying so where it lets wait."""
     from select import select
 
     content, silent = bytearray(), 0

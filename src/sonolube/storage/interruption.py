@@ -23,13 +23,7 @@ _UNDO: dict[object, Callable[[], object]] = {}
 
 @contextmanager
 def undone_at_signal(undo: Callable[[], object]) -> Iterator[None]:
-    """Call a function if a signal ends the program inside a `with` block.
-
-    Parameters
-    ----------
-    undo : callable
-        Such as the removal of an unfinished file. It runs between two instructions of the block and must not raise.
-    """
+    """Call a function if a signal ends the program inside a `with` block."""
     key = object()
     _UNDO[key] = undo
     try:
@@ -42,13 +36,6 @@ def undone_at_signal(undo: Callable[[], object]) -> Iterator[None]:
 def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
     """Let the first signal inside a `with` block ask for an orderly end; a second acts as outside.
 
-    Parameters
-    ----------
-    ask : callable
-        Takes what the signal means, such as "interrupted". It runs between two instructions of the block.
-
-    Notes
-    -----
     The signals are SIGINT, SIGTERM, SIGHUP and, on Windows, SIGBREAK. Those that are ignored stay ignored; outside the
     main thread of a process they change nothing. Where Windows closes the console, the block has two seconds to end;
     then what was begun is undone, and the process ends.

@@ -43,18 +43,7 @@ def command_files() -> Iterator[None]:
 
 
 def record_input(path: Path) -> None:
-    """Record a file that the running command reads, so that the command does not write to it.
-
-    Parameters
-    ----------
-    path : Path
-        A file, or a folder whose files are read; one that does not exist is left to its reader.
-
-    Raises
-    ------
-    InvalidInput
-        If the command is to write to this file.
-    """
+    """Record a file that the running command reads, so that the command does not write to it."""
     running = _RUNNING.get()
     if running is None:
         return
@@ -70,19 +59,7 @@ def record_input(path: Path) -> None:
 def expect_target(path: Path) -> Path:
     """Record a file that the running command will write, and return the file that will be replaced.
 
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    Path
-        As from `resolved_target`.
-
-    Raises
-    ------
-    InvalidInput
-        As `resolved_target`, and if another output of the command is the same file.
+    As from `resolved_target`.
     """
     target, running = resolved_target(path), _RUNNING.get()
     identity = _identity(target)
@@ -94,22 +71,7 @@ def expect_target(path: Path) -> Path:
 
 
 def resolved_target(path: Path) -> Path:
-    """Regular file that is replaced, or made, by writing to a path: the path itself or what its link leads to.
-
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    InvalidInput
-        If the path is a folder, a device, a pipe or a link that leads to no file, if it is write-protected, or if it is
-        an input of the running command.
-    """
+    """Regular file that is replaced, or made, by writing to a path: the path itself or what its link leads to."""
     try:
         found = path.stat()
     except FileNotFoundError:

@@ -124,11 +124,11 @@ class Answer(ABC):
         return self.object() | {"caveats": self.every_caveat(), "assumptions": dict(self.assumptions())}
 
     def to_json(self) -> str:
-        """Return the answer as a JSON text, all quantities in SI."""
+        """Answer as a JSON text, all quantities in SI."""
         return json.dumps(self.json_object(), indent=2, allow_nan=False)
 
     def dataset(self) -> "xr.Dataset":
-        """Return the result as a labelled dataset, with units, caveats and assumptions."""
+        """Result as a labelled dataset, with units, caveats and assumptions."""
         import xarray as xr
 
         found = next((each for name, each in self.files().items() if name.endswith(".nc")), None)
@@ -151,7 +151,7 @@ class Answer(ABC):
         return write_netcdf(self.dataset(), path=Path(path))
 
     def __getitem__(self, name: str) -> "xr.DataArray":
-        """Return a variable of the dataset."""
+        """Variable of the dataset."""
         return self.dataset()[name]
 
     def plot(self, title: str | None = None, *, style: str | None = None) -> "Figure":
@@ -187,7 +187,7 @@ class Answer(ABC):
             return shown_in_notebooks(drawings[names[0]].figure())
 
     def text(self, *, line_length: int | None = 80) -> str:
-        """Return the answer as text, as a terminal prints it; not wrapped where the length is None."""
+        """Answer as text, as a terminal prints it; not wrapped where the length is None."""
         return "\n".join(text_lines(self._shown(), line_length=line_length))
 
     def __str__(self) -> str:

@@ -28,7 +28,7 @@ _CHARTS: Mapping[str, str] = MappingProxyType(
 
 
 def plot(result: "Answer | xr.Dataset", *, title: str | None = None, style: str | None = None) -> "Figure":
-    """Return the figure of an answer.
+    """Figure of an answer.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ class TaskFunction(Generic[P, A]):
             self.__doc__ = _described(function.__doc__, self._form.parameters, self._marks)
 
     def __call__(self, *positional: P.args, **named: P.kwargs) -> A:
-        """Return the answer to the arguments."""
+        """Answer to the arguments."""
         bound = self._form.bind(*positional, **named)
         given = frozenset(bound.arguments)
         bound.apply_defaults()

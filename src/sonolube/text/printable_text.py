@@ -11,15 +11,7 @@ _MICRO = re.compile(r"(?<=\d )u(?=[mNsVWFHgAPJ](?![a-z]))")
 def printable(text: str) -> str:
     r"""Text in which every character that acts rather than prints is written as an escape, such as ``\x1b``.
 
-    Parameters
-    ----------
-    text : str
-        Of a user: a title, a label of a column, the name of a file.
-
-    Returns
-    -------
-    str
-        Encodable as UTF-8. Tabs and newlines stay.
+    Encodable as UTF-8. Tabs and newlines stay.
     """
     return _ACTIVE.sub(lambda match: _escape(match[0]), text)
 
@@ -37,14 +29,5 @@ def _escape(character: str) -> str:
 
 
 def with_micro_sign(text: str) -> str:
-    """Return text for figures, with units such as um as µm.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    str
-    """
+    """Text for figures, with units such as um as µm."""
     return _MICRO.sub("µ", text)

@@ -9,7 +9,7 @@ from typing import Final
 _INDENT: Final = "  "
 _GAP: Final = "  "
 _BREAKS: Final = re.compile(r"\s+|(?<=[A-Za-z]-)(?=[A-Za-z]{2})")  # of lines of a cell
-_LEAST_ROOM: Final = 20  # characters of a value, whatever the width
+_MIN_ROOM: Final = 20  # characters of a value, whatever the width
 
 
 def wrapped(line: str, *, line_length: int | None) -> list[str]:
@@ -26,7 +26,7 @@ def aligned(rows: Sequence[tuple[str, str]], *, line_length: int | None = None) 
     widths = [max(map(len, names), default=0), max(map(len, values), default=0)]
     if line_length is not None:  # a value without spaces, such as a path, is wider than the others
         longest = max(map(_longest_word, names), default=0), max(map(_longest_word, values), default=0)
-        _narrowed(widths, (longest[0], min(longest[1], _LEAST_ROOM)), line_length - len(_INDENT) - len(_GAP))
+        _narrowed(widths, (longest[0], min(longest[1], _MIN_ROOM)), line_length - len(_INDENT) - len(_GAP))
     return [line for row in rows for line in _row_lines(row, widths)]
 
 

@@ -18,24 +18,7 @@ _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*\.[ \t]*{_PART}){{{_DEEPEST}
 
 
 def text_of(path: Path, *, kind: str) -> str:
-    """Return the text of a file.
-
-    Parameters
-    ----------
-    path : Path
-        UTF-8, with or without a byte order mark.
-    kind : str
-        What the file is, such as "a rig file".
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, is no UTF-8 text or larger than 1 MB, or the running command is to write to it.
-    """
+    """Text of a file."""
     record_input(path)
     try:
         if path.stat().st_size > _LARGEST_FILE:
@@ -50,46 +33,13 @@ def text_of(path: Path, *, kind: str) -> str:
 
 
 def read_toml(path: Path, *, kind: str) -> dict[str, Any]:
-    """Return the content of a TOML file.
-
-    Parameters
-    ----------
-    path : Path
-    kind : str
-        What the file is, such as "a rig file".
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, or as `toml_content`.
-    """
+    """Content of a TOML file."""
     return toml_content(text_of(path, kind=kind))
 
 
 def toml_content(text: str) -> dict[str, Any]:
     """Content of a TOML text.
 
-    Parameters
-    ----------
-    text : str
-        Content of a file.
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    InvalidInput
-        If the text is no TOML, nested more than 32 deep, holds an integer of thousands of digits or a control
-        character.
-
-    Notes
-    -----
     The standard library's parser takes a time in the square of the parts of a dotted key, and a depth of the stack for
     every array within another; keys of many parts are therefore refused before it reads them.
     """
@@ -108,18 +58,7 @@ def toml_content(text: str) -> dict[str, Any]:
 
 
 def require_plain_content(content: Mapping[str, Any]) -> None:
-    """Refuse content of a file that is nested too deeply or holds what is not plain text.
-
-    Parameters
-    ----------
-    content : mapping
-        Tables, arrays and values.
-
-    Raises
-    ------
-    InvalidInput
-        With the key, for the first entry that is nested more than 32 deep or is text with a control character.
-    """
+    """Refuse content of a file that is nested too deeply or holds what is not plain text."""
     for key, depth, value in _entries(content):
         if depth > _DEEPEST:
             raise InvalidInput(f"{key}: nested too deeply, at most {_DEEPEST} tables and arrays")

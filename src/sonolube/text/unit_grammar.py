@@ -23,7 +23,7 @@ from sonolube.errors import InvalidInput
 LONGEST_UNIT = 60
 """Characters of the longest unit that is read."""
 
-_MOST_SYMBOLS = 12
+_MAX_SYMBOLS = 12
 _LARGEST_POWER = 9.0
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
 _LETTER = r"[^\W\d_⁰¹²³⁴⁵⁶⁷⁸⁹]"
@@ -49,20 +49,7 @@ _Spelled = tuple[str, float]  # a part of a unit for pint, and the largest power
 def canonical_unit(text: str) -> str:
     """Spelling for pint of a unit that follows the grammar of this module.
 
-    Parameters
-    ----------
-    text : str
-        Such as "N s/m"; empty for a pure number.
-
-    Returns
-    -------
-    str
-        Symbols with `*`, `/`, `**` and brackets only. Whether the symbols are known is for pint to say.
-
-    Raises
-    ------
-    InvalidInput
-        If the text does not follow the grammar or exceeds its limits.
+    Symbols with `*`, `/`, `**` and brackets only. Whether the symbols are known is for pint to say.
     """
     text = text.strip()
     if len(text) > LONGEST_UNIT:
@@ -70,8 +57,8 @@ def canonical_unit(text: str) -> str:
     if not text:
         return "dimensionless"
     tokens = _tokens(text)
-    if sum(kind == "symbol" for kind, _ in tokens) > _MOST_SYMBOLS:
-        raise InvalidInput(f"a unit has at most {_MOST_SYMBOLS} symbols")
+    if sum(kind == "symbol" for kind, _ in tokens) > _MAX_SYMBOLS:
+        raise InvalidInput(f"a unit has at most {_MAX_SYMBOLS} symbols")
     spelled, _ = _unit(tokens)
     if tokens:
         raise InvalidInput(f"a unit does not go on with {tokens[0][1]!r}")

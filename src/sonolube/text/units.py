@@ -43,28 +43,8 @@ _KINDS = {
 
 
 def to_si(text: str, *, unit: str, name: str) -> float:
-    """Return the value of a text with a unit, in SI.
+    """Value of a text with a unit, in SI.
 
-    Parameters
-    ----------
-    text : str
-        A number and its unit, such as "8 um" or "4.7e10/m2"; units follow the grammar of `sonolube.text.unit_grammar`.
-    unit : str
-        SI unit of the result; empty for a pure number.
-    name : str
-        Name of the value in errors: the key of the file or the option of the command.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        If the text is not a finite number with a unit, or its unit is of another kind.
-
-    Notes
-    -----
     Rates in 1/s are in turns per second: 60 rpm and 360 deg/s are 1/s.
 
     Examples
@@ -87,24 +67,7 @@ def to_si(text: str, *, unit: str, name: str) -> float:
 
 
 def temperature_difference_to_si(text: str, *, name: str) -> float:
-    """Return the temperature difference of a text with a unit, in K.
-
-    Parameters
-    ----------
-    text : str
-        A number and its unit, such as "40 K".
-    name : str
-        Name of the value in errors.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        As `to_si`, or if the unit belongs to a scale with an offset, such as degC.
-    """
+    """Temperature difference of a text with a unit, in K."""
     value = to_si(text, unit="K", name=name)
     parts = _number_and_unit(text)
     if parts is not None and _converted(0.0, parts[1], "K", name=name, text=text) != 0:
@@ -113,12 +76,7 @@ def temperature_difference_to_si(text: str, *, name: str) -> float:
 
 
 def convert(value: float, *, from_unit: str, to_unit: str) -> float:
-    """Return a value in another unit of the same kind, such as mm/s for m/s.
-
-    Raises
-    ------
-    InvalidInput
-        If the units are unknown or of different kinds.
+    """Value in another unit of the same kind, such as mm/s for m/s.
 
     Examples
     --------
@@ -130,13 +88,7 @@ def convert(value: float, *, from_unit: str, to_unit: str) -> float:
 
 
 def require_si_unit(unit: str, *, name: str) -> str:
-    """Return a unit that is one of SI without a prefix, such as m/s2; empty for pure numbers.
-
-    Raises
-    ------
-    InvalidInput
-        If it is unknown, or has a factor, such as mm/s or %.
-    """
+    """Unit that is one of SI without a prefix, such as m/s2; empty for pure numbers."""
     import pint
 
     try:
@@ -150,27 +102,12 @@ def require_si_unit(unit: str, *, name: str) -> str:
 
 
 def unit_description(unit: str) -> str:
-    """Return the kind of quantity of an SI unit with an example, such as "a force, such as 40N"."""
+    """Kind of quantity of an SI unit with an example, such as "a force, such as 40N"."""
     return _KINDS.get(unit, f"a value in {unit}")
 
 
 def format_si(value: float, unit: str, *, digits: int = 3, scale: float = 0.0) -> str:
-    """Return an SI value as text with a prefixed unit, such as "2.5 um" for 2.5e-6 m; angles in degrees.
-
-    Parameters
-    ----------
-    value : float
-        Value in SI.
-    unit : str
-        SI unit.
-    digits : int
-        Number of significant digits.
-    scale : float
-        Size of the values that it comes from, in SI: a billionth of it is rounding, and written as 0.
-
-    Returns
-    -------
-    str
+    """SI value as text with a prefixed unit, such as "2.5 um" for 2.5e-6 m; angles in degrees.
 
     Examples
     --------
@@ -204,20 +141,7 @@ def format_si(value: float, unit: str, *, digits: int = 3, scale: float = 0.0) -
 
 
 def format_quantity(value: float, name: str, *, digits: int = 3) -> str:
-    """Return the SI value of a quantity as text with the unit usual for it, such as "0.0257 mm3/m" for a wear rate.
-
-    Parameters
-    ----------
-    value : float
-        Value in SI.
-    name : str
-        Name of the quantity in the vocabulary; another name is that of a pure number.
-    digits : int
-        Number of significant digits.
-
-    Returns
-    -------
-    str
+    """SI value of a quantity as text with the unit usual for it, such as "0.0257 mm3/m" for a wear rate.
 
     Examples
     --------
@@ -232,21 +156,9 @@ def format_quantity(value: float, name: str, *, digits: int = 3) -> str:
 
 
 def format_like(values: Sequence[float], unit: str, *, digits: int = 3) -> list[str]:
-    """Return SI values as text with one prefixed unit for all, that of the largest, as in a column of a table.
+    """SI values as text with one prefixed unit for all, that of the largest, as in a column of a table.
 
-    Parameters
-    ----------
-    values : sequence of float
-        Values in SI.
-    unit : str
-        SI unit.
-    digits : int
-        Number of significant digits.
-
-    Returns
-    -------
-    list of str
-        A value below a thousandth of the largest has a prefix of its own.
+    A value below a thousandth of the largest has a prefix of its own.
 
     Examples
     --------
@@ -268,19 +180,19 @@ def format_like(values: Sequence[float], unit: str, *, digits: int = 3) -> list[
 
 
 def _number_and_unit(text: str) -> tuple[float, str] | None:
-    """Return the number that a text begins with and what follows; None for a text of another form."""
+    """Number that a text begins with and what follows; None for a text of another form."""
     text = text.strip()
     match = _NUMBER.match(text)
     return None if match is None else (float(match[0]), text[match.end() :].strip())
 
 
 def _shortened(text: str) -> str:
-    """Return a text as an error quotes it."""
+    """Text as an error quotes it."""
     return text if len(text) <= _LONGEST_QUOTE else f"{text[: _LONGEST_QUOTE // 2]}...{text[-_LONGEST_QUOTE // 2 :]}"
 
 
 def _converted(number: float, written_unit: str, unit: str, *, name: str, text: str) -> float:
-    """Return a number in another unit; the errors quote the name and the text of the value."""
+    """Number in another unit; the errors quote the name and the text of the value."""
     factor = COMMON_FACTORS.get(unit, {}).get(written_unit)
     if factor is not None:
         return number * factor
@@ -316,12 +228,12 @@ def _converted(number: float, written_unit: str, unit: str, *, name: str, text: 
 
 
 def _has_angle(unit: Any) -> bool:
-    """Return whether a unit contains an angle, which pint treats as a pure number in radians."""
+    """Whether a unit contains an angle, which pint treats as a pure number in radians."""
     return any(angle in name for name in map(str, unit._units) for angle in _ANGLES)
 
 
 def _kind_of_dimension(written: Any) -> str:
-    """Return the kind of quantity of a unit, such as "a length"."""
+    """Kind of quantity of a unit, such as "a length"."""
     if written.dimensionless:
         return "an angle" if _has_angle(written) else "a pure number"
     for unit, kind in _KINDS.items():
@@ -332,7 +244,7 @@ def _kind_of_dimension(written: Any) -> str:
 
 @cache
 def _registry() -> Any:
-    """Return the registry of pint, made once."""
+    """Registry of pint, made once."""
     import pint
 
     registry: Any = pint.UnitRegistry(cache_folder=None)
@@ -342,5 +254,5 @@ def _registry() -> Any:
 
 @lru_cache(1024)
 def _unit(written: str) -> Any:
-    """Return the unit of pint for a unit as users write it."""
+    """Unit of pint for a unit as users write it."""
     return _registry().Unit(canonical_unit(written))

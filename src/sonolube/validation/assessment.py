@@ -92,20 +92,7 @@ class Assessment:
 
 
 def assess_variant(variant: ModelVariant, sets: str, *, tests: Tests | None = None) -> Assessment:
-    """Return the assessment of a model variant on some sets.
-
-    Parameters
-    ----------
-    variant : ModelVariant
-    sets : str
-        Letters of the sets.
-    tests : tuple of MeasuredConditions, optional
-        Tests from which the sets are selected; all published ones where absent.
-
-    Returns
-    -------
-    Assessment
-    """
+    """Assessment of a model variant on some sets."""
     fit, selected = fit_variant(variant, sets, tests=tests), select_tests(sets, tests)
     return Assessment(
         fit=fit,
@@ -116,12 +103,12 @@ def assess_variant(variant: ModelVariant, sets: str, *, tests: Tests | None = No
 
 
 def prediction_errors(fit: Fit, tests: Iterable[MeasuredConditions]) -> ErrorStatistics:
-    """Return the error statistics of a fit over some tests."""
+    """Error statistics of a fit over some tests."""
     return error_statistics((test, fit.predict(test)) for test in tests)
 
 
 def error_statistics(predicted: Iterable[tuple[MeasuredConditions, float | None]]) -> ErrorStatistics:
-    """Return the error statistics of predicted friction ratios, None being outside the range of the model."""
+    """Error statistics of predicted friction ratios, None being outside the range of the model."""
     pairs = list(predicted)
     in_range = [(test, ratio) for test, ratio in pairs if ratio is not None]
     measured = np.array([test.friction_ratio for test, _ in in_range])
@@ -136,7 +123,7 @@ def error_statistics(predicted: Iterable[tuple[MeasuredConditions, float | None]
 
 
 def leave_one_set_out_fits(variant: ModelVariant, sets: str, *, tests: Tests | None = None) -> tuple[Fit, ...]:
-    """Return for each set, in order, the fit that has not seen it: to all the others, from the fit to all.
+    """For each set, in order, the fit that has not seen it: to all the others, from the fit to all.
 
     Where the set is one that a fixed constant was taken from, that constant is fitted to the rest of these sets.
     """
@@ -150,29 +137,21 @@ def leave_one_set_out_fits(variant: ModelVariant, sets: str, *, tests: Tests | N
 
 
 def _refit_without(seen: SeenSets, one: str, tests: Tests | None) -> Fit:
-    """Return the model with its constant fitted to the sets that it was taken from, without one of them."""
+    """Model with its constant fitted to the sets that it was taken from, without one of them."""
     others = seen.sets.replace(one, "")
     return fit_variant(seen.refitted, others, tests=tests if select_tests(others, tests) else None)
 
 
 def cross_validation_errors(variant: ModelVariant, sets: str, *, tests: Tests | None = None) -> ErrorStatistics:
-    """Return the error statistics with each set predicted by a fit that has not seen it."""
+    """Error statistics with each set predicted by a fit that has not seen it."""
     fits = zip(sets, leave_one_set_out_fits(variant, sets, tests=tests), strict=True)
     return error_statistics((test, fit.predict(test)) for one, fit in fits for test in select_tests(one, tests))
 
 
 def unseen_error(model: FrictionModel) -> ErrorStatistics | None:
-    """Return the error statistics of a friction model on published tests that it has not seen, as `compare` has them.
+    """Error statistics of a friction model on published tests that it has not seen, as `compare` has them.
 
-    Parameters
-    ----------
-    model : FrictionModel
-
-    Returns
-    -------
-    ErrorStatistics or None
-        None for parameters other than the defaults, and for a model without a variant to fit, of which no error is
-        known.
+    None for parameters other than the defaults, and for a model without a variant to fit, of which no error is known.
     """
     if model != type(model)():
         return None
@@ -182,7 +161,7 @@ def unseen_error(model: FrictionModel) -> ErrorStatistics | None:
 
 
 def information_criteria(fit: Fit, tests: Tests) -> InformationCriteria | None:
-    """Return the information criteria of a fit on some tests; None where one is outside the range of the model.
+    """Information criteria of a fit on some tests; None where one is outside the range of the model.
 
     A fixed constant that was taken from published tests counts as a fitted parameter.
     """
@@ -195,23 +174,8 @@ def information_criteria(fit: Fit, tests: Tests) -> InformationCriteria | None:
 
 
 def gaussian_criteria(rms: float, *, count: int, parameter_count: int) -> InformationCriteria:
-    r"""Return the information criteria for Gaussian errors of unknown variance.
+    r"""Information criteria for Gaussian errors of unknown variance.
 
-    Parameters
-    ----------
-    rms : float
-        Root mean square error.
-    count : int
-        Number of tests.
-    parameter_count : int
-        Number of fitted parameters, without the variance.
-
-    Returns
-    -------
-    InformationCriteria
-
-    Notes
-    -----
     .. math::
 
         \mathrm{AICc} = 2 n \ln s + 2 k + \frac{2 k (k + 1)}{n - k - 1}, \qquad \mathrm{BIC} = 2 n \ln s + k \ln n

@@ -65,9 +65,7 @@ _FORMER_NAMES: Final = {
     "coulomb-oblique-hidden": "coulomb-oblique-fitted",
     "spring-along": "spring-longitudinal",
 }
-_MOST_PROFILED: Final = (
-    2  # parameters of a variant whose intervals are computed; with more, each point takes a long fit
-)
+_MAX_PROFILED: Final = 2  # parameters of a variant whose intervals are computed; with more, each point takes a long fit
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -156,7 +154,7 @@ class ComparedFit:
         return None if criteria is None or criteria.aicc == float("inf") else criteria.aicc
 
     def errors_in(self, set_name: str) -> ErrorStatistics | None:
-        """Return the error statistics of the fit in one set; None where all its tests are out of range."""
+        """Error statistics of the fit in one set; None where all its tests are out of range."""
         of_set = [one for one in self.predictions if one.test.set_name == set_name]
         errors = error_statistics((one.test, one.fitted) for one in of_set)
         return errors if errors.count else None
@@ -188,23 +186,7 @@ class RigPrediction:
 
 
 def compared_models(names: Iterable[str] = ()) -> tuple[ModelVariant, ...]:
-    """Return the model variants of some names in the order of `COMPARED_MODELS`; all of them if no name is given.
-
-    Parameters
-    ----------
-    names : iterable of str
-
-    Returns
-    -------
-    tuple of ModelVariant
-
-    Raises
-    ------
-    InvalidInput
-        For a former name, with the present one.
-    UnknownName
-        If there is no such variant.
-    """
+    """Model variants of some names in the order of `COMPARED_MODELS`; all of them if no name is given."""
     known = {model.name: model for model in COMPARED_MODELS}
     selected = list(names)
     for name in selected:
@@ -221,23 +203,10 @@ def compare_models(
     tests: Tests | None = None,
     advance: Advance = lambda name, done, total: None,
 ) -> tuple[ComparedFit, ...]:
-    """Return model variants fitted to and assessed on the tests that have their required inputs.
+    """Model variants fitted to and assessed on the tests that have their required inputs.
 
-    Parameters
-    ----------
-    models : tuple of ModelVariant
-    tests : tuple of MeasuredConditions, optional
-        All published tests where absent.
-    advance : callable
-        Called after each variant with its name, the number done and their total.
+    Those that reach the most tests first; of these in increasing order of their cross-validation error.
 
-    Returns
-    -------
-    tuple of ComparedFit
-        Those that reach the most tests first; of these in increasing order of their cross-validation error.
-
-    Notes
-    -----
     Errors and information criteria are comparable on the same tests only, not between variants assessed on different
     sets.
     """
@@ -249,27 +218,17 @@ def compare_models(
 
 
 def predict_rig(fits: tuple[ComparedFit, ...], rig: VibratedRig) -> tuple[RigPrediction, ...]:
-    """Return the friction ratio of a rig by every fitted variant, in increasing order of the uncertainty.
+    """Friction ratio of a rig by every fitted variant, in increasing order of the uncertainty.
 
-    Parameters
-    ----------
-    fits : tuple of ComparedFit
-    rig : VibratedRig
+    Those that do not apply come last.
 
-    Returns
-    -------
-    tuple of RigPrediction
-        Those that do not apply come last.
-
-    Notes
-    -----
     Parameters specific to one rig of the tests, such as in-plane motion, keep their defaults.
     """
     return tuple(sorted((_rig_prediction(one, rig) for one in fits), key=_rig_rank))
 
 
 def _compared_fit(model: ModelVariant, tests: Tests | None) -> ComparedFit:
-    """Return one variant fitted to, and assessed on, the sets whose tests have its required inputs."""
+    """One variant fitted to, and assessed on, the sets whose tests have its required inputs."""
     selected = select_tests("".join(DATA_SETS), tests)
     applicable = {test.set_name for test in selected if model.inapplicability(test) is None}
     sets = "".join(letter for letter in (*FITTED_SETS, *IN_PLANE_VIBRATION_SETS) if letter in applicable)
@@ -293,7 +252,7 @@ def _compared_fit(model: ModelVariant, tests: Tests | None) -> ComparedFit:
 
 
 def _fitted_parameters(fit: Fit, left_out: dict[str, Fit], tests: Tests | None) -> tuple[FittedParameter, ...]:
-    """Return the fitted parameters with intervals and ranges over the fits with one set left out."""
+    """Fitted parameters with intervals and ranges over the fits with one set left out."""
     parameters, found = fit.variant.parameters, []
     for index, (parameter, value) in enumerate(zip(parameters, fit.values, strict=True)):
         others = [
@@ -301,7 +260,7 @@ def _fitted_parameters(fit: Fit, left_out: dict[str, Fit], tests: Tests | None) 
             for letter, other in left_out.items()
             if parameter.applies_to("".join(left_out).replace(letter, ""))
         ]
-        profiled = len(parameters) <= _MOST_PROFILED
+        profiled = len(parameters) <= _MAX_PROFILED
         found.append(
             FittedParameter(
                 parameter=parameter,
@@ -314,7 +273,7 @@ def _fitted_parameters(fit: Fit, left_out: dict[str, Fit], tests: Tests | None) 
 
 
 def _prediction(test: MeasuredConditions, fit: Fit, left_out: Fit) -> Prediction:
-    """Return the prediction of one test by the fit to all sets and by that to the other sets."""
+    """Prediction of one test by the fit to all sets and by that to the other sets."""
     missing = fit.variant.inapplicability(test)
     if missing:
         return Prediction(test=test, fitted=None, cross_validated=None, reason=missing)
@@ -328,7 +287,7 @@ def _prediction(test: MeasuredConditions, fit: Fit, left_out: Fit) -> Prediction
 
 
 def _rig_prediction(one: ComparedFit, rig: VibratedRig) -> RigPrediction:
-    """Return the friction ratio of a rig by one fitted variant, its cross-validation error as the uncertainty."""
+    """Friction ratio of a rig by one fitted variant, its cross-validation error as the uncertainty."""
     missing = one.model.inapplicability(rig)
     raw = None if missing else one.fit.predict(rig)
     objection = one.model.range_objection(rig, raw)
@@ -345,11 +304,11 @@ def _rig_prediction(one: ComparedFit, rig: VibratedRig) -> RigPrediction:
 
 
 def _rig_rank(one: RigPrediction) -> tuple[bool, float]:
-    """Return the sort key of a prediction: whether it is missing, then its uncertainty."""
+    """Sort key of a prediction: whether it is missing, then its uncertainty."""
     return one.friction_ratio is None, float("inf") if one.uncertainty is None else one.uncertainty
 
 
 def _rank(one: ComparedFit) -> tuple[int, float]:
-    """Return the sort key of a fit: the tests that it reaches, most first, then its cross-validation error."""
+    """Sort key of a fit: the tests that it reaches, most first, then its cross-validation error."""
     unseen = None if one.assessment is None else one.assessment.cross_validation_errors
     return (0, float("inf")) if unseen is None else (-unseen.count, unseen.rms)

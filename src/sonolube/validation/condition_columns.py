@@ -44,14 +44,7 @@ _COLUMNS = tuple(field.name for field in fields(ConditionColumns) if field.name 
 def condition_columns(conditions: Sequence[object]) -> ConditionColumns | None:
     """Inputs of conditions as arrays.
 
-    Parameters
-    ----------
-    conditions : sequence of FrictionTest or RunConditions
-
-    Returns
-    -------
-    ConditionColumns or None
-        None where the conditions are on different contacts.
+    None where the conditions are on different contacts.
     """
     contact: Any = getattr(conditions[0], "contact", None)
     if any(getattr(one, "contact", None) is not contact for one in conditions):

@@ -30,19 +30,7 @@ Bodies = Literal["aluminium_steel", "steel_steel"]
 
 
 def poisson_contact(*, bodies: Bodies, yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
-    """Return the contact of the Poisson-effect tests, Table 3.1.
-
-    Parameters
-    ----------
-    bodies : str
-        Pair in contact.
-    yield_strength : float
-        Yield strength of steel on steel. [Pa]
-
-    Returns
-    -------
-    RoughContact
-    """
+    """Contact of the Poisson-effect tests, Table 3.1."""
     steel, aluminium = (
         ElasticBody(
             youngs_modulus=si_value(f"table-3.1-youngs_modulus_{metal}-1"),
@@ -62,7 +50,7 @@ def poisson_contact(*, bodies: Bodies, yield_strength: float = STEEL_YIELD_STREN
 
 
 def wear_contact() -> RoughContact:
-    """Return the contact of the wear model on the modified tribometer, Table 3.2."""
+    """Contact of the wear model on the modified tribometer, Table 3.2."""
     poisson_ratio = si_value("table-3.1-poisson_ratio_aluminium-1")
     return RoughContact(
         roughness=_roughness("3.2"),
@@ -78,37 +66,14 @@ def wear_contact() -> RoughContact:
 
 
 def steel_on_steel_contact(*, nominal_area: float, yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
-    """Return the contact of two steel bodies with the roughness of Table 3.2.
-
-    Parameters
-    ----------
-    nominal_area : float
-        Nominal contact area. [m2]
-    yield_strength : float
-        Yield strength of the steel. [Pa]
-
-    Returns
-    -------
-    RoughContact
-    """
+    """Contact of two steel bodies with the roughness of Table 3.2."""
     pressed = poisson_contact(bodies="steel_steel", yield_strength=yield_strength)
     return replace(pressed, roughness=_roughness("3.2"), nominal_area=nominal_area)
 
 
 def uncoated_plate_contact(*, yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
-    r"""Return the contact of the steel pin on the uncoated steel plates of section 4.1.
+    r"""Contact of the steel pin on the uncoated steel plates of section 4.1.
 
-    Parameters
-    ----------
-    yield_strength : float
-        Yield strength of the steel. [Pa]
-
-    Returns
-    -------
-    RoughContact
-
-    Notes
-    -----
     .. math:: R_q = \sqrt{\pi/2}\, R_a = 2.12\ \mathrm{\mu m}
 
     with the 1.69 um of D 4.1.3 as R_a, which D prints wherever it names the kind of a single roughness; as R_q it
@@ -122,7 +87,7 @@ def uncoated_plate_contact(*, yield_strength: float = STEEL_YIELD_STRENGTH) -> R
 
 
 def _roughness(table_id: str) -> Roughness:
-    """Return the combined roughness of Table 3.1 or 3.2."""
+    """Combined roughness of Table 3.1 or 3.2."""
     return Roughness(
         rms_height=si_value(f"table-{table_id}-rms_height-1"),
         summit_radius=si_value(f"table-{table_id}-summit_radius-1"),

@@ -36,24 +36,24 @@ _PER_SLIP_LENGTH: Final = friction.SpringContact(friction_coefficient=1.0, mindl
 
 @cache
 def load_over_stiffness(contact: RoughContact, load: float) -> float:
-    """Return load over normal stiffness of a rough contact at rest: the approach of linear springs. [m]"""
+    """Load over normal stiffness of a rough contact at rest: the approach of linear springs. [m]"""
     return float(_load_over_stiffness(contact, load))
 
 
 def _load_over_stiffness(contact: RoughContact, load: float | Floats) -> Floats:
-    """Return load over normal stiffness of a rough contact at rest, for each load. [m]"""
+    """Load over normal stiffness of a rough contact at rest, for each load. [m]"""
     return load / normal_stiffness(contact, separation=separation(contact, normal_load=load))
 
 
 def approach_at_rest(test: _Vibrated) -> float | Floats:
-    """Return the approach of linear springs under the load of each condition. [m]"""
+    """Approach of linear springs under the load of each condition. [m]"""
     if isinstance(test, ConditionColumns):
         return _load_over_stiffness(test.contact, test.normal_load)
     return load_over_stiffness(test.contact, test.normal_load)
 
 
 def _coulomb_in_plane(test: InPlaneTest) -> Floats:
-    """Return the friction ratio by Coulomb friction under the measured in-plane vibration. []"""
+    """Friction ratio by Coulomb friction under the measured in-plane vibration. []"""
     return friction.oblique_vibration_ratio(
         sliding_speed=test.sliding_speed,
         vibration_velocity=test.vibration_velocity,
@@ -62,14 +62,14 @@ def _coulomb_in_plane(test: InPlaneTest) -> Floats:
 
 
 def _coulomb_longitudinal(test: _Vibrated, in_plane_fraction: float) -> Floats:
-    """Return the friction ratio by Coulomb friction under vibration along the sliding. []"""
+    """Friction ratio by Coulomb friction under vibration along the sliding. []"""
     return friction.parallel_vibration_ratio(
         sliding_speed=test.sliding_speed, vibration_velocity=in_plane_fraction * _peak_velocity(test)
     )
 
 
 def _coulomb_oblique(test: _Vibrated, in_plane_fraction: float, vibration_direction: float) -> Floats:
-    """Return the friction ratio by Coulomb friction under vibration oblique to the sliding. []"""
+    """Friction ratio by Coulomb friction under vibration oblique to the sliding. []"""
     return friction.oblique_vibration_ratio(
         sliding_speed=test.sliding_speed,
         vibration_velocity=in_plane_fraction * _peak_velocity(test),
@@ -78,19 +78,19 @@ def _coulomb_oblique(test: _Vibrated, in_plane_fraction: float, vibration_direct
 
 
 def _spring_flat(test: _Vibrated, approach: float | None = None, mindlin_ratio: float | None = None) -> Floats:
-    """Return the friction ratio by springs of constant stiffness, the profile of a flat punch. []"""
+    """Friction ratio by springs of constant stiffness, the profile of a flat punch. []"""
     at_rest = approach_at_rest(test) if approach is None else approach
     return _under_normal_oscillation(test, _PER_SLIP_LENGTH, at_rest, _slip_per_approach(test, mindlin_ratio))
 
 
 def _spring_flat_on_roughness(test: _Vibrated, slip_length: float, approach_ratio: float) -> Floats:
-    """Return the friction ratio by springs of constant stiffness, their approach in proportion to R_q. []"""
+    """Friction ratio by springs of constant stiffness, their approach in proportion to R_q. []"""
     at_rest = approach_ratio * test.contact.height_scale
     return _under_normal_oscillation(test, _PER_SLIP_LENGTH, at_rest, slip_length / at_rest)
 
 
 def _spring_parabolic(test: FrictionTest) -> Floats:
-    """Return the friction ratio by springs of a parabolic profile with the load and stiffness of the contact. []"""
+    """Friction ratio by springs of a parabolic profile with the load and stiffness of the contact. []"""
     springs = replace(_PER_SLIP_LENGTH, profile="parabolic")
     hertz = 1.5 * load_over_stiffness(test.contact, test.normal_load)  # F_N = 2/3 k_z u
     return _under_normal_oscillation(test, springs, hertz, _slip_per_approach(test, None))
@@ -99,7 +99,7 @@ def _spring_parabolic(test: FrictionTest) -> Floats:
 def _under_normal_oscillation(
     test: _Vibrated, springs: friction.SpringContact, at_rest: float | Floats, slip_per_approach: float | Floats
 ) -> Floats:
-    """Return the friction ratio of springs about the load-balanced approach. []
+    """Friction ratio of springs about the load-balanced approach. []
 
     The ratio depends on lengths along the sliding over the slip length alone, so that springs of unit slip per
     approach slide more slowly.
@@ -115,7 +115,7 @@ def _under_normal_oscillation(
 
 
 def _spring_approximate(test: FrictionTest) -> Floats:
-    """Return the friction ratio by the published approximation for springs of constant stiffness. []"""
+    """Friction ratio by the published approximation for springs of constant stiffness. []"""
     springs, a = _springs(test, None), test.vibration_amplitude
     critical = friction.critical_speed(springs, frequency=test.frequency, normal_amplitude=a)
     with _range_warnings_as_errors():
@@ -130,7 +130,7 @@ def _spring_approximate(test: FrictionTest) -> Floats:
 def _spring_in_plane(
     test: _Vibrated, mindlin_ratio: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
 ) -> Floats:
-    """Return the friction ratio by springs of constant stiffness under normal and in-plane motion. []"""
+    """Friction ratio by springs of constant stiffness under normal and in-plane motion. []"""
     if in_plane_fraction == 0:
         return _spring_flat(test, mindlin_ratio=mindlin_ratio)
     slip, a = _slip_per_approach(test, mindlin_ratio), test.vibration_amplitude
@@ -150,7 +150,7 @@ def _spring_in_plane(
 
 
 def _spring_longitudinal(rig: VibratedRig) -> Floats:
-    """Return the friction ratio by springs of constant stiffness under the measured motion along the sliding. []"""
+    """Friction ratio by springs of constant stiffness under the measured motion along the sliding. []"""
     assert rig.in_plane_amplitude is not None
     assert rig.frequency is not None
     return friction.longitudinal_oscillation_ratio(
@@ -163,7 +163,7 @@ def _spring_longitudinal(rig: VibratedRig) -> Floats:
 
 
 def _elliptical(test: _Vibrated, in_plane_fraction: float, in_plane_phase: float) -> Floats:
-    """Return the friction ratio by rigid Coulomb friction on an elliptical path. []"""
+    """Friction ratio by rigid Coulomb friction on an elliptical path. []"""
     return -friction.elliptical_traction_ratio(
         normal_load=test.normal_load,
         normal_stiffness=test.normal_load / approach_at_rest(test),
@@ -187,17 +187,17 @@ def _range_warnings_as_errors() -> Iterator[None]:
 
 
 def _peak_velocity(test: _Vibrated) -> float | Floats:
-    """Return the peak velocity of the normal vibration. [m/s]"""
+    """Peak velocity of the normal vibration. [m/s]"""
     return 2 * pi * test.frequency * test.vibration_amplitude
 
 
 def _slip_per_approach(test: _Vibrated, mindlin_ratio: float | None) -> float | Floats:
-    """Return the slip length over the approach, with the ratio of stiffnesses of Mindlin if None."""
+    """Slip length over the approach, with the ratio of stiffnesses of Mindlin if None."""
     return test.friction_coefficient / (test.contact.pair.mindlin_ratio if mindlin_ratio is None else mindlin_ratio)
 
 
 def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> friction.SpringContact:
-    """Return a spring-coupled contact with a ratio of tangential to normal stiffness, that of Mindlin if None."""
+    """Spring-coupled contact with a ratio of tangential to normal stiffness, that of Mindlin if None."""
     return friction.SpringContact(
         friction_coefficient=test.friction_coefficient,
         mindlin_ratio=test.contact.pair.mindlin_ratio if mindlin_ratio is None else mindlin_ratio,

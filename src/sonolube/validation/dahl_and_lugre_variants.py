@@ -26,7 +26,7 @@ _DAMPING_RATIO: Final = 0.2  # of the driven holder
 
 
 def _dahl(test: FrictionTest | ConditionColumns, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0) -> Floats:
-    """Return the friction ratio by the law of Dahl with the stiffness of the cube, D 3.10 and 3.11. []"""
+    """Friction ratio by the law of Dahl with the stiffness of the cube, D 3.10 and 3.11. []"""
     mean_force = friction.dahl_under_vibration(
         test.contact,
         separation=_balanced_separations(test),
@@ -42,7 +42,7 @@ def _dahl(test: FrictionTest | ConditionColumns, in_plane_fraction: float = 0.0,
 
 
 def _balanced_separations(test: FrictionTest | ConditionColumns) -> Floats:
-    """Return the mean separation of each condition about which the load is balanced. [m]"""
+    """Mean separation of each condition about which the load is balanced. [m]"""
     separations = [_balanced_separation(test.contact, *row) for row in _motion_rows(test)]
     return np.array(separations).reshape(np.shape(test.sliding_speed))
 
@@ -55,7 +55,7 @@ def _lugre(
     in_plane_fraction: float = 0.0,
     in_plane_phase: float = 0.0,
 ) -> Floats:
-    """Return the friction ratio by the law of LuGre, the sliding friction of the test on its Stribeck curve. []"""
+    """Friction ratio by the law of LuGre, the sliding friction of the test on its Stribeck curve. []"""
     static_excess = (static_friction_ratio - 1) * np.exp(-((test.sliding_speed / stribeck_velocity) ** 2))
     sliding = test.friction_coefficient * test.normal_load / (1 + static_excess)
     stiffness = mindlin_ratio * test.normal_load / approach_at_rest(test)
@@ -82,13 +82,13 @@ def _lugre(
 
 
 def _motion_rows(test: FrictionTest | ConditionColumns) -> list[tuple[float, float, float]]:
-    """Return load, amplitude and frequency of each condition."""
+    """Load, amplitude and frequency of each condition."""
     columns = (np.atleast_1d(each).tolist() for each in (test.normal_load, test.vibration_amplitude, test.frequency))
     return list(zip(*columns, strict=True))
 
 
 def _dahl_driven(rig: VibratedRig) -> float:
-    """Return the friction ratio of a mass on the law of Dahl behind an elastic drive vibrating along the sliding. []"""
+    """Friction ratio of a mass on the law of Dahl behind an elastic drive vibrating along the sliding. []"""
     assert rig.in_plane_amplitude is not None
     assert rig.frequency is not None
     assert rig.holder_stiffness is not None
@@ -111,7 +111,7 @@ def _dahl_driven(rig: VibratedRig) -> float:
 
 @cache
 def _balanced_separation(contact: RoughContact, load: float, amplitude: float, frequency: float) -> float:
-    """Return the mean separation at which the mean contact force of a harmonic gap motion is the load. [m]"""
+    """Mean separation at which the mean contact force of a harmonic gap motion is the load. [m]"""
     rise = float(np.mean(balanced_motion(contact, load, amplitude, frequency).displacement))
     return float(separation(contact, normal_load=load)) + rise
 

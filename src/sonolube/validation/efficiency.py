@@ -5,14 +5,8 @@ from sonolube.facts.published import si_value
 
 
 def efficiency_line() -> EfficiencyLine:
-    r"""Return the efficiency coefficient as a linear function of the sliding speed, fitted in D to its tests.
+    r"""Efficiency coefficient as a linear function of the sliding speed, fitted in D to its tests.
 
-    Returns
-    -------
-    EfficiencyLine
-
-    Notes
-    -----
     .. math:: \eta = -2.93\,v_r + 0.672
 
     with the sliding speed in m/s and the efficiency coefficient in mW mm2/(N W), D 4.2.

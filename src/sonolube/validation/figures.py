@@ -47,17 +47,7 @@ class ComparisonFigure:
 
 
 def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> Iterator[ComparisonFigure]:
-    """Return the figures of a comparison.
-
-    Parameters
-    ----------
-    compared : callable
-        Function that returns the comparison; called when a figure is made.
-
-    Returns
-    -------
-    iterator of ComparisonFigure
-    """
+    """Figures of a comparison."""
     yield ComparisonFigure(
         name="models-predicted-against-measured",
         title="Models of friction under vibration: predicted against measured",
@@ -77,32 +67,12 @@ def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> Itera
 
 
 def comparison_chart(result: "xr.Dataset") -> Chart:
-    """Friction ratio of the rig of a comparison by every model; without a rig the predicted ratios of tests.
-
-    Parameters
-    ----------
-    result : xarray.Dataset
-        As `comparison_dataset` returns it.
-
-    Returns
-    -------
-    Chart
-    """
+    """Friction ratio of the rig of a comparison by every model; without a rig the predicted ratios of tests."""
     return rig_chart(result) if "rig_friction_ratio" in result else predicted_against_measured_chart(result)
 
 
 def rig_chart(result: "xr.Dataset") -> Chart:
-    """Friction ratio of a rig by every applicable model, with its cross-validation error.
-
-    Parameters
-    ----------
-    result : xarray.Dataset
-        As `comparison_dataset` returns it with predictions of a rig; the attribute `rig` names it.
-
-    Returns
-    -------
-    Chart
-    """
+    """Friction ratio of a rig by every applicable model, with its cross-validation error."""
     known = result.isel(model=slice(None, None, -1)).dropna("model", subset=["rig_friction_ratio"])
     names, ratios = known["model"].to_numpy(), known["rig_friction_ratio"].to_numpy()
     rows = np.arange(float(names.size))
@@ -129,19 +99,7 @@ def rig_chart(result: "xr.Dataset") -> Chart:
 def speed_and_amplitude_panels(
     over_speed: tuple[Line, ...], over_amplitude: tuple[Line, ...], *, logarithmic: bool = False
 ) -> tuple[Panel, Panel]:
-    """Measured ratios of Table 2.3 over sliding speed and of Table 4.2 over amplitude, with curves.
-
-    Parameters
-    ----------
-    over_speed, over_amplitude : tuple of Line
-        Over the sliding speed in mm/s, and over the amplitude in um.
-    logarithmic : bool
-        Whether the axis of speed is.
-
-    Returns
-    -------
-    Panel, Panel
-    """
+    """Measured ratios of Table 2.3 over sliding speed and of Table 4.2 over amplitude, with curves."""
     speeds = _measured("A", lambda test: 1e3 * test.sliding_speed)
     amplitudes = _measured("B", lambda test: 1e6 * test.vibration_amplitude)
     ticks = (5, 10, 20, 50, 100, 200) if logarithmic else ()
@@ -181,17 +139,7 @@ def _source(test: FrictionTest) -> str:
 
 
 def predicted_against_measured_chart(result: "xr.Dataset") -> Chart:
-    """Predicted against measured ratios, one panel for each of the first models that could be assessed.
-
-    Parameters
-    ----------
-    result : xarray.Dataset
-        As `comparison_dataset` returns it.
-
-    Returns
-    -------
-    Chart
-    """
+    """Predicted against measured ratios, one panel for each of the first models that could be assessed."""
     assessed = result.dropna("model", subset=["rms"]).isel(model=slice(_PANELS))
     count = assessed.sizes["model"]
     columns = min(4, count)
@@ -265,13 +213,13 @@ def _over_speed_and_amplitude(fits: list[ComparedFit]) -> Chart:
 
 
 def _ratios(one: ComparedFit, tests: list[FrictionTest]) -> Floats:
-    """Return the friction ratios of tests by a fitted model; NaN outside its range. []"""
+    """Friction ratios of tests by a fitted model; NaN outside its range. []"""
     ratios: list[ArrayLike] = [np.nan if ratio is None else ratio for ratio in map(one.fit.predict, tests)]
     return np.array(ratios, dtype=np.float64)
 
 
 def _best_of_each_family(fits: tuple[ComparedFit, ...]) -> list[ComparedFit]:
-    """Return the first assessed fit to set A of each family of models, named by the first word of their names."""
+    """First assessed fit to set A of each family of models, named by the first word of their names."""
     families: dict[str, ComparedFit] = {}
     for one in fits:
         if one.assessment is not None and "A" in one.sets:

@@ -37,12 +37,12 @@ class Fit:
     values: tuple[float, ...]
 
     def predict(self, conditions: Conditions) -> float | None:
-        """Return the friction ratio under some conditions; None outside the range of the model. []"""
+        """Friction ratio under some conditions; None outside the range of the model. []"""
         return self.variant.predict(conditions, *self.values)
 
 
 def select_tests(sets: str, tests: Tests | None = None) -> Tests:
-    """Return the tests that belong to the sets of the given letters, from all published tests if None are given."""
+    """Tests that belong to the sets of the given letters, from all published tests if None are given."""
     everything: Tests = (*friction_tests(), *in_plane_tests()) if tests is None else tests
     return tuple(test for test in everything if test.set_name in sets)
 
@@ -51,25 +51,10 @@ def select_tests(sets: str, tests: Tests | None = None) -> Tests:
 def fit_variant(
     variant: ModelVariant, sets: str, *, initial: tuple[float, ...] | None = None, tests: Tests | None = None
 ) -> Fit:
-    r"""Return a model variant fitted by least squares to the measured friction ratios of some sets.
+    r"""Model variant fitted by least squares to the measured friction ratios of some sets.
 
-    Parameters
-    ----------
-    variant : ModelVariant
-    sets : str
-        Letters of the sets.
-    initial : tuple of float, optional
-        Initial values of the free parameters, in SI; the best of those of each parameter where absent.
-    tests : tuple of MeasuredConditions, optional
-        Tests from which the sets are selected; all published ones where absent.
+    Parameters that apply to none of the sets keep their defaults.
 
-    Returns
-    -------
-    Fit
-        Parameters that apply to none of the sets keep their defaults.
-
-    Notes
-    -----
     .. math:: \min_p \sum_i \left(R_i(p) - R_i^{\mathrm{measured}}\right)^2
 
     within the bounds of the parameters p. A test outside the range of the model has a residual of 1.
@@ -88,32 +73,14 @@ def fit_variant(
 def profile_likelihood_interval(
     fit: Fit, index: int, *, tests: Tests | None = None, largest_excess: float = _CHI_SQUARED_95
 ) -> tuple[float, float]:
-    r"""Return the 95 % profile likelihood interval of one parameter, truncated at its bounds.
+    r"""95 % profile likelihood interval of one parameter, truncated at its bounds.
 
-    Parameters
-    ----------
-    fit : Fit
-    index : int
-        Index of the parameter.
-    tests : tuple of MeasuredConditions, optional
-        Tests from which the fitted sets are selected; all published ones where absent.
-    largest_excess : float
-        Largest excess of the deviance; that of chi squared for many tests by default.
-
-    Returns
-    -------
-    tuple of float
-
-    Notes
-    -----
     .. math:: n \ln\frac{S(p)}{S(\hat p)} \le 3.841
 
     with the sum of squares S, minimised over the other parameters, of n tests with Gaussian errors of unknown variance.
-    [1]_
 
-    References
-    ----------
-    .. [1] D. J. Venzon and S. H. Moolgavkar, Appl. Stat. 37, 87 (1988). doi:10.2307/2347496
+
+    Source: D. J. Venzon and S. H. Moolgavkar, Appl. Stat. 37, 87 (1988). doi:10.2307/2347496
     """
     variant, best, selected = fit.variant, fit.values[index], select_tests(fit.sets, tests)
     parameter = variant.parameters[index]
@@ -134,13 +101,13 @@ def profile_likelihood_interval(
 
 
 def root_mean_square(residuals: ArrayLike) -> float:
-    """Return the root mean square of residuals; infinite if there are none. []"""
+    """Root mean square of residuals; infinite if there are none. []"""
     squares = np.square(residuals)
     return float(np.sqrt(np.mean(squares))) if squares.size else float("inf")
 
 
 def _initial_guess(variant: ModelVariant, tests: Tests) -> Floats:
-    """Return the best initial values of each group of parameters with the same sets, the common group first."""
+    """Best initial values of each group of parameters with the same sets, the common group first."""
     values = np.array([parameter.default for parameter in variant.parameters])
     for group in sorted({parameter.applicable_sets for parameter in variant.parameters}):
         group_tests = tuple(test for test in tests if not group or test.set_name in group)
@@ -156,7 +123,7 @@ def _initial_guess(variant: ModelVariant, tests: Tests) -> Floats:
 
 
 def _minimise(variant: ModelVariant, tests: Tests, free: list[int], start: Floats) -> Floats:
-    """Return the start with the parameters of some indices fitted by bounded least squares (dogbox)."""
+    """Start with the parameters of some indices fitted by bounded least squares (dogbox)."""
     if not free:
         return start
     parameters = [variant.parameters[index] for index in free]
@@ -182,19 +149,19 @@ def _minimise(variant: ModelVariant, tests: Tests, free: list[int], start: Float
 
 
 def _wrapped(parameter: FreeParameter, value: float) -> float:
-    """Return the value of a parameter, an angle wrapped to minus pi to pi."""
+    """Value of a parameter, an angle wrapped to minus pi to pi."""
     return float((value + np.pi) % (2 * np.pi) - np.pi) if parameter.is_angle else float(value)
 
 
 def _with_values(values: Floats, indices: list[int], replaced: Floats) -> Floats:
-    """Return a copy of an array with some elements replaced."""
+    """Copy of an array with some elements replaced."""
     changed = values.copy()
     changed[indices] = replaced
     return changed
 
 
 def _residuals(variant: ModelVariant, tests: Tests, values: ArrayLike) -> Floats:
-    """Return predicted minus measured friction ratios. []"""
+    """Predicted minus measured friction ratios. []"""
     predicted = variant.predict_all(tests, *np.asarray(values).tolist())
     return np.array(
         [

@@ -49,7 +49,7 @@ class FreeParameter:
     applicable_sets: str = ""
 
     def applies_to(self, sets: str) -> bool:
-        """Return whether the parameter applies to any of the sets of the given letters."""
+        """Whether the parameter applies to any of the sets of the given letters."""
         return not self.applicable_sets or bool(set(self.applicable_sets) & set(sets))
 
     @property
@@ -59,7 +59,7 @@ class FreeParameter:
 
 
 def per_rig(parameters: tuple[FreeParameter, ...], *rigs: str) -> tuple[FreeParameter, ...]:
-    """Return a copy of each parameter for each of the named rigs, specific to that rig."""
+    """Copy of each parameter for each of the named rigs, specific to that rig."""
     return tuple(replace(parameter, applicable_sets=RIGS[rig]) for rig in rigs for parameter in parameters)
 
 

@@ -33,12 +33,12 @@ from sonolube.validation.published_tests import FrictionTest
 
 @cache
 def balanced_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> ContactMotion:
-    """Return the harmonic gap motion about the mean gap at which the mean contact force is the load."""
+    """Harmonic gap motion about the mean gap at which the mean contact force is the load."""
     return load_balanced_motion(contact, _harmonic_motion(contact, load, amplitude, frequency))
 
 
 def _normal_stick_slip(test: FrictionTest | ConditionColumns, memory_length: float) -> Floats:
-    """Return the friction ratio by asperity stick-slip without in-plane motion. []"""
+    """Friction ratio by asperity stick-slip without in-plane motion. []"""
     at_rest = separation(test.contact, normal_load=test.normal_load)
     return friction.sine_stick_slip_ratio(
         decay_length=decay_length(test.contact, separation=at_rest),
@@ -52,22 +52,7 @@ def _normal_stick_slip(test: FrictionTest | ConditionColumns, memory_length: flo
 def asperity_stick_slip(
     test: FrictionTest, *, memory_length: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
 ) -> Floats:
-    """Return the friction ratio of a test by asperity stick-slip about the load-balanced mean gap. []
-
-    Parameters
-    ----------
-    test : FrictionTest
-    memory_length : float
-        Sliding distance over which an asperity loses its memory. [m]
-    in_plane_fraction : float
-        Amplitude along the sliding direction over that along the normal. []
-    in_plane_phase : float
-        Lag of the in-plane motion behind the normal one. [rad]
-
-    Returns
-    -------
-    float
-    """
+    """Friction ratio of a test by asperity stick-slip about the load-balanced mean gap. []"""
     if in_plane_fraction == 0:
         return _normal_stick_slip(test, memory_length)
     model = friction.AsperityStickSlip(
@@ -77,14 +62,14 @@ def asperity_stick_slip(
 
 
 def _default_stick_slip(test: FrictionTest) -> Floats:
-    """Return the friction ratio of a test by asperity stick-slip with the package's own memory length. []"""
+    """Friction ratio of a test by asperity stick-slip with the package's own memory length. []"""
     return asperity_stick_slip(test, memory_length=friction.EMPIRICAL_MEMORY_LENGTH)
 
 
 def _stick_slip_with_decay_constant(
     test: FrictionTest | ConditionColumns, memory_length: float, decay_constant: float
 ) -> Floats:
-    """Return the friction ratio by asperity stick-slip with a decay length of R_q over a fitted constant. []"""
+    """Friction ratio by asperity stick-slip with a decay length of R_q over a fitted constant. []"""
     return friction.sine_stick_slip_ratio(
         decay_length=test.contact.height_scale / decay_constant,
         vibration_amplitude=test.vibration_amplitude,
@@ -95,7 +80,7 @@ def _stick_slip_with_decay_constant(
 
 
 def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> Floats:
-    """Return the friction ratio of a test by asperity stick-slip with the memory length of Mindlin. []"""
+    """Friction ratio of a test by asperity stick-slip with the memory length of Mindlin. []"""
     length = friction.mindlin_memory_length(
         test.contact,
         friction_coefficient=friction_coefficient_factor * test.friction_coefficient,
@@ -105,24 +90,24 @@ def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 
 
 
 def _full_period(test: FrictionTest) -> float:
-    """Return the friction ratio by the cube over the full period, D 3.46 to 3.48. []"""
+    """Friction ratio by the cube over the full period, D 3.46 to 3.48. []"""
     return float(friction.Dong2015FullPeriod().ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
 
 
 def _half_period(test: FrictionTest) -> float:
-    """Return the friction ratio by the cube over the separating half period, D 3.15. []"""
+    """Friction ratio by the cube over the separating half period, D 3.15. []"""
     return float(friction.Dong2015HalfPeriod().ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
 
 
 def _load_balanced(test: FrictionTest, nominal_area_factor: float = 1.0) -> float:
-    """Return the friction ratio by the cube over the full period about the load-balanced mean gap. []"""
+    """Friction ratio by the cube over the full period about the load-balanced mean gap. []"""
     contact = replace(test.contact, nominal_area=nominal_area_factor * test.contact.nominal_area)
     motion = _harmonic_motion(contact, test.normal_load, test.vibration_amplitude, test.frequency)
     return float(friction.Dong2015LoadBalanced().ratio(contact, motion, sliding_speed=test.sliding_speed))
 
 
 def _kinematic(test: FrictionTest | ConditionColumns, amplitude_fraction: float = 1.0) -> Floats:
-    """Return the friction ratio by the direction of the relative velocity, D 3.46 in closed form. []"""
+    """Friction ratio by the direction of the relative velocity, D 3.46 in closed form. []"""
     peak_velocity = amplitude_fraction * 2 * pi * test.frequency * test.vibration_amplitude
     return friction.transverse_vibration_ratio(sliding_speed=test.sliding_speed, vibration_velocity=peak_velocity)
 
@@ -130,7 +115,7 @@ def _kinematic(test: FrictionTest | ConditionColumns, amplitude_fraction: float 
 def _bristle_with_holder(
     test: FrictionTest, holder_compliance: float = 0.0, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
 ) -> Floats:
-    """Return the friction ratio by a bristle of Mindlin's stiffness on a rigid or compliant holder. []"""
+    """Friction ratio by a bristle of Mindlin's stiffness on a rigid or compliant holder. []"""
     holder = friction.Holder(holder_stiffness=1 / holder_compliance) if holder_compliance > 0 else friction.Holder()
     model = friction.BristleWithHolder(
         **asdict(holder), in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
@@ -142,17 +127,17 @@ def _bristle_with_holder(
 
 @cache
 def _harmonic_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> ContactMotion:
-    """Return the harmonic gap motion about the gap at rest."""
+    """Harmonic gap motion about the gap at rest."""
     return sinusoidal_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
 
 
 def _unbalanced(test: FrictionTest) -> ContactMotion:
-    """Return the harmonic gap motion of a test about the gap at rest."""
+    """Harmonic gap motion of a test about the gap at rest."""
     return _harmonic_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
 
 
 def _balanced(test: FrictionTest) -> ContactMotion:
-    """Return the harmonic gap motion of a test about the load-balanced mean gap."""
+    """Harmonic gap motion of a test about the load-balanced mean gap."""
     return balanced_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
 
 

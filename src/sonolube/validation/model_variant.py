@@ -42,7 +42,7 @@ NORMAL_VIBRATION: Final = ("contact", "normal_load", *SINUSOIDAL_VIBRATION)
 NORMAL_VIBRATION_AND_FRICTION: Final = (*NORMAL_VIBRATION, "friction_coefficient")
 """The same with the friction coefficient without vibration."""
 
-_FEWEST_TOGETHER: Final = 8  # conditions, from which arrays are worth their making
+_MIN_TOGETHER: Final = 8  # conditions, from which arrays are worth their making
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,37 +103,26 @@ class ModelVariant:
         return 0 if self.seen is None else len(self.seen.refitted.parameters) - len(self.parameters)
 
     def inapplicability(self, conditions: Conditions) -> str | None:
-        """Return the required inputs that the conditions lack, as a sentence; None if they lack none."""
+        """Required inputs that the conditions lack, as a sentence; None if they lack none."""
         missing = [REQUIRED_INPUTS[name] for name in self.required_inputs if getattr(conditions, name, None) is None]
         return f"needs {', '.join(missing)}: not known here" if missing else None
 
     def predict(self, conditions: Conditions, *values: float) -> float | None:
-        """Return the friction ratio for values of the free parameters; None outside the range of the model. []"""
+        """Friction ratio for values of the free parameters; None outside the range of the model. []"""
         result = self._evaluate(conditions, values)
         return None if isinstance(result, str) else result
 
     def predict_all(self, conditions: Sequence[Conditions], *values: float) -> list[float | None]:
-        """Return what `predict` returns for each of several conditions, computed at once where the model can."""
+        """What `predict` returns for each of several conditions, computed at once where the model can."""
         return self._together(conditions, values) or [self.predict(one, *values) for one in conditions]
 
     def range_violation(self, conditions: Conditions, *values: float) -> str | None:
-        """Return the reason why the conditions are outside the range of the model; None inside it."""
+        """Reason why the conditions are outside the range of the model; None inside it."""
         result = self._evaluate(conditions, values)
         return result if isinstance(result, str) else None
 
     def range_objection(self, conditions: Conditions, ratio: float | None) -> str | None:
-        """Return why a ratio of the formula is beyond what the friction model can mean; None where it is not.
-
-        Parameters
-        ----------
-        conditions : Conditions
-        ratio : float or None
-            Friction ratio as `predict` returns it. []
-
-        Returns
-        -------
-        str or None
-        """
+        """Why a ratio of the formula is beyond what the friction model can mean; None where it is not."""
         if self.friction_model is None or ratio is None:
             return None
         contact, load, amplitude = (
@@ -145,8 +134,8 @@ class ModelVariant:
         return str(found.reason) or None
 
     def _together(self, conditions: Sequence[Conditions], values: tuple[float, ...]) -> list[float | None] | None:
-        """Return the friction ratios of conditions at once; None where they have to be computed one by one."""
-        if not self.takes_columns or len(conditions) < _FEWEST_TOGETHER:
+        """Friction ratios of conditions at once; None where they have to be computed one by one."""
+        if not self.takes_columns or len(conditions) < _MIN_TOGETHER:
             return None
         columns = condition_columns(conditions)
         if columns is None or any(parameter.applicable_sets for parameter in self.parameters):
@@ -158,7 +147,7 @@ class ModelVariant:
         return list(np.broadcast_to(ratio, len(conditions)).tolist())
 
     def _evaluate(self, conditions: Conditions, values: tuple[float, ...]) -> float | str:
-        """Return the friction ratio, or the reason why the conditions are outside the range of the model."""
+        """Friction ratio, or the reason why the conditions are outside the range of the model."""
         applicable = tuple(
             (parameter.name, value)
             for parameter, value in zip(self.parameters, values, strict=True)
@@ -171,7 +160,7 @@ class ModelVariant:
 def _cached_ratio(
     ratio: Callable[..., SupportsFloat], conditions: Conditions, values: tuple[tuple[str, float], ...]
 ) -> float | str:
-    """Return a friction ratio, or the reason why the conditions are outside the range of the model."""
+    """Friction ratio, or the reason why the conditions are outside the range of the model."""
     try:
         return float(ratio(conditions, **dict(values)))
     except OutsideRange as reason:

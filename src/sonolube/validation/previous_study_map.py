@@ -62,7 +62,7 @@ _Placed: TypeAlias = tuple[StudyPoint, tuple[float, float]]  # with its place on
 
 
 def study_points() -> tuple[StudyPoint, ...]:
-    """Return the previous studies with a quoted friction reduction, then some tests of D."""
+    """Previous studies with a quoted friction reduction, then some tests of D."""
     previous = [_previous_study(study) for study in previous_studies() if study.number("friction_reduction")]
     tests = [
         StudyPoint(
@@ -80,19 +80,7 @@ def study_points() -> tuple[StudyPoint, ...]:
 
 
 def study_chart(added: StudyPoint | None = None, *, others: tuple[StudyPoint, ...] = ()) -> Chart:
-    """Map of friction reductions, with an additional point and further studies if given.
-
-    Parameters
-    ----------
-    added : StudyPoint or None
-        Point of known speed and pressure.
-    others : tuple of StudyPoint
-        Of a table of the user's own, drawn within a ring.
-
-    Returns
-    -------
-    Chart
-    """
+    """Map of friction reductions, with an additional point and further studies if given."""
     points = (*study_points(), *others)
     placed = [
         (point, (point.sliding_speed[1], point.nominal_pressure or (_OWN_UNKNOWN if point in others else _UNKNOWN)))
@@ -160,7 +148,7 @@ def _shaded(placed: list[_Placed], label: str, marker: int, *, size: float = 2.2
 
 
 def _previous_study(study: PreviousStudy) -> StudyPoint:
-    """Return the point of a study with a quoted friction reduction."""
+    """Point of a study with a quoted friction reduction."""
     reduction, speed, pressure = (
         study.number(quantity) for quantity in ("friction_reduction", "sliding_speed", "nominal_pressure")
     )
@@ -176,5 +164,5 @@ def _previous_study(study: PreviousStudy) -> StudyPoint:
 
 
 def speed_range(speed: PrintedNumber) -> tuple[float, float]:
-    """Return the limits of a printed range, which coincide for a single number. [m/s]"""
+    """Limits of a printed range, which coincide for a single number. [m/s]"""
     return (speed.low, speed.high) if "-" in speed.text else (speed.value, speed.value)

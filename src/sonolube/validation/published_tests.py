@@ -41,7 +41,7 @@ class Conditions(Protocol):
     """Operating conditions of a test or a rig, as far as a model requires them."""
 
     def __hash__(self) -> int:
-        """Return a hash by value, so that each prediction is computed once."""
+        """Hash by value, so that each prediction is computed once."""
 
     @property
     def label(self) -> str:
@@ -146,34 +146,15 @@ Tests = tuple[MeasuredConditions, ...]
 
 
 def friction_tests(sets: str = "".join(NORMAL_VIBRATION_SETS)) -> tuple[FrictionTest, ...]:
-    """Return the tests with vibration along the normal in order, A-1 to H-2.
-
-    Parameters
-    ----------
-    sets : str
-        Letters of the sets; all where absent.
-
-    Returns
-    -------
-    tuple of FrictionTest
-    """
+    """Tests with vibration along the normal in order, A-1 to H-2."""
     return tuple(test for test in _normal_vibration_tests() if test.set_name in sets)
 
 
 def with_printed_roughness(tests: Iterable[FrictionTest]) -> tuple[FrictionTest, ...]:
-    """Return tests with R_q as printed for the worn surface wherever it is printed: in sets B, C and G.
+    """Tests with R_q as printed for the worn surface wherever it is printed: in sets B, C and G.
 
-    Parameters
-    ----------
-    tests : iterable of FrictionTest
+    The other tests are unchanged.
 
-    Returns
-    -------
-    tuple of FrictionTest
-        The other tests are unchanged.
-
-    Notes
-    -----
     Where the kind of a roughness is not named it is read as R_a. That of the counterface is not printed.
     """
     return tuple(_with_rms_height(test, printed_rms_height(test.label)) for test in tests)
@@ -181,10 +162,8 @@ def with_printed_roughness(tests: Iterable[FrictionTest]) -> tuple[FrictionTest,
 
 @cache
 def in_plane_tests() -> tuple[InPlaneTest, ...]:
-    """Return the tests with vibration in the plane of contact.
+    """Tests with vibration in the plane of contact.
 
-    Notes
-    -----
     That of Littmann et al. is at the sliding speed at which the reduction vanishes; the speed of their largest
     reduction is not printed.
     """
@@ -211,12 +190,12 @@ def in_plane_tests() -> tuple[InPlaneTest, ...]:
 
 @cache
 def _normal_vibration_tests() -> tuple[FrictionTest, ...]:
-    """Return all tests with vibration along the normal."""
+    """All tests with vibration along the normal."""
     return (*_tribometer(), *_power_map(), *_material_pairs(), *_welder(), *_flextensional())
 
 
 def _tribometer() -> list[FrictionTest]:
-    """Return set A; rows of Table 2.3 alternate between friction without and with vibration."""
+    """Set A; rows of Table 2.3 alternate between friction without and with vibration."""
     return [
         _tribometer_test(
             f"A-{number}",
@@ -230,7 +209,7 @@ def _tribometer() -> list[FrictionTest]:
 
 
 def _power_map() -> list[FrictionTest]:
-    """Return set B: rows 2 to 6 of Table 4.2 at the amplitudes of rows 11 to 15 of Table 4.1."""
+    """Set B: rows 2 to 6 of Table 4.2 at the amplitudes of rows 11 to 15 of Table 4.1."""
     load, off = si_value("4.1.2-normal-load"), "table-4.2-friction_force-1"
     return [
         FrictionTest(
@@ -251,7 +230,7 @@ def _power_map() -> list[FrictionTest]:
 
 
 def _material_pairs() -> list[FrictionTest]:
-    """Return sets C to F; for titanium only reductions are printed, for M50 on M50 one force twice (erratum E11)."""
+    """Sets C to F; for titanium only reductions are printed, for M50 on M50 one force twice (erratum E11)."""
     steel_on_titanium, ceramic = (
         _tribometer_test(
             label,
@@ -299,7 +278,7 @@ def _material_pairs() -> list[FrictionTest]:
 
 
 def _welder() -> list[FrictionTest]:
-    """Return set G: mean of the ratios of the lower and of the upper forces; the disc is faster during vibration."""
+    """Set G: mean of the ratios of the lower and of the upper forces; the disc is faster during vibration."""
     tests = []
     for tip in (1, 2):
         off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
@@ -325,7 +304,7 @@ def _welder() -> list[FrictionTest]:
 
 
 def _flextensional() -> list[FrictionTest]:
-    """Return set H; the amplitude is half the quasi-static stroke at the drive voltage, without gain at resonance."""
+    """Set H; the amplitude is half the quasi-static stroke at the drive voltage, without gain at resonance."""
     stroke = si_value("2.2.2-stroke") / si_value("2.2.2-voltage") * si_value("2.2.5-voltage-peak-to-peak")
     slow = FrictionTest(
         label="H-1",
@@ -345,7 +324,7 @@ def _flextensional() -> list[FrictionTest]:
 
 
 def _tribometer_test(label: str, *, speed: str, off: str, on: str, published: str) -> FrictionTest:
-    """Return a test on the modified tribometer of D 2.3 from the ids of its published numbers."""
+    """Test on the modified tribometer of D 2.3 from the ids of its published numbers."""
     load = si_value("table-2.2-normal_load-1")
     return FrictionTest(
         label=label,
@@ -363,13 +342,13 @@ def _tribometer_test(label: str, *, speed: str, off: str, on: str, published: st
 
 
 def _ratio_uncertainty(off: str, on: str) -> float:
-    """Return the uncertainty of a ratio of published forces from their scatter, taken as independent. []"""
+    """Uncertainty of a ratio of published forces from their scatter, taken as independent. []"""
     relative = [(n.high - n.low) / 2 / n.value for n in (published_number(off), published_number(on))]
     return si_value(on) / si_value(off) * hypot(*relative)
 
 
 def _with_rms_height(test: FrictionTest, rms_height: float | None) -> FrictionTest:
-    """Return a test with another R_q; unchanged where there is none."""
+    """Test with another R_q; unchanged where there is none."""
     if rms_height is None:
         return test
     roughness = replace(test.contact.roughness, rms_height=rms_height)

@@ -15,7 +15,7 @@ from sonolube.validation.model_variant import ModelVariant
 from sonolube.validation.run_conditions import RunConditions
 
 _SMALLEST_RMS: Final = 1e-6  # of ratios that a model reproduces exactly
-_MOST_PROFILED: Final = 2  # parameters of a variant whose intervals are computed, as in a comparison
+_MAX_PROFILED: Final = 2  # parameters of a variant whose intervals are computed, as in a comparison
 _SMALLEST_ERROR: Final = 1e-3  # of a friction ratio, below which no rig tells models apart
 _LEVEL: Final = 0.05  # of the test of equal errors
 
@@ -70,16 +70,9 @@ class RankedModel:
 
 
 def own_rig_variants(models: Iterable[ModelVariant]) -> tuple[ModelVariant, ...]:
-    """Return model variants whose parameters of single published rigs are those of one rig, whose runs none has seen.
+    """Model variants whose parameters of single published rigs are those of one rig, whose runs none has seen.
 
-    Parameters
-    ----------
-    models : iterable of ModelVariant
-
-    Returns
-    -------
-    tuple of ModelVariant
-        Each parameter once, and each combination of model and parameters once, by its first name.
+    Each parameter once, and each combination of model and parameters once, by its first name.
     """
     distinct: dict[object, ModelVariant] = {}
     for model in models:
@@ -90,18 +83,7 @@ def own_rig_variants(models: Iterable[ModelVariant]) -> tuple[ModelVariant, ...]
 
 
 def ranked_model(variant: ModelVariant, conditions: tuple[RunConditions, ...]) -> RankedModel:
-    """Return a variant fitted to all conditions, with each predicted by a fit to the others.
-
-    Parameters
-    ----------
-    variant : ModelVariant
-        Whose required inputs all conditions have.
-    conditions : tuple of RunConditions
-
-    Returns
-    -------
-    RankedModel
-    """
+    """Variant fitted to all conditions, with each predicted by a fit to the others."""
     sets = "".join(dict.fromkeys(one.set_name for one in conditions))
     fit = replace(fit_variant(variant, sets, tests=conditions), sets=sets)
     left_out = dict(zip(sets, leave_one_set_out_fits(variant, sets, tests=conditions), strict=True))
@@ -109,7 +91,7 @@ def ranked_model(variant: ModelVariant, conditions: tuple[RunConditions, ...]) -
     unseen = tuple(left_out[one.set_name].predict(one) for one in conditions)
     rms = root_mean_square(_errors(fitted, conditions))
     within = None not in fitted
-    profiled = within and len(fit.values) <= _MOST_PROFILED
+    profiled = within and len(fit.values) <= _MAX_PROFILED
     return RankedModel(
         fit=fit,
         parameters=_parameters(fit, tuple(left_out.values()), conditions, with_interval=profiled),
@@ -128,7 +110,7 @@ def ranked_model(variant: ModelVariant, conditions: tuple[RunConditions, ...]) -
 def _parameters(
     fit: Fit, left_out: tuple[Fit, ...], conditions: tuple[RunConditions, ...], *, with_interval: bool
 ) -> tuple[FittedParameter, ...]:
-    """Return the fitted parameters with their intervals."""
+    """Fitted parameters with their intervals."""
     count, free = len(conditions), len(conditions) - len(fit.values)
     quantile = count * float(np.log1p(student.ppf(0.975, free) ** 2 / free)) if free > 0 else None
     return tuple(
@@ -148,24 +130,13 @@ def _parameters(
 
 
 def _errors(predicted: tuple[float | None, ...], conditions: tuple[RunConditions, ...]) -> Floats:
-    """Return predicted minus measured ratios of the conditions within the range."""
+    """Predicted minus measured ratios of the conditions within the range."""
     pairs = zip(predicted, conditions, strict=True)
     return np.array([ratio - one.friction_ratio for ratio, one in pairs if ratio is not None])
 
 
 def with_probabilities(models: list[RankedModel], conditions: tuple[RunConditions, ...]) -> tuple[RankedModel, ...]:
-    """Return ranked models with the probabilities that they predict as the first does.
-
-    Parameters
-    ----------
-    models : list of RankedModel
-        By rank.
-    conditions : tuple of RunConditions
-
-    Returns
-    -------
-    tuple of RankedModel
-    """
+    """Ranked models with the probabilities that they predict as the first does."""
     if not models:
         return ()
     best, count = models[0], len(conditions)
@@ -181,7 +152,7 @@ def with_probabilities(models: list[RankedModel], conditions: tuple[RunCondition
 
 
 def _probability_of_equal_errors(first: Floats, second: Floats) -> float:
-    """Return the two-sided probability of paired errors so unlike if both had one variance about zero."""
+    """Two-sided probability of paired errors so unlike if both had one variance about zero."""
     sums, differences = first + second, second - first
     norms = float(np.sum(sums**2) * np.sum(differences**2))
     if norms <= _SMALLEST_ERROR**8:

@@ -67,21 +67,7 @@ class VibratedRig:
 
 
 def vibrated_rig(rig: Rig) -> VibratedRig:
-    """Return the conditions of a rig at its operating point.
-
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    VibratedRig
-
-    Raises
-    ------
-    InvalidInput
-        If the rig does not vibrate or does not slide.
-    """
+    """Conditions of a rig at its operating point."""
     amplitude = steady_vibration(rig).vibration_amplitude
     for name, value in (("vibration_amplitude", amplitude), ("sliding_speed", rig.sliding_speed)):
         if value == 0:

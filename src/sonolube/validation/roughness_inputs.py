@@ -34,21 +34,11 @@ _COUNTERFACE: Final = log(2) / 4  # half the way from one rough surface to two a
 
 
 def roughness_spread(label: str) -> float:
-    r"""Return the standard deviation of ln R_q that the provenance of a test's roughness justifies. []
+    r"""Standard deviation of ln R_q that the provenance of a test's roughness justifies. []
 
-    Parameters
-    ----------
-    label : str
-        Set and number of the test, such as "B-1".
+    0.21 for set B; 0.69, a factor of two, where R_q is that of comparison standards; where a roughness is printed that
+    the record does not have, the distance to it: 0.98 for C, 0.86 and 1.93 for the tips of G.
 
-    Returns
-    -------
-    float
-        0.21 for set B; 0.69, a factor of two, where R_q is that of comparison standards; where a roughness is printed
-        that the record does not have, the distance to it: 0.98 for C, 0.86 and 1.93 for the tips of G.
-
-    Notes
-    -----
     For set B the deviation adds in quadrature half of the step from R_q to R_a, ln(pi/2)/4 = 0.11, and half of the step
     from a smooth pin to one as rough as the plate, ln(2)/4 = 0.17:
 
@@ -63,23 +53,13 @@ def roughness_spread(label: str) -> float:
 
 
 def printed_rms_height(label: str) -> float | None:
-    """Return R_q as printed for the worn surface of a test, of sets B, C and G; None where none is printed. [m]
-
-    Parameters
-    ----------
-    label : str
-        Set and number of the test.
-
-    Returns
-    -------
-    float or None
-    """
+    """R_q as printed for the worn surface of a test, of sets B, C and G; None where none is printed. [m]"""
     return _printed_rms_heights().get(label)
 
 
 @cache
 def _printed_rms_heights() -> dict[str, float]:
-    """Return R_q as printed for the worn surface of a test, by label. [m]"""
+    """R_q as printed for the worn surface of a test, by label. [m]"""
     plates = dict.fromkeys([f"B-{level}" for level in range(1, 6)], uncoated_plate_contact().roughness.rms_height)
     return plates | {
         "C-1": RMS_OVER_ARITHMETIC_MEAN * si_value("2.5.2-roughness-on"),

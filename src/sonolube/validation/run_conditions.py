@@ -19,10 +19,10 @@ from sonolube.text.units import format_si
 if TYPE_CHECKING:
     import xarray as xr
 
-_MOST_RUNS: Final = 1000
+_MAX_RUNS: Final = 1000
 _SAME: Final = 0.01  # relative difference of settings that count as one
 _FIRST_LETTER: Final = 0x4E00  # of the groups of conditions; no published set has one so high
-_MOST_GROUPS: Final = 12
+_MAX_GROUPS: Final = 12
 _IN_PLANE: Final = 1e-6  # cosine of an angle that counts as across the sliding
 _SETTINGS: Final = ("vibration_amplitude", "vibration_velocity", "vibration_direction", "frequency", "sliding_speed")
 
@@ -102,19 +102,7 @@ class RunConditions:
         return self.vibration_velocity if self.vibration_amplitude is None else self.vibration_amplitude
 
     def at(self, *, strength: float | None = None, sliding_speed: float | None = None) -> "RunConditions":
-        """Return these conditions at another strength of the vibration or sliding speed.
-
-        Parameters
-        ----------
-        strength : float, optional
-            As the property.
-        sliding_speed : float, optional
-            Sliding speed. [m/s]
-
-        Returns
-        -------
-        RunConditions
-        """
+        """These conditions at another strength of the vibration or sliding speed."""
         other = self if sliding_speed is None else replace(self, sliding_speed=sliding_speed)
         if strength is None or self.strength is None:
             return other
@@ -154,29 +142,13 @@ class RunsTable:
 
 
 def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
-    """Return own runs as conditions of model variants, repeats averaged.
+    """Own runs as conditions of model variants, repeats averaged.
 
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`, as `sonolube.measurement.measured_runs.read_runs` returns them.
-    rig : Rig, optional
-        Gives contact, and where the runs do not, load, speed, frequency, friction without vibration and the amplitude
-        of a voltage.
-
-    Returns
-    -------
-    RunsTable
-        Conditions within 1 % of each other are one.
-
-    Raises
-    ------
-    InvalidInput
-        If a ratio is beyond what vibration does, a setting is not positive, or a voltage has no rig to scale it.
+    Conditions within 1 % of each other are one.
     """
     title = str(runs.attrs.get("title", "runs")).removesuffix(", in %")
-    if runs.sizes["run"] > _MOST_RUNS:
-        raise InvalidInput(f"{title}: {runs.sizes['run']} runs; at most {_MOST_RUNS} are fitted: average repeats")
+    if runs.sizes["run"] > _MAX_RUNS:
+        raise InvalidInput(f"{title}: {runs.sizes['run']} runs; at most {_MAX_RUNS} are fitted: average repeats")
     ratio, copies = checked_ratios(runs, title=title), copies_caveat(runs)
     inputs = _inputs(runs, rig)
     for name in ("vibration_amplitude", "vibration_velocity", "frequency", "sliding_speed", "normal_load"):
@@ -199,7 +171,7 @@ def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
             )
         )
     lettered = tuple(
-        replace(one, set_name=chr(_FIRST_LETTER + place % _MOST_GROUPS), label=one.settings or f"condition {place + 1}")
+        replace(one, set_name=chr(_FIRST_LETTER + place % _MAX_GROUPS), label=one.settings or f"condition {place + 1}")
         for place, one in enumerate(conditions)
     )
     return RunsTable(

@@ -43,24 +43,15 @@ class RunsPrediction:
 
 
 def predict_runs(fits: tuple[ComparedFit, ...], table: RunsTable) -> tuple[RunsPrediction, ...]:
-    """Return the friction ratios of own conditions by every variant fitted to published tests.
+    """Friction ratios of own conditions by every variant fitted to published tests.
 
-    Parameters
-    ----------
-    fits : tuple of ComparedFit
-        Parameters of single published rigs keep their defaults.
-    table : RunsTable
-
-    Returns
-    -------
-    tuple of RunsPrediction
-        Those that apply to most conditions first, by their error.
+    Those that apply to most conditions first, by their error.
     """
     return tuple(sorted((_prediction(one, table) for one in fits), key=_rank))
 
 
 def _prediction(one: ComparedFit, table: RunsTable) -> RunsPrediction:
-    """Return the friction ratios of own conditions by one variant."""
+    """Friction ratios of own conditions by one variant."""
     missing = next(filter(None, map(one.model.inapplicability, table.conditions)), None)
     ratios = [
         None if one.model.inapplicability(condition) else one.fit.predict(condition) for condition in table.conditions
@@ -81,5 +72,5 @@ def _prediction(one: ComparedFit, table: RunsTable) -> RunsPrediction:
 
 
 def _rank(one: RunsPrediction) -> tuple[int, float]:
-    """Return the sort key of a prediction: conditions that it does not reach, then its error."""
+    """Sort key of a prediction: conditions that it does not reach, then its error."""
     return len(one.ratios) - one.reached, float("inf") if one.rms is None else one.rms

@@ -23,41 +23,21 @@ _LABELS: Final = {
 }
 _LOWEST, _HIGHEST = -0.05, 1.3  # ratios drawn
 _RATIO: Final = "Friction with over without vibration"
-_MOST_PREDICTIONS: Final = 6
+_MAX_PREDICTIONS: Final = 6
 _NONE: Final = np.array([])
 
 
 def runs_fit_chart(result: RunsFit) -> Chart:
-    """Own runs over amplitude or speed with the best models as curves, and the unseen errors of all models.
-
-    Parameters
-    ----------
-    result : RunsFit
-
-    Returns
-    -------
-    Chart
-    """
+    """Own runs over amplitude or speed with the best models as curves, and the unseen errors of all models."""
     panels = (_runs(result.table, result.models[:_CURVES]), _ranking(result))
     return Chart(panels=panels, size=(8.4, 4.2), columns=2, widths=(1.25, 1), legend="bottom")
 
 
 def runs_prediction_chart(predictions: tuple[RunsPrediction, ...], table: RunsTable) -> Chart:
-    """Predicted against measured ratios of own runs, by models that published tests fitted.
-
-    Parameters
-    ----------
-    predictions : tuple of RunsPrediction
-        By rank; the first few are drawn.
-    table : RunsTable
-
-    Returns
-    -------
-    Chart
-    """
+    """Predicted against measured ratios of own runs, by models that published tests fitted."""
     line = np.array([0.0, _HIGHEST])
     parts: list[Part] = [Line(x=line, y=line, colour="0.5", weight=0.6)]
-    for index, one in enumerate([one for one in predictions if one.rms is not None][:_MOST_PREDICTIONS]):
+    for index, one in enumerate([one for one in predictions if one.rms is not None][:_MAX_PREDICTIONS]):
         reached = [(each, ratio) for each, ratio in zip(table.conditions, one.ratios, strict=True) if ratio is not None]
         points = Points(
             x=np.array([condition.friction_ratio for condition, _ in reached]),
@@ -141,7 +121,7 @@ def _ranking(result: RunsFit) -> Panel:
 
 
 def _abscissa(conditions: tuple[RunConditions, ...]) -> tuple[str, str]:
-    """Return which of strength and speed varies over more values, and the other."""
+    """Which of strength and speed varies over more values, and the other."""
     counts = {
         name: len({round(float(np.log(value)), 2) for one in conditions if (value := getattr(one, name))})
         for name in ("strength", "sliding_speed")
@@ -152,13 +132,13 @@ def _abscissa(conditions: tuple[RunConditions, ...]) -> tuple[str, str]:
 
 
 def _label(name: str, conditions: tuple[RunConditions, ...]) -> tuple[str, float, str]:
-    """Return label, scale and unit of an axis."""
+    """Label, scale and unit of an axis."""
     in_plane = name == "strength" and conditions[0].vibration_amplitude is None
     return _LABELS["velocity" if in_plane else name]
 
 
 def _series(conditions: tuple[RunConditions, ...], other: str) -> list[tuple[float | None, list[RunConditions]]]:
-    """Return conditions by the value of what does not run along the abscissa, the largest series first."""
+    """Conditions by the value of what does not run along the abscissa, the largest series first."""
     groups: dict[float | None, list[RunConditions]] = {}
     for one in conditions:
         value = getattr(one, other)
@@ -167,7 +147,7 @@ def _series(conditions: tuple[RunConditions, ...], other: str) -> list[tuple[flo
 
 
 def _places(conditions: tuple[RunConditions, ...], name: str) -> Floats:
-    """Return the abscissae of a curve, over those of the runs."""
+    """Abscissae of a curve, over those of the runs."""
     values = [value for one in conditions if (value := getattr(one, name)) is not None]
     if not values:
         return np.array([np.nan])
@@ -176,7 +156,7 @@ def _places(conditions: tuple[RunConditions, ...], name: str) -> Floats:
 
 
 def _curve(model: RankedModel, condition: RunConditions, name: str, places: Floats) -> Floats:
-    """Return the ratios of a fitted model over the abscissa; NaN outside its range."""
+    """Ratios of a fitted model over the abscissa; NaN outside its range."""
     others = [condition.at(**{name: float(place)}) for place in places if np.isfinite(place)]
     ratios = [np.nan if (ratio := model.fit.predict(one)) is None else ratio for one in others]
     return np.array(ratios or [np.nan], dtype=np.float64)

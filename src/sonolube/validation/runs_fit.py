@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from sonolube.rig import Rig
 
-_FEWEST_CONDITIONS = 5  # from which a ranking counts as decided
+_MIN_CONDITIONS = 5  # from which a ranking counts as decided
 Advance = Callable[[str, int, int], None]
 
 
@@ -75,7 +75,7 @@ class RunsFit:
     def _doubts(self) -> Iterator[str]:
         """Yield each reason for which the first model does not win."""
         best, count = self.models[0], len(self.table.conditions)
-        if count < _FEWEST_CONDITIONS:
+        if count < _MIN_CONDITIONS:
             yield f"{count} conditions are too few to rank models; {best.name} leads"
         elif self.tied:
             yield f"{count} conditions do not tell {best.name} from {_listed([one.name for one in self.tied])}"
@@ -95,32 +95,10 @@ def fit_runs(
     models: Iterable[ModelVariant] = COMPARED_MODELS,
     advance: Advance = lambda name, done, total: None,
 ) -> RunsFit:
-    r"""Return own measured runs against every applicable model variant, ranked by what each predicts unseen.
+    r"""Own measured runs against every applicable model variant, ranked by what each predicts unseen.
 
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`, as `sonolube.measurement.measured_runs.read_runs` returns them.
-    rig : Rig, optional
-        Gives contact, and the settings that the runs do not state.
-    models : iterable of ModelVariant
-        Their parameters of single published rigs become those of this rig.
-    advance : callable
-        Called after each variant with its name, the number done and their total.
-
-    Returns
-    -------
-    RunsFit
-
-    Raises
-    ------
-    InvalidInput
-        If there is only one condition, or the runs cannot be those of a rig.
-
-    Notes
-    -----
     Each condition counts once, as the mean of its repeats. Conditions are left out one at a time, in twelve groups
-    where there are more. A model is tied with the first where the test of Morgan, Granger and Newbold [1]_ does not
+    where there are more. A model is tied with the first where the test of Morgan, Granger and Newbold does not
     reject equal unseen errors at 5 %: with the sums x and differences z of the paired errors,
 
     .. math:: r = \frac{\sum x z}{\sqrt{\sum x^2 \sum z^2}}, \qquad t = \frac{r}{\sqrt{(1 - r^2)/(n - 1)}}
@@ -129,9 +107,7 @@ def fit_runs(
     the profile likelihood, with the quantile that is exact for a linear model: n ln(1 + t^2/(n - k)) for n conditions
     and k parameters.
 
-    References
-    ----------
-    .. [1] F. X. Diebold and R. S. Mariano, J. Bus. Econ. Stat. 13, 253 (1995). doi:10.2307/1392185
+    Source: F. X. Diebold and R. S. Mariano, J. Bus. Econ. Stat. 13, 253 (1995). doi:10.2307/1392185
     """
     table = run_conditions(runs, rig)
     count = len(table.conditions)
@@ -164,7 +140,7 @@ def fit_runs(
 
 
 def _inapplicability(variant: ModelVariant, table: RunsTable) -> str | None:
-    """Return why a variant does not apply to the runs, with what to add; None where it does."""
+    """Why a variant does not apply to the runs, with what to add; None where it does."""
     lacking = {name for one in table.conditions for name in variant.required_inputs if getattr(one, name, None) is None}
     if lacking:
         return "needs " + "; ".join(
@@ -177,7 +153,7 @@ def _inapplicability(variant: ModelVariant, table: RunsTable) -> str | None:
 
 
 def _listed(names: list[str]) -> str:
-    """Return names in a sentence, at most four of them."""
+    """Names in a sentence, at most four of them."""
     if len(names) > 4:
         return f"{', '.join(names[:3])} and {len(names) - 3} others"
     return ", ".join(names[:-1]) + (" and " if len(names) > 1 else "") + names[-1]

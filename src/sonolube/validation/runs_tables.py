@@ -16,16 +16,9 @@ _SETTINGS = ("vibration_amplitude", "vibration_velocity", "frequency", "sliding_
 
 
 def runs_fit_dataset(result: RunsFit) -> "xr.Dataset":
-    """Return measured, fitted and unseen friction ratios over models and conditions, with errors and parameters.
+    """Measured, fitted and unseen friction ratios over models and conditions, with errors and parameters.
 
-    Parameters
-    ----------
-    result : RunsFit
-
-    Returns
-    -------
-    Dataset
-        Missing values are NaN; `parameter` runs over the names of the parameters of all models.
+    Missing values are NaN; `parameter` runs over the names of the parameters of all models.
     """
     import xarray as xr
 

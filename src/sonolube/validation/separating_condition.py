@@ -46,18 +46,9 @@ class NextCondition:
 def next_conditions(
     models: tuple[RankedModel, ...], conditions: tuple[RunConditions, ...]
 ) -> tuple[NextCondition, ...]:
-    """Return the conditions that separate the leading models most, within the runs and beyond them.
+    """Conditions that separate the leading models most, within the runs and beyond them.
 
-    Parameters
-    ----------
-    models : tuple of RankedModel
-        By rank; those tied with the first lead, else the first few.
-    conditions : tuple of RunConditions
-
-    Returns
-    -------
-    tuple of NextCondition
-        Beyond the runs, by at most a factor of two, only where that separates much better; empty for one model.
+    Beyond the runs, by at most a factor of two, only where that separates much better; empty for one model.
     """
     leaders = models[:1] + tuple(one for one in models[1:] if one.tied)
     leaders = (leaders if len(leaders) > 1 else models)[:_LEADERS]
@@ -71,7 +62,7 @@ def next_conditions(
 def _most_separating(
     models: tuple[RankedModel, ...], conditions: tuple[RunConditions, ...], beyond: float
 ) -> NextCondition | None:
-    """Return the condition of a grid over strength and speed, widened by a factor, that separates two models most."""
+    """Condition of a grid over strength and speed, widened by a factor, that separates two models most."""
     base = conditions[0]
     strengths, speeds = (
         _grid([getattr(one, name) for one in conditions], beyond) for name in ("strength", "sliding_speed")
@@ -97,7 +88,7 @@ def _most_separating(
 
 
 def _grid(values: list[float | None], beyond: float) -> list[float | None]:
-    """Return values from the lowest to the highest of the runs, widened by a factor."""
+    """Values from the lowest to the highest of the runs, widened by a factor."""
     known = [value for value in values if value is not None]
     if not known:
         return [None]

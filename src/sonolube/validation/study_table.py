@@ -40,12 +40,9 @@ STUDY_COLUMNS: Final = tuple(column for name in _NAMES for column in RUN_COLUMNS
 
 
 def study_table() -> str:
-    """Return the points of the package as CSV in `STUDY_COLUMNS`: earlier studies, then every test of D.
+    """Points of the package as CSV in `STUDY_COLUMNS`: earlier studies, then every test of D.
 
-    Returns
-    -------
-    str
-        A row for each study with a quoted friction reduction; a quantity that is not printed has an empty cell.
+    A row for each study with a quoted friction reduction; a quantity that is not printed has an empty cell.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -56,50 +53,12 @@ def study_table() -> str:
 
 
 def read_studies(path: Path) -> tuple[tuple[StudyPoint, ...], tuple[str, ...]]:
-    """Return the points of a user's table of studies that are not among those of the package, and caveats.
-
-    Parameters
-    ----------
-    path : Path
-        CSV in columns of `STUDY_COLUMNS`, among them `study`, `source` and a friction.
-
-    Returns
-    -------
-    tuple of StudyPoint
-    tuple of str
-
-    Raises
-    ------
-    InvalidInput
-        If the table cannot be read, or a point names no study or no source.
-    UnknownName
-        If a direction of vibration is none of those of the map.
-    """
+    """Points of a user's table of studies that are not among those of the package, and caveats."""
     return studies_of_runs(read_runs(path), title=str(path))
 
 
 def studies_of_runs(runs: "xr.Dataset", *, title: str) -> tuple[tuple[StudyPoint, ...], tuple[str, ...]]:
-    """Return the points of measured runs that are not among those of the package, and caveats.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        As `sonolube.measurement.measured_runs.read_runs` returns them, with `study`, `source` and a friction.
-    title : str
-        Of the runs, for errors.
-
-    Returns
-    -------
-    tuple of StudyPoint
-    tuple of str
-
-    Raises
-    ------
-    InvalidInput
-        If a point names no study or no source.
-    UnknownName
-        If a direction of vibration is none of those of the map.
-    """
+    """Points of measured runs that are not among those of the package, and caveats."""
     texts = {name: _texts(runs[name].to_numpy() if name in runs else None, runs.sizes["run"]) for name in _NAMES[:2]}
     sources = _texts(runs["source"].to_numpy() if "source" in runs else None, runs.sizes["run"])
     for name, cells in (("study", texts["study"]), ("source", sources)):
@@ -131,25 +90,25 @@ def studies_of_runs(runs: "xr.Dataset", *, title: str) -> tuple[tuple[StudyPoint
 
 
 def _texts(cells: "np.ndarray | None", count: int) -> list[str]:
-    """Return the texts of a column; empty ones where there is none."""
+    """Texts of a column; empty ones where there is none."""
     return [""] * count if cells is None else [str(cell) for cell in cells]
 
 
 def _rows() -> list[Row]:
-    """Return the rows of earlier studies with a friction reduction, then those of the tests of D."""
+    """Rows of earlier studies with a friction reduction, then those of the tests of D."""
     studies = (study for study in previous_studies() if study.number("friction_reduction"))
     return [*map(_of_study, studies), *map(_of_test, friction_tests())]
 
 
 def _percent(row: Row) -> float:
-    """Return the friction reduction of a row in percent."""
+    """Friction reduction of a row in percent."""
     reduction = row["friction_reduction"]
     assert isinstance(reduction, float)
     return 100 * reduction
 
 
 def _of_study(study: PreviousStudy) -> Row:
-    """Return the row of an earlier study: its highest friction reduction with the numbers that D quotes."""
+    """Row of an earlier study: its highest friction reduction with the numbers that D quotes."""
     row: Row = {
         "study": study.study,
         "direction": study.direction,
@@ -171,7 +130,7 @@ def _of_study(study: PreviousStudy) -> Row:
 
 
 def _of_test(test: FrictionTest) -> Row:
-    """Return the row of a test of D."""
+    """Row of a test of D."""
     return {
         "study": f"Dong 2015, {test.label}",
         "direction": "perpendicular",
@@ -187,7 +146,7 @@ def _of_test(test: FrictionTest) -> Row:
 
 
 def _cell(value: "str | float | None", name: str, unit: str) -> str:
-    """Return a value as the cell of its column, a number in the unit of the heading."""
+    """Value as the cell of its column, a number in the unit of the heading."""
     if value is None or isinstance(value, str):
         return value or ""
     return f"{convert(value, from_unit=quantity(name).unit, to_unit=unit) if unit else value:.6g}"

@@ -29,18 +29,9 @@ _HEADS = (
 
 
 def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPrediction, ...] = ()) -> "xr.Dataset":
-    """Return measured, fitted and cross-validated friction ratios over models and tests, with error statistics.
+    """Measured, fitted and cross-validated friction ratios over models and tests, with error statistics.
 
-    Parameters
-    ----------
-    fits : tuple of ComparedFit
-    predictions : tuple of RigPrediction
-        Of a rig, by the same models; none where there is no rig.
-
-    Returns
-    -------
-    Dataset
-        Missing values are NaN; `reason` states why.
+    Missing values are NaN; `reason` states why.
     """
     import xarray as xr
 
@@ -108,16 +99,7 @@ def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPred
 
 
 def comparison_csv(fits: tuple[ComparedFit, ...]) -> str:
-    """Return a table as CSV with one row for each model: errors, criterion, and fitted parameters.
-
-    Parameters
-    ----------
-    fits : tuple of ComparedFit
-
-    Returns
-    -------
-    str
-    """
+    """Table as CSV with one row for each model: errors, criterion, and fitted parameters."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow((*_HEADS, *(f"rms_in_{letter}" for letter in DATA_SETS), "fitted"))
@@ -142,18 +124,7 @@ def comparison_csv(fits: tuple[ComparedFit, ...]) -> str:
 
 
 def parameter_text(fitted: FittedParameter, *, left_out: str = "one set") -> str:
-    """Return a fitted parameter as text: rig, value, and interval or leave-one-out range.
-
-    Parameters
-    ----------
-    fitted : FittedParameter
-    left_out : str
-        What was left out for the range, such as "one set" or "one condition".
-
-    Returns
-    -------
-    str
-    """
+    """Fitted parameter as text: rig, value, and interval or leave-one-out range."""
     parameter = fitted.parameter
     rig = next((name for name, letters in RIGS.items() if letters == parameter.applicable_sets), None)
 

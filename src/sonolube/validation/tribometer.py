@@ -28,23 +28,13 @@ _GRAVITY = 9.80665  # m/s2
 
 
 def tribometer_identification(*, seed: int = 0) -> Identification:
-    """Return the identification of m1, m2, m3, k2, c1 and c2 of D 3.31 from the published facts.
-
-    Parameters
-    ----------
-    seed : int
-        Seed of the random searches.
-
-    Returns
-    -------
-    Identification
-    """
+    """Identification of m1, m2, m3, k2, c1 and c2 of D 3.31 from the published facts."""
     known = tribometer_problem()
     return identify(pin_on_disc_model(tribometer_test()), facts=known.facts, bounds=known.bounds, seed=seed)
 
 
 def tribometer_test() -> PinOnDiscTest:
-    """Return the stack of the tribometer as printed, with its drive and load."""
+    """Stack of the tribometer as printed, with its drive and load."""
     load = si_value("table-3.2-normal_load-1")
     load_of_most_arm_vibration = (si_value("4.1.2-peak-load-1") + si_value("4.1.2-peak-load-2")) / 2
     return PinOnDiscTest(
@@ -59,7 +49,7 @@ def tribometer_test() -> PinOnDiscTest:
 
 
 def tribometer_stack() -> PiezoStack:
-    """Return the stack of Table 3.5, its coupling factor derived from the other constants."""
+    """Stack of Table 3.5, its coupling factor derived from the other constants."""
 
     def constant(name: str) -> float:
         return si_value(f"table-3.5-{name}-1")
@@ -74,5 +64,5 @@ def tribometer_stack() -> PiezoStack:
 
 
 def tribometer_problem() -> IdentificationProblem:
-    """Return the published facts, in the order of their ranks, and the bounds of the identified parameters."""
+    """Published facts, in the order of their ranks, and the bounds of the identified parameters."""
     return read_facts(Path(__file__).with_suffix(".toml"))

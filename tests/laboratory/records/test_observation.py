@@ -128,7 +128,7 @@ def test_the_last_second_is_that_of_the_whole_file_wherever_reading_begins(
     folder = recorded(tmp_path, sizes=(50, 70, 30) * 20)
     path = folder / "raw" / "blocks-1.bin"
     for reach in (3000, 20_000, 1 << 26):
-        monkeypatch.setattr("sonolube.laboratory.records.raw_blocks._MOST_READ", reach)
+        monkeypatch.setattr("sonolube.laboratory.records.raw_blocks._MAX_READ", reach)
         part, latest = latest_samples(path, duration=1.0)
         assert latest is not None
         assert part.sample_rate == RATE

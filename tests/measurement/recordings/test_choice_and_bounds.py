@@ -14,10 +14,10 @@ from pytest import approx, raises
 from tests.work import calls
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.limits import MOST_CHANNELS
+from sonolube.measurement.limits import MAX_CHANNELS
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, Selection
 from sonolube.measurement.recordings.reader import read_recording, recording_blocks
-from sonolube.measurement.recordings.tdms import MOST_SEGMENTS
+from sonolube.measurement.recordings.tdms import MAX_SEGMENTS
 
 
 def selecting(group: str = "", *channels: str) -> RecordingMapping:
@@ -132,12 +132,12 @@ def refused(path: Path, reason: str) -> None:
 
 def test_a_tdms_file_of_a_million_segments_is_refused_at_once(tmp_path: Path) -> None:
     path = tmp_path / "many.tdms"
-    path.write_bytes(segment(1, bytes(8)) * (MOST_SEGMENTS + 1))
+    path.write_bytes(segment(1, bytes(8)) * (MAX_SEGMENTS + 1))
     work = calls(lambda: refused(path, "more than 100000 segments; defragment it"))
-    assert work < 20 * MOST_SEGMENTS  # their headers are counted; to read them takes ten times as many
+    assert work < 20 * MAX_SEGMENTS  # their headers are counted; to read them takes ten times as many
 
 
-@pytest.mark.parametrize("columns", [MOST_CHANNELS + 1, 200_000])
+@pytest.mark.parametrize("columns", [MAX_CHANNELS + 1, 200_000])
 def test_a_table_of_very_many_columns_is_refused_at_once(tmp_path: Path, columns: int) -> None:
     path = tmp_path / "wide.csv"
     path.write_text("time," + ",".join(map(str, range(columns))) + "\n" + "1," * columns + "1\n")

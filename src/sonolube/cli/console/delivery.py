@@ -32,29 +32,7 @@ def deliver(
     brief: bool = False,
     command: str = "sonolube",
 ) -> None:
-    """Write the files of an answer, then print it as text or as one JSON object.
-
-    Parameters
-    ----------
-    answer : Answer
-    folder : Path or None
-        For page, figures and files, none of which are written where it is None; made where it is missing and needed.
-    report : Path, optional
-        Page that is written on request.
-    as_json : bool
-        Whether to print JSON rather than text.
-    brief : bool
-        Whether to leave out assumptions of the rig file.
-    command : str
-        Words before the reason of an input that was refused.
-
-    Raises
-    ------
-    InvalidInput
-        If a file, or standard output, cannot be written. Everything is rendered before the first file is written.
-    typer.Exit
-        With 1 where some of several inputs were refused, or the result is a failure, with 2 where all were refused.
-    """
+    """Write the files of an answer, then print it as text or as one JSON object."""
     folder = answer.folder or folder
     written = [] if folder is None else _write(answer, folder, report)
     if as_json:

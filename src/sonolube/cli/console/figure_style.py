@@ -14,17 +14,7 @@ _REPORT = "report"  # argument of a page with figures
 
 
 def with_figure_style(command: Callable[..., None]) -> Callable[..., None]:
-    """Command with the option `--style`, where it writes figures into a folder or a page.
-
-    Parameters
-    ----------
-    command : callable
-        With the mark `OutputFolder` at an argument, or a `report`; others are returned as they are.
-
-    Returns
-    -------
-    callable
-    """
+    """Command with the option `--style`, where it writes figures into a folder or a page."""
     marks = output_marks(command)
     if _REPORT not in marks and not any(isinstance(mark, OutputFolder) for mark in marks.values()):
         return command

@@ -7,12 +7,7 @@ _TAG = re.compile(r"(\\*)\[(?=[a-z#/@])")  # what rich takes for markup, such as
 
 
 def show_help_literally(command: Any) -> None:
-    """Escape the help texts of a program, its commands and their parameters, once after it was built.
-
-    Parameters
-    ----------
-    command : typer command or group
-    """
+    """Escape the help texts of a program, its commands and their parameters, once after it was built."""
     for part in (command, *command.params):
         part.help = _literal(getattr(part, "help", None))
     for inner in getattr(command, "commands", {}).values():

@@ -55,22 +55,7 @@ OUT = Path("out")
 def loaded_rig(
     path: Path, *, load: str | None = None, changes: list[str] | None = None, amplitude: AmplitudeSource | None = None
 ) -> "Rig":
-    """Rig of a file with entries replaced, `--load` and `--amplitude` among them.
-
-    Parameters
-    ----------
-    path : Path
-    load : str or None
-        Normal load instead of the file's, with its unit.
-    changes : list of str or None
-        Entries such as "drive.frequency=22kHz".
-    amplitude : AmplitudeSource or None
-        Source of the amplitude instead of the file's.
-
-    Returns
-    -------
-    Rig
-    """
+    """Rig of a file with entries replaced, `--load` and `--amplitude` among them."""
     from sonolube.rig import read_rig
 
     replaced = list(changes or ())
@@ -89,13 +74,7 @@ def optional_rig(
     changes: list[str] | None = None,
     amplitude: AmplitudeSource | None = None,
 ) -> "Rig | None":
-    """Rig of a file with entries replaced, or None where no file is named.
-
-    Raises
-    ------
-    InvalidInput
-        If entries, a load or the source of the amplitude are given without a rig, or as `read_rig`.
-    """
+    """Rig of a file with entries replaced, or None where no file is named."""
     if path is not None:
         return loaded_rig(path, load=load, changes=changes, amplitude=amplitude)
     given = {"--set": changes, "--amplitude": amplitude, "--load": load}

@@ -48,16 +48,7 @@ class ContinuedFolder:
 def with_checked_files(command: Callable[..., None]) -> Callable[..., None]:
     """Command that refuses outputs which cannot be written, or are its inputs, before it computes.
 
-    Parameters
-    ----------
-    command : callable
-        Its arguments of the type Path are inputs unless they are marked as `OutputFile`, `OutputFolder` or
-        `ContinuedFolder`; a text that names a file, such as that of a part, is an input too.
-
-    Returns
-    -------
-    callable
-        With the same arguments.
+    With the same arguments.
     """
 
     @wraps(command)

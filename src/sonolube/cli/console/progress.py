@@ -24,15 +24,7 @@ _BETWEEN_LINES = 10.0  # s
 def progress(title: str) -> Iterator[Advance]:
     """Report the progress of the work inside a `with` block.
 
-    Parameters
-    ----------
-    title : str
-        Of the work, such as "sweeping".
-
-    Yields
-    ------
-    callable
-        Called with what is done now, the number done and their total.
+    Called with what is done now, the number done and their total.
     """
     if sys.stderr.isatty() and os.environ.get("TERM") != "dumb":
         with _bar(title) as advance:

@@ -47,21 +47,7 @@ def is_terminal() -> bool:
 def ask(question: Question, read: Callable[[str], Value]) -> Value:
     """Answer to a question, asked again until it can be read.
 
-    Parameters
-    ----------
-    question : Question
-    read : callable
-        Of the text that was typed; raises an error of sonolube for what is none.
-
-    Returns
-    -------
-    object
-        What `read` returns.
-
-    Raises
-    ------
-    InvalidInput
-        At the end of input.
+    What `read` returns.
     """
     while True:
         typer.echo(f"{question.text} [{question.default}]: ", nl=False, err=True)

@@ -14,7 +14,7 @@ from sonolube.design.control.vibration_envelope import VibrationMode, measured_p
 from sonolube.errors import InvalidInput
 
 _LARGEST_SHIFT = 0.1  # relative, up to which the resonance may be taken as linear in the temperature
-_LEAST_LEVEL = 0.02  # of the voltage limit, below which the phase of the current is not evaluated
+_MIN_LEVEL = 0.02  # of the voltage limit, below which the phase of the current is not evaluated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -196,7 +196,7 @@ class _PlantState:
         if mode.motional_conductance is None:
             return
         self.energy += mode.motional_conductance * level * integral.real / 8
-        if level > _LEAST_LEVEL * self.loop.level_maximum:
+        if level > _MIN_LEVEL * self.loop.level_maximum:
             self.phase = measured_phase(mode, self.envelope / level, frequency=self.frequency)
             if tracker is not None:
                 self.frequency = next_frequency(tracker, frequency=self.frequency, phase=self.phase)

@@ -39,7 +39,7 @@ FEED_FORWARD = ("model", "efficiency", "none")
 
 _SLOPE_STEP = 0.01  # of the highest level, of the finite difference of the static gain
 _FIRST_STEP, _SECOND_STEP = 0.1, 0.55  # of the duration, when the set-point steps
-_FEWEST_SAMPLES, _MOST_SAMPLES = 20, 500_000
+_MIN_SAMPLES, _MAX_SAMPLES = 20, 500_000
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,10 +94,10 @@ class ControlSettings:
         if self.feed_forward not in FEED_FORWARD:
             raise UnknownName.among(FEED_FORWARD, kind="feed-forward", name=self.feed_forward)
         intervals = self.duration / self.sample_interval
-        if not _FEWEST_SAMPLES <= intervals <= _MOST_SAMPLES:
+        if not _MIN_SAMPLES <= intervals <= _MAX_SAMPLES:
             raise InvalidInput(
                 f"duration {self.duration:g} s makes {intervals:.3g} intervals of {self.sample_interval:g} s; take one"
-                f" that makes {_FEWEST_SAMPLES} to {_MOST_SAMPLES}"
+                f" that makes {_MIN_SAMPLES} to {_MAX_SAMPLES}"
             )
 
 

@@ -11,21 +11,14 @@ from sonolube.design.control.process import open_loop_response
 from sonolube.design.control.stick_slip import StickSlipSuppression
 
 _SHOWN = 0.3  # of the motion of a slider
-_MOST_DRAWN = 3000  # points of it
-_LEAST_SPAN = 2e-3  # of an axis relative to its middle, below which rounding errors would look like motion
+_MAX_DRAWN = 3000  # points of it
+_MIN_SPAN = 2e-3  # of an axis relative to its middle, below which rounding errors would look like motion
 
 
 def closed_loop_chart(study: ControlDesign) -> Chart:
     """Friction force and drive voltage with its frequency, or commanded amplitude, of the closed loop over time.
 
-    Parameters
-    ----------
-    study : ControlDesign
-
-    Returns
-    -------
-    Chart
-        With the run at a fixed frequency beside, where the study has one.
+    With the run at a fixed frequency beside, where the study has one.
     """
     run, fixed, quantity = study.run, study.fixed_frequency_run, study.plant.quantity
     ms, scale = 1e3 * run.time, quantity.axis_scale
@@ -58,7 +51,7 @@ def _frequencies(time: Axis, ms: Floats, drive: Floats, resonance: Floats) -> Pa
     """Frequency of drive and resonance in kHz over time, on an axis that makes no motion of rounding errors."""
     low, high = float(min(drive.min(), resonance.min())), float(max(drive.max(), resonance.max()))
     middle = (low + high) / 2
-    half = max(0.55 * (high - low), _LEAST_SPAN / 2 * middle)
+    half = max(0.55 * (high - low), _MIN_SPAN / 2 * middle)
     lines = (Line(x=ms, y=drive, label="drive"), Line(x=ms, y=resonance, label="resonance", colour=2, dash=1))
     y = Axis(label="Frequency", unit="kHz", lowest=middle - half, highest=middle + half)
     return Panel(x=time, y=y, parts=lines)
@@ -67,16 +60,6 @@ def _frequencies(time: Axis, ms: Floats, drive: Floats, resonance: Floats) -> Pa
 def control_design_chart(study: ControlDesign) -> Chart:
     r"""Feed-forward map from voltage or amplitude to friction, and magnitude of the sensitivity over frequency.
 
-    Parameters
-    ----------
-    study : ControlDesign
-
-    Returns
-    -------
-    Chart
-
-    Notes
-    -----
     The sensitivity of the loop of gain g about the process P and the controller C is
 
     .. math:: |S(f)| = \frac{1}{|1 + g\,P(f)\,C(f)|}
@@ -115,20 +98,11 @@ def control_design_chart(study: ControlDesign) -> Chart:
 
 
 def stick_slip_chart(suppression: StickSlipSuppression) -> Chart:
-    """Force in the holder of a dragged slider over time, without and with vibration.
-
-    Parameters
-    ----------
-    suppression : StickSlipSuppression
-
-    Returns
-    -------
-    Chart
-    """
+    """Force in the holder of a dragged slider over time, without and with vibration."""
     label = f"with {suppression.quantity.text(suppression.level)}"
     still, vibrating = suppression.still, suppression.vibrating
     count = max(2, int(_SHOWN * still.time.size))
-    shown = slice(0, count, -(-count // _MOST_DRAWN))
+    shown = slice(0, count, -(-count // _MAX_DRAWN))
     ms = 1e3 * still.time[shown]
     lines = (
         Line(x=ms, y=still.friction_force[shown], label="without vibration", colour=1, weight=0.7),

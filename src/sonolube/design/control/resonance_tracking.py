@@ -7,7 +7,7 @@ from sonolube.design.control.vibration_envelope import VibrationMode, capture_li
 
 _STEP = 1e-6  # relative, of the finite difference of the phase
 _TIME_CONSTANTS = 20.0  # of the vibration, the default closed-loop time constant
-_FEWEST_INTERVALS = 10.0  # of that time constant
+_MIN_INTERVALS = 10.0  # of that time constant
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,7 +72,7 @@ def tuned_tracker(
     """
     interval = float(require_positive(sample_interval=sample_interval))
     if closed_loop_time is None:
-        closed_loop_time = max(_TIME_CONSTANTS * mode.time_constant, _FEWEST_INTERVALS * interval)
+        closed_loop_time = max(_TIME_CONSTANTS * mode.time_constant, _MIN_INTERVALS * interval)
     tau_c = float(require_positive(closed_loop_time=closed_loop_time))
     half_width, f = float(require_within(0.0, 1.0, band=band)), mode.frequency
     upper_limit = capture_limit(mode)

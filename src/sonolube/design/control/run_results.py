@@ -32,16 +32,7 @@ class FinalState:
 
 
 def final_state(run: ClosedLoopRun) -> FinalState:
-    """Mean voltage or amplitude, and root-mean-square tracking error over the last fifth of a run.
-
-    Parameters
-    ----------
-    run : ClosedLoopRun
-
-    Returns
-    -------
-    FinalState
-    """
+    """Mean voltage or amplitude, and root-mean-square tracking error over the last fifth of a run."""
     last = slice(-max(run.time.size // _FINAL_FRACTION, 1), None)
     return FinalState(
         level=float(run.level[last].mean()),
@@ -52,14 +43,7 @@ def final_state(run: ClosedLoopRun) -> FinalState:
 def lost_resonance(study: ControlDesign) -> bool:
     """Whether the tracked frequency of a run ends at an end of its band.
 
-    Parameters
-    ----------
-    study : ControlDesign
-
-    Returns
-    -------
-    bool
-        False without tracking.
+    False without tracking.
     """
     tracker, last = study.tracker, float(study.run.frequency[-1])
     return tracker is not None and not tracker.lowest_frequency < last < tracker.highest_frequency
@@ -68,15 +52,7 @@ def lost_resonance(study: ControlDesign) -> bool:
 def control_dataset(study: ControlDesign, *, title: str) -> "xr.Dataset":
     """Closed-loop run over time as a labelled dataset.
 
-    Parameters
-    ----------
-    study : ControlDesign
-    title : str
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `time`; of a commanded amplitude without the resonance and its electrical quantities.
+    Over `time`; of a commanded amplitude without the resonance and its electrical quantities.
     """
     run, quantity = study.run, study.plant.quantity
     values = {"time": run.time, "friction_force": run.friction_force, quantity.name: run.level}

@@ -55,19 +55,6 @@ class StickSlipSuppression:
 def stick_slip_suppression(rig: Rig, study: ControlDesign) -> StickSlipSuppression:
     r"""Stick-slip of a rig's slider without vibration and at the voltage or amplitude of the commanded friction.
 
-    Parameters
-    ----------
-    rig : Rig
-        With an amplitude.
-    study : ControlDesign
-        Gives the commanded friction and the voltage or amplitude for it.
-
-    Returns
-    -------
-    StickSlipSuppression
-
-    Notes
-    -----
     The holder has the mass, stiffness, damping ratio and static friction of the constants of this module, with
 
     .. math:: c = 2 \zeta \sqrt{m k}

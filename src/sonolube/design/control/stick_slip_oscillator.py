@@ -12,7 +12,7 @@ from sonolube.rig import Rig, commanded_quantity, level_settings, operating_poin
 
 _SPEEDS = 33  # at which the friction ratio is computed; it is interpolated between them
 _SLOWEST = 1e-3  # of the belt's speed, whose friction ratio is taken for that at rest
-_MOST_STEPS = 5_000_000
+_MAX_STEPS = 5_000_000
 _FINAL_FRACTION = 4  # amplitude and stick fraction are those of the last quarter
 _SLOPE_STEP = 0.01  # relative, of the finite difference of friction over speed
 
@@ -280,8 +280,8 @@ def stick_slip_motion(mass: MassOnBelt, *, duration: float, steps_per_period: in
     require_within(20, 1e6, steps_per_period=steps_per_period)
     step = mass.period / steps_per_period
     count = int(np.ceil(float(require_positive(duration=duration)) / step)) + 1
-    if count > _MOST_STEPS:
-        raise InvalidInput(f"duration {duration:g} s takes {count} steps, of {_MOST_STEPS} at most; shorten it")
+    if count > _MAX_STEPS:
+        raise InvalidInput(f"duration {duration:g} s takes {count} steps, of {_MAX_STEPS} at most; shorten it")
     x, v, sticking = _integrate(
         count,
         step,

@@ -12,7 +12,7 @@ from sonolube.models.dynamics import electrical_admittance, modes
 from sonolube.rig import Rig, structure_in_contact
 from sonolube.rig.driven_rig import require_drive
 
-_MOST_RESIDUAL = 0.2  # conductance of all other modes over that of the mode
+_MAX_RESIDUAL = 0.2  # conductance of all other modes over that of the mode
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -117,7 +117,7 @@ def mode_at_drive(rig: Rig) -> VibrationMode:
     f = float(natural.natural_frequency[i])
     conductance = charge[i] ** 2 / (4 * pi * f * natural.damping_ratio[i])
     residual = complex(electrical_admittance(linearised, frequency=f)) - conductance
-    if residual.imag <= 0 or abs(residual.real) > _MOST_RESIDUAL * conductance:
+    if residual.imag <= 0 or abs(residual.real) > _MAX_RESIDUAL * conductance:
         raise InvalidInput(
             f"{rig.title}: the resonance at {f:.5g} Hz closest to the drive overlaps with others, so that one mode"
             " cannot represent it; drive near an isolated resonance"

@@ -27,18 +27,7 @@ _THIN: dict[str, Any] = {"color": "0.35", "linewidth": 0.6}
 
 
 def horn_notes(design: HornDesign, material: Material, profile: HornProfile) -> list[str]:
-    """Text of a drawing: shape, material and mass, tuned mode, node, and what the dimensions leave open.
-
-    Parameters
-    ----------
-    design : HornDesign
-    material : Material
-    profile : HornProfile
-
-    Returns
-    -------
-    list of str
-    """
+    """Text of a drawing: shape, material and mass, tuned mode, node, and what the dimensions leave open."""
     mode = design.tuned.mode
     mass = 1e3 * design.geometry.volume * material.value("density")
     widths = "width" if profile.thickness else "diameters"
@@ -55,16 +44,7 @@ def horn_notes(design: HornDesign, material: Material, profile: HornProfile) -> 
 def horn_drawing(profile: HornProfile, *, notes: Sequence[str]) -> "Figure":
     """Side view of a horn on its centre line, to scale, with all its dimensions in mm.
 
-    Parameters
-    ----------
-    profile : HornProfile
-    notes : sequence of str
-        Lines below the view, to which that of the scale is added.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        As wide as the page of a journal, on which it is to scale.
+    As wide as the page of a journal, on which it is to scale.
     """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import PlaceHolderLayoutEngine

@@ -18,14 +18,7 @@ _INSIDE = 1e-6  # of half the length, by which the first and last plane lie insi
 def horn_axis_chart(design: HornDesign) -> Chart:
     """Profile, axial displacement over that of the tip, and highest equivalent stress along the axis of a horn.
 
-    Parameters
-    ----------
-    design : HornDesign
-
-    Returns
-    -------
-    Chart
-        Three panels over the distance from the driven face, with the displacement node marked.
+    Three panels over the distance from the driven face, with the displacement node marked.
     """
     mode, axis = design.tuned.mode, design.body.axis
     tip = float(face_motion(mode.model, mode.displacement, design.working_face, axis).mean())

@@ -68,16 +68,7 @@ class HornProfile:
 def horn_profile(body: TunableBody, *, length: float) -> HornProfile | None:
     """Half profile of a horn of a named shape.
 
-    Parameters
-    ----------
-    body : TunableBody
-    length : float
-        Of its tuned size. [m]
-
-    Returns
-    -------
-    HornProfile or None
-        None for a body from a file.
+    None for a body from a file.
     """
     if not body.sizes:
         return None
@@ -87,21 +78,9 @@ def horn_profile(body: TunableBody, *, length: float) -> HornProfile | None:
 def profile_dxf(profile: HornProfile, lines: Iterable[str]) -> str:
     """Half profile and centre line as a DXF file of AutoCAD R12, in mm.
 
-    Parameters
-    ----------
-    profile : HornProfile
-        Its polyline is closed along the axis, with arcs as arcs.
-    lines : iterable of str
-        Text below the profile.
+    ASCII, on the layers PROFILE, CENTRE and TEXT.
 
-    Returns
-    -------
-    str
-        ASCII, on the layers PROFILE, CENTRE and TEXT.
-
-    References
-    ----------
-    .. [1] Autodesk, AutoCAD Release 12 Customization Manual, Appendix: Drawing Interchange Format.
+    Source: Autodesk, AutoCAD Release 12 Customization Manual, Appendix: Drawing Interchange Format.
     """
     end = max(place for place, _, _ in profile.vertices)
     overhang = 0.05 * end

@@ -63,32 +63,7 @@ def horn_body(
 ) -> TunableBody:
     """Horn of a named shape, with default sizes by the wavelength.
 
-    Parameters
-    ----------
-    shape : str
-        Key of `SHAPES`.
-    frequency : float
-        Target frequency. [Hz]
-    wave_speed : float
-        Speed of axial waves in the material. [m/s]
-    sizes : mapping of str to float
-        Given sizes, in SI; that of the tuned length is its initial value.
-    tune : str
-        Name of the length that is tuned.
-    gain : float, optional
-        Displacement gain of the thin bar, at least 1, by which `end_radius` is chosen.
-
-    Returns
-    -------
-    TunableBody
-        Its initial length, where it is not given, is that of the thin bar.
-
-    Raises
-    ------
-    UnknownName
-        If the shape or a size of it is unknown.
-    InvalidInput
-        If a gain is given beside `end_radius`, of a shape without that size, or is beyond the shape.
+    Its initial length, where it is not given, is that of the thin bar.
 
     See Also
     --------
@@ -122,17 +97,6 @@ def horn_body(
 
 def body_from_geometry(geometry: Geometry, *, axis: str) -> TunableBody:
     """Horn of any geometry, whose length is adjusted by cutting off or extending its far end.
-
-    Parameters
-    ----------
-    geometry : Geometry
-        A single body.
-    axis : str
-        Axis of vibration.
-
-    Returns
-    -------
-    TunableBody
 
     See Also
     --------

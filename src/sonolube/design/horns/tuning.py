@@ -93,31 +93,6 @@ def tuned_horn(
 ) -> HornDesign:
     """Horn tuned by its length so that a named mode has a target frequency, by finite elements.
 
-    Parameters
-    ----------
-    body : TunableBody
-    medium : Medium
-        Material of the horn.
-    frequency : float
-        Target frequency. [Hz]
-    mode : str
-        Name of the mode.
-    relative_tolerance : float
-        Largest estimated relative error of the frequency.
-    advance : callable, optional
-        Called with the name of the step, the number of finished steps and their total.
-
-    Returns
-    -------
-    HornDesign
-
-    Raises
-    ------
-    InvalidInput
-        If no mode has this name or the body lacks a flat working or driven face.
-    NotConverged
-        If no length near the initial one gives the frequency.
-
     See Also
     --------
     horn_body, body_from_geometry, amplitude_limits, loaded_frequency
@@ -160,18 +135,8 @@ def tuned_horn(
 def amplitude_limits(design: HornDesign, *, material: Material) -> dict[str, float]:
     """Displacement amplitude of the working face in m at which the peak stress reaches each known strength.
 
-    Parameters
-    ----------
-    design : HornDesign
-    material : Material
+    By "fatigue_strength" and "yield_strength", where the material has them.
 
-    Returns
-    -------
-    dict of str to float
-        By "fatigue_strength" and "yield_strength", where the material has them.
-
-    Notes
-    -----
     With the strength :math:`S` and the peak stress per displacement :math:`s`, as the model is linear,
 
     .. math:: a = S / s
@@ -184,18 +149,7 @@ def amplitude_limits(design: HornDesign, *, material: Material) -> dict[str, flo
 
 
 def loaded_frequency(design: HornDesign, *, tool_mass: float) -> float:
-    """Natural frequency of the tuned mode with a rigid tool on the working face. [Hz]
-
-    Parameters
-    ----------
-    design : HornDesign
-    tool_mass : float
-        Mass of the tool. [kg]
-
-    Returns
-    -------
-    float
-    """
+    """Natural frequency of the tuned mode with a rigid tool on the working face. [Hz]"""
     mode = design.tuned.mode
     loaded = mass_loaded_frequencies(
         mode.modes,
@@ -212,19 +166,7 @@ def loaded_frequency(design: HornDesign, *, tool_mass: float) -> float:
 def face_motion(model: Model, shape: Floats, face: str, axis: str) -> Floats:
     """Displacements along an axis at the nodes of a face.
 
-    Parameters
-    ----------
-    model : Model
-    shape : ndarray, shape (n, 3)
-        Displacements of all nodes.
-    face : str
-        Name of the face, such as "+x".
-    axis : str
-        "x", "y" or "z".
-
-    Returns
-    -------
-    ndarray, shape (nodes of the face,)
+    `shape` has shape (n, 3). Shape (nodes of the face,).
     """
     return np.asarray(shape[model.mesh.face_nodes(face), DIRECTIONS.index(axis)])
 
@@ -232,16 +174,9 @@ def face_motion(model: Model, shape: Floats, face: str, axis: str) -> Floats:
 def nodal_stress(model: Model, shape: Floats) -> Floats:
     """Von Mises stress at the nodes, from stress components averaged over the adjacent elements.
 
-    Parameters
-    ----------
-    model : Model
-    shape : ndarray, shape (n, 3)
-        Displacements of all nodes.
+    `shape` has shape (n, 3).
 
-    Returns
-    -------
-    ndarray, shape (n,)
-        In Pa for displacements in m.
+    In Pa for displacements in m.
     """
     at_corners = gauss_point_stress(model, shape)
     return von_mises_stress(
@@ -296,15 +231,7 @@ def _node(mode: NamedMode, axis: str) -> float:
 def section_motion(mode: NamedMode, axis: str) -> tuple[Floats, Floats]:
     """Mean axial displacement of the cross-sections along an axis.
 
-    Parameters
-    ----------
-    mode : NamedMode
-    axis : str
-
-    Returns
-    -------
-    tuple of two ndarray
-        Positions along the axis in m, and displacements there; both means over the volume of a thin slice.
+    Positions along the axis in m, and displacements there; both means over the volume of a thin slice.
     """
     mesh, along = mode.model.mesh, DIRECTIONS.index(axis)
     points, weights = simplex_quadrature(2 * mesh.order, corners=4)

@@ -11,28 +11,7 @@ _STEEL = 205e9  # Pa, Young's modulus of bolts
 
 
 def preload_bolt(thread: str, *, preload: float, yield_strength: float, name: str) -> PreloadBolt:
-    """Steel bolt by its thread and the length that stretches.
-
-    Parameters
-    ----------
-    thread : str
-        Such as "M6x40mm".
-    preload : float
-        Tension at rest. [N]
-    yield_strength : float
-        Proof strength. [Pa]
-    name : str
-        Of the argument, for errors.
-
-    Returns
-    -------
-    PreloadBolt
-
-    Raises
-    ------
-    InvalidInput
-        If the thread cannot be read.
-    """
+    """Steel bolt by its thread and the length that stretches."""
     found = _THREAD.fullmatch(thread.strip())
     if not found:
         raise InvalidInput(f"{name} {thread} must look like M6x40mm: thread and length that stretches")

@@ -17,14 +17,7 @@ if TYPE_CHECKING:
 def designs_dataset(optimum: Optimum) -> "xr.Dataset":
     """All designs of a screening with their objectives and the fraction of each limit that they use.
 
-    Parameters
-    ----------
-    optimum : Optimum
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `design`.
+    Over `design`.
     """
     import xarray as xr
 
@@ -60,14 +53,7 @@ def designs_dataset(optimum: Optimum) -> "xr.Dataset":
 def design_counts(optimum: Optimum) -> dict[str, int]:
     """Number of screened designs within all limits, out of reach, and beyond each limit that rules out any.
 
-    Parameters
-    ----------
-    optimum : Optimum
-
-    Returns
-    -------
-    dict of str to int
-        By status; a design beyond two limits counts for both.
+    By status; a design beyond two limits counts for both.
     """
     screened = optimum.screening
     reached = np.isfinite(screened.voltage_peak_to_peak)

@@ -27,7 +27,7 @@ from sonolube.rig.driven_rig import DrivenRig
 CAPACITANCE_TOLERANCE = 0.2
 """Relative tolerance of the capacitance that data sheets state. []"""
 
-_LEAST_HARMONIC = 1e-9  # of the largest, below which a voltage harmonic counts as absent
+_MIN_HARMONIC = 1e-9  # of the largest, below which a voltage harmonic counts as absent
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -133,7 +133,7 @@ def required_electronics(
     rig = design_rig(problem, point)
     states = steady_states(rig)
     volts, current = states.voltage_harmonics[0], states.current_harmonics[0]
-    present = np.abs(volts) > _LEAST_HARMONIC * np.abs(volts).max()
+    present = np.abs(volts) > _MIN_HARMONIC * np.abs(volts).max()
     y = np.divide(current, volts, out=np.zeros_like(current), where=present)
     amplifier = amplifier_requirements(
         admittance=y,

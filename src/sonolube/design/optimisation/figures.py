@@ -23,23 +23,13 @@ _AXES = {
     "heat": Axis(label="Heat in the actuator", unit="W"),
     "voltage": Axis(label="Voltage, peak to peak", unit="V"),
 }
-_MOST_CURVES = 6  # actuators drawn over frequency
+_MAX_CURVES = 6  # actuators drawn over frequency
 _BANDS = 60  # of frequency, in each of which the least objective is drawn
 _SPAN = 5.0  # ratio of its ends beyond which an axis of the front is logarithmic
 
 
 def front_chart(optimum: Optimum) -> Chart:
-    """Pareto front of two objectives among all feasible designs of the screening.
-
-    Parameters
-    ----------
-    optimum : Optimum
-        With a second objective.
-
-    Returns
-    -------
-    Chart
-    """
+    """Pareto front of two objectives among all feasible designs of the screening."""
     assert optimum.second_objective is not None
     screened = optimum.screening
     names = (optimum.minimise, optimum.second_objective)
@@ -65,21 +55,14 @@ def front_chart(optimum: Optimum) -> Chart:
 def frequency_chart(optimum: Optimum) -> Chart:
     """Least objective over drive frequency, one curve for each actuator and waveform.
 
-    Parameters
-    ----------
-    optimum : Optimum
-
-    Returns
-    -------
-    Chart
-        With the refined designs as markers.
+    With the refined designs as markers.
     """
     screened = optimum.screening
     families = np.array([_family(candidate) for candidate in screened.candidates])[screened.candidate_index]
     curves: list[Part] = []
     markers: list[Part] = []
     best = "best of each" if len(optimum.designs) > 1 else "best"
-    for place, point in enumerate(optimum.designs[:_MOST_CURVES]):
+    for place, point in enumerate(optimum.designs[:_MAX_CURVES]):
         own = screened.feasible & (families == _family(point.candidate))
         f, least = _envelope(screened.frequency[own], screened.objectives[optimum.minimise][own])
         label = _family(point.candidate).replace(f"{OWN_ACTUATOR},", "the rig's actuator,", 1)
@@ -95,16 +78,7 @@ def frequency_chart(optimum: Optimum) -> Chart:
 
 
 def limits_chart(point: DesignPoint) -> Chart:
-    """Fraction of each limit that a design uses, as bars.
-
-    Parameters
-    ----------
-    point : DesignPoint
-
-    Returns
-    -------
-    Chart
-    """
+    """Fraction of each limit that a design uses, as bars."""
     used = {name: 100 * float(values[0]) for name, values in point.evaluation.utilisation.items() if name in LIMITS}
     used = {name: percent for name, percent in sorted(used.items(), key=lambda item: item[1]) if percent > 0}
     percents = np.array(list(used.values()))
@@ -124,16 +98,7 @@ def limits_chart(point: DesignPoint) -> Chart:
 def power_factor_chart(optimum: Optimum, electric: DriveElectronics) -> Chart:
     """Power factor at the amplifier over frequency about the drive's, without and with matching networks.
 
-    Parameters
-    ----------
-    optimum : Optimum
-    electric : DriveElectronics
-        Of its best design.
-
-    Returns
-    -------
-    Chart
-        Bands are the range over the tolerance of the capacitance.
+    Bands are the range over the tolerance of the capacitance.
     """
     rig = design_rig(optimum.problem, optimum.best)
     f = optimum.best.frequency * np.linspace(0.85, 1.15, 401)

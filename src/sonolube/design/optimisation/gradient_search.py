@@ -18,7 +18,7 @@ from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
 
 _STEP = 1e-4  # relative, of the finite differences along the surface of constant friction
 _FRICTION_STEP = 1e-3  # relative, of the finite differences of the friction ratio
-_MOST_ITERATIONS = 25
+_MAX_ITERATIONS = 25
 _BARRIER = 20.0  # replaces the logarithm of the objective where there is no admissible design
 
 
@@ -188,7 +188,7 @@ def local_search(
         method="SLSQP",
         bounds=bounds,
         constraints={"type": "ineq", "fun": search.margins, "jac": search.margin_derivatives},
-        options={"maxiter": _MOST_ITERATIONS, "ftol": 1e-8},
+        options={"maxiter": _MAX_ITERATIONS, "ftol": 1e-8},
     )
     better = [point for point in search.feasible_points() if point.objective(minimise) <= start.objective(minimise)]
     feasible = [
@@ -297,17 +297,7 @@ class _ConstrainedProblem:
 
 
 def rig_at_design_point(rig: DrivenRig, point: DesignPoint) -> DrivenRig:
-    """Rig with the drive frequency and voltage of a design point, the offset scaled in the rig's own ratio.
-
-    Parameters
-    ----------
-    rig : DrivenRig
-    point : DesignPoint
-
-    Returns
-    -------
-    DrivenRig
-    """
+    """Rig with the drive frequency and voltage of a design point, the offset scaled in the rig's own ratio."""
     swing = point.voltage_peak_to_peak
     drive = replace(
         rig.drive, frequency=point.frequency, voltage_peak_to_peak=swing, voltage_offset=rig.drive.offset_ratio * swing

@@ -18,7 +18,7 @@ DEFAULT_MAXIMUM_SWING = 200.0
 
 _LEVELS, _SECANT_STEPS = 24, 2
 _LOWEST = 2e-3  # of the highest swing, where friction is hardly reduced
-_MOST_STEPS = 40
+_MAX_STEPS = 40
 _LOG_TOLERANCE = 1e-7  # of the logarithm of the voltage
 _RATIO_TOLERANCE = 1e-9  # of the friction ratio
 _FIRST_BRACKET = 0.05  # in the logarithm of the voltage; doubled until the root is bracketed
@@ -162,7 +162,7 @@ def refine_swing(rig: Rig, *, frequency: float, friction_ratio: float, near: flo
 def _illinois_root(residual: Callable[[float], float], low: float, high: float, above: float, below: float) -> float:
     """Root of a falling function in a bracket by the Illinois variant of false position."""
     last = 0
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         if high - low < _LOG_TOLERANCE:
             break
         estimate = low + (high - low) * np.clip(above / (above - below), 1e-3, 1 - 1e-3)

@@ -112,19 +112,7 @@ def enumerate_candidates(space: DesignSpace, *, samples: int, seed: int = 0) -> 
 def sample_ranges(ranges: Mapping[str, Range], *, samples: int, seed: int = 0) -> Floats:
     """Corners of ranges and a scrambled Sobol sample inside them, uniform in the logarithm.
 
-    Parameters
-    ----------
-    ranges : mapping of str to pair of float
-        Lowest and highest value of each variable, positive.
-    samples : int
-        Least number of points inside; rounded up to a power of two.
-    seed : int
-        Seed of the scrambling.
-
-    Returns
-    -------
-    ndarray, shape (points, variables)
-        The corners first.
+    Shape (points, variables). The corners first.
     """
     from scipy.stats import qmc
 

@@ -14,7 +14,7 @@ from sonolube.prediction.inputs import RigInputs
 from sonolube.rig import Rig, friction_point, thermal_solid
 from sonolube.text.units import format_si
 
-MOST_CANDIDATES: Final = 200
+MAX_CANDIDATES: Final = 200
 """Number of candidates among which points are chosen."""
 
 _SAME: Final = 1e-5  # relative difference of settings that were rounded in text
@@ -43,9 +43,9 @@ class Factors:
         require_positive(sliding_speed=self.sliding_speed)
         require_positive(vibration_amplitude=self.vibration_amplitude)
         count = self.normal_load.size * self.sliding_speed.size * self.vibration_amplitude.size
-        if count > MOST_CANDIDATES:
+        if count > MAX_CANDIDATES:
             raise InvalidInput(
-                f"the factors have {count} points, but at most {MOST_CANDIDATES} are compared; give fewer values"
+                f"the factors have {count} points, but at most {MAX_CANDIDATES} are compared; give fewer values"
             )
 
 
@@ -114,29 +114,8 @@ def candidate_tests(
 ) -> Candidates:
     """Candidate tests of a rig with drive, heat, and what exceeds the limits; the rig's own operating point is one.
 
-    Parameters
-    ----------
-    rig : Rig
-    inputs : RigInputs
-        Of the rig's prediction.
-    factors : Factors
-    limits : RigLimits
-    pin, disc : str, optional
-        Materials of the catalogue, for the temperature rise.
-
-    Returns
-    -------
-    Candidates
-
-    Notes
-    -----
     The amplitude is proportional to the voltage, as it is where own runs state voltages. The power is that of
     `sonolube.rig.friction_point` at each voltage; the heat that of the friction without vibration.
-
-    Raises
-    ------
-    MissingProperty, UnknownName
-        For a material without thermal properties.
     """
     points, own = _points(factors, (rig.normal_load, inputs.sliding_speed, inputs.amplitude.value))
     loads, speeds, amplitudes = points.T

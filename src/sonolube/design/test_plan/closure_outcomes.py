@@ -22,22 +22,6 @@ def closure_outcomes(
 ) -> list[ModelOutcomes]:
     """Outcomes of candidate tests of a rig under each closure.
 
-    Parameters
-    ----------
-    posteriors : sequence of Posterior
-    at : UncertainConditions
-        Of the m candidates.
-    own : TestedRig, optional
-        Tests of the rig's own, on which the draws and the discrepancy are conditioned; their density under each
-        friction model gives its probability. Equal probabilities without tests.
-    seed : int
-
-    Returns
-    -------
-    list of ModelOutcomes
-
-    Notes
-    -----
     The model is that of `sonolube.prediction.hierarchy`: parameter and decay length of the rig drawn about those of the
     population, and a discrepancy correlated over amplitude and speed.
     """

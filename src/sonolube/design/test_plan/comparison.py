@@ -12,7 +12,7 @@ from sonolube.checks import Floats, require_positive
 from sonolube.design.test_plan.scatter import Scatter
 from sonolube.errors import InvalidInput
 
-MOST_REPLICATES: Final = 1000
+MAX_REPLICATES: Final = 1000
 """Number of replicates beyond which no plan is made."""
 
 
@@ -45,30 +45,11 @@ class Comparison:
     ) -> Floats:
         r"""Probability that the two-sided t-test finds a difference.
 
-        Parameters
-        ----------
-        difference : array_like
-            True friction reduction.
-        deviation : array_like
-            Standard deviation of one difference, that of two independent runs or of one run with both states.
-        replicates : array_like
-            At least 2.
-        significance : float
-            Probability to find a difference where there is none.
-
-        Returns
-        -------
-        ndarray, shape by broadcasting
-
-        Notes
-        -----
         With n replicates the statistic has Student's noncentral distribution with the noncentrality
         :math:`\sqrt n\, \Delta/s` and n - 1 degrees of freedom where a run has both states (paired), 2 n - 2 where the
         states have runs of their own: there :math:`s^2 = s_0^2 + s_1^2`, and the scatters are taken as equal.
 
-        References
-        ----------
-        .. [1] J. Cohen, Statistical Power Analysis for the Behavioral Sciences, 2nd ed., Erlbaum 1988, chapter 2.
+        Source: J. Cohen, Statistical Power Analysis for the Behavioral Sciences, 2nd ed., Erlbaum 1988, chapter 2.
         """
         from scipy.stats import nct, t
 
@@ -80,40 +61,18 @@ class Comparison:
         return np.asarray(nct.sf(critical, free, noncentrality) + lower)
 
     def replicates(self, *, difference: float, deviation: float, power: float, significance: float) -> int:
-        """Least number of replicates with which a difference is found with a probability.
-
-        Parameters
-        ----------
-        difference : float
-            Friction reduction to be shown.
-        deviation : float
-            Standard deviation of one difference.
-        power : float
-            Probability to find the difference.
-        significance : float
-            Probability to find a difference where there is none.
-
-        Returns
-        -------
-        int
-
-        Raises
-        ------
-        InvalidInput
-            If a probability does not lie between 0 and 1, the difference is not positive, or more than
-            `MOST_REPLICATES` are needed.
-        """
+        """Least number of replicates with which a difference is found with a probability."""
         require_positive(difference=difference, deviation=deviation)
         for name, value in (("power", power), ("significance", significance)):
             if not 0 < value < 1:
                 raise InvalidInput(f"{name} must lie between 0 and 1, got {value:g}; usual are 0.8 and 0.05")
         if power <= significance:
             raise InvalidInput(f"power {power:g} must be above the significance {significance:g}")
-        counts = np.arange(2, MOST_REPLICATES + 1)
+        counts = np.arange(2, MAX_REPLICATES + 1)
         found = self.power(difference=difference, deviation=deviation, replicates=counts, significance=significance)
         if found[-1] < power:
             raise InvalidInput(
-                f"a difference of {difference:g} under a scatter of {deviation:.2g} needs more than {MOST_REPLICATES}"
+                f"a difference of {difference:g} under a scatter of {deviation:.2g} needs more than {MAX_REPLICATES}"
                 f" replicates for a power of {power:g}; show a larger difference or reduce the scatter"
             )
         return int(counts[np.argmax(found >= power)])

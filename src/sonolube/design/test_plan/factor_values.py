@@ -9,7 +9,7 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.text.units import to_si
 
-MOST_VALUES: Final = 200
+MAX_VALUES: Final = 200
 """Number of values of one factor."""
 
 _NUMBER: Final = re.compile(r"[-+.\deE]+")
@@ -17,29 +17,7 @@ _DIGITS: Final = 3  # of values between the ends of a range, so that they can be
 
 
 def factor_values(text: str, *, unit: str, option: str, count: int) -> Floats:
-    """Values of a factor in SI, rising.
-
-    Parameters
-    ----------
-    text : str
-        `first:last` for values in equal ratios, `first:last:count`, or `one,two,...`; the unit after the last number
-        holds for those without one.
-    unit : str
-        SI unit.
-    option : str
-        For errors.
-    count : int
-        Of a range without a count.
-
-    Returns
-    -------
-    ndarray
-
-    Raises
-    ------
-    InvalidInput
-        If the text is neither, or has more than `MOST_VALUES` values.
-    """
+    """Values of a factor in SI, rising."""
     return _range(text, unit, option, count) if ":" in text else _listed(text, unit, option)
 
 
@@ -50,8 +28,8 @@ def _range(text: str, unit: str, option: str, count: int) -> Floats:
     if len(parts) == 3:
         if not number.isdigit():
             raise InvalidInput(f"{option} {text}: the third part is a number of values, such as 20:200:7mm/s")
-        if not 2 <= int(number[:9]) <= MOST_VALUES:
-            raise InvalidInput(f"{option} {text}: a range has 2 to {MOST_VALUES} values")
+        if not 2 <= int(number[:9]) <= MAX_VALUES:
+            raise InvalidInput(f"{option} {text}: a range has 2 to {MAX_VALUES} values")
         count = int(number)
     elif len(parts) != 2:
         raise InvalidInput(f"{option} {text}: must look like first:last, first:last:count or one,two,...")
@@ -65,8 +43,8 @@ def _range(text: str, unit: str, option: str, count: int) -> Floats:
 def _listed(text: str, unit: str, option: str) -> Floats:
     """Values of a list."""
     parts = [part.strip() for part in text.split(",")]
-    if len(parts) > MOST_VALUES:
-        raise InvalidInput(f"{option}: {len(parts)} values; at most {MOST_VALUES}")
+    if len(parts) > MAX_VALUES:
+        raise InvalidInput(f"{option}: {len(parts)} values; at most {MAX_VALUES}")
     common = _split_unit(parts[-1])[1]
     values = np.unique([_number(part, common, unit, option) for part in parts])
     if not np.all(values > 0):

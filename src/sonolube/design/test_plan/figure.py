@@ -7,20 +7,11 @@ from sonolube.checks import Floats
 from sonolube.design.test_plan.plan import TestPlan
 from sonolube.text.units import format_si
 
-_MOST_DESCRIBED = 4  # points whose conditions are written below the axis
+_MAX_DESCRIBED = 4  # points whose conditions are written below the axis
 
 
 def plan_chart(plan: TestPlan) -> Chart:
-    """Candidates over speed and amplitude, coloured by information, and the prediction at the points of a plan.
-
-    Parameters
-    ----------
-    plan : TestPlan
-
-    Returns
-    -------
-    Chart
-    """
+    """Candidates over speed and amplitude, coloured by information, and the prediction at the points of a plan."""
     panels = (_candidates(plan), _ratios(plan))
     return Chart(panels=panels, size=(7.4, 3.7), columns=2, widths=(1.25, 1.0), legend="top", legend_columns=3)
 
@@ -81,7 +72,7 @@ def _ratios(plan: TestPlan) -> Panel:
         parts.append(Points(x=shifted, y=medians[points], label=label, colour=place, marker=place, size=1.2))
     parts.append(Rule(value=1 - plan.question.difference, along="y", label="difference to be shown"))
     words = [str(number) for number in range(1, len(points) + 1)]
-    if len(points) <= _MOST_DESCRIBED:
+    if len(points) <= _MAX_DESCRIBED:
         words = [f"{word}\n{_condition(plan, point)}" for word, point in zip(words, points, strict=True)]
     x = Axis(
         label="Point of the plan",

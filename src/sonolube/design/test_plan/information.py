@@ -27,7 +27,7 @@ _Information = Callable[[Iterable[int]], float]
 
 _ROUNDS: Final = 5  # of exchanges, at most
 _GAIN: Final = 1e-9  # bits, below which an exchange is none
-_LEAST_VARIANCE: Final = 1e-12
+_MIN_VARIANCE: Final = 1e-12
 _NEGLIGIBLE: Final = -700.0  # logarithm of a share that changes no sum; below it, exp is many times slower
 
 
@@ -75,30 +75,15 @@ class ModelOutcomes:
 def mutual_information(models: Sequence[ModelOutcomes], points: Integers, *, noise: Floats, seed: int = 0) -> float:
     """Expected information of a batch of tests about which model holds, in bits.
 
-    Parameters
-    ----------
-    models : sequence of ModelOutcomes
-        Weights of sum 1, and the same number of draws in each.
-    points : ndarray of int, shape (b,)
-        Candidates of the batch.
-    noise : ndarray, shape (m,)
-        Standard deviation of the measured outcome of each candidate.
-    seed : int
+    From 0 to the entropy of the weights.
 
-    Returns
-    -------
-    float
-        From 0 to the entropy of the weights.
-
-    Notes
-    -----
     By two opposite, evenly spread samples for each draw; their own draw is left out of the mixture that they are
     compared with.
     """
     points = np.sort(points)  # so that the order of a batch changes nothing
     samples, mixtures = [], []
     for index, model in enumerate(models):
-        covariance = model.covariance(points) + np.diag(noise[points] ** 2 + _LEAST_VARIANCE)
+        covariance = model.covariance(points) + np.diag(noise[points] ** 2 + _MIN_VARIANCE)
         factor = np.asarray(np.linalg.cholesky(covariance), dtype=float)
         normals = _normals(len(model.means), len(points), seed + index)
         errors = np.einsum("jab,jb->ja", factor, normals)
@@ -185,25 +170,6 @@ def best_batch(
 ) -> Batch:
     """Batch of tests with the most expected information, by greedy choice and then by exchanges.
 
-    Parameters
-    ----------
-    models : sequence of ModelOutcomes
-    count : int
-        Number of tests.
-    noise : ndarray, shape (m,)
-        Standard deviation of the measured outcome of each candidate.
-    allowed : ndarray of int
-        Candidates to choose from, at least `count`.
-    first : sequence of int
-        Candidates that the batch begins with, whatever their information.
-    seed : int
-
-    Returns
-    -------
-    Batch
-
-    Notes
-    -----
     Mutual information with errors that are correlated between candidates need not be submodular, so that no bound of
     the greedy choice is claimed; tests compare with all batches of small rigs. All batches are compared with the
     same random numbers.

@@ -27,7 +27,7 @@ from sonolube.text.units import format_si
 if TYPE_CHECKING:
     import xarray as xr
 
-MOST_RUNS: Final = 1000
+MAX_RUNS: Final = 1000
 """Number of runs of a plan."""
 
 _DRAWS: Final = 4000
@@ -202,35 +202,7 @@ def plan_tests(
     disc: str | None = None,
     seed: int = 0,
 ) -> TestPlan:
-    """Plan the next tests of a rig.
-
-    Parameters
-    ----------
-    rig : Rig
-    factors : Factors
-        Loads, speeds and amplitudes to choose from.
-    question : Question
-    procedure : Procedure
-    points : int
-        Number of conditions to test.
-    limits : RigLimits
-    runs : xarray.Dataset, optional
-        Own measured runs over `run`.
-    pin, disc : str, optional
-        Materials of the catalogue.
-    seed : int
-        Of the order of the runs, and of the draws.
-
-    Returns
-    -------
-    TestPlan
-
-    Raises
-    ------
-    InvalidInput
-        If the rig cannot make enough of the points, no point is predicted to show the difference, or the plan has
-        more than `MOST_RUNS` runs.
-    """
+    """Plan the next tests of a rig."""
     inputs = rig_inputs(rig)
     own = None if runs is None else own_runs(runs, inputs, title=rig.title)
     if own is not None and own.friction is not None:
@@ -239,8 +211,8 @@ def plan_tests(
     comparison, deviation = question.comparison, question.comparison.deviation(scatter)
     needed = {"difference": question.difference, "deviation": deviation, "significance": question.significance}
     replicates = comparison.replicates(power=question.power, **needed)
-    if points < 1 or points * replicates > MOST_RUNS:
-        raise InvalidInput(f"{points} points with {replicates} replicates; a plan has 1 to {MOST_RUNS} runs")
+    if points < 1 or points * replicates > MAX_RUNS:
+        raise InvalidInput(f"{points} points with {replicates} replicates; a plan has 1 to {MAX_RUNS} runs")
     candidates = candidate_tests(rig, inputs, factors, limits=limits, pin=pin, disc=disc)
     at = inputs.at(vibration_amplitude=candidates.vibration_amplitude, sliding_speed=candidates.sliding_speed)
     tested = None if own is None else own.tested

@@ -119,24 +119,7 @@ def randomised_runs(
 ) -> tuple[PlannedRun, ...]:
     """Runs of a plan in their order: the first point first, then each block has every point once, in random order.
 
-    Parameters
-    ----------
-    points : int
-        Number of points.
-    replicates : int
-        Number of blocks.
-    blocking : Blocking
-    specimens : int
-        Pairs of bodies for one run.
-    seed : int
-
-    Returns
-    -------
-    tuple of PlannedRun
-
-    References
-    ----------
-    .. [1] D. C. Montgomery, Design and Analysis of Experiments, 8th ed., Wiley 2013, chapter 4.
+    Source: D. C. Montgomery, Design and Analysis of Experiments, 8th ed., Wiley 2013, chapter 4.
     """
     rng = np.random.default_rng(seed)
     runs: list[PlannedRun] = []

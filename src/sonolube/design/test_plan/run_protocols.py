@@ -21,14 +21,7 @@ _FORCE_MARGIN: Final = 3.0  # of the friction limit over the intrinsic friction
 def run_protocols(plan: TestPlan) -> dict[str, Protocol]:
     """Protocol of each run by a name with their number, so that files of another plan are not mistaken for these.
 
-    Parameters
-    ----------
-    plan : TestPlan
-
-    Returns
-    -------
-    dict of str to Protocol
-        Such as `run-01-of-28`, or `run-01-without-of-28` and `run-01-with-of-28` on specimens of their own.
+    Such as `run-01-of-28`, or `run-01-without-of-28` and `run-01-with-of-28` on specimens of their own.
     """
     count = len(plan.runs)
     return {

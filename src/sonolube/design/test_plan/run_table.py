@@ -16,16 +16,7 @@ RESULTS = ("friction_force [N]", "intrinsic_friction_force [N]")
 
 
 def run_table(plan: TestPlan) -> str:
-    """CSV text of the runs in their order, to be filled and read by `sonolube.measurement.measured_runs.read_runs`.
-
-    Parameters
-    ----------
-    plan : TestPlan
-
-    Returns
-    -------
-    str
-    """
+    """CSV text of the runs in their order, to be filled and read by `sonolube.measurement.measured_runs.read_runs`."""
     known = [each for each in _COLUMNS if each[0] != "voltage_peak_to_peak" or has_voltage(plan)]
     lines = [",".join(["run", "block", *(f"{name} [{unit}]" for name, unit, _ in known), *RESULTS])]
     for run in plan.runs:
@@ -36,17 +27,7 @@ def run_table(plan: TestPlan) -> str:
 
 
 def has_results(text: str) -> bool:
-    """Whether a table of runs holds any result, which must not be replaced by an empty one.
-
-    Parameters
-    ----------
-    text : str
-        Content of a CSV file; what is no such table counts as one with results.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a table of runs holds any result, which must not be replaced by an empty one."""
     rows = list(csv.DictReader(io.StringIO(text)))
     return not rows or any((row.get(name) or "").strip() or name not in row for row in rows for name in RESULTS)
 

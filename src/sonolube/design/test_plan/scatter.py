@@ -43,12 +43,6 @@ class Scatter:
 def published_scatter() -> Scatter:
     """Scatter of the steady friction of D Table 2.3, root mean square over its three speeds.
 
-    Returns
-    -------
-    Scatter
-
-    Notes
-    -----
     The scatters there are of the windows of one test. States of one run are taken as independent, so that the
     scatter of the reduction is that of both.
     """
@@ -68,32 +62,14 @@ def published_scatter() -> Scatter:
 
 
 def assumed_scatter(value: float) -> Scatter:
-    """Scatter as a user states it, the same with and without vibration.
-
-    Parameters
-    ----------
-    value : float
-        Standard deviation of a friction force between runs, over the friction without vibration.
-
-    Returns
-    -------
-    Scatter
-    """
+    """Scatter as a user states it, the same with and without vibration."""
     return Scatter(intrinsic=value, vibrated=value, reduction=float(np.hypot(value, value)), source="as given")
 
 
 def scatter_of_runs(runs: "xr.Dataset") -> Scatter | None:
     """Scatter of own runs about the means of their conditions.
 
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        Over `run`, by `sonolube.measurement.measured_runs.read_runs`.
-
-    Returns
-    -------
-    Scatter or None
-        None where fewer than four repeats do not give it.
+    None where fewer than four repeats do not give it.
     """
     present = [name for name in _CONDITIONS if name in runs]
     reduction = runs["friction_reduction"].to_numpy()

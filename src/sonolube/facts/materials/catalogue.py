@@ -13,7 +13,7 @@ from sonolube.facts.materials.records import Material, SourcedText, SourcedValue
 
 
 def material(name: str) -> Material:
-    """Return a material of the catalogue, or a class of materials, by its name or alias.
+    """Material of the catalogue, or a class of materials, by its name or alias.
 
     Parameters
     ----------
@@ -45,17 +45,17 @@ def material(name: str) -> Material:
 
 
 def material_names() -> tuple[str, ...]:
-    """Return the names of all materials, including piezoelectric ceramics, in alphabetical order; without classes."""
+    """Names of all materials, including piezoelectric ceramics, in alphabetical order; without classes."""
     return tuple(sorted(_materials()))
 
 
 def material_classes() -> tuple[str, ...]:
-    """Return the names of the classes of materials, such as "steel" or "rubber", in alphabetical order."""
+    """Names of the classes of materials, such as "steel" or "rubber", in alphabetical order."""
     return tuple(sorted(_classes()))
 
 
 def material_families() -> tuple[str, ...]:
-    """Return the families of all materials and classes, in alphabetical order."""
+    """Families of all materials and classes, in alphabetical order."""
     return tuple(sorted({each.family for each in _known().values()}))
 
 
@@ -64,36 +64,36 @@ _FILES = ("engineering.toml", "piezo.toml")
 
 @cache
 def _materials() -> Mapping[str, Material]:
-    """Return all materials of the property files by name."""
+    """All materials of the property files by name."""
     tables = [read_property_file(file_name) for file_name in _FILES]
     return {name: _material(name, entry, table.sources) for table in tables for name, entry in table.entries.items()}
 
 
 @cache
 def _classes() -> Mapping[str, Material]:
-    """Return all classes of materials by name."""
+    """All classes of materials by name."""
     return classes_of(_materials())
 
 
 @cache
 def _known() -> Mapping[str, Material]:
-    """Return all materials and classes by name."""
+    """All materials and classes by name."""
     return {**_materials(), **_classes()}
 
 
 @cache
 def _names_by_key() -> Mapping[str, str]:
-    """Return the names of the materials and classes by the keys of their names and aliases."""
+    """Names of the materials and classes by the keys of their names and aliases."""
     return {_key(each): known.name for known in _known().values() for each in (known.name, *known.aliases)}
 
 
 def _key(name: str) -> str:
-    """Return a name without case, spaces and punctuation."""
+    """Name without case, spaces and punctuation."""
     return re.sub(r"[\W_]+", "", name.lower())
 
 
 def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -> Material:
-    """Return the material of one entry of a property file."""
+    """Material of one entry of a property file."""
     structure = entry.get("crystal_structure")
     return Material(
         name=name,

@@ -15,19 +15,8 @@ _OF_RANGE = 4  # standard deviations between the ends of a range that holds 95 o
 
 
 def classes_of(materials: Mapping[str, Material]) -> Mapping[str, Material]:
-    r"""Return the classes of materials by name.
+    r"""Classes of materials by name.
 
-    Parameters
-    ----------
-    materials : mapping of str to Material
-        Single materials by name, of which the classes are made.
-
-    Returns
-    -------
-    mapping of str to Material
-
-    Notes
-    -----
     Over n materials of a class a property has the median exp(m) and the standard deviation of its logarithm
 
     .. math:: s \sqrt{1 + 1/n}
@@ -49,7 +38,7 @@ def _class(
     tempers: Mapping[str, Any],
     materials: Mapping[str, Material],
 ) -> Material:
-    """Return the class of one entry: properties of its members, and those that the entry cites."""
+    """Class of one entry: properties of its members, and those that the entry cites."""
     family = entry.get("family", name)
     own = [each for each in materials.values() if each.family == family]
     members = [materials[each] for each in entry["members"]] if "members" in entry else own
@@ -68,7 +57,7 @@ def _class(
 
 
 def _over(key: str, members: Sequence[Material]) -> SourcedValue:
-    """Return a property over the members that have it."""
+    """Property over the members that have it."""
     known = {each.name: each.properties[key] for each in members if key in each.properties}
     first, count = next(iter(known.values())), len(known)
     logarithms = [log(each.value) for each in known.values()]
@@ -84,7 +73,7 @@ def _over(key: str, members: Sequence[Material]) -> SourcedValue:
 
 
 def _tempered(known: SourcedValue, tempers: Mapping[str, Any]) -> SourcedValue:
-    """Return a property that varies at least as that of one alloy over its tempers."""
+    """Property that varies at least as that of one alloy over its tempers."""
     least = log(tempers["high"] / tempers["low"]) / _OF_RANGE
     if known.deviation >= least:
         return known
@@ -93,7 +82,7 @@ def _tempered(known: SourcedValue, tempers: Mapping[str, Any]) -> SourcedValue:
 
 
 def _ranged(entry: Mapping[str, Any]) -> SourcedValue:
-    """Return a property of a cited range, or of a cited value."""
+    """Property of a cited range, or of a cited value."""
     if "value" in entry:
         return SourcedValue(**entry)
     low, high = entry["low"], entry["high"]

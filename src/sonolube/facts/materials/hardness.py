@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from sonolube.checks import require_positive
 
 _TABOR_FACTOR = 3.0
-_LEAST_FACTOR, _LARGEST_FACTOR = 2.0, 6.0
+_MIN_FACTOR, _LARGEST_FACTOR = 2.0, 6.0
 _SOURCE = "D. Tabor, The Hardness and Strength of Metals, J. Inst. Met. 79, 1 (1951): H = c Y, c = 2.8 to 3.2"
 
 
@@ -72,5 +72,5 @@ def yield_strength_from_hardness(*, hardness: float) -> YieldStrengthEstimate:
     """
     pressure = float(require_positive(hardness=hardness))
     return YieldStrengthEstimate(
-        yield_strength=pressure / _TABOR_FACTOR, low=pressure / _LARGEST_FACTOR, high=pressure / _LEAST_FACTOR
+        yield_strength=pressure / _TABOR_FACTOR, low=pressure / _LARGEST_FACTOR, high=pressure / _MIN_FACTOR
     )

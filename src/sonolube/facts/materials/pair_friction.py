@@ -57,7 +57,7 @@ class FrictionPair:
 
 
 def dry_friction(first: str, second: str) -> DryFriction:
-    """Return the range of the coefficient of dry friction of a pair of materials.
+    """Range of the coefficient of dry friction of a pair of materials.
 
     Parameters
     ----------
@@ -92,14 +92,14 @@ def dry_friction(first: str, second: str) -> DryFriction:
 
 @cache
 def dry_friction_pairs() -> tuple[FrictionPair, ...]:
-    """Return all entries of the table of dry friction that name materials or families."""
+    """All entries of the table of dry friction that name materials or families."""
     content = _content()
     return tuple(_pair(entry, entry["first"], entry["second"], content["sources"]) for entry in content["pair"])
 
 
 @cache
 def dry_friction_classes() -> tuple[FrictionPair, ...]:
-    """Return the entries for classes of pairs, such as metal on ceramic, of which the first that fits holds."""
+    """Entries for classes of pairs, such as metal on ceramic, of which the first that fits holds."""
     content = _content()
     kinds: Mapping[str, Sequence[str]] = content["kinds"]
     kinds = {**kinds, "any": [family for families in kinds.values() for family in families]}
@@ -116,12 +116,12 @@ def dry_friction_classes() -> tuple[FrictionPair, ...]:
 
 @cache
 def _content() -> Mapping[str, Any]:
-    """Return the content of the file of dry friction."""
+    """Content of the file of dry friction."""
     return tomllib.loads(files("sonolube.facts.materials").joinpath("dry_friction.toml").read_text(encoding="utf-8"))
 
 
 def _class_title(entry: Mapping[str, Any]) -> str:
-    """Return the class of pairs of an entry in words."""
+    """Class of pairs of an entry in words."""
     second = "one of its own family" if entry.get("alike") else {"any": "any material"}.get(entry["second"])
     return f"{entry['first']} on {second or entry['second']}"
 
@@ -129,7 +129,7 @@ def _class_title(entry: Mapping[str, Any]) -> str:
 def _pair(
     entry: Mapping[str, Any], first: Sequence[str], second: Sequence[str], sources: Mapping[str, str]
 ) -> FrictionPair:
-    """Return one entry of the table with its sources spelt out."""
+    """One entry of the table with its sources spelt out."""
     numbers = {key: value for key, value in entry.items() if key not in ("first", "second", "source", "alike")}
     return FrictionPair(
         sides=(frozenset(first), frozenset(second)),
@@ -139,7 +139,7 @@ def _pair(
 
 
 def _specificity(pair: FrictionPair, one: Material, other: Material) -> int:
-    """Return 0 where an entry is not of two materials, else more the more of both it names."""
+    """0 where an entry is not of two materials, else more the more of both it names."""
     if pair.alike and one.family != other.family:
         return 0
     left, right = pair.sides
@@ -147,7 +147,7 @@ def _specificity(pair: FrictionPair, one: Material, other: Material) -> int:
 
 
 def _match(side: frozenset[str], body: Material) -> int:
-    """Return 2 where a side names a material, 1 where it names its family, 0 where neither."""
+    """2 where a side names a material, 1 where it names its family, 0 where neither."""
     if body.name in side and body.name != body.family:
         return 2
     return int(body.family in side)

@@ -90,7 +90,7 @@ def piezo_ceramic_from_strain_charge(
     source: str = "",
     note: str = "",
 ) -> PiezoCeramic:
-    r"""Return a piezoelectric ceramic from its constants in strain-charge form.
+    r"""Piezoelectric ceramic from its constants in strain-charge form.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def piezo_ceramic_from_stress_charge(
     source: str = "",
     note: str = "",
 ) -> PiezoCeramic:
-    r"""Return a piezoelectric ceramic from its constants in stress-charge form.
+    r"""Piezoelectric ceramic from its constants in stress-charge form.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ _CONSTRUCTORS = {"strain-charge": piezo_ceramic_from_strain_charge, "stress-char
 
 @cache
 def piezo_ceramic(name: str) -> PiezoCeramic:
-    """Return a piezoelectric ceramic of the catalogue with its published complete set of constants.
+    """Piezoelectric ceramic of the catalogue with its published complete set of constants.
 
     Parameters
     ----------
@@ -254,14 +254,14 @@ def piezo_ceramic(name: str) -> PiezoCeramic:
 
 
 def piezo_ceramic_names() -> tuple[str, ...]:
-    """Return the names of the ceramics with a complete set of constants, in alphabetical order."""
+    """Names of the ceramics with a complete set of constants, in alphabetical order."""
     return tuple(
         sorted(name for name, entry in read_property_file("piezo.toml").entries.items() if "constants" in entry)
     )
 
 
 def coupling_factors(ceramic: PiezoCeramic) -> dict[str, float]:
-    r"""Return the electromechanical coupling factors of a ceramic from its constants, as magnitudes.
+    r"""Electromechanical coupling factors of a ceramic from its constants, as magnitudes.
 
     Parameters
     ----------
@@ -301,14 +301,14 @@ def coupling_factors(ceramic: PiezoCeramic) -> dict[str, float]:
 
 
 def _constants(kind: str, constants: Mapping[str, float], *indices: str) -> list[float]:
-    """Return the constants in the order of their indices; refuse missing and surplus ones."""
+    """Constants in the order of their indices; refuse missing and surplus ones."""
     if set(constants) != set(indices):
         raise InvalidInput(f"{kind} constants must be those of index {', '.join(indices)}, got {', '.join(constants)}")
     return [float(require_finite(**{f"{kind} constant {index}": constants[index]})) for index in indices]
 
 
 def _elastic_matrix(m11: float, m12: float, m13: float, m33: float, m44: float, m66: float) -> Floats:
-    """Return the elastic matrix of class 6mm from its independent constants."""
+    """Elastic matrix of class 6mm from its independent constants."""
     return np.array(
         [
             [m11, m12, m13, 0.0, 0.0, 0.0],
@@ -322,7 +322,7 @@ def _elastic_matrix(m11: float, m12: float, m13: float, m33: float, m44: float, 
 
 
 def _inverse(elastic: Floats) -> Floats:
-    """Return the inverse of an elastic matrix; refuse a singular one."""
+    """Inverse of an elastic matrix; refuse a singular one."""
     try:
         return np.linalg.inv(elastic).astype(np.float64)
     except np.linalg.LinAlgError:
@@ -330,12 +330,12 @@ def _inverse(elastic: Floats) -> Floats:
 
 
 def _piezoelectric_matrix(piezoelectric: Mapping[str, float]) -> Floats:
-    """Return the piezoelectric matrix of class 6mm, shape (3, 6), from its independent constants."""
+    """Piezoelectric matrix of class 6mm, shape (3, 6), from its independent constants."""
     p31, p33, p15 = _constants("piezoelectric", piezoelectric, "31", "33", "15")
     return np.array([[0.0, 0.0, 0.0, 0.0, p15, 0.0], [0.0, 0.0, 0.0, p15, 0.0, 0.0], [p31, p31, p33, 0.0, 0.0, 0.0]])
 
 
 def _permittivities(relative_permittivity: Mapping[str, float]) -> Floats:
-    """Return the principal permittivities from the relative ones, in F/m."""
+    """Principal permittivities from the relative ones, in F/m."""
     eps11, eps33 = _constants("relative_permittivity", relative_permittivity, "11", "33")
     return VACUUM_PERMITTIVITY * np.array([eps11, eps11, eps33])

@@ -26,12 +26,12 @@ class PropertyFile:
 
 @cache
 def read_property_file(file_name: str) -> PropertyFile:
-    """Return the content of a property file of this package."""
+    """Content of a property file of this package."""
     content = tomllib.loads(files("sonolube.facts.materials").joinpath(file_name).read_text(encoding="utf-8"))
     sources = content.pop("sources")
     return PropertyFile(sources=sources, entries=content)
 
 
 def cited(entry: Mapping[str, Any], sources: Mapping[str, str]) -> dict[str, Any]:
-    """Return an entry with the key of its source replaced by the citation."""
+    """Entry with the key of its source replaced by the citation."""
     return {**entry, "source": sources[entry["source"]]}

@@ -86,7 +86,7 @@ class Material:
     is_class: bool = False
 
     def property(self, property_name: str) -> SourcedValue:
-        """Return a property with its unit and source.
+        """Property with its unit and source.
 
         Parameters
         ----------
@@ -113,7 +113,7 @@ class Material:
             ) from None
 
     def value(self, property_name: str) -> float:
-        """Return the numerical value of a property, in SI.
+        """Numerical value of a property, in SI.
 
         Parameters
         ----------

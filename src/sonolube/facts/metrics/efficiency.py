@@ -18,7 +18,7 @@ def efficiency_coefficient(
     normal_load: ArrayLike,
     actuator_power: ArrayLike,
 ) -> Floats:
-    r"""Return the efficiency coefficient: frictional power saved per nominal pressure and actuator power. [m2/N]
+    r"""Efficiency coefficient: frictional power saved per nominal pressure and actuator power. [m2/N]
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class EfficiencyLine:
 
 
 def efficiency_at(line: EfficiencyLine, *, sliding_speed: ArrayLike) -> Floats:
-    """Return the efficiency coefficient of an efficiency line at a sliding speed, D 4.2. [m2/N]
+    """Efficiency coefficient of an efficiency line at a sliding speed, D 4.2. [m2/N]
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def power_for_friction(
     nominal_area: ArrayLike,
     normal_load: ArrayLike,
 ) -> Floats:
-    r"""Return the actuator power that reduces friction to a target force. [W]
+    r"""Actuator power that reduces friction to a target force. [W]
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def friction_at_power(
     nominal_area: ArrayLike,
     normal_load: ArrayLike,
 ) -> Floats:
-    r"""Return the friction force that remains at an actuator power. [N]
+    r"""Friction force that remains at an actuator power. [N]
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ def friction_at_power(
 def _friction_saved_per_power(
     line: EfficiencyLine, sliding_speed: ArrayLike, nominal_area: ArrayLike, normal_load: ArrayLike
 ) -> Floats:
-    """Return the friction force saved per actuator power, F_N eta/(v A_n), in N/W."""
+    """Friction force saved per actuator power, F_N eta/(v A_n), in N/W."""
     v = require_positive(sliding_speed=sliding_speed)
     load, area = require_positive(normal_load=normal_load), require_positive(nominal_area=nominal_area)
     return load * efficiency_at(line, sliding_speed=v) / (v * area)
@@ -272,5 +272,5 @@ def _require_reduction(intrinsic: Floats, reduced: Floats) -> None:
 
 
 def _first(values: Floats, where: NDArray[np.bool_]) -> float:
-    """Return the first value at which a condition holds."""
+    """First value at which a condition holds."""
     return float(np.broadcast_to(values, where.shape)[where].flat[0])

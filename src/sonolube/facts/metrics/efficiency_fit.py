@@ -68,7 +68,7 @@ class PowerEstimate:
 
 
 def fit_efficiency(*, sliding_speed: ArrayLike, efficiency_coefficient: ArrayLike) -> EfficiencyFit:
-    r"""Return the efficiency line fitted to measured efficiency coefficients by least squares.
+    r"""Efficiency line fitted to measured efficiency coefficients by least squares.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def fit_efficiency(*, sliding_speed: ArrayLike, efficiency_coefficient: ArrayLik
 def efficiency_confidence_band(
     fit: EfficiencyFit, *, sliding_speed: ArrayLike, confidence_level: float = 0.95
 ) -> tuple[Floats, Floats]:
-    r"""Return the confidence band of the efficiency line at a speed, its lower and upper limit. [m2/N]
+    r"""Confidence band of the efficiency line at a speed, its lower and upper limit. [m2/N]
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def efficiency_confidence_band(
 def efficiency_prediction_band(
     fit: EfficiencyFit, *, sliding_speed: ArrayLike, confidence_level: float = 0.95
 ) -> tuple[Floats, Floats]:
-    r"""Return the prediction band of a further run's efficiency at a speed, its lower and upper limit. [m2/N]
+    r"""Prediction band of a further run's efficiency at a speed, its lower and upper limit. [m2/N]
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def power_estimate(
     normal_load: float,
     confidence_level: float = 0.95,
 ) -> PowerEstimate:
-    """Return the actuator power that reduces friction to a target force in a further run, with its prediction interval.
+    """Actuator power that reduces friction to a target force in a further run, with its prediction interval.
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ def power_estimate(
 
 
 def require_fitted_speed(fit: EfficiencyFit, *, sliding_speed: ArrayLike) -> Floats:
-    """Return speeds as an array; refuse any outside the range of the runs of a fit. [m/s]
+    """Speeds as an array; refuse any outside the range of the runs of a fit. [m/s]
 
     Parameters
     ----------
@@ -303,12 +303,12 @@ def require_fitted_speed(fit: EfficiencyFit, *, sliding_speed: ArrayLike) -> Flo
 
 
 def _line_error(fit: EfficiencyFit, v: Floats) -> Floats:
-    """Return the standard error of the line at speeds, in m2/N."""
+    """Standard error of the line at speeds, in m2/N."""
     return fit.efficiency_deviation * np.sqrt(1 / fit.runs + (v - fit.mean_speed) ** 2 / fit.speed_sum_of_squares)
 
 
 def _band(fit: EfficiencyFit, v: Floats, confidence_level: float, error: Floats) -> tuple[Floats, Floats]:
-    """Return the line less and plus Student's t times an error."""
+    """Line less and plus Student's t times an error."""
     level = float(require_within(0.0, 1.0, confidence_level=confidence_level))
     line = fit.line.slope * v + fit.line.intercept
     half_width = float(stdtrit(fit.runs - 2, (1 + level) / 2)) * error

@@ -7,7 +7,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 
 
 def peak_vibration_velocity(*, frequency: ArrayLike, vibration_amplitude: ArrayLike) -> Floats:
-    r"""Return the peak velocity of a harmonic vibration. [m/s]
+    r"""Peak velocity of a harmonic vibration. [m/s]
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def peak_vibration_velocity(*, frequency: ArrayLike, vibration_amplitude: ArrayL
 
 
 def superimposed_speed(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
-    r"""Return the superimposed speed of sliding and a vibration perpendicular to it, after D Table 4.5. [m/s]
+    r"""Superimposed speed of sliding and a vibration perpendicular to it, after D Table 4.5. [m/s]
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def superimposed_speed(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLik
 
 
 def dot_spacing(*, sliding_speed: ArrayLike, frequency: ArrayLike) -> Floats:
-    r"""Return the spacing along the wear track of the marks left by successive vibration cycles. [m]
+    r"""Spacing along the wear track of the marks left by successive vibration cycles. [m]
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def dot_spacing(*, sliding_speed: ArrayLike, frequency: ArrayLike) -> Floats:
 
 
 def indentation_spacing(*, sliding_speed: ArrayLike, period: ArrayLike) -> Floats:
-    r"""Return the spacing along the wear track of the indentations left by stick-slip. [m]
+    r"""Spacing along the wear track of the indentations left by stick-slip. [m]
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def indentation_spacing(*, sliding_speed: ArrayLike, period: ArrayLike) -> Float
 
 
 def linear_speed(*, rotation_speed: ArrayLike, groove_diameter: ArrayLike) -> Floats:
-    r"""Return the sliding speed of a pin on a rotating disc. [m/s]
+    r"""Sliding speed of a pin on a rotating disc. [m/s]
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def linear_speed(*, rotation_speed: ArrayLike, groove_diameter: ArrayLike) -> Fl
 
 
 def sliding_distance(*, revolutions: ArrayLike, groove_diameter: ArrayLike) -> Floats:
-    r"""Return the sliding distance of a pin on a rotating disc. [m]
+    r"""Sliding distance of a pin on a rotating disc. [m]
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ class DCMotor:
 def motor_from_two_operating_points(
     *, motor_voltage: ArrayLike, motor_current: ArrayLike, rotation_speed: ArrayLike
 ) -> DCMotor:
-    r"""Return the torque constant and resistance of a DC motor from two operating points at one voltage.
+    r"""Torque constant and resistance of a DC motor from two operating points at one voltage.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def motor_from_two_operating_points(
 
 
 def motor_speed(motor: DCMotor, *, motor_current: ArrayLike) -> Floats:
-    r"""Return the rotational speed of the disc at a motor current. [1/s]
+    r"""Rotational speed of the disc at a motor current. [1/s]
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def motor_speed(motor: DCMotor, *, motor_current: ArrayLike) -> Floats:
 def friction_from_current(
     *, torque_constant: ArrayLike, motor_current: ArrayLike, idle_current: ArrayLike, groove_diameter: ArrayLike
 ) -> Floats:
-    r"""Return the friction force from a motor current, over that of the idle motor. [N]
+    r"""Friction force from a motor current, over that of the idle motor. [N]
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def friction_from_current(
 def motor_current_under_friction(
     motor: DCMotor, *, friction_force: ArrayLike, idle_current: ArrayLike, groove_diameter: ArrayLike
 ) -> Floats:
-    r"""Return the motor current under a friction force on the disc. [A]
+    r"""Motor current under a friction force on the disc. [A]
 
     Parameters
     ----------

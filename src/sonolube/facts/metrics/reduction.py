@@ -6,7 +6,7 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 
 
 def friction_reduction(*, intrinsic_friction_force: ArrayLike, reduced_friction_force: ArrayLike) -> Floats:
-    r"""Return the friction reduction by vibration, relative to the intrinsic friction force. []
+    r"""Friction reduction by vibration, relative to the intrinsic friction force. []
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def friction_reduction(*, intrinsic_friction_force: ArrayLike, reduced_friction_
 
 
 def wear_reduction(*, intrinsic_wear_rate: ArrayLike, reduced_wear_rate: ArrayLike) -> Floats:
-    r"""Return the wear reduction by vibration, relative to the intrinsic wear rate. []
+    r"""Wear reduction by vibration, relative to the intrinsic wear rate. []
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def wear_reduction(*, intrinsic_wear_rate: ArrayLike, reduced_wear_rate: ArrayLi
 
 
 def wear_rate(*, wear_volume: ArrayLike, sliding_distance: ArrayLike) -> Floats:
-    r"""Return the wear rate, wear volume per sliding distance. [m2]
+    r"""Wear rate, wear volume per sliding distance. [m2]
 
     Parameters
     ----------

@@ -14,21 +14,7 @@ _NAME: Final = re.compile(r"[A-Za-z]\w{0,63}")
 def written_out(content: Mapping[str, Any]) -> dict[str, Any]:
     """Content of a repeat with its steps written out for the values of its variables.
 
-    Parameters
-    ----------
-    content : mapping
-        Of the table as TOML gives it. What is no table is left for the validation of the record.
-
-    Returns
-    -------
-    dict
-        Without values of variables.
-
-    Raises
-    ------
-    ValueError
-        If the name of a variable is no name, its values are no list of texts, no step uses it, or the steps are too
-        many.
+    Without values of variables.
     """
     over, steps = content.get("over"), content.get("steps")
     if not over or not isinstance(over, Mapping) or not isinstance(steps, Sequence) or isinstance(steps, str):

@@ -34,24 +34,7 @@ class SiText:
     highest: float
 
     def number(self, value: object) -> float:
-        """Number in SI of a text with a unit.
-
-        Parameters
-        ----------
-        value : object
-            What the file holds.
-
-        Returns
-        -------
-        float
-
-        Raises
-        ------
-        InvalidInput
-            If it is no text, or not a quantity of this kind.
-        ValueError
-            If the number lies beyond the range.
-        """
+        """Number in SI of a text with a unit."""
         if not isinstance(value, str):
             raise ValueError(f"{value!r} has no unit; expected {unit_description(self.unit)}")
         number = to_si(value, unit=self.unit, name="")

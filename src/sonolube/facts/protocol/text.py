@@ -14,7 +14,7 @@ from sonolube.facts.protocol.time_line import flattened
 from sonolube.text.toml_text import read_toml, require_plain_content
 from sonolube.text.units import format_si
 
-_MOST_FAULTS: Final = 10  # that one refusal names
+_MAX_FAULTS: Final = 10  # that one refusal names
 _LONGEST_FAULT: Final = 300  # characters
 
 
@@ -122,8 +122,8 @@ def _faults(refusal: ValidationError) -> str:
         for each in complaints
         if not (each["type"] == "too_short" and any(_is_below(place, each["loc"]) for place in places))
     ]
-    more = [f"and {len(told) - _MOST_FAULTS} more"] if len(told) > _MOST_FAULTS else []
-    return "; ".join([*told[:_MOST_FAULTS], *more])
+    more = [f"and {len(told) - _MAX_FAULTS} more"] if len(told) > _MAX_FAULTS else []
+    return "; ".join([*told[:_MAX_FAULTS], *more])
 
 
 def _is_below(place: Sequence[str | int], other: Sequence[str | int]) -> bool:

@@ -10,7 +10,7 @@ from sonolube.facts.protocol.record import Protocol
 from sonolube.facts.protocol.steps import Acquire, Drive, MotorSpeed, Prompt, Repeat, Step, Sweep, VoltageSteps, Wait
 from sonolube.text.units import format_si
 
-MOST_SET_POINTS: Final = 10_000
+MAX_SET_POINTS: Final = 10_000
 """Number of set points of a protocol, repeats included."""
 
 PROMPT_DURATIONS: Final[Mapping[str, float]] = MappingProxyType(
@@ -105,7 +105,7 @@ def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
     Raises
     ------
     InvalidInput
-        If there are more than `MOST_SET_POINTS`, or a recording starts while another lasts.
+        If there are more than `MAX_SET_POINTS`, or a recording starts while another lasts.
     """
     _require_bounded(protocol.steps)
     now, until = 0.0, 0.0
@@ -166,8 +166,8 @@ def duration(protocol: Protocol) -> float:
 def _require_bounded(steps: Sequence[Step]) -> None:
     """Raise where steps, written out, are too many or too deep; without writing them out."""
     count = _set_points(steps, depth=0)
-    if count > MOST_SET_POINTS:
-        raise InvalidInput(f"steps: {count:.6g} set points with all repeats; at most {MOST_SET_POINTS}")
+    if count > MAX_SET_POINTS:
+        raise InvalidInput(f"steps: {count:.6g} set points with all repeats; at most {MAX_SET_POINTS}")
 
 
 def _set_points(steps: Sequence[Step], *, depth: int) -> int:

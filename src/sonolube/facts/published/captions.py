@@ -38,7 +38,7 @@ class FigureCaption:
 
 @cache
 def figures() -> tuple[FigureCaption, ...]:
-    """Return the captions of all figures, in the order of D."""
+    """Captions of all figures, in the order of D."""
     text = files("sonolube.facts.published").joinpath("figures.toml").read_text(encoding="utf-8")
     return tuple(
         FigureCaption(**entry | {name: tuple(entry.get(name, ())) for name in ("remarks", "statements")})
@@ -47,7 +47,7 @@ def figures() -> tuple[FigureCaption, ...]:
 
 
 def figure(number: str) -> FigureCaption:
-    """Return the caption of one figure.
+    """Caption of one figure.
 
     Parameters
     ----------

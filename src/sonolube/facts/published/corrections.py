@@ -63,13 +63,13 @@ class Correction:
 
 @cache
 def errata() -> tuple[Erratum, ...]:
-    """Return all errata of D, in the order of their numbers."""
+    """All errata of D, in the order of their numbers."""
     text = files("sonolube.facts.published").joinpath("errata.toml").read_text(encoding="utf-8")
     return tuple(Erratum(**entry) for entry in tomllib.loads(text)["errata"])
 
 
 def erratum(id: str) -> Erratum:  # noqa: A002 - the field's own word
-    """Return one erratum.
+    """One erratum.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class PreviousStudy:
     numbers: tuple[Statement, ...]
 
     def number(self, quantity: str) -> PrintedNumber | None:
-        """Return the quoted number of a quantity in SI; None where D quotes none.
+        """Quoted number of a quantity in SI; None where D quotes none.
 
         Parameters
         ----------
@@ -57,7 +57,7 @@ class PreviousStudy:
 
 @cache
 def previous_studies() -> tuple[PreviousStudy, ...]:
-    """Return the reviewed experiments, in the order of the review in D 1.3.1 and 1.3.2."""
+    """Reviewed experiments, in the order of the review in D 1.3.1 and 1.3.2."""
     text = files("sonolube.facts.published").joinpath("previous_studies.toml").read_text(encoding="utf-8")
     return tuple(
         PreviousStudy(

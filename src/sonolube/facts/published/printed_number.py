@@ -36,14 +36,14 @@ class PrintedNumber:
     rounding_half_width: float
 
     def limits(self) -> "tuple[PrintedNumber, PrintedNumber]":
-        """Return the lower and the upper limit of a printed range as numbers with their rounding intervals."""
+        """Lower and the upper limit of a printed range as numbers with their rounding intervals."""
         h = self.rounding_half_width
         low, high = (replace(self, value=limit, low=limit - h, high=limit + h) for limit in (self.low, self.high))
         return low, high
 
 
 def parse_printed(text: str, unit: str = "", scale: float = 1.0, *, quantity: str = "") -> PrintedNumber:
-    """Return a printed number with its interval, in SI.
+    """Printed number with its interval, in SI.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def parse_printed(text: str, unit: str = "", scale: float = 1.0, *, quantity: st
 
 
 def _rounding_half_width(digits: str) -> float:
-    """Return half a unit of the last digit of a number in decimal or exponential notation."""
+    """Half a unit of the last digit of a number in decimal or exponential notation."""
     mantissa, _, exponent = digits.partition("e")
     decimals = len(mantissa.partition(".")[2])
     return float(f"5e{int(exponent or 0) - decimals - 1}")
@@ -106,7 +106,7 @@ def _rounding_half_width(digits: str) -> float:
 
 @cache
 def _conversion(unit: str, si_unit: str) -> tuple[float, float]:
-    """Return factor and origin of a unit in its SI unit, such as (1, 273.15) for degC in K."""
+    """Factor and origin of a unit in its SI unit, such as (1, 273.15) for degC in K."""
     if unit == si_unit:
         return 1.0, 0.0
     origin = convert(0.0, from_unit=unit, to_unit=si_unit)

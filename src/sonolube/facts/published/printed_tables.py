@@ -98,7 +98,7 @@ class Table:
     layout: str
 
     def to_dataset(self) -> "xr.Dataset":
-        """Return the table as a dataset over dimension `row`, in SI, with units and long names."""
+        """Table as a dataset over dimension `row`, in SI, with units and long names."""
         import xarray as xr
 
         variables = {name: ("row", *_variable(column)) for name, column in self.columns.items()}
@@ -107,14 +107,14 @@ class Table:
 
 @cache
 def table_ids() -> tuple[str, ...]:
-    """Return the numbers of all tables, in the order of D."""
+    """Numbers of all tables, in the order of D."""
     names = (entry.name for entry in files("sonolube.facts.published").joinpath("tables").iterdir())
     ids = (name.removesuffix(".toml") for name in names if name.endswith(".toml"))
     return tuple(sorted(ids, key=lambda number: tuple(map(int, number.split(".")))))
 
 
 def table(id: str) -> Table:  # noqa: A002 - the field's own word
-    """Return one table.
+    """One table.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def table(id: str) -> Table:  # noqa: A002 - the field's own word
 
 @cache
 def _read(number: str) -> Table:
-    """Return a table from its file, its cells parsed and converted to SI."""
+    """Table from its file, its cells parsed and converted to SI."""
     text = files("sonolube.facts.published").joinpath("tables", f"{number}.toml").read_text(encoding="utf-8")
     entry = tomllib.loads(text)
     headings, cells = entry["columns"], zip(*entry["rows"], strict=True)
@@ -156,13 +156,13 @@ def _read(number: str) -> Table:
 
 
 def _column(printed: tuple[str, ...], *, quantity: str, unit: str, scale: float = 1.0, **heading: Any) -> Column:
-    """Return a column from its heading and its printed cells."""
+    """Column from its heading and its printed cells."""
     cells = (parse_printed(text, unit, scale, quantity=quantity) if quantity and text else None for text in printed)
     return Column(quantity=quantity, unit=unit, scale=scale, printed=printed, cells=tuple(cells), **heading)
 
 
 def _variable(column: Column) -> "tuple[list[str] | NDArray[np.float64], dict[str, str]]":
-    """Return values and attributes of a column as a variable of a dataset."""
+    """Values and attributes of a column as a variable of a dataset."""
     attributes = {"long_name": column.meaning, "role": column.role}
     if not column.quantity:
         return list(column.printed), attributes

@@ -33,7 +33,7 @@ class ComputedValue:
 
 
 def propagate_rounding(function: Callable[..., float], *inputs: PrintedNumber | str) -> ComputedValue:
-    r"""Return a function of printed numbers with the interval that their rounding leaves.
+    r"""Function of printed numbers with the interval that their rounding leaves.
 
     Parameters
     ----------
@@ -76,11 +76,11 @@ def propagate_rounding(function: Callable[..., float], *inputs: PrintedNumber | 
 
 
 def as_exact(id: str) -> PrintedNumber:  # noqa: A002 - the field's own word
-    """Return a published number without a rounding interval: that of a nominal setting."""
+    """Published number without a rounding interval: that of a nominal setting."""
     number = published_number(id)
     return replace(number, low=number.value, high=number.value, rounding_half_width=0.0)
 
 
 def as_setting(id: str) -> PrintedNumber:  # noqa: A002 - the field's own word
-    """Return a published setting: exact if printed as a whole number, such as 11 turns or 4 h, else rounded."""
+    """Published setting: exact if printed as a whole number, such as 11 turns or 4 h, else rounded."""
     return published_number(id) if "." in published_number(id).text else as_exact(id)

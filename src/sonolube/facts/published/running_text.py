@@ -59,7 +59,7 @@ class Statement:
 
 
 def statements(chapter: int | None = None) -> tuple[Statement, ...]:
-    """Return the numbers that the running text states, in its order.
+    """Numbers that the running text states, in its order.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def statements(chapter: int | None = None) -> tuple[Statement, ...]:
 
 
 def statement(id: str) -> Statement:  # noqa: A002 - the field's own word
-    """Return one number that the running text states.
+    """One number that the running text states.
 
     Parameters
     ----------
@@ -107,18 +107,18 @@ def statement(id: str) -> Statement:  # noqa: A002 - the field's own word
 
 @cache
 def _by_id() -> dict[str, Statement]:
-    """Return all statements by id."""
+    """All statements by id."""
     return {entry.id: entry for entry in statements()}
 
 
 @cache
 def _read(part: str) -> tuple[Statement, ...]:
-    """Return the statements of one part of D from its file."""
+    """Statements of one part of D from its file."""
     text = files("sonolube.facts.published").joinpath("statements", f"{part}.toml").read_text(encoding="utf-8")
     return tuple(_statement(**entry) for entry in tomllib.loads(text)["statements"])
 
 
 def _statement(*, printed: str, quantity: str, unit: str = "", relation: str = "=", **entry: Any) -> Statement:
-    """Return a statement from an entry of a file, its number parsed and converted to SI."""
+    """Statement from an entry of a file, its number parsed and converted to SI."""
     number = parse_printed(printed, unit, quantity=quantity)
     return Statement(quantity=quantity, unit=unit, number=number, relation=relation, **entry)

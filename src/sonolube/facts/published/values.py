@@ -55,14 +55,14 @@ class PublishedValue:
     corrected: tuple[PrintedNumber, ...]
 
     def limits(self) -> "tuple[PublishedValue, PublishedValue]":
-        """Return the limits of a published range as two values, their ids ending in "-from" and "-to"."""
+        """Limits of a published range as two values, their ids ending in "-from" and "-to"."""
         low, high = self.number.limits()
         return replace(self, id=f"{self.id}-from", number=low), replace(self, id=f"{self.id}-to", number=high)
 
 
 @cache
 def published_value(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
-    """Return a published number with its place and its errata.
+    """Published number with its place and its errata.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def published_value(id: str) -> PublishedValue:  # noqa: A002 - the field's own 
 
 
 def published_number(id: str) -> PrintedNumber:  # noqa: A002 - the field's own word
-    """Return a published number with its printed digits and interval, in SI.
+    """Published number with its printed digits and interval, in SI.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def published_number(id: str) -> PrintedNumber:  # noqa: A002 - the field's own 
 
 
 def si_value(id: str) -> float:  # noqa: A002 - the field's own word
-    """Return a published number as a float in SI; of a range, its midpoint.
+    """Published number as a float in SI; of a range, its midpoint.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def si_value(id: str) -> float:  # noqa: A002 - the field's own word
 
 
 def column_numbers(table_id: str, column: str) -> dict[int, PrintedNumber]:
-    """Return the numbers of a table column by row, counted from 1; empty cells are left out.
+    """Numbers of a table column by row, counted from 1; empty cells are left out.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def column_numbers(table_id: str, column: str) -> dict[int, PrintedNumber]:
 
 @cache
 def _table_cell(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
-    """Return the published value of a table cell by its id."""
+    """Published value of a table cell by its id."""
     _, table_id, *words, last = id.split("-")
     source, name = table(table_id), "_".join(words)
     column = source.columns.get(name)
@@ -169,7 +169,7 @@ def _table_cell(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
 
 
 def _quoted_number(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
-    """Return the published value of a number in the running text by its id."""
+    """Published value of a number in the running text by its id."""
     source = statement(id)
     in_appendix = source.section.startswith("A")
     return PublishedValue(
@@ -185,7 +185,7 @@ def _quoted_number(id: str) -> PublishedValue:  # noqa: A002 - the field's own w
 
 
 def _number_in_words(source: Statement) -> PrintedNumber:
-    """Return the number of a statement with the interval that the words before it leave: "less than" or "about"."""
+    """Number of a statement with the interval that the words before it leave: "less than" or "about"."""
     number = source.number
     if source.relation == "<":
         return replace(number, low=0.0, high=number.value)
@@ -197,7 +197,7 @@ def _number_in_words(source: Statement) -> PrintedNumber:
 
 
 def _corrected_numbers(text: str, quantity: str, unit: str, scale: float) -> tuple[PrintedNumber, ...]:
-    """Return the numbers of a correction such as "40-240 or 60-240"; none of one in words."""
+    """Numbers of a correction such as "40-240 or 60-240"; none of one in words."""
     numbers = []
     for alternative in text.split(" or "):
         with suppress(InvalidInput):

@@ -53,27 +53,13 @@ class Evidence:
 def evidence(model: WhiteModel, *, starts: Floats, seed: int = 0) -> Evidence:
     """Marginal likelihood by adaptive importance sampling, beginning with t distributions at the modes.
 
-    Parameters
-    ----------
-    model : WhiteModel
-    starts : ndarray, shape (starts, parameters)
-        Deviates from which modes are sought.
-    seed : int
-        Of the random numbers.
+    `starts` has shape (starts, parameters).
 
-    Returns
-    -------
-    Evidence
-
-    Notes
-    -----
     Each round draws from a t distribution with mean and covariance of all draws before; the weight of a draw is its
-    posterior density over the mean density of all rounds [1]_.
+    posterior density over the mean density of all rounds
 
-    References
-    ----------
-    .. [1] J.-M. Cornuet, J.-M. Marin, A. Mira, C. P. Robert, Scand. J. Stat. 39, 798 (2012).
-           doi:10.1111/j.1467-9469.2011.00756.x
+    Source: J.-M. Cornuet, J.-M. Marin, A. Mira, C. P. Robert, Scand. J. Stat. 39, 798 (2012).
+    doi:10.1111/j.1467-9469.2011.00756.x
     """
     parameters = starts.shape[1]
     found = [_mode(model, start) for start in starts]

@@ -242,15 +242,7 @@ def _log_current(fall: Floats, capacitive: Floats, turned: Floats) -> Floats:
 def run_channels(table: SwitchTable, conditions: SwitchConditions) -> tuple[Channel, ...]:
     """Readings of a run in the units of the model, each with the covariance of its noise.
 
-    Parameters
-    ----------
-    table : SwitchTable
-    conditions : SwitchConditions
-
-    Returns
-    -------
-    tuple of Channel
-        Friction ratio, then current and shifts where the run has them.
+    Friction ratio, then current and shifts where the run has them.
     """
     ratio, uncertainty = zero_free_ratio(table)
     channels = [_channel("friction_ratio", table, ratio, uncertainty, level=_LEVEL_ERROR)]

@@ -167,18 +167,7 @@ def switch_table(runs: "xr.Dataset") -> SwitchTable:
 
 
 def is_switch_table(file: Path, mapping: RecordingMapping | None) -> bool:
-    """Whether a file is a table of switches: its mapping or its head names the sliding distance and no time.
-
-    Parameters
-    ----------
-    file : Path
-    mapping : RecordingMapping or None
-        Of the columns of the file.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a file is a table of switches: its mapping or its head names the sliding distance and no time."""
     if mapping is not None and "sliding_distance" in mapping.channels:
         return mapping.axis is None
     with refuse_unreadable(file), open_input(file) as stream:

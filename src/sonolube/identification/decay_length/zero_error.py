@@ -48,27 +48,12 @@ class ZeroEvidence:
 def zero_evidence(table: SwitchTable, conditions: SwitchConditions, *, seed: int = 0) -> ZeroEvidence:
     """Evidence of a zero that is off, from the beginning or over the run, against a good one.
 
-    Parameters
-    ----------
-    table : SwitchTable
-    conditions : SwitchConditions
-    seed : int
-        Of the random numbers.
-
-    Returns
-    -------
-    ZeroEvidence
-
-    Notes
-    -----
     A good zero has a standard deviation of 0.03, one that is off of 0.35 of the friction force without vibration, about
     no error; one that is off may also go there over the run. Any zero may wander slowly by 0.005 to 0.05 of that force.
     The density of a zero that is off is that normal one times its square (a moment prior [1]_), for an error that is
     nearly none is none.
 
-    References
-    ----------
-    .. [1] V. E. Johnson and D. Rossell, J. R. Stat. Soc. B 72, 143 (2010). doi:10.1111/j.1467-9868.2009.00730.x
+    Source: V. E. Johnson and D. Rossell, J. R. Stat. Soc. B 72, 143 (2010). doi:10.1111/j.1467-9868.2009.00730.x
     """
     rows = np.flatnonzero(np.isfinite(table.force_zero))
     zero, s = table.force_zero[rows], table.sliding_distance[rows]

@@ -11,7 +11,7 @@ from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.text.units import format_si
 
 _RECORDED: Final = ("friction_force", "normal_load", "voltage_peak_to_peak", "voltage", "temperature", "gaussmeter")
-_LEAST_WAIT: Final = 1e-6  # s
+_MIN_WAIT: Final = 1e-6  # s
 
 
 def recorded_channels(hold: FrictionHold, channels: Mapping[str, Channel]) -> tuple[str, ...]:
@@ -51,7 +51,7 @@ def hold_protocol(hold: FrictionHold, channels: Mapping[str, Channel]) -> Protoc
     begins = [0.0, *(hold.run_in + step.time for step in hold.speeds[1:]), total]
     for step, (begin, end) in zip(hold.speeds, pairwise(begins), strict=True):
         steps.append({"kind": "motor_speed", "sliding_speed": exact_text(step.sliding_speed, unit="m/s")})
-        if end - begin >= _LEAST_WAIT:
+        if end - begin >= _MIN_WAIT:
             steps.append({"kind": "wait", "duration": exact_text(end - begin, unit="s")})
     return protocol_from(
         {

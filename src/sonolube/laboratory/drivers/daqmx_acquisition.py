@@ -24,7 +24,7 @@ WIRINGS: Final = MappingProxyType(
 )
 """Ways to wire an input, and what NI-DAQmx calls them."""
 
-_LEAST_BUFFER: Final = 1000  # samples
+_MIN_BUFFER: Final = 1000  # samples
 _GRACE: Final = 1.0  # s, beyond twice the time of the samples
 
 
@@ -186,7 +186,7 @@ class DaqmxAcquisition:
                 min_val=-each.voltage_range,
                 max_val=each.voltage_range,
             )
-        buffer = max(ceil(BUFFER_DURATION * sample_rate), _LEAST_BUFFER)
+        buffer = max(ceil(BUFFER_DURATION * sample_rate), _MIN_BUFFER)
         continuous = constants.AcquisitionType.CONTINUOUS
         task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=buffer)
         task.in_stream.input_buf_size = buffer

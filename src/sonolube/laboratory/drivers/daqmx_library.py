@@ -25,17 +25,7 @@ _GONE: Final = frozenset(  # removed, reset, without power or network
 
 
 def daqmx_library() -> Any:
-    """Python package of NI-DAQmx.
-
-    Returns
-    -------
-    module
-
-    Raises
-    ------
-    MissingPackage
-        If it is not installed. Whether the driver is there, only the first task shows.
-    """
+    """Python package of NI-DAQmx."""
     try:
         import nidaqmx
         import nidaqmx.constants
@@ -50,18 +40,7 @@ def daqmx_library() -> Any:
 
 @contextmanager
 def daqmx_errors(device: str) -> Iterator[None]:
-    """Turn errors of NI-DAQmx inside a `with` block into those of devices.
-
-    Parameters
-    ----------
-    device : str
-        Name in errors.
-
-    Raises
-    ------
-    DeviceError
-        With the number of NI-DAQmx; DeviceLost or SamplesLost where the number says that.
-    """
+    """Turn errors of NI-DAQmx inside a `with` block into those of devices."""
     errors = daqmx_library().errors
     try:
         yield
@@ -74,22 +53,7 @@ def daqmx_errors(device: str) -> Iterator[None]:
 
 
 def require_device(library: Any, device: str, *, name: str) -> None:
-    """Raise where the driver or a device is missing.
-
-    Parameters
-    ----------
-    library : module
-        Of NI-DAQmx.
-    device : str
-        As NI-DAQmx calls it, such as Dev1.
-    name : str
-        Name in errors.
-
-    Raises
-    ------
-    DeviceError
-        If either is missing.
-    """
+    """Raise where the driver or a device is missing."""
     with daqmx_errors(name):
         present = list(library.system.System.local().devices.device_names)
     if device not in present:

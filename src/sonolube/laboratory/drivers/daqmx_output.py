@@ -226,24 +226,7 @@ class DaqmxMotor:
 
 
 def whole_periods(*, frequency: float, sample_rate: float, device: str) -> tuple[int, int]:
-    """Numbers of periods and of samples of a buffer that can be repeated without a step.
-
-    Parameters
-    ----------
-    frequency, sample_rate : float
-        [Hz]
-    device : str
-        Name in errors.
-
-    Returns
-    -------
-    tuple of int
-
-    Raises
-    ------
-    DeviceError
-        If a period has fewer than 20 samples, or no buffer meets the frequency within 10 ppm.
-    """
+    """Numbers of periods and of samples of a buffer that can be repeated without a step."""
     if frequency * SAMPLES_PER_PERIOD > sample_rate * (1 + 1e-9):
         most = format_si(sample_rate / SAMPLES_PER_PERIOD, "Hz")
         raise DeviceError(f"{device}: {format_si(frequency, 'Hz')} refused; its sample rate allows up to {most}")
@@ -258,15 +241,7 @@ def whole_periods(*, frequency: float, sample_rate: float, device: str) -> tuple
 def waveform_samples(waveform: str, *, periods: int, samples: int) -> NDArray[np.float64]:
     """Samples of whole periods of a waveform between -1 and 1.
 
-    Parameters
-    ----------
-    waveform : str
-        sine, square, triangle or sawtooth.
-    periods, samples : int
-
-    Returns
-    -------
-    ndarray, shape (samples,)
+    Shape (samples,).
     """
     shape = _SHAPES[waveform](np.arange(samples) * periods % samples / samples)
     return np.asarray(shape, dtype=np.float64)

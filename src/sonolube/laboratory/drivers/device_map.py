@@ -17,7 +17,7 @@ from sonolube.text.toml_text import text_of, toml_content
 from sonolube.text.units import format_si
 
 _KIND: Final = "a device map"
-_MOST_FAULTS: Final = 20
+_MAX_FAULTS: Final = 20
 _LONGEST_FAULT: Final = 300  # characters
 
 _Device = TypeVar("_Device")
@@ -173,8 +173,8 @@ def _entries(content: Mapping[str, Any]) -> MapEntries:
 
 def _told(faults: Sequence[str], keys: Sequence[str] = ()) -> SeveralFaults:
     """Faults, as many as one can read."""
-    rest = max(len(faults) - _MOST_FAULTS, 0)
-    return SeveralFaults(faults[:_MOST_FAULTS], rest=rest, keys=keys[:_MOST_FAULTS])
+    rest = max(len(faults) - _MAX_FAULTS, 0)
+    return SeveralFaults(faults[:_MAX_FAULTS], rest=rest, keys=keys[:_MAX_FAULTS])
 
 
 def _place(parts: Sequence[str | int]) -> str:

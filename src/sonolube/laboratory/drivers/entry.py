@@ -295,26 +295,7 @@ class GuardEntry(DriverEntry):
 
 
 def si_gain(gain: str, offset: str | None, *, unit: str) -> tuple[float, float]:
-    """Gain per volt and offset of a sensor, in SI.
-
-    Parameters
-    ----------
-    gain : str
-        Quantity per voltage, such as 20 N/V.
-    offset : str or None
-        Value at 0 V; 0 by default.
-    unit : str
-        SI unit of the quantity.
-
-    Returns
-    -------
-    tuple of float
-
-    Raises
-    ------
-    InvalidInput
-        If a text is none of the unit, or the gain is 0.
-    """
+    """Gain per volt and offset of a sensor, in SI."""
     per_volt = {"V": "", "": "1/V"}.get(unit, f"({unit})/V" if "/" in unit else f"{unit}/V")
     at_zero = 0.0 if offset is None else to_si(offset, unit=unit, name="offset")
     per = to_si(gain, unit=per_volt, name="gain")

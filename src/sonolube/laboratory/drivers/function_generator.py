@@ -13,7 +13,7 @@ from sonolube.text.units import format_si
 OUTPUT_MAXIMUM: Final = 10.0
 """Magnitude of the voltage into a high impedance. [V]"""
 
-LEAST_AMPLITUDE: Final = 2e-3
+MIN_AMPLITUDE: Final = 2e-3
 """Peak to peak, into a high impedance. [V]"""
 
 RAMP_FREQUENCY_MAXIMUM: Final = 200e3
@@ -25,7 +25,7 @@ _FUNCTIONS: Final[Mapping[str, str]] = MappingProxyType(
 _RAMPS: Final = ("triangle", "sawtooth")
 _MODULATIONS: Final = ("AM", "FM", "PM", "FSK", "BPSK", "PWM", "SUM", "SWE", "BURS")
 _ERRORS: Final = "SYST:ERR?"
-_MOST_ERRORS: Final = 20  # that the queue of these generators holds
+_MAX_ERRORS: Final = 20  # that the queue of these generators holds
 _KNOWN: Final = ("335", "336")  # beginnings of models
 
 
@@ -58,8 +58,8 @@ class FunctionGenerator:
         if setting.waveform in _RAMPS and setting.frequency > RAMP_FREQUENCY_MAXIMUM:
             most = format_si(RAMP_FREQUENCY_MAXIMUM, "Hz")
             raise DeviceError(f"{self.name}: {format_si(setting.frequency, 'Hz')} refused; a ramp has at most {most}")
-        if 0 < amplitude < LEAST_AMPLITUDE:
-            least = format_si(LEAST_AMPLITUDE * self._limits.amplifier_gain, "V")
+        if 0 < amplitude < MIN_AMPLITUDE:
+            least = format_si(MIN_AMPLITUDE * self._limits.amplifier_gain, "V")
             raise DeviceError(f"{self.name}: less than {least} peak to peak at the actuator refused; it gives no less")
         self._switch.require_connected(before="driving")
         if amplitude == 0:
@@ -134,7 +134,7 @@ class FunctionGenerator:
     def _require_accepted(self, command: str, line: str) -> None:
         """Send a line that ends with the query of the error queue, and raise where the queue holds errors."""
         complaints: list[str] = []
-        while len(complaints) < _MOST_ERRORS:
+        while len(complaints) < _MAX_ERRORS:
             answer = self._line.ask(_ERRORS if complaints else line)
             if answer.partition(",")[0] in ("0", "+0"):
                 break

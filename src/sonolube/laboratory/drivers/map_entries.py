@@ -28,22 +28,7 @@ class OfDriver:
     role: str
 
     def entry(self, value: object) -> DriverEntry:
-        """Section of a table.
-
-        Parameters
-        ----------
-        value : object
-            What the file holds.
-
-        Returns
-        -------
-        DriverEntry
-
-        Raises
-        ------
-        ValueError
-            If it names no driver, or one that is unknown or cannot be loaded; with all faults of its keys.
-        """
+        """Section of a table."""
         table = DRIVERS[self.role]
         if isinstance(value, DriverEntry):
             return value

@@ -67,22 +67,7 @@ class DriveLimits:
 
 
 def require_speed(*, rotation_speed: float, highest: float, device: str) -> None:
-    """Raise where a motor cannot turn at a speed.
-
-    Parameters
-    ----------
-    rotation_speed : float
-        [1/s]
-    highest : float
-        In 1/s.
-    device : str
-        Name in errors.
-
-    Raises
-    ------
-    DeviceError
-        If the speed is negative, not finite or too high.
-    """
+    """Raise where a motor cannot turn at a speed."""
     if not 0 <= rotation_speed <= highest * _ROUNDING:
         wanted, most = format_si(rotation_speed, "1/s"), format_si(highest, "1/s")
         raise DeviceError(f"{device}: {wanted} refused; it turns at 0 to {most}")

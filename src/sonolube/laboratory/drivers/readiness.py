@@ -129,21 +129,7 @@ def _has_daqmx_driver() -> bool:
 
 
 def ready_devices(device_map: Path) -> Devices:
-    """Devices of a map, whose packages and drivers are installed.
-
-    Parameters
-    ----------
-    device_map : Path
-
-    Returns
-    -------
-    Devices
-
-    Raises
-    ------
-    InvalidInput
-        Naming what is missing.
-    """
+    """Devices of a map, whose packages and drivers are installed."""
     found = read_device_map(device_map)
     missing = missing_parts(found)
     if missing:

@@ -10,40 +10,17 @@ _CLASSES: Final = ("instr", "socket", "raw")  # of resources
 
 
 def daqmx_resource(terminal: str) -> str:
-    """Name of a device of NI-DAQmx.
-
-    Parameters
-    ----------
-    terminal : str
-        The device or one of its terminals, such as Dev1 or Dev1/ao0; NI-DAQmx does not tell upper from lower case.
-
-    Returns
-    -------
-    str
-    """
+    """Name of a device of NI-DAQmx."""
     return f"NI-DAQmx {terminal.partition('/')[0]}".lower()
 
 
 def visa_resource(resource: str) -> str:
     """Name of an instrument by its address: host and port, number of the serial port, bus and address.
 
-    Parameters
-    ----------
-    resource : str
-        As VISA calls it, such as TCPIP0::192.168.1.21::5025::SOCKET or ASRL/dev/ttyUSB0::INSTR, or COM3.
-
-    Returns
-    -------
-    str
-
-    Notes
-    -----
     VISA takes board 0, device inst0 of a LAN instrument, interface 0 of one on USB and class INSTR where an address has
-    none, and numbers in decimal or hexadecimal. ASRL3 is COM3 of Windows. [1]_
+    none, and numbers in decimal or hexadecimal. ASRL3 is COM3 of Windows.
 
-    References
-    ----------
-    .. [1] IVI Foundation, VPP-4.3, The VISA Library, grammar of address strings.
+    Source: IVI Foundation, VPP-4.3, The VISA Library, grammar of address strings.
     """
     serial = _SERIAL.fullmatch(resource.strip())
     if serial:

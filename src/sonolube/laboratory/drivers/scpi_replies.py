@@ -9,7 +9,7 @@ from sonolube.laboratory.devices import DeviceError
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
 
 _NUMBER: Final = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:E[-+]?\d+)?)\s*(?:V|VPP|HZ)?", re.IGNORECASE)
-_MOST_ERRORS: Final = 50
+_MAX_ERRORS: Final = 50
 _OVERLOAD: Final = 9.9e37  # by SCPI, for no reading or one beyond the range
 
 
@@ -92,7 +92,7 @@ class ErrorQueue:
             If there is no end of them.
         """
         found: list[str] = []
-        while len(found) <= _MOST_ERRORS:
+        while len(found) <= _MAX_ERRORS:
             answer = line.ask(self.query)
             if answer.partition(",")[0].strip().lstrip("+") == self.none:
                 return found
@@ -101,37 +101,12 @@ class ErrorQueue:
 
 
 def require_identity(line: VisaConnection, pattern: str) -> None:
-    """Ask an instrument who it is until that answer comes, passing over answers to commands that were broken off.
-
-    Parameters
-    ----------
-    line : VisaConnection
-    pattern : str
-        Of the answer to *IDN?, with * for any text; upper and lower case are one.
-
-    Raises
-    ------
-    DeviceError
-        If it is another instrument.
-    """
+    """Ask an instrument who it is until that answer comes, passing over answers to commands that were broken off."""
     line.ask_until("*IDN?", lambda heard: fnmatchcase(heard.upper(), pattern.upper()), expected=pattern)
 
 
 def send(line: VisaConnection, command: str, errors: ErrorQueue | None) -> None:
-    """Send a command, and raise where the instrument has put an error into its queue.
-
-    Parameters
-    ----------
-    line : VisaConnection
-    command : str
-    errors : ErrorQueue or None
-        None where the instrument has none.
-
-    Raises
-    ------
-    DeviceError
-        With its words.
-    """
+    """Send a command, and raise where the instrument has put an error into its queue."""
     line.write(command)
     complaints = [] if errors is None else errors.errors(line)
     if complaints:

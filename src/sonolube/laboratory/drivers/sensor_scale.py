@@ -13,7 +13,7 @@ from sonolube.vocabulary import unit_of
 
 Floats = NDArray[np.float64]
 
-_MOST_POINTS = 10_000
+_MAX_POINTS = 10_000
 
 
 class SensorScale(Protocol):
@@ -77,30 +77,12 @@ class TabulatedScale:
 
 
 def tabulated_scale(text: str, *, quantity: str, unit: str | None = None) -> TabulatedScale:
-    """Scale of the text of a calibration file.
-
-    Parameters
-    ----------
-    text : str
-        Comma-separated, first the line "voltage,QUANTITY", then a pair a line, each with its unit: "0.5 V,10.2 N".
-    quantity : str
-    unit : str, optional
-        SI unit; that of the vocabulary by default.
-
-    Returns
-    -------
-    TabulatedScale
-
-    Raises
-    ------
-    InvalidInput
-        With the line, where it is no such table, or where voltages do not increase or readings do not go one way.
-    """
+    """Scale of the text of a calibration file."""
     rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if row]
     if not rows or rows[0] != ["voltage", quantity]:
         raise InvalidInput(f"line 1: expected voltage,{quantity}")
-    if not 3 <= len(rows) <= _MOST_POINTS:
-        raise InvalidInput(f"{len(rows) - 1} points; expected 2 to {_MOST_POINTS - 1}")
+    if not 3 <= len(rows) <= _MAX_POINTS:
+        raise InvalidInput(f"{len(rows) - 1} points; expected 2 to {_MAX_POINTS - 1}")
     si_unit = unit_of(quantity) if unit is None else unit
     points = np.array([_point(row, si_unit, line) for line, row in enumerate(rows[1:], start=2)])
     voltages, readings = points[:, 0], points[:, 1]

@@ -13,7 +13,7 @@ TIMEOUT: Final = 2.0
 TERMINATIONS: Final = {"CR": "\r", "LF": "\n", "CRLF": "\r\n"}
 """Ends of a line, by name."""
 
-_MOST_STALE: Final = 8  # answers to earlier commands that are passed over
+_MAX_STALE: Final = 8  # answers to earlier commands that are passed over
 
 _Result = TypeVar("_Result")
 
@@ -54,7 +54,7 @@ class VisaConnection:
         self._is_barred = True
 
     def another(self) -> "VisaConnection":
-        """Return a further connection to the same instrument, which waits for no call of this one."""
+        """Further connection to the same instrument, which waits for no call of this one."""
         return VisaConnection(
             name=self.name,
             resource=self._resource,
@@ -127,7 +127,7 @@ class VisaConnection:
         """Send a line until an answer has come that is one, as `ask_for`; `expected` stands in the error."""
         self.write(text)
         heard = ""
-        for _ in range(_MOST_STALE):
+        for _ in range(_MAX_STALE):
             try:
                 heard = self.read()
             except DeviceLost:

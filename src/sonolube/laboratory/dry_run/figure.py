@@ -10,7 +10,7 @@ from sonolube.laboratory.dry_run.record import DryRun
 
 _UNITS: Final = ((2 * 3600.0, "h", 3600.0), (180.0, "min", 60.0), (0.0, "s", 1.0))
 _WIDTH: Final = 6.85  # inches: 174 mm
-_MOST_PROMPTS: Final = 40  # that are marked
+_MAX_PROMPTS: Final = 40  # that are marked
 
 
 def dry_run_chart(found: DryRun) -> Chart:
@@ -42,7 +42,7 @@ def dry_run_chart(found: DryRun) -> Chart:
             )
         marks += [
             Rule(value=place, label="prompt" if is_first and not number else "", colour="0.35")
-            for number, place in enumerate(prompts[:_MOST_PROMPTS])
+            for number, place in enumerate(prompts[:_MAX_PROMPTS])
         ]
         panels.append(Panel(x=x, y=axis, parts=(*marks, *lines)))
     size = (_WIDTH, 1.2 + 1.45 * len(panels))

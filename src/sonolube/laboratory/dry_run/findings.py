@@ -23,32 +23,13 @@ _LARGE = 1e9  # bytes, of which the operator is told
 
 
 def refusals_of(found: DryRun, amplifier: Amplifier | None) -> tuple[str, ...]:
-    """Reasons why a test is impossible or would be ended by a limit, each in one line with its step.
-
-    Parameters
-    ----------
-    found : DryRun
-    amplifier : Amplifier or None
-
-    Returns
-    -------
-    tuple of str
-    """
+    """Reasons why a test is impossible or would be ended by a limit, each in one line with its step."""
     lines = [] if amplifier is None else list(_beyond_amplifier(found, amplifier))
     return (*lines, *_beyond_limits(found))
 
 
 def caveats_of(found: DryRun) -> tuple[str, ...]:
-    """What else to know before a test, each in one line.
-
-    Parameters
-    ----------
-    found : DryRun
-
-    Returns
-    -------
-    tuple of str
-    """
+    """What else to know before a test, each in one line."""
     return tuple(_caveats(found))
 
 

@@ -13,7 +13,7 @@ from sonolube.models.thermal.contact_history import contact_temperature_history
 from sonolube.models.thermal.network import network_rise
 
 _POINTS = 400  # of the time line, at least
-_MOST_PARTS = 200  # of one interval between set points
+_MAX_PARTS = 200  # of one interval between set points
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -90,23 +90,13 @@ def heating_over(
 ) -> Heating | None:
     """Temperature rises over successive intervals of constant heat, from ambient temperature.
 
-    Parameters
-    ----------
-    intervals : sequence of HeatedInterval
-    bodies : RubbedBodies or None
-        None leaves the contact out.
-    assumed : HeatingAssumptions
-
-    Returns
-    -------
-    Heating or None
-        None where no time passes.
+    None where no time passes.
     """
     lasting = [each for each in intervals if each.duration > 0]
     if not lasting:
         return None
     longest = sum(each.duration for each in lasting) / _POINTS
-    parts = [min(max(ceil(each.duration / longest), 1), _MOST_PARTS) for each in lasting]
+    parts = [min(max(ceil(each.duration / longest), 1), _MAX_PARTS) for each in lasting]
     steps = np.repeat([each.duration / count for each, count in zip(lasting, parts, strict=True)], parts)
     time = np.concatenate([[0.0], np.cumsum(steps)])
     speed, force, heat = (

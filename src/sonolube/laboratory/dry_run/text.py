@@ -42,16 +42,7 @@ def dry_run_cells(point: PlannedPoint, found: DryRun) -> tuple[str, str, str, st
 
 
 def clock(seconds: float) -> str:
-    """Time as hours, minutes and seconds, such as 4:00:00 or 0:32.5.
-
-    Parameters
-    ----------
-    seconds : float
-
-    Returns
-    -------
-    str
-    """
+    """Time as hours, minutes and seconds, such as 4:00:00 or 0:32.5."""
     tenths = round(10 * seconds)
     minutes, rest = divmod(tenths, 600)
     hours, minutes = divmod(minutes, 60)

@@ -14,17 +14,7 @@ _HEIGHT: Final = 1.4  # inch, of a channel
 
 
 def channels_chart(recording: "xr.Dataset") -> Chart:
-    """Chart of the channels of a recording, one below the other; of set points only a voltage that was not measured.
-
-    Parameters
-    ----------
-    recording : xarray.Dataset
-        Over `time`.
-
-    Returns
-    -------
-    Chart
-    """
+    """Chart of the channels of a recording, one below the other; of set points only a voltage that was not measured."""
     panels = []
     for name in (str(each) for each in recording.data_vars if each not in SET_POINT_CHANNELS):
         time, values = envelope(recording["time"].to_numpy(), recording[name].to_numpy())

@@ -79,21 +79,7 @@ class ConvertedPart:
 
 
 def converted_part(path: Path) -> ConvertedPart:
-    """Part of a recording by its netCDF file.
-
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    ConvertedPart
-
-    Raises
-    ------
-    InvalidInput
-        If the file is no recording of a run.
-    """
+    """Part of a recording by its netCDF file."""
     import h5netcdf
 
     try:

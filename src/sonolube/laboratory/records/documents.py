@@ -20,7 +20,7 @@ _NAMES: Final = ("start", "descriptor", "event", "stream_resource", "stream_datu
 _NOTES: Final = "notes"
 _MIME: Final = "application/x-sonolube-blocks"
 _LARGEST_LINE: Final = 1 << 24
-_MOST_SAMPLES: Final = 1 << 53
+_MAX_SAMPLES: Final = 1 << 53
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,18 +47,7 @@ class ReadDocuments:
 
 
 def read_documents(folder: Path, *, earlier: ReadDocuments | None = None) -> ReadDocuments:
-    """Read the documents of a run up to the first damaged line; none where there is no file.
-
-    Parameters
-    ----------
-    folder : Path
-    earlier : ReadDocuments, optional
-        Of the same file, which has grown since; only what follows is read.
-
-    Returns
-    -------
-    ReadDocuments
-    """
+    """Read the documents of a run up to the first damaged line; none where there is no file."""
     found = [] if earlier is None else list(earlier.documents)
     place = 0 if earlier is None else earlier.whole_bytes
     try:
@@ -286,7 +275,7 @@ def _has_what_is_read(name: str, document: Document) -> bool:
         if name == "event":
             return isinstance(document["data"]["kind"], str) and isinstance(document["data"]["facts"], str)
         if name == "stream_datum":
-            return isinstance(stop := document["indices"]["stop"], int) and 0 <= stop < _MOST_SAMPLES
+            return isinstance(stop := document["indices"]["stop"], int) and 0 <= stop < _MAX_SAMPLES
         if name == "stream_resource":
             place = document["parameters"]
             return isinstance(place, dict) and ("clock" not in place or _names_clock(place))

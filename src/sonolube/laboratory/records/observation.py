@@ -153,7 +153,7 @@ class RunObserver:
         self._times = [point.time for point in self._points]
 
     def look(self) -> Observation:
-        """Return the run as it is now."""
+        """Run as it is now."""
         folder, now = self._folder, time.time()
         begins = not (folder / DOCUMENTS).is_file() and now - self._known.begun < _YOUNG
         is_alive = begins or is_locked(folder)  # before the documents, the last of which precedes the end of the lock

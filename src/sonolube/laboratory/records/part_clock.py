@@ -33,22 +33,7 @@ class PartClock:
 
 
 def part_clock(content: Mapping[str, Any]) -> PartClock:
-    """Clock of a part by what its file tells.
-
-    Parameters
-    ----------
-    content : mapping of str to object
-        By the names of its attributes.
-
-    Returns
-    -------
-    PartClock
-
-    Raises
-    ------
-    ValueError, TypeError, KeyError
-        If it is none.
-    """
+    """Clock of a part by what its file tells."""
     if not CLOCK_NAME.fullmatch(str(content["name"])):
         raise ValueError
     return PartClock(

@@ -34,8 +34,8 @@ _RECORD_BYTES: Final = _RECORD.size + _LENGTH.size
 _LARGEST_HEADER: Final = 1 << 20
 _SEARCHED: Final = 1 << 20  # bytes at a time, for the next record after a damaged one
 _LARGEST_SAMPLE: Final = 1 << 53  # beyond it times in float64 repeat
-_MOST_GAPS: Final = 1000
-_MOST_READ: Final = 1 << 26  # bytes at the end of a file that grows
+_MAX_GAPS: Final = 1000
+_MAX_READ: Final = 1 << 26  # bytes at the end of a file that grows
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -106,28 +106,7 @@ class RawPart:
 def raw_header(
     channels: Sequence[Channel], *, sample_rate: float, begun: float, clock: PartClock | None = None
 ) -> bytes:
-    """Header of a file of raw blocks.
-
-    Parameters
-    ----------
-    channels : sequence of Channel
-        In the order of the columns of the blocks.
-    sample_rate : float
-        [Hz]
-    begun : float
-        Time of the first sample, in s since 1970.
-    clock : PartClock, optional
-        Where it is not that of the run.
-
-    Returns
-    -------
-    bytes
-
-    Raises
-    ------
-    InvalidInput
-        If there is no channel, two have one name, or the rate is not positive.
-    """
+    """Header of a file of raw blocks."""
     names = [channel.name for channel in channels]
     if not names or len(set(names)) < len(names):
         raise InvalidInput(f"channels of a recording must be one or more, each once, got {', '.join(names) or 'none'}")
@@ -151,18 +130,7 @@ def raw_header(
 
 
 def raw_record(block: Block, *, sequence: int) -> bytes:
-    """Record of a block.
-
-    Parameters
-    ----------
-    block : Block
-    sequence : int
-        Number of the block in the file, from 0.
-
-    Returns
-    -------
-    bytes
-    """
+    """Record of a block."""
     payload = np.ascontiguousarray(block.values, dtype="<f8").tobytes()
     head = _RECORD.pack(_MARK, sequence, block.first_sample, block.samples, zlib.crc32(payload))
     return b"".join((head, _LENGTH.pack(zlib.crc32(head)), payload))
@@ -235,7 +203,7 @@ def latest_samples(path: Path, *, duration: float) -> tuple[RawPart, Block | Non
             part = _header(stream, path)
             size = stream.seek(0, SEEK_END)
             wanted = max(ceil(duration * part.sample_rate), 1)
-            reach = min(2 * wanted * (8 * len(part.channels) + _RECORD_BYTES) + _SEARCHED, _MOST_READ)
+            reach = min(2 * wanted * (8 * len(part.channels) + _RECORD_BYTES) + _SEARCHED, _MAX_READ)
             start = replace(part, whole_bytes=max(part.header_bytes, size - reach))
             blocks: list[Block] = []
             for _, block in _records(stream, size, start):
@@ -275,7 +243,7 @@ def _records(stream: BinaryIO, size: int, part: RawPart) -> Iterator[tuple[RawPa
         sequence, block = found
         missing = 0 if expected is None else block.first_sample - expected
         gaps = part.gaps
-        if expected is not None and missing and len(gaps) < _MOST_GAPS:
+        if expected is not None and missing and len(gaps) < _MAX_GAPS:
             gaps = (*gaps, Gap(sample=expected, missing=missing))
         place += _RECORD_BYTES + block.values.nbytes
         part = replace(

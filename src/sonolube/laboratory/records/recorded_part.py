@@ -162,29 +162,7 @@ def clock_caveat(clock: PartClock) -> str:
 def recorded_part(
     folder: Path, part: int, documents: ReadDocuments, *, facts: Facts, raw: RawPart | None = None
 ) -> RecordedPart:
-    """Part of the recording of a run.
-
-    Parameters
-    ----------
-    folder : Path
-    part : int
-        From 1.
-    documents : ReadDocuments
-        Of the run.
-    facts : mapping of str to str, float, int or bool
-        Of the run.
-    raw : RawPart, optional
-        Where the raw blocks were looked through already.
-
-    Returns
-    -------
-    RecordedPart
-
-    Raises
-    ------
-    InvalidInput
-        If the raw blocks cannot be read.
-    """
+    """Part of the recording of a run."""
     path = raw_path(folder, part)
     found = scan_raw(path) if raw is None else raw
     own = None if found.clock is None else (found.begun, found.sample_rate)

@@ -72,24 +72,7 @@ class PartOfRecording(Interface):
 
 
 def write_netcdf_recording(part: PartOfRecording, known: RunFacts, path: Path) -> Path:
-    """Write a part of a recording as netCDF, whole or not at all.
-
-    Parameters
-    ----------
-    part : PartOfRecording
-    known : RunFacts
-        Title and facts, which become attributes.
-    path : Path
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be written.
-    """
+    """Write a part of a recording as netCDF, whole or not at all."""
     with _NetCdfRecording(part, known, path) as file:
         for time, columns in part.pieces():
             file.write(time, columns)

@@ -336,16 +336,7 @@ def _parts(documents: ReadDocuments) -> tuple[dict[str, int], dict[str, float]]:
 
 
 def note_of(event: Mapping[str, Any]) -> Note:
-    """Note that an event document holds.
-
-    Parameters
-    ----------
-    event : mapping
-
-    Returns
-    -------
-    Note
-    """
+    """Note that an event document holds."""
     data, time = event["data"], event.get("time")
     try:
         facts = json.loads(data["facts"])

@@ -3,7 +3,7 @@
 import time
 from typing import Final
 
-_LEAST_JUMP: Final = 0.5  # s; larger than what a time service corrects at once without stepping the clock
+_MIN_JUMP: Final = 0.5  # s; larger than what a time service corrects at once without stepping the clock
 
 
 class RunClock:
@@ -22,7 +22,7 @@ class RunClock:
         """Jump of the computer's clock since the last call, positive where it was set forward; else 0. [s]"""
         ahead = time.time() - self.now()
         jump = ahead - self._ahead
-        if abs(jump) < _LEAST_JUMP:
+        if abs(jump) < _MIN_JUMP:
             return 0.0
         self._ahead = ahead
         return jump

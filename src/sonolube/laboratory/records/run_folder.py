@@ -97,28 +97,7 @@ def make_run_folder(
 ) -> tuple[Path, RunFacts]:
     """Make the folder of a new run with the texts it is given, its facts, and room for its last documents.
 
-    Parameters
-    ----------
-    parent : Path
-    title : str
-    begun : float
-        In s since 1970.
-    texts : mapping of str to str
-        By name of the file.
-    facts : mapping of str to str, float, int or bool
-    referenced : mapping of str to str
-        SHA-256 of recordings that lie elsewhere, by path.
-
-    Returns
-    -------
-    folder : Path
-        Named by the time in UTC and the title; none is ever made twice.
-    known : RunFacts
-
-    Raises
-    ------
-    InvalidInput
-        If the name of a file leads out of the folder, a fact is no plain value, or the folder cannot be written.
+    `folder`: Named by the time in UTC and the title; none is ever made twice.
     """
     for name in texts:
         if not _PLAIN_NAME.fullmatch(name) or name in (RUN, DOCUMENTS) or name.startswith("recording"):
@@ -144,41 +123,13 @@ def make_run_folder(
 
 
 def write_run_facts(folder: Path, known: RunFacts) -> None:
-    """Write run.json.
-
-    Parameters
-    ----------
-    folder : Path
-    known : RunFacts
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be written.
-    """
+    """Write run.json."""
     content = {"format": _FORMAT} | {name: getattr(known, name) for name in RunFacts.__slots__}
     write_atomically(folder / RUN, json.dumps(content, indent=1, allow_nan=False, default=dict) + "\n")
 
 
 def keep_digests(folder: Path, known: RunFacts, paths: Iterable[Path]) -> RunFacts:
-    """Keep the SHA-256 of parts of the recording that have none yet in run.json.
-
-    Parameters
-    ----------
-    folder : Path
-    known : RunFacts
-    paths : iterable of Path
-        Of the parts.
-
-    Returns
-    -------
-    RunFacts
-
-    Raises
-    ------
-    InvalidInput
-        If run.json cannot be written.
-    """
+    """Keep the SHA-256 of parts of the recording that have none yet in run.json."""
     found = {path.name: _digest_of(path) for path in paths if path.name not in known.recordings and path.is_file()}
     if not found:
         return known
@@ -195,21 +146,7 @@ def is_run_folder(path: Path) -> bool:
 
 
 def read_run_facts(folder: Path) -> RunFacts:
-    """Read what was known when a run began.
-
-    Parameters
-    ----------
-    folder : Path
-
-    Returns
-    -------
-    RunFacts
-
-    Raises
-    ------
-    InvalidInput
-        If the folder holds no run, or its run.json is damaged.
-    """
+    """Read what was known when a run began."""
     path = folder / RUN
     try:
         if path.stat().st_size > _LARGEST_TEXT:
@@ -236,21 +173,7 @@ def read_run_facts(folder: Path) -> RunFacts:
 def rebuilt_run_facts(folder: Path, start: Mapping[str, Any] | None) -> RunFacts:
     """What is known of a run whose run.json is missing or damaged, by its first document, else by its folder.
 
-    Parameters
-    ----------
-    folder : Path
-    start : mapping or None
-        The first document; None where none was written.
-
-    Returns
-    -------
-    RunFacts
-        With the SHA-256 of the files as they are now where no document tells them.
-
-    Raises
-    ------
-    InvalidInput
-        If the folder holds no run.
+    With the SHA-256 of the files as they are now where no document tells them.
     """
     stamp = _STAMPED.match(folder.resolve().name)
     if stamp is None or not is_run_folder(folder.resolve()):

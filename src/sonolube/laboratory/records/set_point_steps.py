@@ -63,25 +63,7 @@ def set_point_steps(
     facts: Facts,
     own_clock: tuple[float, float] | None = None,
 ) -> SetPointSteps:
-    """Set points of a part of a recording, those before it at its first sample.
-
-    Parameters
-    ----------
-    documents : ReadDocuments
-        Of the run.
-    part : int
-        From 1.
-    first_sample : int
-    facts : mapping of str to str, float, int or bool
-        Of the run, of which normal_load, in N, is the load until a note tells another.
-    own_clock : tuple of float, optional
-        Begin in s since 1970 and sample rate in Hz of a part whose counter is not that of the notes: its set points
-        are placed by the times of the notes.
-
-    Returns
-    -------
-    SetPointSteps
-    """
+    """Set points of a part of a recording, those before it at its first sample."""
     found = _Steps(first_sample, facts)
     uid = ""
     for name, document in documents.documents:

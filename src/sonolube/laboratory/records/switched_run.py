@@ -14,22 +14,7 @@ if TYPE_CHECKING:
 
 
 def switched_recording(folder: Path) -> "xr.Dataset":
-    """Parts of a run that recorded friction and load, one after the other without the gaps between them.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the run.
-
-    Returns
-    -------
-    xarray.Dataset
-
-    Raises
-    ------
-    InvalidInput
-        If the folder holds no run, or no such part.
-    """
+    """Parts of a run that recorded friction and load, one after the other without the gaps between them."""
     run = read_run(folder)
     parts = [run.dataset(number) for number in range(1, len(run.recordings) + 1)]
     chosen = [part for part in parts if "friction_force" in part and "normal_load" in part]

@@ -8,14 +8,7 @@ from sonolube.models.dynamics import Structure
 def arm_resonance(structure: Structure) -> tuple[float, float] | None:
     """Lowest natural frequency of a structure whose pin rests on the disc, and its damping ratio.
 
-    Parameters
-    ----------
-    structure : Structure
-
-    Returns
-    -------
-    tuple of float or None
-        Frequency in Hz, and damping ratio by the diagonal of the modal damping; None where nothing swings.
+    Frequency in Hz, and damping ratio by the diagonal of the modal damping; None where nothing swings.
     """
     from scipy.linalg import eigh, null_space
 

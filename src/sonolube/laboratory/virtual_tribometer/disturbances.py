@@ -135,7 +135,7 @@ class Disturbances:
         return sqrt(self.holder_stiffness / self.holder_mass) / (2 * pi)
 
     def drawn(self, rng: np.random.Generator) -> "Disturbances":
-        """Return the disturbances of one test: sizes scattered about those given.
+        """Disturbances of one test: sizes scattered about those given.
 
         Parameters
         ----------

@@ -16,7 +16,7 @@ from sonolube.prediction.predictive import ratio_draws
 from sonolube.rig import Rig, simulate, steady_vibration
 
 _DRAWS: Final = 64  # of which one is taken
-_LEAST_RATIO: Final = 0.01  # no contact slides free of friction, whatever tail of the population is drawn
+_MIN_RATIO: Final = 0.01  # no contact slides free of friction, whatever tail of the population is drawn
 _CLOSE: Final = 0.02  # of the rig's voltage, between two known ones of which a level is interpolated
 
 
@@ -131,7 +131,7 @@ class FrictionDraw:
         inputs = replace(self._inputs, frequency=setting.frequency)  # the others are those of the rig at any drive
         at = inputs.at(vibration_amplitude=amplitude, sliding_speed=sliding_speed)
         draws = ratio_draws(learned().friction, at, count=_DRAWS, seed=self._seed)
-        ratio = max(float(draws[self._row, 0]), _LEAST_RATIO)
+        ratio = max(float(draws[self._row, 0]), _MIN_RATIO)
         return FrictionLevel(
             friction_force=ratio * without,
             friction_ratio=ratio,
@@ -140,7 +140,7 @@ class FrictionDraw:
         )
 
     def _set(self, setting: DriveSetting, sliding_speed: float) -> Rig:
-        """Return the rig under a setting."""
+        """Rig under a setting."""
         drive = self._rig.drive
         if drive is None:
             raise InvalidInput(f"{self._rig.title}: a virtual tribometer needs a drive; give the table drive")

@@ -43,7 +43,7 @@ class Approach:
         return np.asarray(self.target * since + (self.value - self.target) * self.time_constant * left)
 
     def towards(self, target: float, *, time: float) -> "Approach":
-        """Return the approach to another target from a time on."""
+        """Approach to another target from a time on."""
         return Approach(time, float(self.at(np.asarray(time))), target, self.time_constant)
 
 
@@ -76,24 +76,13 @@ class Lagged:
         )
 
     def towards(self, target: float, *, time: float) -> "Lagged":
-        """Return the reading of the value that approaches another target from a time on."""
+        """Reading of the value that approaches another target from a time on."""
         reading = float(self.at(np.asarray(time)))
         return Lagged(self.source.towards(target, time=time), reading, self.time_constant)
 
 
 def waveform(*, periods: Floats, shape: str) -> Floats:
-    """Waveform between -1 and 1 over its periods.
-
-    Parameters
-    ----------
-    periods : ndarray
-        Phase over a full turn.
-    shape : {"sine", "square", "triangle", "sawtooth"}
-
-    Returns
-    -------
-    ndarray
-    """
+    """Waveform between -1 and 1 over its periods."""
     turn = periods % 1.0
     match shape:
         case "square":
@@ -106,38 +95,13 @@ def waveform(*, periods: Floats, shape: str) -> Floats:
 
 
 def hall_pulses(*, revolutions: Floats, magnets: int, pulse: float = 0.06) -> Floats:
-    """Signal of a Hall probe by magnets at the rim of a disc, of height 1.
-
-    Parameters
-    ----------
-    revolutions : ndarray
-        []
-    magnets : int
-    pulse : float
-        Standard deviation of a pulse over the distance between magnets.
-
-    Returns
-    -------
-    ndarray
-    """
+    """Signal of a Hall probe by magnets at the rim of a disc, of height 1."""
     from_centre = (revolutions * magnets) % 1.0 - 0.5
     return np.asarray(np.exp(-0.5 * (from_centre / pulse) ** 2))
 
 
 def pulled(*, since: Floats, greatest: float) -> Floats:
-    """Force with which an operator pulls at the pin: five loops of 30 s, each further than the one before.
-
-    Parameters
-    ----------
-    since : ndarray
-        Time since the first loop began, in s.
-    greatest : float
-        At the top of the last loop, in N.
-
-    Returns
-    -------
-    ndarray
-    """
+    """Force with which an operator pulls at the pin: five loops of 30 s, each further than the one before."""
     loop, within = np.divmod(since / _PULL_PERIOD, 1.0)
     share = np.where(loop < _PULL_LOOPS, (loop + 1) / _PULL_LOOPS, 0.0)
     return np.asarray(greatest * share * (1 - np.abs(2 * within - 1)))
@@ -172,38 +136,12 @@ class ColouredNoise:
 
 
 def correlated(*, time_constant: float, sample_rate: float) -> tuple[float, float]:
-    """Feedback of noise whose correlation falls exponentially.
-
-    Parameters
-    ----------
-    time_constant : float
-        Over which it falls by a factor e. [s]
-    sample_rate : float
-        [Hz]
-
-    Returns
-    -------
-    tuple of float
-    """
+    """Feedback of noise whose correlation falls exponentially."""
     return float(np.exp(-1 / (time_constant * sample_rate))), 0.0
 
 
 def resonant(*, frequency: float, damping_ratio: float, sample_rate: float) -> tuple[float, float]:
-    """Feedback of noise at the natural frequency of a damped oscillator; white where it is not resolved.
-
-    Parameters
-    ----------
-    frequency : float
-        [Hz]
-    damping_ratio : float
-        []
-    sample_rate : float
-        [Hz]
-
-    Returns
-    -------
-    tuple of float
-    """
+    """Feedback of noise at the natural frequency of a damped oscillator; white where it is not resolved."""
     if frequency > 0.4 * sample_rate:
         return 0.0, 0.0
     angle = 2 * np.pi * frequency / sample_rate

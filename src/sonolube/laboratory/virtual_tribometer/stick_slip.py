@@ -89,15 +89,7 @@ class StickSlip:
     def force(self, time: Floats) -> Floats:
         """Force of the spring less its mean, which is the friction of sliding, from a slip on.
 
-        Parameters
-        ----------
-        time : ndarray
-            Since the begin of a slip. [s]
-
-        Returns
-        -------
-        ndarray
-            Zero where the sliding is steady.
+        Zero where the sliding is steady.
         """
         if not self.occurs:
             return np.zeros_like(time)
@@ -123,17 +115,7 @@ class Bursts:
     _ends: list[float] = field(default_factory=list)
 
     def are_on(self, time: Floats) -> np.ndarray:
-        """Whether there is a burst at times, the same whatever is asked before.
-
-        Parameters
-        ----------
-        time : ndarray
-            Ascending, from 0. [s]
-
-        Returns
-        -------
-        ndarray of bool
-        """
+        """Whether there is a burst at times, the same whatever is asked before."""
         if self.mean == 0 or not time.size:
             return np.ones(time.shape, bool)
         self._draw_until(float(time[-1]))
@@ -142,17 +124,7 @@ class Bursts:
         return np.asarray(ended % 2 == 0)
 
     def share(self, first: float, last: float) -> float:
-        """Share of a span with a burst. []
-
-        Parameters
-        ----------
-        first, last : float
-            [s]
-
-        Returns
-        -------
-        float
-        """
+        """Share of a span with a burst. []"""
         if self.mean == 0 or last <= first:
             return 1.0
         self._draw_until(last)

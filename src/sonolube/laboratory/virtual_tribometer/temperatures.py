@@ -97,18 +97,7 @@ class Temperatures:
 
 
 def capacitive_power(setting: DriveSetting | None, *, capacitance: float) -> float:
-    """Root-mean-square alternating voltage times root-mean-square current of a capacitance; 0 for off. [W]
-
-    Parameters
-    ----------
-    setting : DriveSetting or None
-    capacitance : float
-        [F]
-
-    Returns
-    -------
-    float
-    """
+    """Root-mean-square alternating voltage times root-mean-square current of a capacitance; 0 for off. [W]"""
     if setting is None:
         return 0.0
     drive = Drive(

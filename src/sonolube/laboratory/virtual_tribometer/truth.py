@@ -65,23 +65,7 @@ def truth_dataset(
 ) -> "xr.Dataset":
     """True values behind a virtual test.
 
-    Parameters
-    ----------
-    settings : sequence of TruthSetting
-    end_time : float
-        Of the last one. [s]
-    bursts : Bursts
-        Of stick-slip.
-    sizes : Disturbances
-        Of the test.
-    single : mapping of str to (float, str)
-        Further values with their units.
-    title : str
-
-    Returns
-    -------
-    xarray.Dataset
-        Values of each setting over `setting`, and the others as numbers, each with its unit.
+    Values of each setting over `setting`, and the others as numbers, each with its unit.
     """
     import xarray as xr
 

@@ -105,17 +105,7 @@ def decay_length_from_ratio(stiffness_ratio: float, *, vibration_amplitude: floa
 def log_ratio_slope(*, vibration_amplitude: float, decay_length: float) -> float:
     """Derivative of the logarithm of the equivalent stiffness ratio by that of amplitude over decay length. []
 
-    Parameters
-    ----------
-    vibration_amplitude : float
-        Amplitude of the gap, zero to peak. [m]
-    decay_length : float
-        Length over which the contact force falls by a factor of e. [m]
-
-    Returns
-    -------
-    float
-        Negative, from 0 for small to -1 for large amplitudes.
+    Negative, from 0 for small to -1 for large amplitudes.
     """
     step = 1e-4
     ends = np.array([np.exp(step), np.exp(-step)]) * vibration_amplitude

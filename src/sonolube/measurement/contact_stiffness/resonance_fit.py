@@ -10,11 +10,11 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.contact_stiffness.resonance_spectrum import ResonanceSpectrum
 from sonolube.measurement.statistics.autocorrelation import statistical_inefficiency
 
-_MOST_MODES = 5
+_MAX_MODES = 5
 _TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
 _LOWEST_QUALITY, _HIGHEST_QUALITY = 0.6, 1e7  # of a resonance
 _BEYOND = 1.6  # frequency over the end of the sweep of a mode that still shows in it
-_MOST_CANDIDATES = 3  # fitted for the next mode
+_MAX_CANDIDATES = 3  # fitted for the next mode
 _LARGEST_ERROR = 0.3  # standard error of the logarithm of a frequency or quality factor
 _ROUNDING = 1e-12  # residuals below which fits do not differ
 _STEP = 1e-5  # of central differences, in a logarithm
@@ -129,7 +129,7 @@ def fit_resonances(spectrum: ResonanceSpectrum, *, modes: int | None = None) -> 
     """
     problem = _Problem(spectrum)
     chosen: _Solution | None = None
-    for _ in range(_MOST_MODES if modes is None else modes):
+    for _ in range(_MAX_MODES if modes is None else modes):
         found = problem.with_one_more_mode(chosen)
         if found is None:
             break
@@ -205,7 +205,7 @@ class _Problem:
     def with_one_more_mode(self, simpler: _Solution | None) -> _Solution | None:
         """Best solution with one mode more, or None where no candidate stays within the spectrum."""
         before = np.empty(0) if simpler is None else simpler.shape
-        solved = [self.solved(np.concatenate([before, one])) for one in self.candidates(before)[:_MOST_CANDIDATES]]
+        solved = [self.solved(np.concatenate([before, one])) for one in self.candidates(before)[:_MAX_CANDIDATES]]
         found = [one for one in solved if one is not None]
         return min(found, key=lambda one: float(np.sum(one.residuals**2)), default=None)
 

@@ -24,7 +24,7 @@ _ORDERS = {"displacement": 0, "amplitude": 0, "receptance": 0, "velocity": 1, "m
 _VIBRATION = re.compile(rf"\W*({'|'.join(_ORDERS)})\b", re.IGNORECASE)
 _COMMENTS = ("#", "!", "%")
 _LARGEST_FILE = 1 << 28  # bytes; far above any sweep
-_FEWEST_POINTS = 12
+_MIN_POINTS = 12
 _HEAD_LINES = 64  # among which the headings of a table of vibration stand
 
 
@@ -70,8 +70,8 @@ class ResonanceSpectrum:
         f = require_positive(frequency=self.frequency)
         response = require_finite_complex(response=self.response)
         require_equal_length(frequency=f, response=response, weight=require_positive(weight=self.weight))
-        if f.size < _FEWEST_POINTS:
-            raise InvalidInput(f"spectrum must have at least {_FEWEST_POINTS} points, got {f.size}")
+        if f.size < _MIN_POINTS:
+            raise InvalidInput(f"spectrum must have at least {_MIN_POINTS} points, got {f.size}")
         if np.any(np.diff(f) <= 0):
             raise InvalidInput("frequency must increase, and does not")
         if not np.any(response):
@@ -80,7 +80,7 @@ class ResonanceSpectrum:
     def between(self, lowest: float, highest: float) -> "ResonanceSpectrum":
         """Part of the spectrum between two frequencies; the whole where fewer than 12 points lie between them."""
         inside = (self.frequency >= lowest) & (self.frequency <= highest)
-        if inside.sum() < _FEWEST_POINTS:
+        if inside.sum() < _MIN_POINTS:
             return self
         return replace(
             self, frequency=self.frequency[inside], response=self.response[inside], weight=self.weight[inside]

@@ -151,39 +151,6 @@ def contact_stiffness(
 ) -> ContactStiffness:
     r"""Normal stiffness and decay length of a contact from the shift of one resonance of its structure.
 
-    Parameters
-    ----------
-    structure : Structure
-        With its contact free.
-    free : sequence of Resonance
-        The resonance without contact: measured before, and if twice also after the pressed one. Empty for a rigid-body
-        mode, which resonates in contact only.
-    pressed : Resonance
-        Under the load, at a vibration small against the decay length.
-    normal_load : float
-        Force pressing the bodies together. [N]
-    modal_mass_deviation : float
-        Standard deviation of the logarithm of the modal mass at the contact, by which the structure may err.
-    large : Resonance or None
-        Under the load, at a large vibration of constant amplitude.
-    vibration_amplitude : float or None
-        That amplitude at the contact, zero to peak. [m]
-    log_amplitude_deviation : float
-        Standard deviation of its logarithm.
-
-    Returns
-    -------
-    ContactStiffness
-
-    Raises
-    ------
-    InvalidInput
-        If there are more than two free resonances, or a large vibration without its amplitude.
-    OutsideRange
-        If no stiffness of the contact raises the mode to the pressed resonance.
-
-    Notes
-    -----
     The free frequency during the pressed sweep is the mean of both free ones. A drift d that does not turn back leaves
     it anywhere between them, so that with the uncertainties u of the fits
 

@@ -47,28 +47,6 @@ def sliding_steps(
 ) -> SlidingSteps:
     """Steps that last long enough, from time, force, voltage and, where it is known, the speed.
 
-    Parameters
-    ----------
-    t, f, u : ndarray, shape (samples,)
-        Time, in s; friction force, in N; peak-to-peak voltage, in V.
-    v : ndarray, shape (samples,), or None
-        Sliding speed of one direction, in m/s.
-    shortest_step : float
-        As `friction_at_voltage_steps`, in s.
-    settling_time : float
-        Left out at the beginning of each step. [s]
-    tolerance : float
-        Change that begins another step, over the range of the voltage or the highest speed.
-
-    Returns
-    -------
-    SlidingSteps
-
-    Raises
-    ------
-    InvalidInput
-        If no step lasts long enough.
-
     See Also
     --------
     at_rest : the rule for rest.
@@ -125,7 +103,7 @@ def _common(one: list[tuple[int, int]], other: list[tuple[int, int]]) -> list[tu
 
 
 def _constant_levels(t: Floats, u: Floats, threshold: float, shortest: float) -> list[tuple[int, int]]:
-    """Return the sample ranges of constant level, with those joined that a short disturbance separates."""
+    """Sample ranges of constant level, with those joined that a short disturbance separates."""
     section = max(1, round(shortest / _SECTIONS_PER_STEP / float(np.median(np.diff(t)))))
     starts = np.arange(0, t.size, section)
     level = np.array([np.nanmedian(part) if np.isfinite(part).any() else np.nan for part in np.split(u, starts[1:])])
@@ -146,7 +124,7 @@ def _constant_levels(t: Floats, u: Floats, threshold: float, shortest: float) ->
 
 
 def _settled_part(t: Floats, first: int, last: int, settling: float) -> slice:
-    """Return the samples of a step without the settling at its beginning and a tenth of it at its end."""
+    """Samples of a step without the settling at its beginning and a tenth of it at its end."""
     lower = int(np.searchsorted(t, t[first] + settling))
     upper = int(np.searchsorted(t, t[last - 1] - settling / 10, side="right"))
     return slice(lower, upper)

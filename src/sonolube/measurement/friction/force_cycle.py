@@ -18,8 +18,8 @@ SHARE_OF_VARIANCE = 0.5
 """Of a section or a signal, from which a cycle or a line of the spectrum dominates it."""
 
 _CYCLES_OF_SECTION = 8
-_FEWEST_SECTIONS = 6
-_MOST_HARMONICS = 12
+_MIN_SECTIONS = 6
+_MAX_HARMONICS = 12
 _HARMONICS_PER_SAMPLE = 0.475  # of a cycle: the highest harmonic stays below half the sampling rate
 _STEADIEST = 200.0  # greatest shape of the gamma distribution of the power
 _SLOWEST_SINE = 30.0  # Hz, below which a cycle whose fall takes as long as its rise is wobble of the disc
@@ -102,9 +102,9 @@ def find_cycle(signal: Floats, *, sample_interval: float, frequency: float) -> t
     per_cycle = 1 / (frequency * sample_interval) if frequency > 0 else np.inf
     size = round(_CYCLES_OF_SECTION * min(per_cycle, float(signal.size)))
     count = signal.size // size
-    if per_cycle < MIN_SAMPLES_OF_CYCLE or count < _FEWEST_SECTIONS:
+    if per_cycle < MIN_SAMPLES_OF_CYCLE or count < _MIN_SECTIONS:
         return None, ""
-    harmonics = int(min(_MOST_HARMONICS, _HARMONICS_PER_SAMPLE * per_cycle))
+    harmonics = int(min(_MAX_HARMONICS, _HARMONICS_PER_SAMPLE * per_cycle))
     parts = signal[: count * size].reshape(count, size)
     coefficients, filled = _fits(parts, per_cycle, harmonics)
     power = np.hypot(coefficients[:, 0], coefficients[:, harmonics]) ** 2
@@ -183,7 +183,7 @@ def _steadiness(power: Floats) -> float:
 def _is_steady_in_bursts(power: Floats, whole: np.ndarray, empty: np.ndarray) -> bool:
     """Whether the powers of whole sections are steady, no resonance above a threshold, and vanish in empty ones."""
     own = power[whole]
-    if own.size < _FEWEST_SECTIONS or not empty.any():
+    if own.size < _MIN_SECTIONS or not empty.any():
         return False
     deviation, mean = float(np.std(own)), float(np.mean(own))
     if deviation > _VARYING * mean or np.mean(power[empty]) > _REMAINING * mean:

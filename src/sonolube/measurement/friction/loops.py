@@ -69,7 +69,7 @@ class FrictionLoops:
 
 
 def friction_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velocity: ArrayLike) -> FrictionWork:
-    r"""Return the frictional power and cumulative work along a recording.
+    r"""Frictional power and cumulative work along a recording.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def friction_work(*, time: ArrayLike, friction_force: ArrayLike, relative_veloci
 
 
 def friction_loops(*, time: ArrayLike, friction_force: ArrayLike, relative_velocity: ArrayLike) -> FrictionLoops:
-    r"""Return the frictional work of each whole cycle of a reciprocating motion.
+    r"""Frictional work of each whole cycle of a reciprocating motion.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def friction_loops(*, time: ArrayLike, friction_force: ArrayLike, relative_veloc
 
 
 def _positive_reversals(t: Floats, v: Floats) -> Floats:
-    """Return the interpolated times at which the velocity turns positive, with hysteresis."""
+    """Interpolated times at which the velocity turns positive, with hysteresis."""
     threshold = _HYSTERESIS * float(np.nanmax(np.abs(v)))
     fast = np.flatnonzero(np.abs(v) > threshold)
     rises = np.flatnonzero((v[fast[:-1]] < 0) & (v[fast[1:]] > 0))
@@ -186,7 +186,7 @@ def _positive_reversals(t: Floats, v: Floats) -> Floats:
 
 
 def _cumulative_integrals(t: Floats, f: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return cumulative work, distance and known time; intervals with a missing value contribute nothing."""
+    """Cumulative work, distance and known time; intervals with a missing value contribute nothing."""
     power, speed, step = f * v, np.abs(v), np.diff(t)
     known = np.isfinite(power[1:]) & np.isfinite(power[:-1])
     parts = step * (power[1:] + power[:-1]) / 2, step * (speed[1:] + speed[:-1]) / 2, step

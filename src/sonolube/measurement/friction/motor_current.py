@@ -69,7 +69,7 @@ class MotorFrictionTrace:
 def friction_from_motor_current(
     motor: MotorCalibration, *, motor_current: ArrayLike, motor_current_uncertainty: ArrayLike = 0.0
 ) -> tuple[Floats, Floats]:
-    r"""Return the friction force from the motor current at constant speed, and its standard uncertainty. [N]
+    r"""Friction force from the motor current at constant speed, and its standard uncertainty. [N]
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class FrictionReductionEstimate:
 def estimate_friction_reduction(
     *, intrinsic_friction_force: ArrayLike, reduced_friction_force: ArrayLike
 ) -> FrictionReductionEstimate:
-    r"""Return the friction reduction between two parts of a recording, with first-order uncertainty propagation.
+    r"""Friction reduction between two parts of a recording, with first-order uncertainty propagation.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import require_time_series
 
 _MULTIPLE_TOLERANCE = 0.25  # relative deviation of an interval with missing pulses from a multiple of its neighbours
-_MOST_MISSING = 5  # consecutive pulses
+_MAX_MISSING = 5  # consecutive pulses
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -49,7 +49,7 @@ class DiscRotation:
 
 
 def hall_pulse_times(*, time: ArrayLike, magnetic_flux_density: ArrayLike, prominence: float = 0.25) -> Floats:
-    """Return the times of the pulses in a Hall probe signal by peak detection with parabolic interpolation. [s]
+    """Times of the pulses in a Hall probe signal by peak detection with parabolic interpolation. [s]
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def hall_pulse_times(*, time: ArrayLike, magnetic_flux_density: ArrayLike, promi
 
 
 def _parabola_vertices(t: Floats, b: Floats, peaks: NDArray[np.int64]) -> Floats:
-    """Return the times of the vertices of parabolas through each peak sample and its neighbours."""
+    """Times of the vertices of parabolas through each peak sample and its neighbours."""
     before, at, after = b[peaks - 1], b[peaks], b[peaks + 1]
     left, right = t[peaks] - t[peaks - 1], t[peaks + 1] - t[peaks]
     rise, fall = (at - before) / left, (at - after) / right
@@ -93,7 +93,7 @@ def _parabola_vertices(t: Floats, b: Floats, peaks: NDArray[np.int64]) -> Floats
 
 
 def disc_rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> DiscRotation:
-    """Return the rotation of a disc from its pulse times, with missing pulses interpolated.
+    """Rotation of a disc from its pulse times, with missing pulses interpolated.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def disc_rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) 
 
 
 def _steps_of_one_magnet(t: Floats) -> NDArray[np.int64]:
-    """Return the number of revolutions between neighbouring pulses of one magnet."""
+    """Number of revolutions between neighbouring pulses of one magnet."""
     interval = np.diff(t)
     if interval.size < 2:
         return np.ones(interval.size, dtype=np.int64)
@@ -157,12 +157,12 @@ def _steps_of_one_magnet(t: Floats) -> NDArray[np.int64]:
     after = np.concatenate([interval[1:], interval[-2:-1]])
     multiple = np.round(interval / np.maximum(before, after)).astype(np.int64)
     fits = [np.abs(interval / other - multiple) <= _MULTIPLE_TOLERANCE * multiple for other in (before, after)]
-    missing = fits[0] & fits[1] & (multiple > 1) & (multiple <= _MOST_MISSING + 1)
+    missing = fits[0] & fits[1] & (multiple > 1) & (multiple <= _MAX_MISSING + 1)
     return np.where(missing, multiple, 1)
 
 
 def _fractions_and_steps(t: Floats, magnets: int) -> tuple[Floats, NDArray[np.int64]]:
-    """Return the fractions of a revolution from the first pulse's magnet on, and the magnets passed per interval."""
+    """Fractions of a revolution from the first pulse's magnet on, and the magnets passed per interval."""
     interval = np.diff(t)
     first = 0
     revolution = interval[:magnets]
@@ -179,11 +179,11 @@ def _fractions_and_steps(t: Floats, magnets: int) -> tuple[Floats, NDArray[np.in
 
 
 def _magnets_passed(interval: Floats, fractions: Floats, duration: float) -> NDArray[np.int64]:
-    """Return the number of magnets that pass in each interval, for slowly varying durations of a revolution."""
+    """Number of magnets that pass in each interval, for slowly varying durations of a revolution."""
     steps = np.ones(interval.size, dtype=np.int64)
     magnet = 0
     for i, dt in enumerate(interval):
-        passed = np.cumsum(np.resize(np.roll(fractions, -magnet), _MOST_MISSING + 1))
+        passed = np.cumsum(np.resize(np.roll(fractions, -magnet), _MAX_MISSING + 1))
         steps[i] = int(np.argmin(np.abs(np.log(dt / duration / passed)))) + 1
         duration = float(dt / passed[steps[i] - 1])
         magnet = (magnet + int(steps[i])) % fractions.size
@@ -191,7 +191,7 @@ def _magnets_passed(interval: Floats, fractions: Floats, duration: float) -> NDA
 
 
 def _with_missing_pulses(t: Floats, steps: NDArray[np.int64], fractions: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return the times of all pulses, the missing ones interpolated, and which these are."""
+    """Times of all pulses, the missing ones interpolated, and which these are."""
     index = np.concatenate([[0], np.cumsum(steps)])
     every = np.arange(index[-1] + 1)
     position = np.concatenate([[0.0], np.cumsum(np.resize(fractions, every.size - 1))])
@@ -199,7 +199,7 @@ def _with_missing_pulses(t: Floats, steps: NDArray[np.int64], fractions: Floats)
 
 
 def revolutions_at(rotation: DiscRotation, *, time: ArrayLike) -> Floats:
-    """Return the revolutions made since the first pulse, by monotone cubic (PCHIP) interpolation between pulses. []
+    """Revolutions made since the first pulse, by monotone cubic (PCHIP) interpolation between pulses. []
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from sonolube.measurement.time_series import require_time_series
 
 _TAIL_FRACTION = 1 / 3  # of the test, at its end, that determines level and scatter
 _CONSECUTIVE = 5  # windows that must stay within the band
-_FEWEST_WINDOWS = 12
+_MIN_WINDOWS = 12
 _NORMAL_CONSISTENCY = 1.4826  # standard deviation of a normal variable over its median absolute deviation
 
 
@@ -50,7 +50,7 @@ class SteadyStateOnset:
 def steady_state_onset(
     *, time: ArrayLike, friction_force: ArrayLike, sliding_speed: float, band: float = 3.0, least_band: float = 0.01
 ) -> SteadyStateOnset:
-    r"""Return the onset of steady-state friction by a tolerance band about the level of the end of the test.
+    r"""Onset of steady-state friction by a tolerance band about the level of the end of the test.
 
     Parameters
     ----------
@@ -91,8 +91,8 @@ def steady_state_onset(
     t, f = require_time_series(time=time, friction_force=friction_force)
     known = np.isfinite(f)
     t, f = t[known], f[known]
-    if t.size < _FEWEST_WINDOWS:
-        raise InvalidInput(f"a steady state needs at least {_FEWEST_WINDOWS} windows, got {t.size}")
+    if t.size < _MIN_WINDOWS:
+        raise InvalidInput(f"a steady state needs at least {_MIN_WINDOWS} windows, got {t.size}")
     tail = slice(t.size - max(_CONSECUTIVE, int(t.size * _TAIL_FRACTION)), t.size)
     level = float(np.median(f[tail]))
     rise, residual = _linear_trend(t[tail], f[tail])
@@ -118,14 +118,14 @@ def steady_state_onset(
 
 
 def _linear_trend(t: Floats, f: Floats) -> tuple[float, Floats]:
-    """Return the rise of the regression line from first to last point, and the residuals about it."""
+    """Rise of the regression line from first to last point, and the residuals about it."""
     x = (t - t.mean()) / (t[-1] - t[0])
     rise = float(x @ f / (x @ x))
     return rise, f - f.mean() - rise * x
 
 
 def _drift(rise: float, residual: Floats, tolerance: float) -> str:
-    """Return a message where the trend is significant and above the tolerance; empty where it is not."""
+    """Message where the trend is significant and above the tolerance; empty where it is not."""
     # the rise of a regression line over n even points has the variance 12 s^2/n, times the statistical inefficiency
     variance = 12 * float(residual @ residual) / residual.size**2 * statistical_inefficiency(residual)
     if abs(rise) > tolerance and abs(rise) > 3 * variance**0.5:

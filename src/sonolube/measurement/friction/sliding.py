@@ -64,17 +64,7 @@ def at_rest(
 def voltage_threshold(*, voltage_peak_to_peak: Floats, tolerance: float) -> float:
     """Voltage up to which there is none, and change of it that begins another step: of its range, or of noise, in V.
 
-    Parameters
-    ----------
-    voltage_peak_to_peak : ndarray, shape (samples,)
-        [V]
-    tolerance : float
-        Of its range.
-
-    Returns
-    -------
-    float
-        50 mV at least.
+    50 mV at least.
     """
     return max(tolerance * float(np.nanmax(voltage_peak_to_peak) - np.nanmin(voltage_peak_to_peak)), NOISE_VOLTAGE)
 
@@ -82,17 +72,7 @@ def voltage_threshold(*, voltage_peak_to_peak: Floats, tolerance: float) -> floa
 def rest_by_speed(*, time: Floats, speed: Floats) -> Mask:
     """Whether the surfaces rest, by a speed that was measured or set.
 
-    Parameters
-    ----------
-    time : ndarray, shape (samples,)
-        Increasing. [s]
-    speed : ndarray, shape (samples,)
-        Any speed in proportion to that of the sliding, or 1 for a motor that is on; NaN counts as unknown.
-
-    Returns
-    -------
-    ndarray of bool, shape (samples,)
-        Below a twentieth of the highest speed for over 0.2 s: a stroke that turns back rests for less.
+    Below a twentieth of the highest speed for over 0.2 s: a stroke that turns back rests for less.
     """
     size = np.abs(speed)
     highest = float(np.nanmax(size)) if np.isfinite(size).any() else 0.0
@@ -106,23 +86,9 @@ def rest_by_speed(*, time: Floats, speed: Floats) -> Mask:
 def rest_by_force(*, time: Floats, friction_force: Floats, without_voltage: Mask) -> Mask:
     """Whether the surfaces rest, by the force where there is no vibration.
 
-    Parameters
-    ----------
-    time : ndarray, shape (samples,)
-        Increasing. [s]
-    friction_force : ndarray, shape (samples,)
-        NaN is left out. [N]
-    without_voltage : ndarray of bool, shape (samples,)
-        Where the voltage is off. Elsewhere a small force may be the friction that vibration leaves.
+    Without voltage and below half of the level there, the 90th percentile of medians over 50 ms. No rest where that
+    level is not positive.
 
-    Returns
-    -------
-    ndarray of bool, shape (samples,)
-        Without voltage and below half of the level there, the 90th percentile of medians over 50 ms. No rest where
-        that level is not positive.
-
-    Notes
-    -----
     A force that stays when the motor stops, as a holder under tension keeps it, is not told from sliding: that needs a
     speed.
     """

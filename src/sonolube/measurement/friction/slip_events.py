@@ -21,7 +21,7 @@ _SHORTEST_SAMPLES = 6  # of a period, below which its shape is not resolved
 _SCALE_RATIO = np.sqrt(2)  # between the periods of neighbouring templates
 _GAPS = 0.6, 1.6  # shortest and longest time between slips over the period of the template
 _LARGEST_RESPONSE = 8.0  # counted of one slip, in standard deviations, so that no single step makes a chain
-_LEAST_RESPONSE = 1.5
+_MIN_RESPONSE = 1.5
 _EVENT_COST = 1.0  # beyond that of the largest rise in a period
 _RISE_SPREAD = 6.0  # square of a rise over the further cost, against the random walk of scores of large symmetric waves
 _RISE_RATIO = 1.5  # of the scores of falls and rises, which are equal for whatever is symmetric in time
@@ -53,7 +53,7 @@ class SlipChain:
 
 
 def noise_spectra(parts: Sequence[Floats], *, sample_interval: float) -> list[Floats]:
-    """Return the power spectrum of the noise in each part of a signal, smoothed.
+    """Power spectrum of the noise in each part of a signal, smoothed.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def noise_spectra(parts: Sequence[Floats], *, sample_interval: float) -> list[Fl
 
 
 def _smoothed(logs: Floats) -> Floats:
-    """Return the logarithm of a spectrum smoothed over neighbouring frequencies."""
+    """Logarithm of a spectrum smoothed over neighbouring frequencies."""
     smooth = uniform_filter1d(median_filter(logs, 2 * _SMOOTHING + 1, mode="nearest"), 7, mode="nearest")
     for k in range(min(2 * _SMOOTHING + 1, logs.size)):  # narrower where the spectrum of drift is steep
         half = min(max(k // 2, 1), _SMOOTHING)
@@ -100,7 +100,7 @@ def _smoothed(logs: Floats) -> Floats:
 
 
 def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> SlipChain:
-    r"""Return the recurring slips of a signal in noise of a known spectrum.
+    r"""Recurring slips of a signal in noise of a known spectrum.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
 
 
 def _best_of_periods(signal: Floats, spectrum: Floats, periods: Sequence[int]) -> SlipChain:
-    """Return the chains whose sawtooth holds the most power, and then those of the template for their median gap."""
+    """Chains whose sawtooth holds the most power, and then those of the template for their median gap."""
     best = SlipChain(bursts=(), template_period=0, score=0.0)
     most = 0.0
     size = 1 << int(np.ceil(np.log2(signal.size + 2 * periods[-1])))
@@ -167,7 +167,7 @@ def _best_of_periods(signal: Floats, spectrum: Floats, periods: Sequence[int]) -
 
 
 def _sawtooth_power(signal: Floats, bursts: Sequence[Indices]) -> float:
-    """Return the sum of squares that a sawtooth rising between the slips explains; 0 where the force does not rise."""
+    """Sum of squares that a sawtooth rising between the slips explains; 0 where the force does not rise."""
     if not bursts:
         return 0.0
     product, square = 0.0, 0.0
@@ -180,7 +180,7 @@ def _sawtooth_power(signal: Floats, bursts: Sequence[Indices]) -> float:
 
 
 def _periods(samples: int, interval: float) -> list[int]:
-    """Return the periods of the templates, in samples, from the shortest resolved to a quarter of the signal."""
+    """Periods of the templates, in samples, from the shortest resolved to a quarter of the signal."""
     shortest = max(_SHORTEST_SAMPLES, round(_SHORTEST_PERIOD / interval))
     longest = min(samples / 4, _LONGEST_PERIOD / interval)
     if longest < shortest:
@@ -190,7 +190,7 @@ def _periods(samples: int, interval: float) -> list[int]:
 
 
 def _chain_of_period(weighted: Floats, weight: Floats, samples: int, size: int, period: int) -> SlipChain:
-    """Return the chains of slips by the template of one period, and their score above that of rises."""
+    """Chains of slips by the template of one period, and their score above that of rises."""
     half = max(2, period // 2)
     position = np.arange(-half, half) + 0.5
     shape = np.fft.rfft(np.where(position < 0, position + half, position - half) / (2 * half), size)
@@ -204,7 +204,7 @@ def _chain_of_period(weighted: Floats, weight: Floats, samples: int, size: int, 
     if periods < _FEWEST - 1:
         return none
     largest_rise = float(np.median(-response[: periods * period].reshape(periods, period).min(axis=1)))
-    rise = max(largest_rise, _LEAST_RESPONSE) ** 2
+    rise = max(largest_rise, _MIN_RESPONSE) ** 2
     cost = rise / 2 + max(_EVENT_COST, rise / _RISE_SPREAD)
     score, chain = _best_chain(response, period, cost)
     if chain.size < _FEWEST:
@@ -217,7 +217,7 @@ def _chain_of_period(weighted: Floats, weight: Floats, samples: int, size: int, 
 
 
 def _bursts(response: Floats, period: int, cost: float, first: Indices, half: int) -> tuple[Indices, ...]:
-    """Return the best chain and the further ones that would be detected beside it, in order of time."""
+    """Best chain and the further ones that would be detected beside it, in order of time."""
     remaining, chains, chain = response.copy(), [], first
     score = DETECTION_SCORE
     while chain.size >= _FEWEST and score >= DETECTION_SCORE:
@@ -229,14 +229,14 @@ def _bursts(response: Floats, period: int, cost: float, first: Indices, half: in
 
 
 def _maxima(response: Floats) -> NDArray[np.bool_]:
-    """Return which values but the first and last are local maxima."""
+    """Which values but the first and last are local maxima."""
     inner = response[1:-1]
     return (inner >= response[:-2]) & (inner > response[2:])
 
 
 def _best_chain(response: Floats, period: int, cost: float) -> tuple[float, Indices]:
-    """Return the score and the indices of the chain of maxima with the highest score."""
-    maxima = np.flatnonzero(_maxima(response) & (response[1:-1] > _LEAST_RESPONSE)) + 1
+    """Score and the indices of the chain of maxima with the highest score."""
+    maxima = np.flatnonzero(_maxima(response) & (response[1:-1] > _MIN_RESPONSE)) + 1
     if not maxima.size:
         return 0.0, maxima
     gain = (np.minimum(response[maxima], _LARGEST_RESPONSE) ** 2 / 2 - cost).tolist()

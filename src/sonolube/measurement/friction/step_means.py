@@ -18,10 +18,10 @@ from sonolube.measurement.statistics.correlated_regression import CorrelatedRegr
 
 _BLOCK = 0.016  # s, over which samples are averaged
 _BLOCKS_OF_SHORTEST = 40
-_MOST_BLOCKS = 20_000
+_MAX_BLOCKS = 20_000
 _RUN_IN_TIMES = 8  # time constants that are tried
 _SIGNIFICANT = 3.5  # standard errors from which run-in or drift is kept
-_LEAST_SHARE = 0.05  # of a part within or without bursts, from which their shift of the level is fitted
+_MIN_SHARE = 0.05  # of a part within or without bursts, from which their shift of the level is fitted
 _UNEVEN = 1.5  # ratio of the noise between parts from which they are weighted
 
 
@@ -60,12 +60,12 @@ class SampledParts:
     block_samples: int
 
     def averaged(self, columns: Sequence[Floats]) -> list[Floats]:
-        """Return averages over blocks of columns of samples, one array per part."""
+        """Averages over blocks of columns of samples, one array per part."""
         return [_block_means(column, self.block_samples) for column in columns]
 
 
 def sampled_parts(parts: Sequence[slice], *, time: Floats, friction_force: Floats) -> SampledParts:
-    """Return the parts of a recording with blocks short against the parts and against the turns of a disc.
+    """Parts of a recording with blocks short against the parts and against the turns of a disc.
 
     Parameters
     ----------
@@ -86,14 +86,14 @@ def sampled_parts(parts: Sequence[slice], *, time: Floats, friction_force: Float
     interval = float(np.median(np.diff(time)))
     samples = sum(t.size for t in times)
     longest = min(t.size for t in times) // _BLOCKS_OF_SHORTEST
-    size = max(1, min(round(_BLOCK / interval), longest), samples // _MOST_BLOCKS)
+    size = max(1, min(round(_BLOCK / interval), longest), samples // _MAX_BLOCKS)
     return SampledParts(times=times, forces=forces, block_samples=size)
 
 
 def wobble_columns(
     parts: SampledParts, *, revolutions: Sequence[Floats] | None, harmonics: int, places: Sequence[Floats] | None = None
 ) -> tuple[list[Floats] | None, float]:
-    """Return the harmonics of the rotation at the samples of each part, and the correction of the speed.
+    """Harmonics of the rotation at the samples of each part, and the correction of the speed.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def wobble_columns(
 
 
 def _additive_or_proportional(parts: SampledParts, waves: list[Floats]) -> list[Floats]:
-    """Return harmonics of one amplitude in all parts, or of one in proportion to the force, whichever fits better.
+    """Harmonics of one amplitude in all parts, or of one in proportion to the force, whichever fits better.
 
     A tilted gauge adds the same wobble at every level; a load that varies with the turn, or a track that does, wobbles
     the force in proportion.
@@ -137,7 +137,7 @@ def _additive_or_proportional(parts: SampledParts, waves: list[Floats]) -> list[
         return waves
 
     def left(columns: list[Floats]) -> float:
-        """Return the sum of squares that remains of the blocks."""
+        """Sum of squares that remains of the blocks."""
         rest = parts.averaged(without_wobble(parts, columns))
         return float(sum(np.sum((y - y.mean()) ** 2) for y in rest))
 
@@ -145,7 +145,7 @@ def _additive_or_proportional(parts: SampledParts, waves: list[Floats]) -> list[
 
 
 def without_wobble(parts: SampledParts, waves: Sequence[Floats] | None) -> list[Floats]:
-    """Return the forces of the parts without the harmonics of the rotation, by least squares with free levels. [N]"""
+    """Forces of the parts without the harmonics of the rotation, by least squares with free levels. [N]"""
     if waves is None:
         return list(parts.forces)
     means = [wave.mean(axis=0) for wave in parts.averaged(waves)]
@@ -158,7 +158,7 @@ def without_wobble(parts: SampledParts, waves: Sequence[Floats] | None) -> list[
 def mean_of_parts(
     parts: SampledParts, *, waves: Sequence[Floats] | None, stick_slip: Sequence[StickSlipEstimate], onset: float
 ) -> StepMeans:
-    r"""Return the mean friction of each part by generalised least squares of the whole recording.
+    r"""Mean friction of each part by generalised least squares of the whole recording.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def mean_of_parts(
 
 
 def _block_means(column: Floats, size: int) -> Floats:
-    """Return averages over blocks of samples."""
+    """Averages over blocks of samples."""
     blocks = column.shape[0] // size
     return np.asarray(column[: blocks * size].reshape(blocks, size, *column.shape[1:]).mean(axis=1))
 
@@ -216,7 +216,7 @@ def _block_means(column: Floats, size: int) -> Floats:
 def _fitted(
     values: Sequence[Floats], fixed: Sequence[Floats], drift: Sequence[Floats], scale: Floats | None = None
 ) -> CorrelatedRegression:
-    """Return the regression on all columns, each part over the scale of its noise."""
+    """Regression on all columns, each part over the scale of its noise."""
     weights = np.ones(len(values)) if scale is None else 1 / scale
     designs = [w * np.concatenate([a, b], axis=1) for w, a, b in zip(weights, fixed, drift, strict=True)]
     return correlated_regression([w * y for w, y in zip(weights, values, strict=True)], designs)
@@ -225,7 +225,7 @@ def _fitted(
 def _fixed_columns(
     parts: SampledParts, waves: Sequence[Floats] | None, nuisances: Sequence[tuple[Floats, Floats]]
 ) -> tuple[list[Floats], int]:
-    """Return the averaged columns of levels, wobble, sawteeth and shifts, a matrix a part, and the number of shifts."""
+    """Averaged columns of levels, wobble, sawteeth and shifts, a matrix a part, and the number of shifts."""
     count = len(parts.times)
     teeth, shifts = (sum(own[k].shape[1] for own in nuisances) for k in range(2))
     columns, tooth, shift = [], 0, 0
@@ -241,7 +241,7 @@ def _fixed_columns(
 
 
 def _burst_columns(t: Floats, stick_slip: StickSlipEstimate) -> tuple[Floats, Floats]:
-    """Return the sawtooth of the bursts of a part, that of the cycles at each end, and the time within them."""
+    """Sawtooth of the bursts of a part, that of the cycles at each end, and the time within them."""
     times = [stick_slip.slip_time[(stick_slip.slip_time <= burst.end_time)] for burst in stick_slip.bursts]
     times = [s[s >= burst.start_time] for s, burst in zip(times, stick_slip.bursts, strict=True)]
     whole, before, after, within = np.zeros((4, t.size))
@@ -261,14 +261,14 @@ def _burst_columns(t: Floats, stick_slip: StickSlipEstimate) -> tuple[Floats, Fl
         within[inside] = 1.0
     teeth = [column for column in (whole, before, after) if np.any(column)]
     share = float(within.mean())
-    shift = [within] if _LEAST_SHARE < share < 1 - _LEAST_SHARE else []
+    shift = [within] if _MIN_SHARE < share < 1 - _MIN_SHARE else []
     return np.reshape(teeth, (-1, t.size)).T, np.reshape(shift, (-1, t.size)).T
 
 
 def _drift_columns(
     parts: SampledParts, values: Sequence[Floats], fixed: Sequence[Floats], onset: float
 ) -> list[Floats]:
-    """Return the averaged columns of linear drift, of the run-in that fits best, and of its change by time constant."""
+    """Averaged columns of linear drift, of the run-in that fits best, and of its change by time constant."""
     times = parts.averaged(parts.times)
     first, last = times[0][0], times[-1][-1]
     linear = [(t - (first + last) / 2) / (last - first) for t in times]
@@ -278,7 +278,7 @@ def _drift_columns(
     y = y - basis @ (basis.T @ y)
 
     def explained(logarithm: float) -> float:
-        """Return minus the power that a run-in of a time constant explains."""
+        """Minus the power that a run-in of a time constant explains."""
         x = np.exp(-whole / np.exp(logarithm))
         x = x - basis @ (basis.T @ x)
         return -(float(x @ y) ** 2) / max(float(x @ x), 1e-300)
@@ -293,6 +293,6 @@ def _drift_columns(
 
 
 def _significant(fit: CorrelatedRegression, which: slice) -> bool:
-    """Return whether coefficients differ from zero by more than chance."""
+    """Whether coefficients differ from zero by more than chance."""
     c = fit.coefficients[which]
     return float(c @ np.linalg.solve(fit.covariance[which, which], c)) > _SIGNIFICANT**2 + 2 * (c.size - 1)

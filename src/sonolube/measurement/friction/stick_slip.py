@@ -17,8 +17,8 @@ from sonolube.measurement.friction.stick_slip_estimate import StickSlipBurst, St
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import even_stretches, evenly_sampled, require_time_series
 
-_FEWEST_SAMPLES = 64
-_FEWEST_SLIPS = 3
+_MIN_SAMPLES = 64
+_MIN_SLIPS = 3
 _LINE = 0.03  # of its frequency, about a line that comes and goes
 _PADDING = 4  # zero padding of the spectrum, in lengths of the signal
 _SLOW_FALL = 0.2  # of the period, from which a cycle has no sawtooth's ramps
@@ -34,7 +34,7 @@ _PROFILE = 0.25  # of a period, before and after a slip
 def estimate_stick_slip(
     *, time: ArrayLike, friction_force: ArrayLike, minimum_drop: float | None = None
 ) -> StickSlipEstimate:
-    r"""Return whether a friction force shows stick-slip, its frequency, the mean fall of the force, and its bursts.
+    r"""Whether a friction force shows stick-slip, its frequency, the mean fall of the force, and its bursts.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def estimate_stick_slip(
 def stick_slip_of_parts(
     times: Sequence[Floats], forces: Sequence[Floats], *, minimum_drop: float = 0.0
 ) -> list[StickSlipEstimate]:
-    """Return the stick-slip of each part of a recording, the noise being known from all of them.
+    """Stick-slip of each part of a recording, the noise being known from all of them.
 
     Parameters
     ----------
@@ -122,12 +122,12 @@ def stick_slip_of_parts(
     --------
     noise_spectra : the noise that is common to the parts.
     """
-    found = [even_stretches(time=t, fewest=_FEWEST_SAMPLES) for t in times]
+    found = [even_stretches(time=t, fewest=_MIN_SAMPLES) for t in times]
     intervals = [interval for interval, stretches in found if stretches]
     if not intervals:
         longest = max(t.size for t in times)
         raise InvalidInput(
-            f"friction_force has {longest} samples without an even stretch of {_FEWEST_SAMPLES}; stick-slip needs one"
+            f"friction_force has {longest} samples without an even stretch of {_MIN_SAMPLES}; stick-slip needs one"
         )
     interval = float(np.median(intervals))
     pieces = [
@@ -151,7 +151,7 @@ def stick_slip_of_parts(
 def _estimate(
     t: Floats, force: Floats, signal: Floats, spectrum: Floats, interval: float, minimum: float
 ) -> StickSlipEstimate:
-    """Return the stick-slip of one stretch by its slips, or by its steady cycle where these have no ramps."""
+    """Stick-slip of one stretch by its slips, or by its steady cycle where these have no ramps."""
     frequency, share = _spectral_peak(signal, interval)
     fastest = 1 / (MIN_SAMPLES_OF_CYCLE * interval)
     if frequency > fastest and share > SHARE_OF_VARIANCE:
@@ -172,7 +172,7 @@ def _estimate(
         recur = f"falls of the force recur no more than noise explains (score {chain.score:.3g} of {DETECTION_SCORE:g})"
         reason = f"{other or recur}; the spectrum peaks at {frequency:.3g} Hz; sought up to {fastest:.3g} Hz"
         return not_detected(reason, frequency)
-    if found.force_drops < _FEWEST_SLIPS:
+    if found.force_drops < _MIN_SLIPS:
         return not_detected(f"{found.force_drops} falls of the force are too few to recur", frequency)
     if not found.stick_slip_amplitude > max(minimum, found.stick_slip_amplitude_uncertainty):
         return not_detected(f"the force falls by {found.stick_slip_amplitude:.3g} N only", frequency)
@@ -180,12 +180,12 @@ def _estimate(
 
 
 def _is_smooth(cycle: ForceCycle, interval: float) -> bool:
-    """Return whether a cycle falls too slowly, or has too few samples, for the ramps of a sawtooth."""
+    """Whether a cycle falls too slowly, or has too few samples, for the ramps of a sawtooth."""
     return cycle.fall_share > _SLOW_FALL or cycle.frequency * interval * _FEW_SAMPLES > 1
 
 
 def _has_frequency(chain: SlipChain, frequency: float) -> bool:
-    """Return whether the slips of a chain recur at a frequency, in periods a sample."""
+    """Whether the slips of a chain recur at a frequency, in periods a sample."""
     if not chain.bursts:
         return False
     gaps = np.concatenate([np.diff(burst) for burst in chain.bursts])
@@ -193,7 +193,7 @@ def _has_frequency(chain: SlipChain, frequency: float) -> bool:
 
 
 def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: float) -> StickSlipEstimate:
-    """Return the estimate from the slips of all bursts."""
+    """Estimate from the slips of all bursts."""
     falls, noise = _falls(signal, bursts)
     if noise * _CLEAR < np.median(falls):
         bursts = [_without_false_ends(signal, burst, _HALF * float(np.median(falls))) for burst in bursts]
@@ -234,7 +234,7 @@ def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: fl
 
 
 def _falls(signal: Floats, bursts: Sequence[Indices]) -> tuple[Floats, float]:
-    """Return the rise over each stick phase between slips, and the standard deviation of the noise about the lines."""
+    """Rise over each stick phase between slips, and the standard deviation of the noise about the lines."""
     rises, squares, count = [], 0.0, 0
     for burst in bursts:
         for first, last in pairwise(burst):
@@ -250,7 +250,7 @@ def _falls(signal: Floats, bursts: Sequence[Indices]) -> tuple[Floats, float]:
 
 
 def _range_of_mean_cycle(signal: Floats, bursts: Sequence[Indices]) -> float:
-    """Return the range of the mean of the force about the slips; below the ramps' rise where slips are not sudden."""
+    """Range of the mean of the force about the slips; below the ramps' rise where slips are not sudden."""
     half = int(max(2, 0.5 * np.median(np.concatenate([np.diff(burst) for burst in bursts]))))
     slips = np.concatenate(bursts)
     slips = slips[(slips >= half) & (slips <= signal.size - half)]
@@ -258,13 +258,13 @@ def _range_of_mean_cycle(signal: Floats, bursts: Sequence[Indices]) -> float:
 
 
 def _without_false_ends(signal: Floats, burst: Indices, least: float) -> Indices:
-    """Return a burst without slips at its ends whose stick phase rises too little, such as the ringing of the last."""
+    """Burst without slips at its ends whose stick phase rises too little, such as the ringing of the last."""
     enough = np.flatnonzero(_falls(signal, [burst])[0] >= least)
     return burst[enough[0] : enough[-1] + 2] if enough.size > 1 else burst
 
 
 def _at_steepest(signal: Floats, burst: Indices) -> Indices:
-    """Return the slips of a burst moved to the middle of the fall between the lines before and after it."""
+    """Slips of a burst moved to the middle of the fall between the lines before and after it."""
     gap = int(np.median(np.diff(burst)))
     reach, half = max(2, gap // _TIMING), gap // 4
     position = np.arange(-half, half) + 0.5
@@ -278,7 +278,7 @@ def _at_steepest(signal: Floats, burst: Indices) -> Indices:
 
 
 def _standard_error(falls: Floats) -> float:
-    """Return the standard error of the mean of rises, of which neighbours share the slip between them."""
+    """Standard error of the mean of rises, of which neighbours share the slip between them."""
     if falls.size < 2:
         return float("inf")
     residual = falls - falls.mean()
@@ -288,7 +288,7 @@ def _standard_error(falls: Floats) -> float:
 
 
 def _slip_duration(signal: Floats, bursts: Sequence[Indices], fall: float) -> float:
-    """Return the mean duration of a slip in samples, 0 for a fall between two samples, by the mean profile of slips."""
+    """Mean duration of a slip in samples, 0 for a fall between two samples, by the mean profile of slips."""
     reach = int(max(2, _PROFILE * np.median(np.concatenate([np.diff(burst) for burst in bursts]))))
     slips = np.concatenate(bursts)
     slips = slips[(slips >= reach) & (slips <= signal.size - reach)]
@@ -312,7 +312,7 @@ def _slip_duration(signal: Floats, bursts: Sequence[Indices], fall: float) -> fl
 
 
 def _by_cycle(t: Floats, force: Floats, cycle: ForceCycle, spectral: float) -> StickSlipEstimate:
-    """Return the estimate by a steady cycle without ramps: its range in each section."""
+    """Estimate by a steady cycle without ramps: its range in each section."""
     mean = float(min(np.mean(cycle.falls), np.ptp(force)))
     spread = correlated_mean(cycle.falls)
     resolution = max(cycle.truncation, mean * cycle.frequency * float(t[-1] - t[0]) / (t.size - 1))
@@ -343,12 +343,12 @@ def _by_cycle(t: Floats, force: Floats, cycle: ForceCycle, spectral: float) -> S
 
 
 def _within_range(mean: float, reach: float, signal: Floats) -> tuple[float, float]:
-    """Return the interval about a fall, which neither rises nor exceeds the range of the force."""
+    """Interval about a fall, which neither rises nor exceeds the range of the force."""
     return max(0.0, mean - reach), min(mean + reach, float(np.ptp(signal)))
 
 
 def _spectral_peak(f: Floats, interval: float) -> tuple[float, float]:
-    """Return frequency, in Hz, and share of the power of the highest local maximum of the spectrum, refined."""
+    """Frequency, in Hz, and share of the power of the highest local maximum of the spectrum, refined."""
     size = _PADDING * f.size
     power = np.abs(np.fft.rfft(f * hann(f.size, sym=False), size)) ** 2
     first = 2 * _PADDING  # below this bin lies the main lobe of the window

@@ -75,7 +75,7 @@ class StickSlipEstimate:
 
 
 def not_detected(reason: str, spectral_frequency: float, *, resolved: bool = True) -> StickSlipEstimate:
-    """Return the estimate for a signal without recurring falls, with the reason and the frequency of its spectrum."""
+    """Estimate for a signal without recurring falls, with the reason and the frequency of its spectrum."""
     return StickSlipEstimate(
         detected=False,
         resolved=resolved,
@@ -93,7 +93,7 @@ def not_detected(reason: str, spectral_frequency: float, *, resolved: bool = Tru
 
 
 def combined(estimates: Sequence[StickSlipEstimate], spans: Sequence[float]) -> StickSlipEstimate:
-    """Return the estimate of a part by those of its stretches."""
+    """Estimate of a part by those of its stretches."""
     if not estimates:
         return not_detected("too few samples follow one another without a gap", 0.0)
     longest = estimates[int(np.argmax(spans))]

@@ -24,7 +24,7 @@ from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate,
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import require_equal_length, require_time_series, uniform_sample_interval
 
-_FEWEST_AT_REST = 20  # samples, from which their mean tells the zero of the force
+_MIN_AT_REST = 20  # samples, from which their mean tells the zero of the force
 _TENSION = 0.3  # of the highest level, above which a force at rest is that of a holder under tension, not a zero
 _SAME_SPEED = 0.05  # relative deviation of speeds that are the same
 
@@ -73,7 +73,7 @@ class VoltageStep:
 
 
 def voltage_envelope(*, time: ArrayLike, stack_voltage: ArrayLike, window_duration: float = 0.05) -> Floats:
-    """Return the peak-to-peak envelope of an alternating voltage by moving maximum and minimum. [V]
+    """Peak-to-peak envelope of an alternating voltage by moving maximum and minimum. [V]
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def friction_at_voltage_steps(
     sliding_speed: ArrayLike | None = None,
     harmonics: int = 3,
 ) -> tuple[VoltageStep, ...]:
-    r"""Return mean friction, friction reduction and stick-slip at each step of a voltage.
+    r"""Mean friction, friction reduction and stick-slip at each step of a voltage.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def friction_at_voltage_steps(
 def rotation_speed_at_voltage_steps(
     *, time: ArrayLike, friction_force: ArrayLike, voltage_peak_to_peak: ArrayLike, harmonics: int = 3
 ) -> float | None:
-    """Return the rotational speed of the disc by the wobble in its friction; None where none stands out. [1/s]
+    """Rotational speed of the disc by the wobble in its friction; None where none stands out. [1/s]
 
     Parameters
     ----------
@@ -260,13 +260,13 @@ def rotation_speed_at_voltage_steps(
 
 
 def _of_parts(f: Floats, values: Floats, parts: Sequence[slice]) -> list[Floats]:
-    """Return values at the samples with a known force of each part."""
+    """Values at the samples with a known force of each part."""
     require_equal_length(friction_force=f, revolutions=values)
     return [values[part][np.isfinite(f[part])] for part in parts]
 
 
 def _slid(t: Floats, v: Floats) -> Floats:
-    """Return the distance slid until each sample over the mean speed while sliding, as a time. [s]"""
+    """Distance slid until each sample over the mean speed while sliding, as a time. [s]"""
     known = np.isfinite(v)
     speed = np.interp(t, t[known], np.abs(v[known]))
     moving = speed > 0
@@ -275,8 +275,8 @@ def _slid(t: Floats, v: Floats) -> Floats:
 
 
 def _zero(at_rest: Floats, levels: Floats) -> tuple[float, float]:
-    """Return the zero of the force and its variance, by its mean at rest."""
-    if at_rest.size < _FEWEST_AT_REST:
+    """Zero of the force and its variance, by its mean at rest."""
+    if at_rest.size < _MIN_AT_REST:
         return 0.0, 0.0
     mean = correlated_mean(at_rest)
     if abs(mean.mean) > max(_TENSION * float(np.max(np.abs(levels))), mean.deviation):
@@ -285,7 +285,7 @@ def _zero(at_rest: Floats, levels: Floats) -> tuple[float, float]:
 
 
 def _stick_slip(parts: SampledParts, forces: Sequence[Floats]) -> list[StickSlipEstimate]:
-    """Return the stick-slip of each step; a reason where the samples are uneven or too few."""
+    """Stick-slip of each step; a reason where the samples are uneven or too few."""
     try:
         return stick_slip_of_parts(parts.times, forces)
     except InvalidInput as refusal:
@@ -295,7 +295,7 @@ def _stick_slip(parts: SampledParts, forces: Sequence[Floats]) -> list[StickSlip
 def _reductions(
     means: StepMeans, without: NDArray[np.bool_], speeds: Sequence[float], samples: NDArray[np.int64]
 ) -> list[tuple[float | None, float | None]]:
-    """Return the friction reduction of each part and its standard uncertainty, by the parts of its speed."""
+    """Friction reduction of each part and its standard uncertainty, by the parts of its speed."""
     reductions: list[tuple[float | None, float | None]] = []
     for j, force in enumerate(means.friction_force):
         same = without & np.isclose(speeds, speeds[j], rtol=_SAME_SPEED, equal_nan=True)

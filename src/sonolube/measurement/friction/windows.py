@@ -61,7 +61,7 @@ def window_statistics(
     channel: str = "",
     unit: str = "",
 ) -> WindowStatistics:
-    r"""Return mean, standard deviation and fluctuation in consecutive windows, the last of which may be shorter.
+    r"""Mean, standard deviation and fluctuation in consecutive windows, the last of which may be shorter.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def streamed_window_statistics(
     window_duration: float = DEFAULT_WINDOW_DURATION,
     block_samples: int = 1 << 18,
 ) -> Mapping[str, WindowStatistics]:
-    """Return the window statistics of a file's channels, read in blocks without holding the file in memory.
+    """Window statistics of a file's channels, read in blocks without holding the file in memory.
 
     Parameters
     ----------
@@ -202,12 +202,12 @@ class _Moments:
 
 
 def _window_numbers(t: Floats, origin: float, window: float) -> NDArray[np.int64]:
-    """Return the number of the window of each sample, with a tolerance for rounded times."""
+    """Number of the window of each sample, with a tolerance for rounded times."""
     return np.floor((t - origin) / window + 1e-9).astype(np.int64)
 
 
 def _moments(t: Floats, signals: Signals, origin: float, window: float) -> _Moments:
-    """Return the moments of signals in each window."""
+    """Moments of signals in each window."""
     numbers = _window_numbers(t, origin, window)
     starts = np.concatenate([[0], np.flatnonzero(np.diff(numbers)) + 1])
     sizes = np.diff(np.append(starts, t.size))
@@ -218,7 +218,7 @@ def _moments(t: Floats, signals: Signals, origin: float, window: float) -> _Mome
 def _channel_moments(
     x: Floats, starts: NDArray[np.int64], sizes: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], Floats, Floats]:
-    """Return count, mean and sum of squared deviations of one signal in each window, missing values left out."""
+    """Count, mean and sum of squared deviations of one signal in each window, missing values left out."""
     missing = np.isnan(x)
     some_missing = bool(missing.any())
     count = sizes - np.add.reduceat(missing.astype(np.int64), starts) if some_missing else sizes
@@ -232,7 +232,7 @@ def _channel_moments(
 
 
 def _statistics(parts: list[_Moments], channel: str, unit: str, origin: float, window: float) -> WindowStatistics:
-    """Return the statistics of one channel from the moments of consecutive parts."""
+    """Statistics of one channel from the moments of consecutive parts."""
     number = np.concatenate([part.window for part in parts])
     count, mean, squares = (np.concatenate([part.channels[channel][which] for part in parts]) for which in range(3))
     known = np.where(count > 0, count, np.nan)

@@ -35,7 +35,7 @@ class WobbleCorrection:
 def remove_wobble(
     *, revolutions: ArrayLike, friction_force: ArrayLike, harmonics: int = 3, trend_degree: int = 1
 ) -> WobbleCorrection:
-    r"""Return the friction force without its harmonics of the rotation, by linear least squares.
+    r"""Friction force without its harmonics of the rotation, by linear least squares.
 
     Parameters
     ----------

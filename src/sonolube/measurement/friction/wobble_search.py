@@ -11,7 +11,7 @@ from sonolube.checks import Floats
 FASTEST_ROTATION = 5.0
 """Highest rotational speed that is sought, in turns per second."""
 
-_FEWEST_TURNS = 2.0
+_MIN_TURNS = 2.0
 _NOISE_BAND = 1.0  # Hz on either side, of the running median
 _OVERSAMPLING = 8
 _SIGNIFICANCE = 50.0  # of the sum over harmonics of power over noise, chi-squared with two degrees each
@@ -21,7 +21,7 @@ _AS_GOOD = 0.98  # of the best explained power, at which a faster rotation is pr
 
 
 def harmonic_columns(*, revolutions: Floats, harmonics: int) -> Floats:
-    """Return cosines and sines of the harmonics of the rotation.
+    """Cosines and sines of the harmonics of the rotation.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def harmonic_columns(*, revolutions: Floats, harmonics: int) -> Floats:
 
 
 def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, harmonics: int = 3) -> float | None:
-    r"""Return the rotational speed whose harmonics stand out in a friction force; None where none does. [1/s]
+    r"""Rotational speed whose harmonics stand out in a friction force; None where none does. [1/s]
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
     width = min(int(2 * _NOISE_BAND / frequency[1]), frequency.size - 1)
     noise = median_filter(power, width | 1, mode="reflect") / np.log(2)
     relative = power / np.maximum(noise, 1e-300)
-    slowest = int(np.ceil(_FEWEST_TURNS / duration / frequency[1]))
+    slowest = int(np.ceil(_MIN_TURNS / duration / frequency[1]))
     fastest = int(min(FASTEST_ROTATION / frequency[1], (frequency.size - 1) / harmonics))
     if fastest <= slowest:
         return None
@@ -91,7 +91,7 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
 def refined_speed(
     times: Sequence[Floats], forces: Sequence[Floats], *, rotation_speed: float, harmonics: int = 3
 ) -> float:
-    """Return the rotational speed of least misfit within half a turn per recording of a given one. [1/s]
+    """Rotational speed of least misfit within half a turn per recording of a given one. [1/s]
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def refined_speed(
 
 
 def _explained_power(times: Sequence[Floats], forces: Sequence[Floats]) -> tuple[Floats, Floats]:
-    """Return frequencies and the power that each explains beside the means of the parts."""
+    """Frequencies and the power that each explains beside the means of the parts."""
     start, interval = times[0][0], float(np.median(np.concatenate([np.diff(t) for t in times])))
     places = [np.round((t - start) / interval).astype(np.int64) for t in times]
     size = 1 << int(np.ceil(np.log2(_OVERSAMPLING * (places[-1][-1] + 1))))
@@ -140,18 +140,9 @@ def _explained_power(times: Sequence[Floats], forces: Sequence[Floats]) -> tuple
 
 
 def scaled_waves(waves: Sequence[Floats], forces: Sequence[Floats]) -> list[Floats] | None:
-    """Return harmonics in proportion to the level of each part, 1 at the highest; None where a level is not positive.
+    """Harmonics in proportion to the level of each part, 1 at the highest; None where a level is not positive.
 
-    Parameters
-    ----------
-    waves : sequence of ndarray, shape (samples, columns)
-        Of each part.
-    forces : sequence of ndarray
-        Friction force of each part, in N.
-
-    Returns
-    -------
-    list of ndarray or None
+    `waves` has shape (samples, columns).
     """
     levels = np.array([force.mean() for force in forces])
     if not (levels > 0).all():
@@ -160,7 +151,7 @@ def scaled_waves(waves: Sequence[Floats], forces: Sequence[Floats]) -> list[Floa
 
 
 def _residuals(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> list[Floats]:
-    """Return what levels and harmonics leave of each part, with one amplitude or one in proportion to the level.
+    """What levels and harmonics leave of each part, with one amplitude or one in proportion to the level.
 
     The one that leaves less is taken: a tilted gauge adds the same wobble at every level, a load that varies with the
     turn wobbles the force in proportion, and of one amplitude would be worse than none where vibration takes most of
@@ -172,7 +163,7 @@ def _residuals(times: Sequence[Floats], forces: Sequence[Floats], speed: float, 
 
 
 def _left(waves: Sequence[Floats], forces: Sequence[Floats]) -> list[Floats]:
-    """Return the residuals of the fit of levels and columns in each part."""
+    """Residuals of the fit of levels and columns in each part."""
     centred = np.concatenate([wave - wave.mean(axis=0) for wave in waves])
     y = np.concatenate([force - force.mean() for force in forces])
     solution, _, _, _ = np.linalg.lstsq(centred, y)
@@ -181,12 +172,12 @@ def _left(waves: Sequence[Floats], forces: Sequence[Floats]) -> list[Floats]:
 
 
 def _misfit(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> float:
-    """Return the sum of squares that levels and harmonics leave."""
+    """Sum of squares that levels and harmonics leave."""
     return sum(float(e @ e) for e in _residuals(times, forces, speed, harmonics))
 
 
 def _coherent(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> bool:
-    """Return whether one wobble improves the fit in most of the time."""
+    """Whether one wobble improves the fit in most of the time."""
     residuals = _residuals(times, forces, speed, harmonics)
     size = max(1, min(t.size for t in times))
     better, pieces = 0, 0

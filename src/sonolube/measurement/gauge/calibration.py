@@ -17,7 +17,7 @@ from sonolube.measurement.gauge.readings import (
     require_readings,
 )
 
-_MOST_ROWS = 20_000  # of a calibration; longer ones are decimated
+_MAX_ROWS = 20_000  # of a calibration; longer ones are decimated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -84,7 +84,7 @@ class ForceEstimate:
 
 
 def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: int = 3) -> BranchCalibration:
-    """Return the calibration by one polynomial for the loading and one for the unloading branch, by least squares.
+    """Calibration by one polynomial for the loading and one for the unloading branch, by least squares.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: i
 def force_from_branches(
     calibration: BranchCalibration, *, displacement: ArrayLike, displacement_uncertainty: float = 0.0
 ) -> ForceEstimate:
-    r"""Return the force from a displacement and its direction, by the polynomials of both branches.
+    r"""Force from a displacement and its direction, by the polynomials of both branches.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def force_from_branches(
 
 
 def fit_preisach(*, displacement: ArrayLike, applied_force: ArrayLike, levels: int = 16) -> PreisachCalibration:
-    r"""Return the calibration by Preisach's model, from loops that reverse at different displacements.
+    r"""Calibration by Preisach's model, from loops that reverse at different displacements.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ def fit_preisach(*, displacement: ArrayLike, applied_force: ArrayLike, levels: i
     if x.size < 2 * levels:
         raise InvalidInput(f"{x.size} samples are too few for {levels} levels; give {2 * levels} or use fewer levels")
     plane = PreisachPlane(lowest=float(x.min()), highest=float(x.max()), levels=levels)
-    stride = -(-x.size // _MOST_ROWS)
+    stride = -(-x.size // _MAX_ROWS)
     ramps, fractions, target = _ramps(plane, x[::stride]), relay_fractions(plane, x)[::stride], force[::stride]
     # the resting force may have either sign: the difference of two that are not negative
     rest = np.ones((target.size, 1))
@@ -245,7 +245,7 @@ def fit_preisach(*, displacement: ArrayLike, applied_force: ArrayLike, levels: i
 def force_from_preisach(
     calibration: PreisachCalibration, *, displacement: ArrayLike, displacement_uncertainty: float = 0.0
 ) -> ForceEstimate:
-    """Return the force from the history of a displacement, by Preisach's model.
+    """Force from the history of a displacement, by Preisach's model.
 
     Parameters
     ----------
@@ -283,7 +283,7 @@ def force_from_preisach(
 
 
 def dissipated_energy(*, displacement: ArrayLike, applied_force: ArrayLike) -> float:
-    r"""Return the energy dissipated over a closed loop of force over displacement, its area, in joules.
+    r"""Energy dissipated over a closed loop of force over displacement, its area, in joules.
 
     Parameters
     ----------
@@ -316,7 +316,7 @@ def dissipated_energy(*, displacement: ArrayLike, applied_force: ArrayLike) -> f
 
 
 def major_loop_dissipation(calibration: PreisachCalibration) -> float:
-    r"""Return the energy dissipated over the major loop of a Preisach calibration, in joules.
+    r"""Energy dissipated over the major loop of a Preisach calibration, in joules.
 
     Parameters
     ----------
@@ -336,13 +336,13 @@ def major_loop_dissipation(calibration: PreisachCalibration) -> float:
 
 
 def _ramps(plane: PreisachPlane, x: Floats) -> Floats:
-    """Return the fraction of each level that lies below the displacement, shape (samples, levels)."""
+    """Fraction of each level that lies below the displacement, shape (samples, levels)."""
     place = (x - plane.lowest) / (plane.highest - plane.lowest) * plane.levels
     return np.asarray(np.clip(place[:, np.newaxis] - np.arange(plane.levels), 0.0, 1.0))
 
 
 def _local_slope(x: Floats, force: Floats, mean_slope: float) -> Floats:
-    """Return the slope of the force at each sample, the mean of those of both neighbouring intervals."""
+    """Slope of the force at each sample, the mean of those of both neighbouring intervals."""
     steps = np.diff(x)
     slopes = np.divide(np.diff(force), steps, out=np.full(steps.size, mean_slope), where=steps != 0)
     return np.concatenate([slopes[:1], (slopes[:-1] + slopes[1:]) / 2, slopes[-1:]])

@@ -54,7 +54,7 @@ class PreisachPlane:
 
 
 def relay_fractions(plane: PreisachPlane, values: Floats) -> Floats:
-    """Return the fraction of each cell's relays that is up, along a history of the input.
+    """Fraction of each cell's relays that is up, along a history of the input.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def relay_fractions(plane: PreisachPlane, values: Floats) -> Floats:
 
 
 def preisach_output(plane: PreisachPlane, weights: Floats, values: Floats) -> Floats:
-    """Return the output of Preisach's model, the sum of the weights of all relays that are up, along an input history.
+    """Output of Preisach's model, the sum of the weights of all relays that are up, along an input history.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def preisach_output(plane: PreisachPlane, weights: Floats, values: Floats) -> Fl
 
 
 def mean_relay_widths(plane: PreisachPlane) -> Floats:
-    """Return the mean width alpha - beta of the relays of each cell, in units of the input.
+    """Mean width alpha - beta of the relays of each cell, in units of the input.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def mean_relay_widths(plane: PreisachPlane) -> Floats:
 
 
 def _in_levels(plane: PreisachPlane, values: Floats) -> Floats:
-    """Return the input in units of the levels, from 0 at the lowest to `levels` at the highest."""
+    """Input in units of the levels, from 0 at the lowest to `levels` at the highest."""
     return np.ascontiguousarray((values - plane.lowest) / (plane.highest - plane.lowest) * plane.levels)
 
 
@@ -185,7 +185,7 @@ def _fill_fractions(x: Floats, levels: int, fractions: Floats) -> None:
 
 @kernel(cache=True)
 def _output(x: Floats, levels: int, weights: Floats) -> Floats:
-    """Return the weighted sum of the fractions along a history of the input."""
+    """Weighted sum of the fractions along a history of the input."""
     extrema, last = np.zeros(x.size + 2), 0
     row, output = np.empty(weights.size), np.empty(x.size)
     for sample in range(x.size):

@@ -12,16 +12,9 @@ _RANGE_TOLERANCE = 1e-9  # of the range
 
 
 def loading_mask(x: Floats) -> NDArray[np.bool_]:
-    """Return where a displacement is on a loading branch, with hysteresis against small reversals.
+    """Where a displacement is on a loading branch, with hysteresis against small reversals.
 
-    Parameters
-    ----------
-    x : ndarray, shape (samples,)
-        Displacement in order of time.
-
-    Returns
-    -------
-    ndarray of bool, shape (samples,)
+    Shape (samples,).
     """
     threshold = _REVERSAL * float(np.ptp(x))
     rising = np.empty(x.size, dtype=np.bool_)
@@ -37,25 +30,9 @@ def loading_mask(x: Floats) -> NDArray[np.bool_]:
 
 
 def require_calibrated_range(*, displacement: ArrayLike, lowest: float, highest: float) -> Floats:
-    """Return displacements as a one-dimensional array; refuse any outside the calibrated range.
+    """Displacements as a one-dimensional array; refuse any outside the calibrated range.
 
-    Parameters
-    ----------
-    displacement : array_like, shape (samples,)
-        Reading of the sensor. [m]
-    lowest, highest : float
-        Calibrated range, in metres.
-
-    Returns
-    -------
-    ndarray, shape (samples,)
-
-    Raises
-    ------
-    InvalidInput
-        If a reading is not finite.
-    OutsideRange
-        If a reading lies outside the range.
+    Shape (samples,).
     """
     x = np.atleast_1d(require_finite(displacement=displacement))
     if x.ndim != 1:
@@ -71,23 +48,9 @@ def require_calibrated_range(*, displacement: ArrayLike, lowest: float, highest:
 
 
 def require_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
-    """Return displacement and force as one-dimensional arrays of equal length.
+    """Displacement and force as one-dimensional arrays of equal length.
 
-    Parameters
-    ----------
-    displacement : array_like, shape (samples,)
-        Reading of the sensor. [m]
-    applied_force : array_like, shape (samples,)
-        Reading of the load cell. [N]
-
-    Returns
-    -------
-    tuple of ndarray, shape (samples,)
-
-    Raises
-    ------
-    InvalidInput
-        If the lengths differ or a value is not finite.
+    Shape (samples,).
     """
     x, force = require_finite(displacement=displacement), require_finite(applied_force=applied_force)
     require_equal_length(displacement=x, applied_force=force)
@@ -95,23 +58,9 @@ def require_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tu
 
 
 def require_calibration_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
-    """Return displacement and force of a calibration as one-dimensional arrays of equal length.
+    """Displacement and force of a calibration as one-dimensional arrays of equal length.
 
-    Parameters
-    ----------
-    displacement : array_like, shape (samples,)
-        Reading of the sensor. [m]
-    applied_force : array_like, shape (samples,)
-        Reading of the load cell. [N]
-
-    Returns
-    -------
-    tuple of ndarray, shape (samples,)
-
-    Raises
-    ------
-    InvalidInput
-        As `require_readings`, and if the displacement does not vary.
+    Shape (samples,).
     """
     x, force = require_readings(displacement=displacement, applied_force=applied_force)
     if x.size < 2 or np.ptp(x) == 0:

@@ -75,17 +75,7 @@ class ColumnHeading(NamedTuple):
 
 
 def parse_heading(text: str) -> ColumnHeading | None:
-    """Return the quantity and unit in the heading of a column, or None where it is none of an impedance table.
-
-    Parameters
-    ----------
-    text : str
-        Such as ``|Z|(Ohm)``, "Freq [kHz]", "Re(Z)/ohm" or "phase (deg)". A phase must state its unit; other quantities
-        without one are in SI.
-
-    Returns
-    -------
-    ColumnHeading or None
+    """Quantity and unit in the heading of a column, or None where it is none of an impedance table.
 
     See Also
     --------
@@ -101,7 +91,7 @@ def parse_heading(text: str) -> ColumnHeading | None:
 
 
 def is_phase_without_unit(text: str) -> bool:
-    """Return whether the heading of a column names a phase and states no unit, or one that is no angle."""
+    """Whether the heading of a column names a phase and states no unit, or one that is no angle."""
     label = text.strip().strip('"').strip()
     found = _BRACKETED.fullmatch(label) or _DIVIDED.fullmatch(label)
     names_phase = _SYMBOL.get((found[1] if found else label).lower(), "").startswith("theta")
@@ -109,22 +99,10 @@ def is_phase_without_unit(text: str) -> bool:
 
 
 def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -> Complexes:
-    r"""Return the complex impedance from two real parts of impedance, admittance or an equivalent circuit, in ohm.
+    r"""Complex impedance from two real parts of impedance, admittance or an equivalent circuit, in ohm.
 
-    Parameters
-    ----------
-    columns : mapping of str to ndarray
-        Frequency "f" and the parts, in SI.
-    pair : tuple of two str
-        One of `IMPEDANCE_PARTS`.
+    Not finite where the parts define no finite impedance.
 
-    Returns
-    -------
-    ndarray
-        Not finite where the parts define no finite impedance.
-
-    Notes
-    -----
     With :math:`\omega = 2\pi f`: :math:`R + jX`, :math:`|Z| e^{j\theta}`, :math:`1/(G + jB)`, the series circuits
     :math:`R_s + j\omega L_s` and :math:`R_s + 1/(j\omega C_s)`, and the parallel circuits
     :math:`(1/R_p + 1/(j\omega L_p))^{-1}` and :math:`(1/R_p + j\omega C_p)^{-1}`.
@@ -136,7 +114,7 @@ def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -
 
 
 def _unit_scale(unit: str, dimension: str) -> float | None:
-    """Return the value of a unit in SI, None where it is unknown or of another dimension."""
+    """Value of a unit in SI, None where it is unknown or of another dimension."""
     if unit.lower() in ("deg", "°", "degrees"):
         return math.pi / 180 if dimension == "rad" else None
     found = _UNIT.fullmatch(unit)

@@ -16,7 +16,7 @@ class ImpedanceFormat(FileFormat, Protocol):
     """Reader of one text file format of impedance spectra."""
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
-        """Return the sweeps of a file by name.
+        """Sweeps of a file by name.
 
         Parameters
         ----------

@@ -43,31 +43,12 @@ class Hp4294A:
     suffixes: ClassVar[tuple[str, ...]] = ()
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the first line begins with the name of the instrument."""
+        """Whether the first line begins with the name of the instrument."""
         return first_lines(head)[0].startswith(_SIGNATURE)
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
-        """Return the sweep "data", and "memory" where the file has its traces.
+        """Sweep "data", and "memory" where the file has its traces.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file, for messages.
-        lines : list of str
-            Of the file.
-
-        Returns
-        -------
-        dict of str to ImpedanceSweep
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file and the line, if the sweep is not over frequency, the traces are neither impedance nor
-            admittance, differ in frequency, are cut short or hold anything but numbers.
-
-        Notes
-        -----
         The real part of trace A is the first part of the measured parameter, that of trace B the second. The memory
         trace often holds the response that the instrument computed from a fitted circuit.
         """
@@ -100,7 +81,7 @@ class Hp4294A:
 
 
 def _header_and_traces(path: Path, lines: list[str]) -> tuple[dict[str, tuple[str, int]], list[_Trace]]:
-    """Return the entries of the header, each with its line, and the traces."""
+    """Entries of the header, each with its line, and the traces."""
     header: dict[str, tuple[str, int]] = {}
     blocks: list[tuple[int, list[tuple[int, list[float]]]]] = []
     for at, line in enumerate(lines[1:], start=2):
@@ -118,7 +99,7 @@ def _header_and_traces(path: Path, lines: list[str]) -> tuple[dict[str, tuple[st
 
 
 def _row(path: Path, at: int, text: str) -> list[float]:
-    """Return the numbers of a row: frequency, and real and imaginary part of data and perhaps memory."""
+    """Numbers of a row: frequency, and real and imaginary part of data and perhaps memory."""
     values = [parse_number(cell, decimal_sign=".") for cell in text.split("\t")]
     known = [value for value in values if value is not None and np.isfinite(value)]
     if len(known) != len(values) or len(known) not in (3, 5):
@@ -127,7 +108,7 @@ def _row(path: Path, at: int, text: str) -> list[float]:
 
 
 def _trace(path: Path, heading_line: int, rows: list[tuple[int, list[float]]]) -> _Trace:
-    """Return the rows of a trace as one array; refuse none, and rows of different lengths."""
+    """Rows of a trace as one array; refuse none, and rows of different lengths."""
     if not rows:
         raise InvalidInput(f"{path}: line {heading_line}: no values follow")
     for at, row in rows:

@@ -19,29 +19,12 @@ class KeysightE4990A:
     suffixes: ClassVar[tuple[str, ...]] = ()
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the file begins with comments that name the instrument."""
+        """Whether the file begins with comments that name the instrument."""
         lines = first_lines(head)
         return lines[0].startswith("!") and any("E4990A" in line for line in lines[:4])
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
-        """Return the sweep "data", and "memory" where it was saved.
-
-        Parameters
-        ----------
-        path : Path
-            Of the file, for messages.
-        lines : list of str
-            Of the file.
-
-        Returns
-        -------
-        dict of str to ImpedanceSweep
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file and the line, if the file ends early, its columns are no impedance or a cell is no number.
-        """
+        """Sweep "data", and "memory" where it was saved."""
         last = next((at for at, line in enumerate(lines) if line.strip() == "END"), None)
         if last is None:
             raise InvalidInput(f"{path}: line {len(lines)}: ends without END; was it cut off?")
@@ -62,7 +45,7 @@ class KeysightE4990A:
 
 
 def _heading(text: str, kind: str, suffix: str) -> ColumnHeading | None:
-    """Return the heading of a column of one kind of trace, or of the frequency, whose label has no suffix."""
+    """Heading of a column of one kind of trace, or of the frequency, whose label has no suffix."""
     if not text:
         return parse_heading(kind)
     return parse_heading(text) if kind.lower().startswith(suffix) else None

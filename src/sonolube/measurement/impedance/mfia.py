@@ -31,30 +31,14 @@ class Mfia:
     suffixes: ClassVar[tuple[str, ...]] = ()
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the first line names the columns chunk and fieldname."""
+        """Whether the first line names the columns chunk and fieldname."""
         cells = [cell.strip() for cell in first_lines(head)[0].replace(",", ";").lower().split(";")]
         return cells[0] == "chunk" and "fieldname" in cells
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
-        """Return the sweeps by their chunk numbers.
+        """Sweeps by their chunk numbers.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file, for messages.
-        lines : list of str
-            Of the file: one line per chunk and field, `chunk;timestamp;size;fieldname` and the values.
-
-        Returns
-        -------
-        dict of str to ImpedanceSweep
-            Without the points that an unfinished sweep left empty.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file and the line, if a value is no number, fields differ in length, or a field is missing
-            or there twice.
+        Without the points that an unfinished sweep left empty.
         """
         separator = ";" if ";" in lines[0] else ","
         chunks: dict[str, dict[str, tuple[int, Floats]]] = {}
@@ -80,7 +64,7 @@ class Mfia:
 
 
 def _chunk_sweep(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]]) -> ImpedanceSweep:
-    """Return the finished points of one chunk."""
+    """Finished points of one chunk."""
     first = min(at for at, _ in fields.values())
     axis = next((name for name in _FREQUENCY_FIELDS if name in fields), None)
     pair = next((pair for pair in _IMPEDANCE_FIELDS if all(name in fields for name in pair)), None)
@@ -105,7 +89,7 @@ def _chunk_sweep(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]]) 
 
 
 def _values(path: Path, line: int, cells: Iterable[str]) -> Floats:
-    """Return the numbers of one line; NaN for empty cells."""
+    """Numbers of one line; NaN for empty cells."""
     values = []
     for cell in cells:
         value = parse_number(cell, decimal_sign=".") if cell else float("nan")

@@ -37,28 +37,11 @@ class NamedColumns:
     suffixes: ClassVar[tuple[str, ...]] = (".csv", ".tsv", ".txt")
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return True: any text may be a table."""
+        """True: any text may be a table."""
         return True
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
-        """Return the one sweep of a table, under an empty name.
-
-        Parameters
-        ----------
-        path : Path
-            Of the file, for messages.
-        lines : list of str
-            Of the file. Lines that begin with #, ! or % are skipped; cells stand between tabs, semicolons or commas.
-
-        Returns
-        -------
-        dict of str to ImpedanceSweep
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file and the line, if the headings name no frequency and impedance, or a cell is no number.
-        """
+        """One sweep of a table, under an empty name."""
         numbered = [(at, line) for at, line in enumerate(lines, 1) if line.strip() and not line.startswith(_COMMENTS)]
         if not numbered:
             raise InvalidInput(f"{path}: line {len(lines)}: holds no row")
@@ -84,31 +67,9 @@ def _require_units_of_phases(path: Path, line: int, labels: list[str], headings:
 def sweep_from_columns(
     path: Path, heading_line: int, headings: list[ColumnHeading | None], rows: list[NumberedCells], *, decimal_sign: str
 ) -> ImpedanceSweep:
-    """Return the sweep of a table by the headings of its columns.
+    """Sweep of a table by the headings of its columns.
 
-    Parameters
-    ----------
-    path : Path
-        Of the file, for messages.
-    heading_line : int
-        Line of the headings, for messages.
-    headings : list of ColumnHeading or None
-        One per column; None for columns of other quantities.
-    rows : list of (int, list of str)
-        Line and cells of each row.
-    decimal_sign : str
-        "." or ",".
-
-    Returns
-    -------
-    ImpedanceSweep
-        Of the first pair of `IMPEDANCE_PARTS` that the table has: the magnitude alone only where there is nothing else.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the line, if the headings name no frequency and impedance, two columns are of one quantity
-        and differ, or a cell is no number.
+    Of the first pair of `IMPEDANCE_PARTS` that the table has: the magnitude alone only where there is nothing else.
     """
     known = {heading.symbol for heading in headings if heading}
     pair = next((pair for pair in IMPEDANCE_PARTS if all(part in known for part in pair)), None)
@@ -138,14 +99,14 @@ def sweep_from_columns(
 
 
 def _column(path: Path, rows: list[NumberedCells], at: int, heading: ColumnHeading, decimal_sign: str) -> Floats:
-    """Return the numbers of one column in SI."""
+    """Numbers of one column in SI."""
     values = np.array([_finite_number(path, row, at, decimal_sign) for row in rows])
     with np.errstate(all="ignore"):
         return np.asarray(heading.scale * values)
 
 
 def _finite_number(path: Path, row: NumberedCells, at: int, decimal_sign: str) -> float:
-    """Return the number in one cell of a row; refuse a missing cell and what is no finite number."""
+    """Number in one cell of a row; refuse a missing cell and what is no finite number."""
     line, cells = row
     if at >= len(cells):
         raise InvalidInput(f"{path}: line {line}: has {len(cells)} cells where column {at + 1} is required")

@@ -10,7 +10,7 @@ _NEARLY_ALL = 0.95  # of the conductance summed over the points
 
 
 def passive_spectrum(spectrum: ImpedanceSpectrum) -> tuple[ImpedanceSpectrum, tuple[str, ...]]:
-    r"""Return a spectrum with a sign that a passive part can have, and a caveat where it was turned by 180 degrees.
+    r"""Spectrum with a sign that a passive part can have, and a caveat where it was turned by 180 degrees.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ _LARGEST_FILE = 1 << 28  # bytes; far above any sweep
 
 
 def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum:
-    """Return an impedance spectrum read from a file.
+    """Impedance spectrum read from a file.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
 
 
 def _content_and_lines(path: Path) -> tuple[bytes, list[str]]:
-    """Return the bytes and the lines of a text file of limited size."""
+    """Bytes and the lines of a text file of limited size."""
     with refuse_unreadable(path):
         if path.stat().st_size > _LARGEST_FILE:
             raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST_FILE >> 20} MiB, more than any sweep")
@@ -73,7 +73,7 @@ def _content_and_lines(path: Path) -> tuple[bytes, list[str]]:
 
 
 def _selected_name(path: Path, sweeps: Mapping[str, ImpedanceSweep], requested: str | None) -> str:
-    """Return the name of the requested sweep, without a request that of the measured or only one."""
+    """Name of the requested sweep, without a request that of the measured or only one."""
     if requested is not None:
         if requested not in sweeps:
             raise UnknownName(f"{path}: has no sweep {requested!r}; it has {', '.join(map(repr, sweeps))}")

@@ -100,25 +100,7 @@ class ImpedanceSweep:
 
 
 def sorted_by_frequency(sweep: ImpedanceSweep, *, path: Path) -> ImpedanceSweep:
-    """Return a sweep in order of increasing frequency, validated.
-
-    Parameters
-    ----------
-    sweep : ImpedanceSweep
-        Of increasing or decreasing frequency.
-    path : Path
-        File it comes from, for messages.
-
-    Returns
-    -------
-    ImpedanceSweep
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the line, if a frequency is not positive, the sweep is not monotonic, or an impedance is
-        zero or not finite.
-    """
+    """Sweep in order of increasing frequency, validated."""
     f, z, lines = sweep.frequency, sweep.impedance, sweep.lines
     if f.size > 1 and f[-1] < f[0]:
         f, z, lines = f[::-1], z[::-1], lines[::-1]

@@ -18,7 +18,7 @@ _FREQUENCY_UNITS = {"HZ": 1.0, "KHZ": 1e3, "MHZ": 1e6, "GHZ": 1e9}
 _PARAMETERS = ("S", "Y", "Z")
 _NUMBER_FORMATS = ("DB", "MA", "RI")
 _MULTIPORT = re.compile(r"\.s([2-9]|[1-9][0-9]+)p")
-_MOST_OPTIONS = 16  # words of an option line; it needs five
+_MAX_OPTIONS = 16  # words of an option line; it needs five
 _SKIPPED_KEYWORDS = ("[number of frequencies]", "[network data]", "[two-port data order]", "[matrix format]")
 
 
@@ -50,34 +50,15 @@ class Touchstone:
     suffixes: ClassVar[tuple[str, ...]] = (".s1p", ".ts")
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the suffix is that of touchstone, of any number of ports, or line 1 states the version."""
+        """Whether the suffix is that of touchstone, of any number of ports, or line 1 states the version."""
         is_multiport = _MULTIPORT.fullmatch(path.suffix.lower()) is not None
         return (
             is_multiport or path.suffix.lower() in self.suffixes or first_lines(head)[0].lower().startswith("[version]")
         )
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
-        r"""Return the one sweep of a touchstone file of one port, under an empty name.
+        r"""One sweep of a touchstone file of one port, under an empty name.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file, for messages.
-        lines : list of str
-            Of the file.
-
-        Returns
-        -------
-        dict of str to ImpedanceSweep
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file and the line, if there is no option line, an option or keyword is unknown, the file has more
-            than one port, or a value is no number.
-
-        Notes
-        -----
         With the reference resistance R, scattering parameters become impedances as
 
         .. math:: Z = R\, \frac{1 + S}{1 - S} .
@@ -85,9 +66,7 @@ class Touchstone:
         Impedances and admittances of version 1 are normalised to R, those of version 2 are not. Of several option lines
         the first one holds.
 
-        References
-        ----------
-        .. [1] IBIS Open Forum, Touchstone File Format Specification, version 2.0 (2009).
+        Source: IBIS Open Forum, Touchstone File Format Specification, version 2.0 (2009).
         """
         if several := _MULTIPORT.fullmatch(path.suffix.lower()):
             raise InvalidInput(_several_ports(path, 1, several[1]))
@@ -139,9 +118,9 @@ def _statements(lines: list[str]) -> Iterator[tuple[int, str]]:
 
 
 def _options(path: Path, at: int, words: list[str]) -> _Options:
-    """Return the options of an option line."""
+    """Options of an option line."""
     options = _Options()
-    if len(words) > _MOST_OPTIONS:
+    if len(words) > _MAX_OPTIONS:
         raise InvalidInput(f"{path}: line {at}: has {len(words)} options; write such as '# Hz S RI R 50'")
     remaining = [word.upper() for word in words]
     while remaining:
@@ -160,7 +139,7 @@ def _options(path: Path, at: int, words: list[str]) -> _Options:
 
 
 def _reference(path: Path, at: int, keyword: str, value: str, reference: float | None) -> float | None:
-    """Return the reference resistance after a keyword of version 2; refuse unknown keywords and several ports."""
+    """Reference resistance after a keyword of version 2; refuse unknown keywords and several ports."""
     if keyword == "[reference]":
         return _resistance(path, at, value)
     if keyword == "[version]" and not value.startswith("2"):
@@ -181,7 +160,7 @@ def _several_ports(path: Path, at: int, ports: str) -> str:
 
 
 def _resistance(path: Path, at: int, text: str) -> float:
-    """Return a positive resistance in ohm."""
+    """Positive resistance in ohm."""
     value = parse_number(text, decimal_sign=".")
     if value is None or not (np.isfinite(value) and value > 0):
         raise InvalidInput(f"{path}: line {at}: the reference resistance must be positive, got {text[:20]!r}")
@@ -189,7 +168,7 @@ def _resistance(path: Path, at: int, text: str) -> float:
 
 
 def _row(path: Path, at: int, text: str) -> list[float]:
-    """Return the three numbers of a point of one port."""
+    """Three numbers of a point of one port."""
     values = [parse_number(cell, decimal_sign=".") for cell in text.split()]
     known = [value for value in values if value is not None and np.isfinite(value)]
     if len(values) != 3 or len(known) != 3:
@@ -198,7 +177,7 @@ def _row(path: Path, at: int, text: str) -> list[float]:
 
 
 def _complex(first: Floats, second: Floats, number_format: str) -> Complexes:
-    """Return complex numbers from pairs as RI (real, imaginary), MA (magnitude, degrees) or DB (decibels, degrees)."""
+    """Complex numbers from pairs as RI (real, imaginary), MA (magnitude, degrees) or DB (decibels, degrees)."""
     if number_format == "RI":
         return np.asarray(first + 1j * second)
     magnitude = 10 ** (first / 20) if number_format == "DB" else first
@@ -206,7 +185,7 @@ def _complex(first: Floats, second: Floats, number_format: str) -> Complexes:
 
 
 def _impedance(values: Complexes, options: _Options) -> Complexes:
-    """Return the impedance of scattering parameters, admittances or impedances, in ohm."""
+    """Impedance of scattering parameters, admittances or impedances, in ohm."""
     unit = options.reference if options.normalised else 1.0
     if options.parameter == "Z":
         return unit * values

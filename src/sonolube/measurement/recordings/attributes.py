@@ -19,23 +19,7 @@ FILE_ATTRIBUTES = ("sample_rate", "caveats", *_ORIGIN_KEYS, *(f"original_{key}" 
 
 
 def column_from_attributes(label: str, values: Any, attributes: Mapping[str, Any], file_rate: Any) -> RawColumn:
-    """Return a column with unit, sample interval and missing values by the attributes of its variable.
-
-    Parameters
-    ----------
-    label : str
-        Name of the variable.
-    values : ndarray, shape (rows,)
-        Of the variable.
-    attributes : mapping of str to object
-        Of the variable: `units` or `unit`, `sample_rate` in Hz, `_FillValue`.
-    file_rate : object
-        Attribute `sample_rate` of the file, in Hz; None where it has none.
-
-    Returns
-    -------
-    RawColumn
-    """
+    """Column with unit, sample interval and missing values by the attributes of its variable."""
     unit = attributes.get("units", attributes.get("unit"))
     rate = attributes.get("sample_rate", file_rate)
     rate = float(np.ravel(rate)[0]) if rate is not None else 0.0
@@ -55,7 +39,7 @@ def column_from_attributes(label: str, values: Any, attributes: Mapping[str, Any
 def table_from_attributes(
     columns: list[RawColumn], attributes: Mapping[str, Any], path: Path, format_name: str
 ) -> RawTable:
-    """Return a table of at least one vector with the provenance that the attributes of its file state."""
+    """Table of at least one vector with the provenance that the attributes of its file state."""
     if not columns:
         raise InvalidInput(f"{path}: holds no vector of numbers")
     origin = _origin(attributes)
@@ -69,7 +53,7 @@ def table_from_attributes(
 
 
 def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """Return the provenance of the original file: the first one of a recording that was written several times."""
+    """Provenance of the original file: the first one of a recording that was written several times."""
     origin = {}
     for key in _ORIGIN_KEYS:
         value = attributes.get(f"original_{key}", attributes.get(key))
@@ -79,5 +63,5 @@ def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _text(value: object) -> str:
-    """Return an attribute as text."""
+    """Attribute as text."""
     return value.decode(errors="replace") if isinstance(value, bytes) else str(value)

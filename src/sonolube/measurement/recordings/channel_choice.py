@@ -13,7 +13,7 @@ TIME_LABELS = frozenset({"time", "t", "x_value", "timestamp", "elapsed_time"})
 """Names of columns that hold the time of a recording."""
 
 _UNIT_OF_LABEL = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))(?: #\d+)?\Z")
-_MOST_LISTED = 16
+_MAX_LISTED = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class ChannelEntry:
 
 
 def name_and_unit(label: str) -> tuple[str, str | None]:
-    """Return the name of a channel from the label of its column, and the unit in brackets behind it."""
+    """Name of a channel from the label of its column, and the unit in brackets behind it."""
     text, unit = label.strip(), None
     if match := _UNIT_OF_LABEL.search(text):
         text, unit = text[: match.start()], match[1] if match[1] is not None else match[2]
@@ -50,27 +50,10 @@ def name_and_unit(label: str) -> tuple[str, str | None]:
 
 
 def chosen_channels(entries: Sequence[ChannelEntry], selection: Selection, path: Path) -> list[tuple[int, str]]:
-    """Return the channels that a selection chooses, with their labels among themselves.
+    """Channels that a selection chooses, with their labels among themselves.
 
-    Parameters
-    ----------
-    entries : sequence of ChannelEntry
-        All channels of the file.
-    selection : Selection
-        Without group and channels, all are taken as they are.
-    path : Path
-        Of the file, for messages.
-
-    Returns
-    -------
-    list of (int, str)
-        Index among the entries, and label: that of the entry, or its name where that is unique among the chosen ones.
-        Columns of the time are kept where they have the length of the chosen channels and their group.
-
-    Raises
-    ------
-    InvalidInput
-        If no group or channel has a requested name, or several groups hold a channel of it; all are listed.
+    Index among the entries, and label: that of the entry, or its name where that is unique among the chosen ones.
+    Columns of the time are kept where they have the length of the chosen channels and their group.
     """
     if not (selection.group or selection.channels):
         return [(index, entry.label) for index, entry in enumerate(entries)]
@@ -88,7 +71,7 @@ def chosen_channels(entries: Sequence[ChannelEntry], selection: Selection, path:
 
 
 def require_common_length(entries: Sequence[ChannelEntry], path: Path) -> int:
-    """Return the number of samples that all channels have; refuse channels of different lengths, listing them."""
+    """Number of samples that all channels have; refuse channels of different lengths, listing them."""
     if len({entry.samples for entry in entries}) > 1:
         raise InvalidInput(
             f"{path}: channels have different numbers of samples ({listed_channels(entries)});"
@@ -98,10 +81,10 @@ def require_common_length(entries: Sequence[ChannelEntry], path: Path) -> int:
 
 
 def listed_channels(entries: Sequence[ChannelEntry]) -> str:
-    """Return the channels with their numbers of samples by group, for a message of one line."""
+    """Channels with their numbers of samples by group, for a message of one line."""
     groups: dict[str, list[str]] = {}
     first_of_each = {(entry.group, entry.samples): entry for entry in reversed(entries)}
-    listed = entries if len(entries) <= _MOST_LISTED else list(reversed(first_of_each.values()))[:_MOST_LISTED]
+    listed = entries if len(entries) <= _MAX_LISTED else list(reversed(first_of_each.values()))[:_MAX_LISTED]
     for entry in listed:
         groups.setdefault(entry.group, []).append(f"{entry.name} {entry.samples}")
     named = len(groups) > 1
@@ -111,25 +94,25 @@ def listed_channels(entries: Sequence[ChannelEntry]) -> str:
 
 
 def _is_time(entry: ChannelEntry) -> bool:
-    """Return whether a channel holds the time, by its name."""
+    """Whether a channel holds the time, by its name."""
     return name_and_unit(entry.name)[0] in TIME_LABELS
 
 
 def _of_group(entries: Sequence[ChannelEntry], group: str, path: Path) -> list[int]:
-    """Return the indices of the channels in a group; refuse an unknown one, listing all."""
+    """Indices of the channels in a group; refuse an unknown one, listing all."""
     found = [index for index, entry in enumerate(entries) if entry.group == group]
     if not found:
         paths = (entry.group or re.sub(r"(?:^|[/.])[^/.]*$", "", entry.label) for entry in entries)
         groups = [known for known in dict.fromkeys(paths) if known]
         if not groups:
             raise InvalidInput(f"{path}: has no groups of channels, so that none is {group!r}")
-        hint = suggestion(group, groups) or "it has " + ", ".join(groups[:_MOST_LISTED])
+        hint = suggestion(group, groups) or "it has " + ", ".join(groups[:_MAX_LISTED])
         raise InvalidInput(f"{path}: has no group {group!r}; {hint}")
     return found
 
 
 def _index_of(entries: Sequence[ChannelEntry], indices: Sequence[int], name: str, path: Path) -> int:
-    """Return the index of the channel of a name, by label first; refuse an unknown or ambiguous one."""
+    """Index of the channel of a name, by label first; refuse an unknown or ambiguous one."""
     found = [index for index in indices if entries[index].label == name] or [
         index for index in indices if name in (entries[index].name, f"{entries[index].group}/{entries[index].name}")
     ]
@@ -137,7 +120,7 @@ def _index_of(entries: Sequence[ChannelEntry], indices: Sequence[int], name: str
         return found[0]
     among = [entries[index] for index in indices]
     if found:
-        groups = " and ".join(entries[index].group or "the file" for index in found[:_MOST_LISTED])
+        groups = " and ".join(entries[index].group or "the file" for index in found[:_MAX_LISTED])
         raise InvalidInput(f"{path}: {name!r} is in {groups}; choose one with --group")
     hint = suggestion(name, [entry.name for entry in among]) or "it has " + listed_channels(among)
     raise InvalidInput(f"{path}: has no channel {name!r}; {hint}")

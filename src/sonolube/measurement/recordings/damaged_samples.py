@@ -11,27 +11,11 @@ _SET_POINT = "_set"  # end of the names of set points, which are unknown before 
 
 
 def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats, axis_label: str) -> tuple[str, ...]:
-    """Return a caveat for every sample of a channel that lies far beyond all others.
+    """Caveat for every sample of a channel that lies far beyond all others.
 
-    Parameters
-    ----------
-    name : str
-        Of the channel.
-    values : ndarray, shape (samples,)
-        Of the channel; missing ones are NaN.
-    unit : str
-        Their unit.
-    axis : ndarray, shape (samples,)
-        Time or revolutions.
-    axis_label : str
-        Name and unit of the axis, such as "time [s]".
-
-    Returns
-    -------
-    tuple of str
-        Empty where more than three samples lie out, or none lies 20 times as far from the median as all the others:
-        impacts, switches and starts of a drive are signals. Empty, too, for a channel that is constant but for them,
-        such as a trigger.
+    Empty where more than three samples lie out, or none lies 20 times as far from the median as all the others:
+    impacts, switches and starts of a drive are signals. Empty, too, for a channel that is constant but for them, such
+    as a trigger.
     """
     known = np.flatnonzero(np.isfinite(values))
     if known.size < _FEWEST:
@@ -50,23 +34,9 @@ def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats
 
 
 def missing_sample_caveat(name: str, values: Floats, *, axis: Floats, axis_label: str) -> tuple[str, ...]:
-    """Return a caveat for a channel that misses samples, with the first of them or the end of its column.
+    """Caveat for a channel that misses samples, with the first of them or the end of its column.
 
-    Parameters
-    ----------
-    name : str
-        Of the channel.
-    values : ndarray, shape (samples,)
-        Of the channel; missing ones are NaN.
-    axis : ndarray, shape (samples,)
-        Time or revolutions.
-    axis_label : str
-        Name and unit of the axis, such as "time [s]".
-
-    Returns
-    -------
-    tuple of str
-        Empty where none is missing, and for set points.
+    Empty where none is missing, and for set points.
     """
     missing = np.flatnonzero(~np.isfinite(values))
     if not missing.size or name.endswith(_SET_POINT):

@@ -33,31 +33,7 @@ _LARGEST_READING = 1e30  # in any unit; keeps powers of samples within the range
 def recording_dataset(
     table: RawTable, *, path: Path, mapping: RecordingMapping | None, digest: str, partial: bool = False
 ) -> "xr.Dataset":
-    """Return a recording assembled from the columns of a file.
-
-    Parameters
-    ----------
-    table : RawTable
-        As the reader of the format returns it.
-    path : Path
-        Of the file.
-    mapping : RecordingMapping or None
-        Assignment of the columns; without it they are assigned by their labels.
-    digest : str
-        SHA-256 of the file.
-    partial : bool
-        Whether the rows are a block of the file, in which a channel may have missing values only.
-
-    Returns
-    -------
-    xarray.Dataset
-
-    Raises
-    ------
-    InvalidInput
-        If there are no rows or no channels, a column that the mapping names is missing, a unit has another dimension,
-        the axis does not increase, a value is infinite or beyond 1e30, or a channel holds no value at all.
-    """
+    """Recording assembled from the columns of a file."""
     import xarray as xr
 
     if mapping is not None:
@@ -85,7 +61,7 @@ def recording_dataset(
 def _damaged(
     variables: Mapping[str, tuple[str, Floats, dict[str, str | float]]], axis: Floats, quantity: str
 ) -> list[str]:
-    """Return the caveats on damaged and missing samples of all channels."""
+    """Caveats on damaged and missing samples of all channels."""
     label = f"{quantity} [{unit_of(quantity) or '1'}]"
     return [
         caveat
@@ -98,7 +74,7 @@ def _damaged(
 
 
 def _selected(table: RawTable, mapping: RecordingMapping, path: Path) -> RawTable:
-    """Return the columns that the selection of a mapping chooses."""
+    """Columns that the selection of a mapping chooses."""
     if left_out := set(mapping.selection.without):
         kept = [column for label, column in table.by_label.items() if left_out.isdisjoint((label, column.label))]
         table = replace(table, columns=tuple(kept))
@@ -124,12 +100,12 @@ def _selected(table: RawTable, mapping: RecordingMapping, path: Path) -> RawTabl
 
 
 def _entries(columns: Iterable[RawColumn]) -> list[ChannelEntry]:
-    """Return label, group and length of columns."""
+    """Label, group and length of columns."""
     return [ChannelEntry(column.label, column.group, column.values.size) for column in columns]
 
 
 def _axis_quantity(table: RawTable, mapping: RecordingMapping | None) -> str:
-    """Return the quantity of the axis: that of the mapping, else revolutions where no column is a time, else time."""
+    """Quantity of the axis: that of the mapping, else revolutions where no column is a time, else time."""
     if mapping is not None:
         return mapping.axis_quantity
     names = {_name_and_unit(column)[0] for column in table.columns}
@@ -140,7 +116,7 @@ def _axis_quantity(table: RawTable, mapping: RecordingMapping | None) -> str:
 def _channel_sources(
     table: RawTable, path: Path, mapping: RecordingMapping | None, quantity: str
 ) -> dict[str, ChannelSource]:
-    """Return the source of each channel, by the mapping or by the labels of the columns."""
+    """Source of each channel, by the mapping or by the labels of the columns."""
     if mapping is not None and mapping.channels:
         return dict(mapping.channels)
     axis = mapping.axis.column if mapping is not None and mapping.axis is not None else None
@@ -160,20 +136,20 @@ def _channel_sources(
 
 
 def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
-    """Return the name of a channel from the label of its column, and the unit stated for it."""
+    """Name of a channel from the label of its column, and the unit stated for it."""
     name, unit = name_and_unit(column.label)
     return name, column.unit if column.unit is not None else unit
 
 
 def _column(table: RawTable, path: Path, label: str) -> RawColumn:
-    """Return the column of a label; refuse one that is not there, or that several columns have."""
+    """Column of a label; refuse one that is not there, or that several columns have."""
     return column_of_label(table.by_label, label, path)
 
 
 def _channel(
     name: str, table: RawTable, path: Path, source: ChannelSource, partial: bool
 ) -> tuple[Floats, dict[str, str | float]]:
-    """Return the calibrated values of a channel in SI, and its attributes."""
+    """Calibrated values of a channel in SI, and its attributes."""
     column = _column(table, path, source.column)
     values = column.values
     excessive = np.abs(values) > _LARGEST_READING
@@ -202,7 +178,7 @@ def _channel(
 
 
 def _source_unit(stated: str | None, understood: str | None) -> str:
-    """Return the unit stated in a file, with the one as which it was understood where that differs."""
+    """Unit stated in a file, with the one as which it was understood where that differs."""
     if stated is None:
         return "not stated, taken as SI"
     return stated if understood is None or stated.split() == understood.split() else f"{stated} ({understood})"
@@ -211,7 +187,7 @@ def _source_unit(stated: str | None, understood: str | None) -> str:
 def _axis(
     table: RawTable, path: Path, mapping: RecordingMapping | None, sources: dict[str, ChannelSource], quantity: str
 ) -> Floats:
-    """Return the axis in SI: of the mapping's column or sample rate, of a time column, or of stated intervals."""
+    """Axis in SI: of the mapping's column or sample rate, of a time column, or of stated intervals."""
     used = [_column(table, path, source.column) for source in sources.values()]
     if mapping is not None and mapping.axis is not None:
         axis = _column(table, path, mapping.axis.column)
@@ -248,7 +224,7 @@ def _require_one_axis(axis: RawColumn, table: RawTable, path: Path) -> None:
 
 
 def _axis_column(column: RawColumn, table: RawTable, path: Path, quantity: str, source: ChannelSource) -> Floats:
-    """Return the calibrated values of the axis column in SI; refuse missing and infinite ones."""
+    """Calibrated values of the axis column in SI; refuse missing and infinite ones."""
     values = column.values * source.gain + source.offset
     missing = ~np.isfinite(values)
     if missing.any():
@@ -260,24 +236,7 @@ def _axis_column(column: RawColumn, table: RawTable, path: Path, quantity: str, 
 
 
 def require_increasing_axis(axis: Floats, *, quantity: str, path: Path, place: Callable[[int], str]) -> None:
-    """Refuse an axis that does not increase.
-
-    Parameters
-    ----------
-    axis : ndarray
-        The values, in SI.
-    quantity : str
-        Their quantity in the vocabulary.
-    path : Path
-        The file, for the message.
-    place : callable
-        Returns the sample or line number of a row in the file, for the message.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the first row at which a value repeats or decreases.
-    """
+    """Refuse an axis that does not increase."""
     wrong = np.diff(axis) <= 0
     if wrong.any():
         row = int(np.argmax(wrong)) + 1
@@ -288,7 +247,7 @@ def require_increasing_axis(axis: Floats, *, quantity: str, path: Path, place: C
 def _attributes(
     table: RawTable, path: Path, mapping: RecordingMapping | None, digest: str, time: Floats | None
 ) -> dict[str, str | int | float]:
-    """Return the attributes of a recording: title, provenance, sample rate and number of dropped samples."""
+    """Attributes of a recording: title, provenance, sample rate and number of dropped samples."""
     attributes: dict[str, str | int | float] = {
         "title": mapping.title if mapping and mapping.title else path.stem,
         "source": f"sonolube {__version__}",

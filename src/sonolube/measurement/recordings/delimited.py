@@ -35,31 +35,14 @@ class DelimitedText:
     suffixes: ClassVar[tuple[str, ...]] = (".csv", ".tsv", ".txt")
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the first kilobyte has no null byte, or begins with a byte order mark of UTF-16."""
+        """Whether the first kilobyte has no null byte, or begins with a byte order mark of UTF-16."""
         return b"\0" not in head[:1024] or head.startswith(_UTF_16_MARKS)
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
-        """Return the numeric columns of a text export.
+        """Numeric columns of a text export.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file.
-        mapping : RecordingMapping or None
-            The columns to read and the layout of the text. Without it every column whose first cell is a number is
-            read, and separator, decimal sign and encoding are detected.
-
-        Returns
-        -------
-        RawTable
-            Of several sections, the rows one after the other, with the times of later ones shifted by the differences
-            of their stated starts where the times restart.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file and the line, if the text cannot be decoded, a row has too few or too many cells, a cell is
-            neither a number nor a missing-value text, or a requested column, row or section is missing.
+        Of several sections, the rows one after the other, with the times of later ones shifted by the differences of
+        their stated starts where the times restart.
         """
         layout = mapping.text if mapping else TextLayout()
         text, caveats = decoded_text(path, encoding=layout.encoding)
@@ -83,7 +66,7 @@ class DelimitedText:
 
 
 def _detected_decimal_sign(tables: Sequence[TextTable]) -> str:
-    """Return the decimal sign of the numbers; a point where cells are separated by commas."""
+    """Decimal sign of the numbers; a point where cells are separated by commas."""
     if tables[0].separator == ",":
         return "."
     return detected_decimal_sign(cell for table in tables for _, cells in table.rows for cell in cells)
@@ -92,7 +75,7 @@ def _detected_decimal_sign(tables: Sequence[TextTable]) -> str:
 def _part(
     table: TextTable, mapping: RecordingMapping | None, sign: str, missing: frozenset[str], path: Path
 ) -> list[RawColumn]:
-    """Return the columns of one table: those that the mapping requests, or all numeric ones."""
+    """Columns of one table: those that the mapping requests, or all numeric ones."""
     require_rows(table, mapping.rows if mapping else {}, path)
     indices = {label: index for index, label in enumerate(numbered_labels(table.labels))}
     requested = _requested_labels(mapping, table.labels)
@@ -110,7 +93,7 @@ def _part(
 
 
 def _requested_labels(mapping: RecordingMapping | None, labels: list[str]) -> list[str] | None:
-    """Return the labels of the columns that the mapping names, None where it names no channels."""
+    """Labels of the columns that the mapping names, None where it names no channels."""
     if mapping is None or not mapping.channels:
         return None
     named = mapping.for_labels(labels)
@@ -132,7 +115,7 @@ def _require_same_columns(tables: Sequence[TextTable], parts: Sequence[list[RawC
 def _joined(
     tables: Sequence[TextTable], parts: Sequence[list[RawColumn]], mapping: RecordingMapping | None, path: Path
 ) -> tuple[tuple[RawColumn, ...], bool]:
-    """Return the columns of all sections joined, the times shifted, and whether a distance was assumed."""
+    """Columns of all sections joined, the times shifted, and whether a distance was assumed."""
     if len(parts) == 1:
         return tuple(parts[0]), False
     shifts, assumed = [0.0] * len(parts), False
@@ -152,7 +135,7 @@ def _joined(
 
 
 def _time_column(columns: Sequence[RawColumn], mapping: RecordingMapping | None) -> int | None:
-    """Return the index of the column that holds the time; None where there is none."""
+    """Index of the column that holds the time; None where there is none."""
     if mapping is not None and mapping.axis is not None:
         labels = mapping.axis.labels if mapping.axis_quantity == "time" else ()
         return next((index for index, column in enumerate(columns) if column.label in labels), None)
@@ -160,7 +143,7 @@ def _time_column(columns: Sequence[RawColumn], mapping: RecordingMapping | None)
 
 
 def _seconds(column: RawColumn, mapping: RecordingMapping | None, path: Path) -> float:
-    """Return the seconds in one unit of the time column."""
+    """Seconds in one unit of the time column."""
     axis = mapping.axis if mapping is not None else None
     stated = axis.unit if axis is not None and axis.unit is not None else column.unit or name_and_unit(column.label)[1]
     gain = 1.0 if axis is None else axis.gain

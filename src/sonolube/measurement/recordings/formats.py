@@ -20,7 +20,7 @@ class RecordingFormat(FileFormat, Protocol):
     """Reader of one file format of recordings."""
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
-        """Return the columns of a file.
+        """Columns of a file.
 
         Parameters
         ----------
@@ -87,22 +87,7 @@ _TEXTS = ("LabVIEW measurement text", "delimited text")  # which are read once, 
 
 
 def recording_format(path: Path) -> RecordingFormat:
-    """Return the format of a recording, by its signature, then by its suffix.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-
-    Returns
-    -------
-    RecordingFormat
-
-    Raises
-    ------
-    InvalidInput
-        If the file is missing, empty, or of no known format.
-    """
+    """Format of a recording, by its signature, then by its suffix."""
     head = read_head(path)
     found = detect_format(tuple(RECORDING_FORMATS.values()), head, path)
     if found is None:

@@ -26,30 +26,14 @@ class Hdf5:
     suffixes: ClassVar[tuple[str, ...]] = (".h5", ".hdf5", ".nc")
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the file begins with the signature of HDF5."""
+        """Whether the file begins with the signature of HDF5."""
         return head.startswith(_SIGNATURE)
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
-        """Return the vectors of an HDF5 file; those inside groups are labelled `group/vector`.
+        """Vectors of an HDF5 file; those inside groups are labelled `group/vector`.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file.
-        mapping : RecordingMapping or None
-            Not used: all vectors are read.
-
-        Returns
-        -------
-        RawTable
-            Units are those of the attributes `units` or `unit`, the sample interval that of the attribute `sample_rate`
-            of the vector or of the file, in Hz.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file, if it cannot be read, holds no vector of numbers, refers to other files, or states to hold
-            more than a file of its size may.
+        Units are those of the attributes `units` or `unit`, the sample interval that of the attribute `sample_rate` of
+        the vector or of the file, in Hz.
         """
         import h5py
 

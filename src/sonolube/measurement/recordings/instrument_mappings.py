@@ -14,12 +14,12 @@ _FOLDER = Path(str(files("sonolube.measurement.recordings"))) / "instruments"
 
 @cache
 def instrument_mappings() -> dict[str, RecordingMapping]:
-    """Return the mappings of the package by name, such as "umt"."""
+    """Mappings of the package by name, such as "umt"."""
     return {path.stem: read_mapping(path) for path in sorted(_FOLDER.glob("*.toml"))}
 
 
 def mapping_by_name(text: str) -> RecordingMapping:
-    """Return a mapping of the package by its name, or one from a file.
+    """Mapping of the package by its name, or one from a file.
 
     Parameters
     ----------
@@ -46,13 +46,7 @@ def mapping_by_name(text: str) -> RecordingMapping:
 
 
 def recognised_mapping(path: Path) -> RecordingMapping | None:
-    """Return the mapping of the package that fits a file by its beginning; None where none does.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read or is empty.
-    """
+    """Mapping of the package that fits a file by its beginning; None where none does."""
     head = read_head(path)
     encoding = "utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "latin-1"  # patterns are ASCII
     text = (

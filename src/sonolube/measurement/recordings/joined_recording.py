@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _GAP = 1.5  # sample intervals between parts beyond which samples are missing between them
-_MOST_LISTED = 12
+_MAX_LISTED = 12
 
 
 def join_recordings(recordings: Sequence["xr.Dataset"]) -> "xr.Dataset":
-    """Return the recordings of consecutive parts of one test as one recording.
+    """Recordings of consecutive parts of one test as one recording.
 
     Parameters
     ----------
@@ -88,11 +88,11 @@ def join_recordings(recordings: Sequence["xr.Dataset"]) -> "xr.Dataset":
 
 
 def _caveats(recordings: Sequence["xr.Dataset"], names: Sequence[str], *, assumed: bool) -> list[str]:
-    """Return the caveats of the parts, each once, and those of their joining."""
+    """Caveats of the parts, each once, and those of their joining."""
     caveats = [line for part in recordings for line in str(part.attrs.get("caveats", "")).splitlines()]
     left_out = {str(name) for part in recordings for name in part.data_vars} - set(names)
     if left_out:
-        caveats.append(f"channels that not all files have were left out: {', '.join(sorted(left_out)[:_MOST_LISTED])}")
+        caveats.append(f"channels that not all files have were left out: {', '.join(sorted(left_out)[:_MAX_LISTED])}")
     if assumed:
         caveats.append(
             "the times restart in the files and their starts are not stated: each was placed one sample interval after"
@@ -102,7 +102,7 @@ def _caveats(recordings: Sequence["xr.Dataset"], names: Sequence[str], *, assume
 
 
 def _with_gaps(parts: Sequence[Floats], gaps: Sequence[bool], between: Sequence[float] | None) -> Floats:
-    """Return the parts one after the other, with one value in each gap: that given for it, or NaN."""
+    """Parts one after the other, with one value in each gap: that given for it, or NaN."""
     pieces = [parts[0]]
     for index, part in enumerate(parts[1:]):
         if gaps[index]:
@@ -112,5 +112,5 @@ def _with_gaps(parts: Sequence[Floats], gaps: Sequence[bool], between: Sequence[
 
 
 def _name(recording: "xr.Dataset") -> str:
-    """Return the name of the file of a recording, for messages."""
+    """Name of the file of a recording, for messages."""
     return str(recording.attrs.get("file_name", "the recording"))

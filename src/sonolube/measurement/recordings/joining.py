@@ -13,7 +13,7 @@ _STAMP = re.compile(r"(\d{4})[-/](\d{1,2})[-/](\d{1,2})[ T](\d{1,2}):(\d{1,2}):(
 
 
 def begun_at(text: str) -> datetime | None:
-    """Return the date and time of a start as readers state it, such as 2016/03/04 14:10:11.5; None for other text."""
+    """Date and time of a start as readers state it, such as 2016/03/04 14:10:11.5; None for other text."""
     match = _STAMP.match(text.strip())
     if match is None:
         return None
@@ -25,23 +25,12 @@ def begun_at(text: str) -> datetime | None:
 
 
 def time_shifts(times: Sequence[Floats], starts: Sequence[datetime | None]) -> tuple[list[float], bool]:
-    """Return what is added to the times of consecutive parts to place them on the axis of the first.
+    """What is added to the times of consecutive parts to place them on the axis of the first.
 
-    Parameters
-    ----------
-    times : sequence of ndarray
-        Times of each part in seconds, increasing, none empty.
-    starts : sequence of datetime or None
-        Date and time at the zero of the times of each part; None where it is not stated.
-
-    Returns
-    -------
-    shifts : list of float
-        Zero where the times of every part continue those of the one before; the difference of the starts where the
-        times restart and the parts then follow each other; else what places each part one sample interval after the
-        one before, in seconds.
-    assumed : bool
-        Whether the parts were placed one sample interval apart because no start tells their distance.
+    `shifts`: Zero where the times of every part continue those of the one before; the difference of the starts where
+    the times restart and the parts then follow each other; else what places each part one sample interval after the one
+    before, in seconds. `assumed`: Whether the parts were placed one sample interval apart because no start tells their
+    distance.
     """
     none = [0.0] * len(times)
     if _follow(times, none):
@@ -60,7 +49,7 @@ def time_shifts(times: Sequence[Floats], starts: Sequence[datetime | None]) -> t
 
 
 def _follow(times: Sequence[Floats], shifts: Sequence[float]) -> bool:
-    """Return whether each part begins after the end of the one before."""
+    """Whether each part begins after the end of the one before."""
     begins = [part[0] + shift for part, shift in zip(times[1:], shifts[1:], strict=True)]
     ends = [part[-1] + shift for part, shift in zip(times[:-1], shifts[:-1], strict=True)]
     return all(begin > end for begin, end in zip(begins, ends, strict=True))

@@ -63,17 +63,17 @@ class _Parser:
                 after_blank = False
 
     def _is_row_of_missing_values(self, line: str) -> bool:
-        """Return whether a line of separators is a sample of a segment without times that has not ended."""
+        """Whether a line of separators is a sample of a segment without times that has not ended."""
         if not self.segments or self.segments[-1].x_columns != "No" or self.separator not in line:
             return False
         return len(self.segments[-1].rows) < self.segments[-1].stated_samples
 
     def _cells(self, line: str) -> list[str]:
-        """Return the cells of a line."""
+        """Cells of a line."""
         return [cell.strip() for cell in line.split(self.separator)]
 
     def _continues(self, line: str, *, after_blank: bool) -> bool:
-        """Return whether a line is a row of the segment before it, not the beginning of a header."""
+        """Whether a line is a row of the segment before it, not the beginning of a header."""
         if not self.segments or line.startswith("***"):
             return False
         cells = self._cells(line)
@@ -83,7 +83,7 @@ class _Parser:
         return parse_number(value, decimal_sign=self._sign_of(value)) is not None
 
     def _sign_of(self, cell: str) -> str:
-        """Return the decimal sign of the file, or that of a cell where the file does not state it."""
+        """Decimal sign of the file, or that of a cell where the file does not state it."""
         return self.decimal_sign or ("," if "," in cell else ".")
 
     def _file_header(self) -> None:
@@ -102,7 +102,7 @@ class _Parser:
             self.header = header
 
     def _header(self, kind: str) -> Header:
-        """Return the keys up to the next end of a header."""
+        """Keys up to the next end of a header."""
         keys: dict[str, list[str]] = {}
         begins = self.lines[min(self.at, len(self.lines)) - 1][0]
         while self.at < len(self.lines):
@@ -133,7 +133,7 @@ class _Parser:
         self.segments.append(LvmSegment(header=header, labels=labels, line=number, x_columns=self._x_columns()))
 
     def _x_columns(self) -> str:
-        """Return which times the file holds: No, One or Multi."""
+        """Which times the file holds: No, One or Multi."""
         return self.header.text("X_Columns", "One").capitalize()
 
 
@@ -150,31 +150,14 @@ class LabviewText:
     suffixes: ClassVar[tuple[str, ...]] = (".lvm",)
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the first line is that of an LVM file."""
+        """Whether the first line is that of an LVM file."""
         return first_lines(head)[0].startswith(_SIGNATURE)
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
-        """Return the channels of an LVM file; segments with the same channels are concatenated in order.
+        """Channels of an LVM file; segments with the same channels are concatenated in order.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file.
-        mapping : RecordingMapping or None
-            Its `text.encoding` is used, and the channels that it names or selects, where channels differ in time.
-
-        Returns
-        -------
-        RawTable
-            Times are those written, with later segments shifted by the difference of the start times in their headers
-            where they restart. Channels without any value are left out.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file and the line, if the first line is not that of an LVM file, a header has no end, counts
-            contradict the columns, a cell is no number, segments have different channels, the channels to read have
-            different times, or their abscissa is not the time.
+        Times are those written, with later segments shifted by the difference of the start times in their headers where
+        they restart. Channels without any value are left out.
         """
         text, caveats = decoded_text(path, encoding=mapping.text.encoding if mapping else "")
         parser = _Parser(path=path, lines=list(_lines(text)))

@@ -20,7 +20,7 @@ from sonolube.measurement.recordings.written_units import convert_to_si
 _X_LABEL = "X_Value"
 _MISSING = frozenset({"NaN", "-NaN", "nan"})
 _KEYS_OF_EVERY_CHANNEL = ("Samples", "X_Dimension", "Delta_X", "X0", "Date", "Time")
-_MOST_LISTED = 8
+_MAX_LISTED = 8
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,7 +31,7 @@ class Header:
     line: int
 
     def text(self, key: str, default: str) -> str:
-        """Return the first cell of a key that is not empty."""
+        """First cell of a key that is not empty."""
         return next((cell for cell in self.keys.get(key, []) if cell), default)
 
 
@@ -62,7 +62,7 @@ class LvmSegment:
         return max((int(cell) for cell in cells if cell.isascii() and cell.isdigit() and len(cell) < 12), default=0)
 
     def cells_of_channels(self, key: str) -> list[str]:
-        """Return the cell of a key for each channel.
+        """Cell of a key for each channel.
 
         The cells of a header stand in the columns of the channels, with the cells of time columns empty between
         them; files that list them without gaps are told by the keys that every channel has.
@@ -73,7 +73,7 @@ class LvmSegment:
         return [cells[place] if 0 <= place < len(cells) else "" for place in places]
 
     def _aligned(self) -> bool:
-        """Return whether the cells of the header stand in the columns of the channels."""
+        """Whether the cells of the header stand in the columns of the channels."""
         aligned = [index - 1 for index, _ in self.channels]
         for key in _KEYS_OF_EVERY_CHANNEL:
             cells = self.header.keys.get(key, [])
@@ -93,11 +93,11 @@ class _Abscissa:
     samples: int
 
     def times(self, rows: int) -> Floats:
-        """Return the time of each row in seconds; NaN where the channel has no time."""
+        """Time of each row in seconds; NaN where the channel has no time."""
         return self.written if self.written is not None else self.start + self.step * np.arange(rows, dtype=np.float64)
 
     def agrees(self, other: "_Abscissa") -> bool:
-        """Return whether two channels have the same time at each row."""
+        """Whether two channels have the same time at each row."""
         if self.written is None or other.written is None:
             return (self.written is None) == (other.written is None) and (self.start, self.step) == (
                 other.start,
@@ -117,32 +117,7 @@ def joined_segments(
     begun: str,
     caveats: tuple[str, ...],
 ) -> RawTable:
-    """Return the chosen channels of all segments as one table, with one time.
-
-    Parameters
-    ----------
-    segments : sequence of LvmSegment
-        In the order of the file.
-    path : Path
-        Of the file, for messages.
-    decimal_sign : str
-        "." or ",".
-    mapping : RecordingMapping or None
-        Chooses among channels of different times.
-    format_name, begun : str
-        Of the table.
-    caveats : tuple of str
-        So far.
-
-    Returns
-    -------
-    RawTable
-
-    Raises
-    ------
-    InvalidInput
-        As `LabviewText.read`.
-    """
+    """Chosen channels of all segments as one table, with one time."""
     for segment in segments:
         _require_count(segment, path)
         if [label for _, label in segment.channels] != [label for _, label in segments[0].channels]:
@@ -169,7 +144,7 @@ def joined_segments(
         columns.append(RawColumn(label=labels[channel], values=joined, unit=stated.pop() or None))
     if len(kept) < len(labels):
         empty = [label for label, holds in zip(labels, filled, strict=True) if not holds]
-        caveats += (f"channels without values were left out: {', '.join(empty[:_MOST_LISTED])}",)
+        caveats += (f"channels without values were left out: {', '.join(empty[:_MAX_LISTED])}",)
     if assumed:
         caveats += ("times restart in later segments, whose headers state no later start: each follows the one before",)
     lines = np.array([line for segment in segments for line, _ in segment.rows], dtype=np.int64)
@@ -184,7 +159,7 @@ def joined_segments(
 
 
 def _rows_of(chosen: Sequence[int], abscissae: Sequence[_Abscissa], rows: int) -> NDArray[np.bool_]:
-    """Return which rows of a segment hold samples of the chosen channels: all but those behind the last one."""
+    """Which rows of a segment hold samples of the chosen channels: all but those behind the last one."""
     return np.arange(rows) < max(abscissae[channel].samples for channel in chosen)
 
 
@@ -202,7 +177,7 @@ def _require_count(segment: LvmSegment, path: Path) -> None:
 
 
 def _abscissae(segment: LvmSegment, values: Sequence[Floats], decimal_sign: str, path: Path) -> list[_Abscissa]:
-    """Return the time of each channel of a segment."""
+    """Time of each channel of a segment."""
     starts, steps = (_numbers(segment, key, decimal_sign, path) for key in ("X0", "Delta_X"))
     time_columns = {
         index: column_values(segment.rows, index, _X_LABEL, decimal_sign, _MISSING, path)
@@ -238,7 +213,7 @@ def _abscissae(segment: LvmSegment, values: Sequence[Floats], decimal_sign: str,
 
 
 def _numbers(segment: LvmSegment, key: str, decimal_sign: str, path: Path) -> list[float]:
-    """Return the number of a key for each channel; NaN where it has none."""
+    """Number of a key for each channel; NaN where it has none."""
     cells = segment.cells_of_channels(key)
     values, invalid_row = parse_numbers(cells, decimal_sign=decimal_sign, missing=frozenset())
     if invalid_row is not None or np.isinf(values).any():
@@ -255,7 +230,7 @@ def _of_one_time(
     mapping: RecordingMapping | None,
     path: Path,
 ) -> list[int]:
-    """Return the channels to read, by index; refuse ones that have different times."""
+    """Channels to read, by index; refuse ones that have different times."""
     entries = [
         ChannelEntry(label, "", sum(int(np.isfinite(part[channel]).sum()) for part in values))
         for label, channel in zip(labels, channels, strict=True)
@@ -283,7 +258,7 @@ def _of_one_time(
 def _times(
     segments: Sequence[LvmSegment], chosen: Sequence[int], abscissae: Sequence[Sequence[_Abscissa]]
 ) -> tuple[list[Floats], bool]:
-    """Return the time of each segment, shifted to the start of the first, and whether a distance was assumed."""
+    """Time of each segment, shifted to the start of the first, and whether a distance was assumed."""
     times = []
     for segment, own in zip(segments, abscissae, strict=True):
         longest = max(chosen, key=lambda channel: own[channel].samples)

@@ -26,7 +26,7 @@ _TEXT_KEYS = {
     "section_start", "section_start_format", "ends_at_blank_line",
 }  # fmt: skip
 _CHANNEL_KEYS = {"column", "unit", "gain", "offset", "optional"}
-_MOST_PATTERN = 1000  # characters of a regular expression
+_MAX_PATTERN = 1000  # characters of a regular expression
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -225,7 +225,7 @@ class RecordingMapping:
                 raise InvalidInput("axis: give a column or a sample_rate, not both")
 
     def for_labels(self, labels: Sequence[str]) -> "RecordingMapping":
-        """Return the mapping with the columns that a file of these labels has, without its absent optional channels."""
+        """Mapping with the columns that a file of these labels has, without its absent optional channels."""
         if not (self.channels or self.axis):
             return self
         known = {*labels, *numbered_labels(labels)}
@@ -246,15 +246,15 @@ class RecordingMapping:
 
 
 def _present(source: ChannelSource, known: Collection[str]) -> ChannelSource:
-    """Return a source with the first of its labels that is known as its only one, the first of all where none is."""
+    """Source with the first of its labels that is known as its only one, the first of all where none is."""
     column = next((label for label in source.labels if label in known), source.column)
     return replace(source, column=column, other_columns=())
 
 
 def _require_pattern(name: str, pattern: str) -> None:
     """Refuse text that is no regular expression."""
-    if not isinstance(pattern, str) or len(pattern) > _MOST_PATTERN:
-        raise InvalidInput(f"{name} must be a regular expression of at most {_MOST_PATTERN} characters")
+    if not isinstance(pattern, str) or len(pattern) > _MAX_PATTERN:
+        raise InvalidInput(f"{name} must be a regular expression of at most {_MAX_PATTERN} characters")
     try:
         re.compile(pattern)
     except (re.error, OverflowError, RecursionError) as failure:
@@ -262,7 +262,7 @@ def _require_pattern(name: str, pattern: str) -> None:
 
 
 def read_mapping(path: Path) -> RecordingMapping:
-    """Return a recording mapping read from a TOML file.
+    """Recording mapping read from a TOML file.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def read_mapping(path: Path) -> RecordingMapping:
 
 
 def _mapping(content: dict[str, Any]) -> RecordingMapping:
-    """Return the mapping of a parsed TOML document."""
+    """Mapping of a parsed TOML document."""
     _refuse_unknown(content, _KEYS, "")
     axis, text = _section(content, "axis", _AXIS_KEYS), _section(content, "text", _TEXT_KEYS)
     channels = _section(content, "channels", None)
@@ -315,7 +315,7 @@ def _mapping(content: dict[str, Any]) -> RecordingMapping:
 
 
 def _source(keys: dict[str, Any], name: str) -> ChannelSource:
-    """Return the source of a channel, whose column may be a list of labels in order of precedence."""
+    """Source of a channel, whose column may be a list of labels in order of precedence."""
     first, *others = _texts(keys.pop("column", ()), f"{name}.column") or (None,)
     if first is None:
         raise InvalidInput(f"{name}.column is missing")
@@ -323,7 +323,7 @@ def _source(keys: dict[str, Any], name: str) -> ChannelSource:
 
 
 def _texts(value: Any, name: str) -> tuple[str, ...]:
-    """Return a text or a list of texts as a tuple."""
+    """Text or a list of texts as a tuple."""
     texts = [value] if isinstance(value, str) else value
     if not isinstance(texts, (list, tuple)) or not all(isinstance(text, str) for text in texts):
         raise InvalidInput(f"{name} must be a text or a list of texts, got {value!r}")
@@ -331,7 +331,7 @@ def _texts(value: Any, name: str) -> tuple[str, ...]:
 
 
 def _section(content: Mapping[str, Any], name: str, known: set[str] | None, prefix: str = "") -> dict[str, Any]:
-    """Return a section as a new dictionary; refuse what is no section and unknown keys."""
+    """Section as a new dictionary; refuse what is no section and unknown keys."""
     section = content.get(name, {})
     if not isinstance(section, dict):
         raise InvalidInput(f"{prefix}{name} must be a section, got {section!r}")

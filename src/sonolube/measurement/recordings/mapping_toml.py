@@ -9,17 +9,7 @@ from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapp
 
 
 def mapping_toml(mapping: RecordingMapping) -> str:
-    """Mapping as the text of its file, entries of their default value left out.
-
-    Parameters
-    ----------
-    mapping : RecordingMapping
-        Without its name, which is that of the file.
-
-    Returns
-    -------
-    str
-    """
+    """Mapping as the text of its file, entries of their default value left out."""
     axis: dict[str, Any] = {} if mapping.axis_quantity == "time" else {"quantity": mapping.axis_quantity}
     axis |= {} if mapping.sample_rate is None else {"sample_rate": mapping.sample_rate}
     axis |= {} if mapping.axis is None else _source(mapping.axis)

@@ -31,29 +31,13 @@ class Matlab:
     suffixes: ClassVar[tuple[str, ...]] = (".mat",)
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the file begins with the signature of versions 5 to 7.3."""
+        """Whether the file begins with the signature of versions 5 to 7.3."""
         return head.startswith(_SIGNATURE)
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
-        """Return the vectors of a MATLAB file; those inside structures are labelled `structure.field`.
+        """Vectors of a MATLAB file; those inside structures are labelled `structure.field`.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file.
-        mapping : RecordingMapping or None
-            Not used: all vectors are read.
-
-        Returns
-        -------
-        RawTable
-            A scalar called `sample_rate`, `sampling_rate` or `fs` gives the sample interval, in Hz.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file, if it is no MATLAB file, is damaged, holds no vector of numbers, or states to hold more
-            than a file of its size may.
+        A scalar called `sample_rate`, `sampling_rate` or `fs` gives the sample interval, in Hz.
         """
         with refuse_library_errors(path, format_name=self.name):
             with path.open("rb") as stream:
@@ -73,7 +57,7 @@ class Matlab:
 
 
 def _within_limits(arrays: Iterable[MatlabArray], path: Path) -> tuple[dict[str, Floats], tuple[str, ...]]:
-    """Return arrays by name, the last of each name, and names of several; refuse more than a file may hold."""
+    """Arrays by name, the last of each name, and names of several; refuse more than a file may hold."""
     found: dict[str, Floats] = {}
     repeated: dict[str, None] = {}
     values = 0
@@ -98,7 +82,7 @@ def _arrays_of_version_7_3(path: Path) -> Iterator[MatlabArray]:
 
 
 def _is_vector(label: str, dataset: Any) -> bool:
-    """Return whether a dataset is a vector or a number of MATLAB, neither text nor an empty array."""
+    """Whether a dataset is a vector or a number of MATLAB, neither text nor an empty array."""
     kind = attributes_of(dataset, ("MATLAB_class", "MATLAB_empty"), Path(dataset.file.filename))
     is_number = kind.get("MATLAB_class") != b"char" and not kind.get("MATLAB_empty", 0)
     return is_number and max(dataset.shape, default=1) == dataset.size

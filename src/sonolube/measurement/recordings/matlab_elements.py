@@ -63,23 +63,7 @@ class _Variable(NamedTuple):
 
 
 def matlab_arrays(path: Path) -> Iterator[MatlabArray]:
-    """Yield the real vectors and numbers of a MATLAB file of version 4 to 7, and those in its structures.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-
-    Yields
-    ------
-    MatlabArray
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file, if a variable is cut short, states another number of values than it has, or unpacks to more
-        bytes than a file of its size may.
-    """
+    """Yield the real vectors and numbers of a MATLAB file of version 4 to 7, and those in its structures."""
     with ClippedReader(path) as stream:
         head = stream.read(_HEADER)
         is_version_4 = 0 in head[:4]
@@ -108,7 +92,7 @@ def _version_5(stream: ClippedReader, head: bytes, path: Path) -> Iterator[Matla
 def _wanted_content(
     stream: ClippedReader, length: int, order: str, path: Path, *, is_compressed: bool, before: int
 ) -> _Bytes:
-    """Return the bytes of a variable without its tag where it is of a kind that is read, else none."""
+    """Bytes of a variable without its tag where it is of a kind that is read, else none."""
     stored = stream.read(min(length, _HEAD))
     head = zlib.decompressobj().decompress(stored, _HEAD)[8:] if is_compressed else stored
     variable = _variable(head, order)
@@ -149,7 +133,7 @@ def _arrays(content: _Bytes, order: str, path: Path) -> Iterator[MatlabArray]:
 
 
 def _variable(content: _Bytes, order: str) -> _Variable:
-    """Return what stands before the values of a variable."""
+    """What stands before the values of a variable."""
     _, flags, at = _element(content, 0, order)
     _, dimensions, at = _element(content, at, order)
     _, name, at = _element(content, at, order)
@@ -160,7 +144,7 @@ def _variable(content: _Bytes, order: str) -> _Variable:
 
 
 def _element(content: _Bytes, at: int, order: str) -> tuple[int, _Bytes, int]:
-    """Return type and bytes of the element at a byte, and where the next one begins."""
+    """Type and bytes of the element at a byte, and where the next one begins."""
     kind, length = struct.unpack_from(order + "II", content, at)
     if kind >> 16:  # up to four bytes are stored within the tag
         return kind & 0xFFFF, content[at + 4 : at + 4 + min(kind >> 16, 4)], at + 8
@@ -168,7 +152,7 @@ def _element(content: _Bytes, at: int, order: str) -> tuple[int, _Bytes, int]:
 
 
 def _numbers(content: _Bytes, variable: _Variable, order: str, path: Path) -> Floats:
-    """Return the values of a vector."""
+    """Values of a vector."""
     kind, stored, _ = _element(content, variable.at, order)
     if kind not in _NUMBERS:
         raise InvalidInput(f"{path}: {variable.name!r} has values of type {kind}, which is none of numbers")
@@ -198,7 +182,7 @@ def _version_4(stream: ClippedReader, path: Path) -> Iterator[MatlabArray]:
 
 
 def _as_floats(stored: _Bytes, dtype: "np.dtype[np.generic]", size: int, name: str, path: Path) -> Floats:
-    """Return stored numbers as doubles; refuse another number of them than is stated."""
+    """Stored numbers as doubles; refuse another number of them than is stated."""
     if len(stored) != size * dtype.itemsize:
         held = len(stored) // dtype.itemsize
         raise InvalidInput(f"{path}: {name!r} states {size} values and holds {held}; the file is cut or damaged")
@@ -207,5 +191,5 @@ def _as_floats(stored: _Bytes, dtype: "np.dtype[np.generic]", size: int, name: s
 
 
 def _text(stored: _Bytes) -> str:
-    """Return a name, without the null characters that fill it up."""
+    """Name, without the null characters that fill it up."""
     return bytes(stored).split(b"\0", 1)[0].decode("latin-1")

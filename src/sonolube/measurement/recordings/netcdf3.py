@@ -22,29 +22,14 @@ class NetCdf3:
     suffixes: ClassVar[tuple[str, ...]] = (".nc",)
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the file begins with a signature of classic netCDF."""
+        """Whether the file begins with a signature of classic netCDF."""
         return head.startswith(_SIGNATURES)
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
-        """Return the vectors of a classic netCDF file.
+        """Vectors of a classic netCDF file.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file.
-        mapping : RecordingMapping or None
-            Not used: all vectors are read.
-
-        Returns
-        -------
-        RawTable
-            Units are those of the attributes `units` or `unit`, the sample interval that of the attribute `sample_rate`
-            of the vector or of the file, in Hz.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file, if it cannot be read or holds no vector of numbers.
+        Units are those of the attributes `units` or `unit`, the sample interval that of the attribute `sample_rate` of
+        the vector or of the file, in Hz.
         """
         from scipy.io import netcdf_file
 
@@ -55,7 +40,7 @@ class NetCdf3:
 
 
 def _columns(file: Any, path: Path) -> list[RawColumn]:
-    """Return copies of the vectors of a mapped file, whose variables may overlap and so state more than the file."""
+    """Copies of the vectors of a mapped file, whose variables may overlap and so state more than the file."""
     rate = getattr(file, "sample_rate", None)
     columns: list[RawColumn] = []
     values = 0

@@ -86,33 +86,18 @@ class RawTable:
         object.__setattr__(self, "by_label", dict(zip(labels, self.columns, strict=True)))
 
     def place(self, row: int) -> str:
-        """Return the sample or line number of a row in the file, for messages."""
+        """Sample or line number of a row in the file, for messages."""
         return f"sample {self.first_row + row}" if self.lines is None else f"line {self.lines[row]}"
 
 
 def one_line(label: str) -> str:
-    """Return a label with line breaks and runs of blanks replaced by one blank."""
+    """Label with line breaks and runs of blanks replaced by one blank."""
     return " ".join(label.split())
 
 
 @contextmanager
 def refuse_library_errors(path: Path, *, format_name: str, offset: Callable[[], int] | None = None) -> Iterator[None]:
-    """Context in which any exception of a foreign reader becomes a refusal that names the file.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-    format_name : str
-        Name of the format, for the message.
-    offset : callable or None
-        Returns the byte at which reading stopped, where it is known.
-
-    Raises
-    ------
-    InvalidInput
-        With the file, the byte where known, and the reason.
-    """
+    """Context in which any exception of a foreign reader becomes a refusal that names the file."""
     try:
         yield
     except SonolubeError:
@@ -127,10 +112,7 @@ def refuse_library_errors(path: Path, *, format_name: str, offset: Callable[[], 
 def recorded_warnings() -> Iterator[list[str]]:
     """Context in which warnings are not printed but collected, each text once.
 
-    Yields
-    ------
-    list of str
-        One line each; complete when the context ends without an error.
+    One line each; complete when the context ends without an error.
     """
     texts: list[str] = []
     with warnings.catch_warnings(record=True) as issued:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def read_recording(path: Path, *, mapping: RecordingMapping | Path | None = None) -> "xr.Dataset":
-    """Return a recording read from a file.
+    """Recording read from a file.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def write_recording(recording: "xr.Dataset", *, path: Path) -> Path:
 
 
 def recording_format_name(path: Path) -> str:
-    """Return the name of the format of a recording, by its signature, then by its suffix.
+    """Name of the format of a recording, by its signature, then by its suffix.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def recording_format_name(path: Path) -> str:
 
 
 def _mapping(mapping: RecordingMapping | Path | None, path: Path) -> RecordingMapping | None:
-    """Return a mapping: read from its file where a path is given, else the one by which the file is recognised."""
+    """Mapping: read from its file where a path is given, else the one by which the file is recognised."""
     given = read_mapping(mapping) if isinstance(mapping, Path) else mapping
     if given is not None and not given.only_selects:
         return given
@@ -177,6 +177,6 @@ def _mapping(mapping: RecordingMapping | Path | None, path: Path) -> RecordingMa
 
 
 def _sha256(path: Path) -> str:
-    """Return the SHA-256 digest of a file, in hexadecimal."""
+    """SHA-256 digest of a file, in hexadecimal."""
     with open_input(path) as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()

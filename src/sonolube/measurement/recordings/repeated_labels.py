@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from sonolube.errors import InvalidInput, suggestion
 
-_MOST_LISTED = 12
+_MAX_LISTED = 12
 
 ColumnT = TypeVar("ColumnT")
 
@@ -16,15 +16,7 @@ ColumnT = TypeVar("ColumnT")
 def numbered_labels(labels: Sequence[str]) -> list[str]:
     """Labels by which columns are chosen: where several have one label, with " #1", " #2", ... behind it.
 
-    Parameters
-    ----------
-    labels : sequence of str
-        Of all columns of a file, in its order.
-
-    Returns
-    -------
-    list of str
-        All different, but for empty ones, which name nothing.
+    All different, but for empty ones, which name nothing.
     """
     times, taken, numbers = Counter(labels), set(labels), Counter[str]()
     numbered = []
@@ -39,26 +31,7 @@ def numbered_labels(labels: Sequence[str]) -> list[str]:
 
 
 def column_of_label(columns: Mapping[str, ColumnT], label: str, path: Path) -> ColumnT:
-    """Column of a label.
-
-    Parameters
-    ----------
-    columns : mapping of str to any
-        By `numbered_labels`.
-    label : str
-        As written, or with its number where several columns have it.
-    path : Path
-        Of the file, for messages.
-
-    Returns
-    -------
-    any
-
-    Raises
-    ------
-    InvalidInput
-        If several columns have the label, with their numbers, or none has, with the closest.
-    """
+    """Column of a label."""
     if label in columns:
         return columns[label]
     of_label = re.compile(re.escape(label) + r" #\d+")
@@ -69,5 +42,5 @@ def column_of_label(columns: Mapping[str, ColumnT], label: str, path: Path) -> C
             f" to {several[-1]!r}"
         )
     known = [name for name in columns if name]
-    hint = suggestion(label, known) or "it has " + ", ".join(known[:_MOST_LISTED])
+    hint = suggestion(label, known) or "it has " + ", ".join(known[:_MAX_LISTED])
     raise InvalidInput(f"{path}: has no column {label!r}; {hint}")

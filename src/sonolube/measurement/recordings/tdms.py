@@ -22,7 +22,7 @@ from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_l
 TDMS_FORMAT = "TDMS"
 """Name of the format in results."""
 
-MOST_SEGMENTS = 100_000
+MAX_SEGMENTS = 100_000
 """Segments of a file, whose headers npTDMS reads at about 20,000 a second."""
 
 _SIGNATURE = b"TDSm"
@@ -50,53 +50,16 @@ class Tdms:
     suffixes: ClassVar[tuple[str, ...]] = (".tdms",)
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the file begins with the tag of a segment."""
+        """Whether the file begins with the tag of a segment."""
         return head.startswith(_SIGNATURE)
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
-        """Return the channels of a TDMS file.
-
-        Parameters
-        ----------
-        path : Path
-            Of the file.
-        mapping : RecordingMapping or None
-            The channels to read; without it all of them.
-
-        Returns
-        -------
-        RawTable
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file and the byte, if it is no TDMS file, its lead-ins contradict its size, or it holds no
-            numbers.
-        """
+        """Channels of a TDMS file."""
         (table,) = self._tables(path, mapping, None)
         return table
 
     def read_blocks(self, path: Path, *, mapping: RecordingMapping | None, block_samples: int) -> Iterator[RawTable]:
-        """Yield the channels of a TDMS file in blocks of rows; the last may be shorter.
-
-        Parameters
-        ----------
-        path : Path
-            Of the file.
-        mapping : RecordingMapping or None
-            The channels to read; without it all of them.
-        block_samples : int
-            Rows of a block.
-
-        Yields
-        ------
-        RawTable
-
-        Raises
-        ------
-        InvalidInput
-            As `read`.
-        """
+        """Yield the channels of a TDMS file in blocks of rows; the last may be shorter."""
         return self._tables(path, mapping, block_samples)
 
     def _tables(self, path: Path, mapping: RecordingMapping | None, block_samples: int | None) -> Iterator[RawTable]:
@@ -155,7 +118,7 @@ def _collected_log() -> Iterator[list[str]]:
 
 
 def _checked(messages: list[str], path: Path, *, incomplete: bool) -> tuple[str, ...]:
-    """Return what npTDMS logged as caveats; refuse what makes values wrong.
+    """What npTDMS logged as caveats; refuse what makes values wrong.
 
     That is data in another amount than the index announces, but for an incomplete last segment, and unknown scaling.
     """
@@ -178,9 +141,9 @@ def _check_lead_ins(stream: BinaryIO, path: Path) -> bool:
     size, position, segments = stream.seek(0, 2), 0, 0
     while position + _LEAD_IN <= size:
         segments += 1
-        if segments > MOST_SEGMENTS:
+        if segments > MAX_SEGMENTS:
             raise InvalidInput(
-                f"{path}: has more than {MOST_SEGMENTS} segments; defragment it (TDMS Defragment in LabVIEW)"
+                f"{path}: has more than {MAX_SEGMENTS} segments; defragment it (TDMS Defragment in LabVIEW)"
             )
         stream.seek(position)
         lead_in = stream.read(_LEAD_IN)
@@ -207,7 +170,7 @@ def _check_lead_ins(stream: BinaryIO, path: Path) -> bool:
 
 
 def _selected_channels(file: Any, path: Path, mapping: RecordingMapping | None) -> dict[str, Any]:
-    """Return the numeric channels with samples that the mapping selects and names, or all, by unique labels."""
+    """Numeric channels with samples that the mapping selects and names, or all, by unique labels."""
     channels = [channel for group in file.groups() for channel in group.channels()]
     require_channels(len(channels), path)
     counts = Counter(one_line(channel.name) for channel in channels)
@@ -230,18 +193,18 @@ def _selected_channels(file: Any, path: Path, mapping: RecordingMapping | None) 
 
 
 def _label(channel: Any, counts: Counter[str]) -> str:
-    """Return the name of a channel, with its group where several channels have the name."""
+    """Name of a channel, with its group where several channels have the name."""
     name = one_line(channel.name)
     return name if counts[name] == 1 else one_line(f"{channel.group_name}/{name}")
 
 
 def _is_numeric(channel: Any) -> bool:
-    """Return whether the samples of a channel are real numbers or booleans."""
+    """Whether the samples of a channel are real numbers or booleans."""
     return getattr(channel.dtype, "kind", "O") in "fiub"
 
 
 def _empty_column(label: str, channel: Any) -> RawColumn:
-    """Return the column of a channel without its values: label, unit and waveform time base."""
+    """Column of a channel without its values: label, unit and waveform time base."""
     properties = channel.properties
     unit = properties.get("unit_string") or properties.get("NI_UnitDescription")
     interval, start = properties.get("wf_increment"), properties.get("wf_start_offset", 0.0)
@@ -284,6 +247,6 @@ def _take(pending: dict[str, list[Floats]], rows: int) -> dict[str, Floats]:
 
 
 def _start_time(channels: dict[str, Any]) -> str:
-    """Return the start of the waveform of the first channel that states one; empty where none does."""
+    """Start of the waveform of the first channel that states one; empty where none does."""
     properties = (channel.properties for channel in channels.values())
     return next((str(own["wf_start_time"]) for own in properties if "wf_start_time" in own), "")

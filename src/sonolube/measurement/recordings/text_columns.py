@@ -14,13 +14,7 @@ NumberedCells = tuple[int, list[str]]
 def column_values(
     rows: Sequence[NumberedCells], index: int, label: str, decimal_sign: str, missing: frozenset[str], path: Path
 ) -> Floats:
-    """Return the numbers of one column; cells beyond the end of a row are missing values.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file, the line, the label and the cell that is neither a number nor a missing-value text.
-    """
+    """Numbers of one column; cells beyond the end of a row are missing values."""
     cells = [row[index] if index < len(row) else "" for _, row in rows]
     values, invalid_row = parse_numbers(cells, decimal_sign=decimal_sign, missing=missing)
     if invalid_row is not None:
@@ -30,7 +24,7 @@ def column_values(
 
 
 def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missing: frozenset[str]) -> bool:
-    """Return whether the first cell of a column that is not missing is no number."""
+    """Whether the first cell of a column that is not missing is no number."""
     for _, row in rows:
         text = row[index].strip() if index < len(row) else ""
         if text and text not in missing:

@@ -12,25 +12,9 @@ _FALLBACK = "cp1252"
 
 
 def decoded_text(path: Path, *, encoding: str) -> tuple[str, tuple[str, ...]]:
-    """Return the text of a file, with its line ends as they are.
+    """Text of a file, with its line ends as they are.
 
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-    encoding : str
-        By its Python name; empty to take the one of a byte order mark, else UTF-8, else Windows-1252.
-
-    Returns
-    -------
-    text : str
-    caveats : tuple of str
-        One where Windows-1252 was assumed.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the line, if the file is missing, empty, or not of this encoding.
+    `caveats`: One where Windows-1252 was assumed.
     """
     with refuse_unreadable(path):
         content = input_bytes(path)
@@ -48,7 +32,7 @@ def decoded_text(path: Path, *, encoding: str) -> tuple[str, tuple[str, ...]]:
 
 
 def _decoded(content: bytes, encoding: str, path: Path, *, refuse: bool) -> str | None:
-    """Return decoded text; where the bytes are not of the encoding, refuse them or return None."""
+    """Decoded text; where the bytes are not of the encoding, refuse them or return None."""
     try:
         return content.decode(encoding)
     except UnicodeDecodeError as failure:

@@ -16,7 +16,7 @@ from sonolube.measurement.recordings.repeated_labels import column_of_label, num
 from sonolube.measurement.recordings.text_columns import NumberedCells
 
 _SEPARATORS = "\t;,|"
-_MOST_LISTED = 12
+_MAX_LISTED = 12
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -56,31 +56,9 @@ class TextTable:
 def text_tables(
     text: str, layout: TextLayout, sections: tuple[str, ...], path: Path, *, allows_short_rows: bool = False
 ) -> list[TextTable]:
-    """Return the tables of a text export in order: one, or one per section.
+    """Tables of a text export in order: one, or one per section.
 
-    Parameters
-    ----------
-    text : str
-        All of the file.
-    layout : TextLayout
-        How to find the tables.
-    sections : tuple of str
-        The sections to return, by name or number; empty for all that hold rows.
-    path : Path
-        Of the file, for messages.
-    allows_short_rows : bool
-        Whether cells at the end of a row may be left out.
-
-    Returns
-    -------
-    list of TextTable
-        At least one, with rows.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the line, if no line of labels is found, a row has another number of cells than there are
-        labels, or a section is not there; sections are listed.
+    At least one, with rows.
     """
     lines = list(io.StringIO(text, newline=""))
     parts = _sections(lines, layout)
@@ -98,21 +76,7 @@ def text_tables(
 
 
 def require_rows(table: TextTable, required: Mapping[str, str], path: Path) -> None:
-    """Keep only the rows of a table that have required cells.
-
-    Parameters
-    ----------
-    table : TextTable
-    required : mapping of str to str
-        Cell by the label of its column.
-    path : Path
-        Of the file, for messages.
-
-    Raises
-    ------
-    InvalidInput
-        If a column is missing, or no row is left.
-    """
+    """Keep only the rows of a table that have required cells."""
     indices = {label: index for index, label in enumerate(numbered_labels(table.labels))}
     for label, cell in required.items():
         index = column_of_label(indices, label, path)
@@ -122,7 +86,7 @@ def require_rows(table: TextTable, required: Mapping[str, str], path: Path) -> N
 
 
 def _sections(lines: list[str], layout: TextLayout) -> list[tuple[str, int, int]]:
-    """Return name, first line and end of each section, as indices of lines; one without name where there are none."""
+    """Name, first line and end of each section, as indices of lines; one without name where there are none."""
     if not layout.section:
         return [("", layout.lines_to_skip, len(lines))]
     pattern = re.compile(layout.section)
@@ -135,7 +99,7 @@ def _sections(lines: list[str], layout: TextLayout) -> list[tuple[str, int, int]
 
 
 def _chosen(names: list[str], sections: tuple[str, ...], path: Path) -> list[int]:
-    """Return the indices of the requested sections, in the order of the file."""
+    """Indices of the requested sections, in the order of the file."""
     if not sections:
         return list(range(len(names)))
     indices = set()
@@ -144,7 +108,7 @@ def _chosen(names: list[str], sections: tuple[str, ...], path: Path) -> list[int
         if not found and section.strip().isdecimal() and 0 < int(section) <= len(names):
             found = [int(section) - 1]
         if not found:
-            known = ", ".join(names[:_MOST_LISTED]) + (", ..." if len(names) > _MOST_LISTED else "")
+            known = ", ".join(names[:_MAX_LISTED]) + (", ..." if len(names) > _MAX_LISTED else "")
             raise InvalidInput(f"{path}: has no section {section!r}; its {len(names)} are {known}")
         indices.update(found)
     return sorted(indices)
@@ -153,7 +117,7 @@ def _chosen(names: list[str], sections: tuple[str, ...], path: Path) -> list[int
 def _table(
     name: str, lines: list[str], first: int, end: int, layout: TextLayout, path: Path, allows_short_rows: bool
 ) -> TextTable:
-    """Return the table between two lines."""
+    """Table between two lines."""
     header = _header_line(lines, first, end, layout, path)
     separator = layout.separator or _detected_separator(lines[header : header + 1])
     rows = _rows(lines, header, end, separator, layout, path)
@@ -181,7 +145,7 @@ def _table(
 
 
 def _header_line(lines: list[str], first: int, end: int, layout: TextLayout, path: Path) -> int:
-    """Return the index of the line of labels: the first one, or the first that has the pattern of the layout."""
+    """Index of the line of labels: the first one, or the first that has the pattern of the layout."""
     if not layout.header:
         return next((index for index in range(first, end) if _is_row(lines[index], layout)), first)
     pattern = re.compile(layout.header)
@@ -192,18 +156,18 @@ def _header_line(lines: list[str], first: int, end: int, layout: TextLayout, pat
 
 
 def _is_row(line: str, layout: TextLayout) -> bool:
-    """Return whether a line is neither blank nor a comment."""
+    """Whether a line is neither blank nor a comment."""
     text = line.strip()
     return bool(text) and not (layout.comment and text.startswith(layout.comment))
 
 
 def _next_row(rows: Iterator[NumberedCells | None], line: int) -> NumberedCells:
-    """Return the next row; one without cells, on the line given, where there is none."""
+    """Next row; one without cells, on the line given, where there is none."""
     return next((row for row in rows if row is not None), (line, []))
 
 
 def _detected_separator(lines: list[str]) -> str:
-    """Return the separator that occurs most often in the line of labels."""
+    """Separator that occurs most often in the line of labels."""
     line = lines[0] if lines else ""
     return max(_SEPARATORS, key=lambda separator: (line.count(separator), -_SEPARATORS.index(separator)))
 
@@ -234,7 +198,7 @@ def _rows(
 def _body(
     rows: Iterator[NumberedCells | None], width: int, path: Path, allows_short_rows: bool
 ) -> tuple[list[NumberedCells], int]:
-    """Return the rows of a table up to its end, and the number of rows that follow it."""
+    """Rows of a table up to its end, and the number of rows that follow it."""
     body: list[NumberedCells] = []
     for row in rows:
         if row is None:
@@ -249,7 +213,7 @@ def _body(
 
 
 def _begun(preamble: str, layout: TextLayout, path: Path) -> str:
-    """Return the start that the lines before a table state, in ISO 8601; empty where they do not."""
+    """Start that the lines before a table state, in ISO 8601; empty where they do not."""
     match = re.search(layout.section_start, preamble)
     if match is None or not match.re.groups or not match[1]:
         return ""

@@ -22,29 +22,14 @@ class UniversalFile:
     suffixes: ClassVar[tuple[str, ...]] = (".uff", ".unv")
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the first line is the delimiter -1 and the second the number of a data set."""
+        """Whether the first line is the delimiter -1 and the second the number of a data set."""
         lines = [line.strip() for line in head.splitlines()[:2]]
         return lines[:1] == [b"-1"] and len(lines) > 1 and lines[1][:6].split(b"b")[0].strip().isdigit()
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
-        """Return the time responses of a universal file.
+        """Time responses of a universal file.
 
-        Parameters
-        ----------
-        path : Path
-            Of the file.
-        mapping : RecordingMapping or None
-            Not used: all responses are read.
-
-        Returns
-        -------
-        RawTable
-            Labels are those of the ordinate, or node and direction of the response where it has none.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the file, if it cannot be read, holds no time response, or an unevenly sampled one beside others.
+        Labels are those of the ordinate, or node and direction of the response where it has none.
         """
         import pyuff
 
@@ -71,7 +56,7 @@ class UniversalFile:
 
 
 def _column(data: dict[str, Any], labels: Counter[str]) -> RawColumn:
-    """Return the column of one response, labelled uniquely among all responses."""
+    """Column of one response, labelled uniquely among all responses."""
     label = _text(data, "ordinate_axis_lab")
     if not label or labels[label] > 1:
         label = f"{label or 'response'} node {data['rsp_node']} direction {data['rsp_dir']}"
@@ -87,6 +72,6 @@ def _column(data: dict[str, Any], labels: Counter[str]) -> RawColumn:
 
 
 def _text(data: dict[str, Any], key: str) -> str:
-    """Return a text field; empty for the placeholders NONE and NO NAME."""
+    """Text field; empty for the placeholders NONE and NO NAME."""
     text = str(data.get(key, "")).strip()
     return "" if text.upper() in ("NONE", "NO NAME") else text

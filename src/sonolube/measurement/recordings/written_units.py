@@ -38,52 +38,16 @@ _OTHER_MEANINGS: dict[str, tuple[tuple[float, str], ...]] = {
 
 
 def convert_to_si(values: Floats, *, written_unit: str, unit: str, name: str) -> Floats:
-    """Return values in an SI unit, converted from the unit in which an instrument wrote them.
-
-    Parameters
-    ----------
-    values : ndarray
-        As written.
-    written_unit : str
-        In the spelling of instruments: "rpm" is revolutions per minute; "g" is gauss for a flux density, gram-force for
-        a force and standard gravity for an acceleration; "C" is degrees Celsius for a temperature.
-    unit : str
-        The SI unit of the result.
-    name : str
-        Name of the values in error messages.
-
-    Returns
-    -------
-    ndarray, shape of `values`
-
-    Raises
-    ------
-    InvalidInput
-        If the unit is unknown or of another dimension.
-    """
+    """Values in an SI unit, converted from the unit in which an instrument wrote them."""
     gain, offset, _ = si_conversion(written_unit, unit=unit, name=name)
     return values if (gain, offset) == (1.0, 0.0) else values * gain + offset
 
 
 def si_conversion(written_unit: str, *, unit: str, name: str) -> tuple[float, float, str]:
-    """Return gain and offset that convert values to an SI unit, and the unit as which the written one was understood.
+    """Gain and offset that convert values to an SI unit, and the unit as which the written one was understood.
 
-    Parameters
-    ----------
-    written_unit, unit, name : str
-        As `convert_to_si`.
-
-    Returns
-    -------
-    gain, offset : float
-        SI value = gain * written value + offset.
-    understood : str
-        The unit; differs from the written one where its second meaning was taken, such as "gf" for "g".
-
-    Raises
-    ------
-    InvalidInput
-        As `convert_to_si`.
+    `gain, offset`: SI value = gain * written value + offset. `understood`: The unit; differs from the written one where
+    its second meaning was taken, such as "gf" for "g".
     """
     written = " ".join(written_unit.split())
     first = _SPELLINGS.get(written.lower(), (1.0, written))

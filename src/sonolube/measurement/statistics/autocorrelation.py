@@ -37,7 +37,7 @@ class CorrelatedMean:
 
 
 def correlated_mean(values: ArrayLike) -> CorrelatedMean:
-    r"""Return the mean of evenly spaced samples with a standard error that accounts for their autocorrelation.
+    r"""Mean of evenly spaced samples with a standard error that accounts for their autocorrelation.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def correlated_mean(values: ArrayLike) -> CorrelatedMean:
 
 
 def statistical_inefficiency(values: Floats) -> float:
-    r"""Return the statistical inefficiency of evenly spaced samples: samples per independent sample, at least 1.
+    r"""Statistical inefficiency of evenly spaced samples: samples per independent sample, at least 1.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def statistical_inefficiency(values: Floats) -> float:
 
 
 def correlation_time(values: Floats, *, sample_interval: float) -> float:
-    r"""Return the integrated autocorrelation time of evenly spaced samples. [s]
+    r"""Integrated autocorrelation time of evenly spaced samples. [s]
 
     Parameters
     ----------

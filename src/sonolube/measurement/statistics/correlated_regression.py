@@ -14,7 +14,7 @@ from sonolube.errors import InvalidInput
 
 _LONGEST_MEMORY = 0.9995  # autoregressive coefficient
 _STARTS = [(phi, share) for phi in (0.3, 0.8, 0.97) for share in (0.1, 0.6, 0.95)]
-_MOST_EVALUATIONS = 60
+_MAX_EVALUATIONS = 60
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -41,7 +41,7 @@ class CorrelatedRegression:
 
 
 def correlated_regression(values: Sequence[Floats], designs: Sequence[Floats]) -> CorrelatedRegression:
-    r"""Return the generalised least-squares fit of evenly spaced parts of a series in white and red noise.
+    r"""Generalised least-squares fit of evenly spaced parts of a series in white and red noise.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def correlated_regression(values: Sequence[Floats], designs: Sequence[Floats]) -
         raise InvalidInput("the columns of the regression are linearly dependent")
     objective = partial(_restricted_likelihood, stacked)
     start = min((np.array([logit(phi), logit(share)]) for phi, share in _STARTS), key=objective)
-    found = minimize(objective, start, method="Nelder-Mead", options={"maxfev": _MOST_EVALUATIONS, "xatol": 0.02})
+    found = minimize(objective, start, method="Nelder-Mead", options={"maxfev": _MAX_EVALUATIONS, "xatol": 0.02})
     phi, theta = _noise(found.x)
     white = [_whitened(part, phi, theta) for part in stacked]
     whole = np.concatenate(white)
@@ -100,13 +100,13 @@ def correlated_regression(values: Sequence[Floats], designs: Sequence[Floats]) -
 
 
 def _noise(parameters: Floats) -> tuple[float, float]:
-    """Return phi and theta from the unbounded parameters."""
+    """Phi and theta from the unbounded parameters."""
     phi = _LONGEST_MEMORY * float(expit(parameters[0]))
     return phi, phi * float(expit(parameters[1]))
 
 
 def _whitened(part: Floats, phi: float, theta: float) -> Floats:
-    """Return the columns of a part filtered to white noise."""
+    """Columns of a part filtered to white noise."""
     first = part[:1]
     ratio = _stationary_ratio(phi, theta)
     rest, _ = lfilter([1.0, -phi], [1.0, -theta], part[1:], axis=0, zi=(theta * ratio - phi) * first)
@@ -114,12 +114,12 @@ def _whitened(part: Floats, phi: float, theta: float) -> Floats:
 
 
 def _stationary_ratio(phi: float, theta: float) -> float:
-    """Return the variance of the innovations over that of the process."""
+    """Variance of the innovations over that of the process."""
     return (1 - phi**2) / (1 + theta**2 - 2 * phi * theta)
 
 
 def _restricted_likelihood(stacked: Sequence[Floats], parameters: Floats) -> float:
-    """Return minus twice the restricted log-likelihood, without its constant."""
+    """Minus twice the restricted log-likelihood, without its constant."""
     phi, theta = _noise(parameters)
     whole = np.concatenate([_whitened(part, phi, theta) for part in stacked])
     triangle = np.abs(np.diag(np.linalg.qr(np.roll(whole, -1, axis=1), mode="r")))

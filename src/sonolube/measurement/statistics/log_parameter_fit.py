@@ -69,7 +69,7 @@ class LogParameterFit:
 
 
 def fit_log_parameters(residuals: Callable[[Floats], Floats], start: Floats) -> LogParameterFit:
-    """Return the local least-squares estimate of log-parameters by the Levenberg-Marquardt method.
+    """Local least-squares estimate of log-parameters by the Levenberg-Marquardt method.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def fit_log_parameters(residuals: Callable[[Floats], Floats], start: Floats) -> 
 
 
 def residual_inefficiency(fit: LogParameterFit, *, rows: int) -> float:
-    """Return the statistical inefficiency of the residuals of a fit: samples per independent sample, at least 1.
+    """Statistical inefficiency of the residuals of a fit: samples per independent sample, at least 1.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def residual_inefficiency(fit: LogParameterFit, *, rows: int) -> float:
 def confidence_intervals(
     fit: LogParameterFit, quantities: Quantities, *, correlation: float, confidence_level: float
 ) -> dict[str, ConfidenceInterval]:
-    r"""Return confidence intervals of positive quantities derived from the parameters of a fit.
+    r"""Confidence intervals of positive quantities derived from the parameters of a fit.
 
     Parameters
     ----------
@@ -172,19 +172,7 @@ def confidence_intervals(
 def spanning_intervals(
     chosen: Mapping[str, ConfidenceInterval], others: Iterable[Mapping[str, ConfidenceInterval]]
 ) -> dict[str, ConfidenceInterval]:
-    """Return the intervals of one fit, extended over those of others to the same data.
-
-    Parameters
-    ----------
-    chosen : mapping of str to ConfidenceInterval
-        Of the fit whose estimates are kept.
-    others : iterable of mapping of str to ConfidenceInterval
-        With the same names.
-
-    Returns
-    -------
-    dict of str to ConfidenceInterval
-    """
+    """Intervals of one fit, extended over those of others to the same data."""
     intervals = [chosen, *others]
     return {
         name: replace(
@@ -195,5 +183,5 @@ def spanning_intervals(
 
 
 def _logarithms(values: Mapping[str, float]) -> Floats:
-    """Return the logarithms of quantities, those of zero as of the smallest positive float."""
+    """Logarithms of quantities, those of zero as of the smallest positive float."""
     return np.asarray(np.log(np.maximum(np.array(list(values.values())), np.finfo(float).tiny)))

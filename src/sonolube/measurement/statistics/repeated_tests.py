@@ -12,7 +12,7 @@ from scipy import stats
 from sonolube.checks import Floats, require_finite, require_within
 from sonolube.errors import InvalidInput
 
-_MOST_PERMUTATIONS = 200_000
+_MAX_PERMUTATIONS = 200_000
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -139,7 +139,7 @@ class RatioEstimate:
 
 
 def mean_estimate(tests: ArrayLike, *, confidence_level: float = 0.95) -> MeanEstimate:
-    r"""Return the mean of independent tests with Student's confidence interval.
+    r"""Mean of independent tests with Student's confidence interval.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def mean_estimate(tests: ArrayLike, *, confidence_level: float = 0.95) -> MeanEs
 
 
 def compare_means(first: ArrayLike, second: ArrayLike, *, confidence_level: float = 0.95) -> MeanDifference:
-    r"""Return the difference between two conditions with Welch's t test and an exact permutation test.
+    r"""Difference between two conditions with Welch's t test and an exact permutation test.
 
     Parameters
     ----------
@@ -248,16 +248,16 @@ def compare_means(first: ArrayLike, second: ArrayLike, *, confidence_level: floa
 
 
 def _welch(variances: tuple[float, float], sizes: tuple[int, int]) -> tuple[float, float]:
-    """Return the standard error of a difference of means and its degrees of freedom after Welch and Satterthwaite."""
+    """Standard error of a difference of means and its degrees of freedom after Welch and Satterthwaite."""
     total = float(sum(variances))
     denominator = sum(variance**2 / (size - 1) for variance, size in zip(variances, sizes, strict=True))
     return total**0.5, float(total**2 / denominator) if denominator > 0 else float(sum(sizes) - 2)
 
 
 def _permutation(a: Floats, b: Floats) -> tuple[float, float]:
-    """Return the p-value of the exact permutation test, and the smallest one that the sizes allow."""
+    """P-value of the exact permutation test, and the smallest one that the sizes allow."""
     permutations = comb(a.size + b.size, a.size)
-    if permutations > _MOST_PERMUTATIONS:
+    if permutations > _MAX_PERMUTATIONS:
         raise InvalidInput(f"{permutations} permutations of {a.size + b.size} tests are too many for an exact test")
     pooled = np.concatenate([a, b])
     chosen = np.array(list(combinations(range(pooled.size), a.size)))
@@ -270,7 +270,7 @@ def _permutation(a: Floats, b: Floats) -> tuple[float, float]:
 
 
 def repeatability(groups: Sequence[ArrayLike]) -> Repeatability:
-    r"""Return repeatability and reproducibility of groups of tests by one-way analysis of variance (ISO 5725-2).
+    r"""Repeatability and reproducibility of groups of tests by one-way analysis of variance (ISO 5725-2).
 
     Parameters
     ----------
@@ -327,7 +327,7 @@ def repeatability(groups: Sequence[ArrayLike]) -> Repeatability:
 
 
 def ratio_interval(numerator: ArrayLike, denominator: ArrayLike, *, confidence_level: float = 0.95) -> RatioEstimate:
-    r"""Return the ratio of the means of two independent sets of tests with Fieller's confidence interval.
+    r"""Ratio of the means of two independent sets of tests with Fieller's confidence interval.
 
     Parameters
     ----------
@@ -382,7 +382,7 @@ def ratio_interval(numerator: ArrayLike, denominator: ArrayLike, *, confidence_l
 
 
 def _tests(values: ArrayLike, name: str) -> Floats:
-    """Return at least two finite values as an array."""
+    """At least two finite values as an array."""
     x = require_finite(**{name: values})
     if x.ndim != 1 or x.size < 2:
         raise InvalidInput(f"{name} must be at least two tests, got {x.size}")

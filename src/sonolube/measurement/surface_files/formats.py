@@ -16,7 +16,7 @@ class SurfaceFormat(FileFormat, Protocol):
     """Reader of one file format of surfaces."""
 
     def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
-        """Return the heights of a surface file and what else it states.
+        """Heights of a surface file and what else it states.
 
         Parameters
         ----------

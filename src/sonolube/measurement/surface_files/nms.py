@@ -43,28 +43,13 @@ class NanoFocusNms:
     suffixes: ClassVar[tuple[str, ...]] = (".nms",)
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the header carries the version's signature."""
+        """Whether the header carries the version's signature."""
         return head[_SIGNATURE_AT:].startswith(_SIGNATURE)
 
     def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
-        """Return the heights of an NMS file.
+        """Heights of an NMS file.
 
-        Parameters
-        ----------
-        stream : binary file
-            The file, open for reading; seekable.
-        path : Path
-            Of the file, for messages.
-
-        Returns
-        -------
-        SurfaceReading
-            Pixels of zero intensity were not measured.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the byte at which the content is invalid.
+        Pixels of zero intensity were not measured.
         """
         size = stream.seek(0, 2)
         stream.seek(0)
@@ -104,12 +89,12 @@ class NanoFocusNms:
 
 
 def _text(header: bytes, at: int) -> str:
-    """Return the text at a byte up to its first null."""
+    """Text at a byte up to its first null."""
     return header[at : at + _TEXT_LENGTH].split(b"\0", 1)[0].decode("latin-1").strip()
 
 
 def _measured_at(text: str) -> datetime | None:
-    """Return the time of the measurement; None for other text."""
+    """Time of the measurement; None for other text."""
     try:
         return datetime.fromisoformat(text).replace(tzinfo=None)
     except ValueError:

@@ -20,28 +20,13 @@ class Npy:
     suffixes: ClassVar[tuple[str, ...]] = (".npy",)
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the file begins with the signature of NPY."""
+        """Whether the file begins with the signature of NPY."""
         return head.startswith(_SIGNATURE)
 
     def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
-        """Return the heights of an NPY file.
+        """Heights of an NPY file.
 
-        Parameters
-        ----------
-        stream : binary file
-            Not used: numpy maps the file into memory by its path, and so refuses a size beyond that of the file.
-        path : Path
-            Of the file.
-
-        Returns
-        -------
-        SurfaceReading
-            Without spacing and unit, which the format does not hold.
-
-        Raises
-        ------
-        InvalidInput
-            If the file is damaged, holds objects, or is no matrix of real numbers.
+        Without spacing and unit, which the format does not hold.
         """
         try:
             with warnings.catch_warnings():

@@ -10,21 +10,11 @@ _SMALLEST_FIELD = 1e-6  # m, below which only force microscopes scan
 
 
 def size_caveats(*, height: Floats, spacing_x: float, spacing_y: float, unit: str) -> tuple[str, ...]:
-    """Return what is implausible about the size of a field and its range of heights, one line each.
+    """What is implausible about the size of a field and its range of heights, one line each.
 
-    Parameters
-    ----------
-    height : ndarray, shape (rows, columns)
-        Height, NaN where not measured. [m]
-    spacing_x, spacing_y : float
-        Distance of neighbouring columns and rows. [m]
-    unit : str
-        Lateral unit of the file and how it is known, for the advice.
+    `height` has shape (rows, columns).
 
-    Returns
-    -------
-    tuple of str
-        Empty for a field from 1 um to 0.5 m along its longer side with a range of heights below that side.
+    Empty for a field from 1 um to 0.5 m along its longer side with a range of heights below that side.
     """
     rows, columns = height.shape
     sides = (columns * spacing_x,) if rows == 1 else (columns * spacing_x, rows * spacing_y)

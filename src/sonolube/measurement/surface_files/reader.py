@@ -59,7 +59,7 @@ class SurfaceFile:
 def read_surface_file(
     path: Path | str, *, spacing_x: float | None = None, spacing_y: float | None = None, length_unit: str | None = None
 ) -> SurfaceFile:
-    """Return the height map of a surface file with its provenance.
+    """Height map of a surface file with its provenance.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def read_surface_file(
 def read_height_map(
     path: Path | str, *, spacing_x: float | None = None, spacing_y: float | None = None, length_unit: str | None = None
 ) -> HeightMap:
-    """Return the height map of a surface file.
+    """Height map of a surface file.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def read_height_map(
 
 
 def _lateral_unit(reading: SurfaceReading, length_unit: str | None, spacing_x: float | None) -> str:
-    """Return the unit of lengths along the surface and how it is known."""
+    """Unit of lengths along the surface and how it is known."""
     if spacing_x is not None:
         return f"m, {GIVEN_BY_USER} as the distance of pixels"
     if length_unit is not None:
@@ -158,7 +158,7 @@ def _lateral_unit(reading: SurfaceReading, length_unit: str | None, spacing_x: f
 def _height_map(
     reading: SurfaceReading, path: Path, *, spacing_x: float | None, spacing_y: float | None, length_unit: str | None
 ) -> HeightMap:
-    """Return the height map in metres, with the unit and spacings of the file or those given."""
+    """Height map in metres, with the unit and spacings of the file or those given."""
     if reading.states_unit and length_unit is not None:
         raise InvalidInput(f"{path}: {reading.format_name} states its unit; leave length_unit out")
     if length_unit is None and not (reading.states_unit or reading.metres_by_default):
@@ -179,7 +179,7 @@ def _height_map(
 def _spacings(
     reading: SurfaceReading, unit: float, *, spacing_x: float | None, spacing_y: float | None
 ) -> tuple[float, float]:
-    """Return the spacings in metres, of the file or those given; refuse both and neither."""
+    """Spacings in metres, of the file or those given; refuse both and neither."""
     if reading.spacing_x is not None and reading.spacing_y is not None:
         if spacing_x is not None or spacing_y is not None:
             raise InvalidInput(f"{reading.format_name} states its spacing; leave spacing_x and spacing_y out")

@@ -10,30 +10,13 @@ from sonolube.errors import InvalidInput
 
 _COINCIDENCE = 1e-6  # of the extent: closer positions are one
 _GRID_TOLERANCE = 0.1  # of the spacing: by which rounding may move positions
-_LEAST_FILLED = 0.9  # fraction of the steps of a profile that have a point: with fewer its steps are uneven
+_MIN_FILLED = 0.9  # fraction of the steps of a profile that have a point: with fewer its steps are uneven
 
 
 def grid_index(coordinate: Floats, *, axis: str) -> tuple[NDArray[np.intp], float]:
     """Index of each coordinate on the regular grid of one axis, and the spacing of that grid.
 
-    Parameters
-    ----------
-    coordinate : ndarray, shape (n,)
-        Positions along the axis in any order, each perhaps several times, rounded to a tenth of the spacing or better.
-    axis : str
-        Its name in messages.
-
-    Returns
-    -------
-    ndarray of int, shape (n,)
-        From zero at the smallest coordinate.
-    float
-        Spacing, in the unit of the positions.
-
-    Raises
-    ------
-    InvalidInput
-        If all positions are one, or one of them lies off the grid.
+    From zero at the smallest coordinate. Spacing, in the unit of the positions.
     """
     with np.errstate(over="ignore"):
         distinct = np.unique(coordinate)
@@ -56,29 +39,9 @@ def grid_index(coordinate: Floats, *, axis: str) -> tuple[NDArray[np.intp], floa
 def even_profile(coordinate: Floats, measured: Floats) -> tuple[Floats, float, tuple[str, ...]]:
     """Heights of a profile at even steps, interpolated linearly where its positions are uneven.
 
-    Parameters
-    ----------
-    coordinate : ndarray, shape (n,)
-        Positions along the profile, in any order.
-    measured : ndarray, shape (n,)
-        Height at each coordinate, NaN where not measured.
+    Heights in the order of the positions, as the one row of a map. Their spacing, in the unit of the positions. That
+    heights were interpolated, where they were.
 
-    Returns
-    -------
-    ndarray, shape (1, m)
-        Heights in the order of the positions, as the one row of a map.
-    float
-        Their spacing, in the unit of the positions.
-    tuple of str
-        That heights were interpolated, where they were.
-
-    Raises
-    ------
-    InvalidInput
-        If there are fewer than two positions, two of them are equal, or no height was measured.
-
-    Notes
-    -----
     Positions that rounding moves by a tenth of the spacing at most, of which up to a tenth may be missing, keep their
     heights. Others are replaced by as many even steps over the same length.
     """
@@ -113,7 +76,7 @@ def _filled(coordinate: Floats, height: Floats) -> tuple[Floats, float] | None:
     except InvalidInput:
         return None
     points = int(index[-1]) + 1
-    if coordinate.size < _LEAST_FILLED * points or np.unique(index).size < index.size:
+    if coordinate.size < _MIN_FILLED * points or np.unique(index).size < index.size:
         return None
     grid = np.full(points, np.nan)
     grid[index] = height

@@ -17,18 +17,7 @@ _LARGEST_XML = 1 << 22  # bytes; a parsed document takes thirty times as much, a
 
 
 def require_stated_sizes(path: Path) -> None:
-    """Refuse a file of which a container (ZIP, HDF5, zlib streams) states or unpacks to more than its size allows.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file, the part, its size and the limit.
-    """
+    """Refuse a file of which a container (ZIP, HDF5, zlib streams) states or unpacks to more than its size allows."""
     with path.open("rb") as stream:
         head = stream.read(_HDF5_OFFSETS[-1] + len(_HDF5))
     if any(head[at:].startswith(_HDF5) for at in _HDF5_OFFSETS):

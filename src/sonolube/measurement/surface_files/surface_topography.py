@@ -54,30 +54,14 @@ class SurfaceTopographyFormats:
     suffixes: ClassVar[tuple[str, ...]] = ()
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return True: the library detects its formats itself."""
+        """True: the library detects its formats itself."""
         return True
 
     def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
-        """Return the default channel of a file in any format of SurfaceTopography.
+        """Default channel of a file in any format of SurfaceTopography.
 
-        Parameters
-        ----------
-        stream : binary file
-            Not used: the library opens the file by its path.
-        path : Path
-            Of the file.
-
-        Returns
-        -------
-        SurfaceReading
-            Rows and columns as SurfaceTopography orders y and x. A profile becomes one row of square pixels, its
-            heights interpolated at even steps where its positions are uneven.
-
-        Raises
-        ------
-        InvalidInput
-            If the library is not installed, does not recognise the format, finds no heights in the file, or fails on
-            it, or the file states to hold more points than one of its size may.
+        Rows and columns as SurfaceTopography orders y and x. A profile becomes one row of square pixels, its heights
+        interpolated at even steps where its positions are uneven.
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of the library's dependencies, about missing optional parts
@@ -98,7 +82,7 @@ class SurfaceTopographyFormats:
 
 
 def _opened(readers: Sequence[Any], path: Path) -> Any:
-    """Return the first reader of the library that can open the file."""
+    """First reader of the library that can open the file."""
     from SurfaceTopography.IO import MagicMatch
 
     with path.open("rb") as stream:
@@ -125,7 +109,7 @@ def _opened(readers: Sequence[Any], path: Path) -> Any:
 
 
 def _cause(failure: Exception, format_name: str) -> str:
-    """Return why the library fails on a file: its own sentence, or what an exception of its code without one means."""
+    """Why the library fails on a file: its own sentence, or what an exception of its code without one means."""
     said = " ".join(str(failure).split())
     if said and not isinstance(failure, (LookupError, TypeError, AttributeError, AssertionError, UnicodeError)):
         return f"SurfaceTopography cannot read it: {said[:200]}"
@@ -137,7 +121,7 @@ def _cause(failure: Exception, format_name: str) -> str:
 
 
 def _reading(reader: Any, *, path: Path) -> SurfaceReading:
-    """Return the default channel of an open reader of the library."""
+    """Default channel of an open reader of the library."""
     known_as = str(reader.format())
     if known_as in _MISREAD:
         raise InvalidInput(f"{path}: looks like {reader.name()}: {_MISREAD[known_as]}")
@@ -168,7 +152,7 @@ def _reading(reader: Any, *, path: Path) -> SurfaceReading:
 
 
 def _heights(topography: Any) -> tuple[Floats, float, float, tuple[str, ...]]:
-    """Return the heights of a topography or line scan with the distances of its columns and rows."""
+    """Heights of a topography or line scan with the distances of its columns and rows."""
     by_column = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
     if not topography.is_uniform:
         row, step, notes = even_profile(np.asarray(topography.positions(), dtype=np.float64), by_column)
@@ -178,12 +162,12 @@ def _heights(topography: Any) -> tuple[Floats, float, float, tuple[str, ...]]:
 
 
 def _instrument(known: dict[str, Any]) -> str:
-    """Return vendor, name and serial number of the instrument, as far as they are stated."""
+    """Vendor, name and serial number of the instrument, as far as they are stated."""
     return " ".join(str(known[key]) for key in ("vendor", "name", "serial") if known.get(key))
 
 
 def _measured_at(stated: Any) -> datetime | None:
-    """Return a date without time zone; None for text that is no date and for the epoch, which stands for none."""
+    """Date without time zone; None for text that is no date and for the epoch, which stands for none."""
     try:
         moment = stated if isinstance(stated, datetime) else datetime.fromisoformat(str(stated))
     except ValueError:

@@ -4,29 +4,18 @@ import codecs
 from pathlib import Path
 
 _SMALL = 1 << 14  # bytes; whatever such a file holds, the readers end within seconds
-_MOST_HEADER_LINES = 200  # that the reader of coordinates skips
-_MOST_OTHER_LINES = 1000  # of headers between the blocks of a matrix file
+_MAX_HEADER_LINES = 200  # that the reader of coordinates skips
+_MAX_OTHER_LINES = 1000  # of headers between the blocks of a matrix file
 _LONGEST_OTHER_LINE = 4096
-_MOST_ROWS = 1_000_000  # of numbers, which the readers take 6 us each
+_MAX_ROWS = 1_000_000  # of numbers, which the readers take 6 us each
 _COORDINATES = (2, 3)  # columns
 _SEPARATORS = str.maketrans(",;", "  ")
 _MISSING = ("bad", "nan", "inf", "infinite")
 
 
 def text_readers(path: Path) -> tuple[str, ...]:
-    """Return which text readers of SurfaceTopography may read a file: "xyz" (coordinates), "asc" (matrix), or neither.
+    """Which text readers of SurfaceTopography may read a file: "xyz" (coordinates), "asc" (matrix), or neither.
 
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-
-    Returns
-    -------
-    tuple of str
-
-    Notes
-    -----
     The reader of coordinates parses the whole file once for each header line that it may have, and the reader of a
     matrix searches thirty expressions in every line that is no row of numbers. On a long text that is no table they
     take hours.
@@ -39,11 +28,11 @@ def text_readers(path: Path) -> tuple[str, ...]:
     if "\0" in text:
         return ()
     lines = text.rstrip().split("\n")
-    return () if text.count("\n") - len(lines) > _MOST_OTHER_LINES else _readers_of_lines(lines)
+    return () if text.count("\n") - len(lines) > _MAX_OTHER_LINES else _readers_of_lines(lines)
 
 
 def _readers_of_lines(lines: list[str]) -> tuple[str, ...]:
-    """Return which readers may read some lines of text."""
+    """Which readers may read some lines of text."""
     columns: set[int] = set()
     header_lines = other_lines = rows = 0
     for line in lines:
@@ -54,17 +43,17 @@ def _readers_of_lines(lines: list[str]) -> tuple[str, ...]:
             continue
         header_lines += not columns
         other_lines += 1
-        if other_lines > _MOST_OTHER_LINES or len(line) > _LONGEST_OTHER_LINE:
+        if other_lines > _MAX_OTHER_LINES or len(line) > _LONGEST_OTHER_LINE:
             return ()
     later_lines = other_lines - header_lines
-    if rows > _MOST_ROWS:
+    if rows > _MAX_ROWS:
         return ()
     is_table = len(columns) == 1 and columns <= set(_COORDINATES) and not later_lines
-    return ("xyz", "asc") if is_table and header_lines <= _MOST_HEADER_LINES else ("asc",)
+    return ("xyz", "asc") if is_table and header_lines <= _MAX_HEADER_LINES else ("asc",)
 
 
 def _is_row(words: list[str]) -> bool:
-    """Return whether all words of a line are numbers or stand for a missing one."""
+    """Whether all words of a line are numbers or stand for a missing one."""
     try:
         for word in words:
             if word.lower() not in _MISSING:

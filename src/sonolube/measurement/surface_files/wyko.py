@@ -49,31 +49,14 @@ class WykoOpd:
     suffixes: ClassVar[tuple[str, ...]] = (".opd",)
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the directory begins at byte 2."""
+        """Whether the directory begins at byte 2."""
         return head[2:].startswith(_SIGNATURE)
 
     def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
-        r"""Return the heights of a Wyko OPD file.
+        r"""Heights of a Wyko OPD file.
 
-        Parameters
-        ----------
-        stream : binary file
-            The file, open for reading; seekable.
-        path : Path
-            Of the file, for messages.
+        Its first row is the top of the picture as Vision shows it. Of several height arrays the first is read.
 
-        Returns
-        -------
-        SurfaceReading
-            Its first row is the top of the picture as Vision shows it. Of several height arrays the first is read.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the byte at which the content is invalid.
-
-        Notes
-        -----
         Heights are stored in waves: with the wavelength in nm and the multiplier m of integer arrays,
 
         .. math:: z = 10^{-9} \frac{\lambda}{m}\, w .
@@ -106,7 +89,7 @@ class WykoOpd:
 
 
 def _directory(stream: BinaryIO, path: Path) -> dict[str, _Block]:
-    """Return the blocks of the file by name, the first of each name."""
+    """Blocks of the file by name, the first of each name."""
     size = stream.seek(0, 2)
     if size == 0:
         raise InvalidInput(f"{path}: byte 0: the file is empty")
@@ -132,7 +115,7 @@ def _directory(stream: BinaryIO, path: Path) -> dict[str, _Block]:
 
 
 def _waves(stream: BinaryIO, blocks: dict[str, _Block], path: Path) -> Floats:
-    """Return the first height array in waves, top row first, NaN where it was not measured."""
+    """First height array in waves, top row first, NaN where it was not measured."""
     found = next((block for block in blocks.values() if block.name in _HEIGHT_BLOCKS and block.kind == _ARRAY), None)
     if found is None:
         raise InvalidInput(f"{path}: no array of heights in the directory; looked for {', '.join(_HEIGHT_BLOCKS)}")
@@ -157,7 +140,7 @@ def _waves(stream: BinaryIO, blocks: dict[str, _Block], path: Path) -> Floats:
 
 
 def _number(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: Path) -> float | None:
-    """Return the positive number in a block; None where there is no such block."""
+    """Positive number in a block; None where there is no such block."""
     block = blocks.get(block_name)
     if block is None:
         return None
@@ -179,7 +162,7 @@ def _number(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: 
 
 
 def _text(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: Path) -> str:
-    """Return the text in a block; empty where there is no such block or it holds no text."""
+    """Text in a block; empty where there is no such block or it holds no text."""
     block = blocks.get(block_name)
     if block is None or block.kind not in (_TEXT, _STRING):
         return ""
@@ -192,7 +175,7 @@ def _text(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: Pa
 
 
 def _measured_at(text: str) -> datetime | None:
-    """Return the date and time in any of the spellings of Vision; None for other text."""
+    """Date and time in any of the spellings of Vision; None for other text."""
     for form in _DATES:
         try:
             return datetime.strptime(text.strip(), form)
@@ -202,12 +185,12 @@ def _measured_at(text: str) -> datetime | None:
 
 
 def _terminated(content: bytes) -> str:
-    """Return the text up to the first null byte."""
+    """Text up to the first null byte."""
     return content.split(b"\0", 1)[0].decode("latin-1").strip()
 
 
 def _bytes(stream: BinaryIO, offset: int, length: int, path: Path, part: str) -> bytes:
-    """Return some bytes of the file; refuse a file that ends within them."""
+    """Some bytes of the file; refuse a file that ends within them."""
     stream.seek(offset)
     content = stream.read(length)
     if len(content) < length:

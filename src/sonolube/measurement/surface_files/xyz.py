@@ -15,14 +15,14 @@ from sonolube.measurement.surface_files.regular_grid import even_profile, grid_i
 from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 
 _LONGEST_LINE = 1024
-_MOST_HEADER_LINES = 64
+_MAX_HEADER_LINES = 64
 _SEPARATORS = bytes.maketrans(b",;", b"  ")
 _COMMENTS = (b"#", b"%", b"//", b"*")
 _WANTED = {2: "a point has two numbers, x z", 3: "a point has three numbers, x y z"}
 _MISSING = ([b"bad"], [b"no", b"data"])  # spellings of Wyko and Zygo; "nan" is a number
 _REMOTE = 1000.0  # distance of one position from the others over their extent
-_FEWEST_POSITIONS = 3  # of which one can be remote
-_LEAST_FILLED = 0.05  # fraction of the grid
+_MIN_POSITIONS = 3  # of which one can be remote
+_MIN_FILLED = 0.05  # fraction of the grid
 # Texts that SurfaceTopography reads with the unit of their header: Hommel-Etamic's HFM, whose third column is a flag,
 # Dektak's export, and matrices with a comment such as "# Width: 12.34 um".
 _STATES_UNIT = re.compile(rb"X;Y;valid|Scan Parameters|Lateral um,|(?m:^#[^:\n]*:\s*[-+\d.,eE]+\s*\S{0,3}m\s*$)")
@@ -36,7 +36,7 @@ class XyzText:
     suffixes: ClassVar[tuple[str, ...]] = (".xyz",)
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the last whole lines of the head are three numbers each, or two each."""
+        """Whether the last whole lines of the head are three numbers each, or two each."""
         whole_lines = head.splitlines()[: -1 if len(head) == HEAD_SIZE else None]
         if b"\0" in head or len(whole_lines) <= 3 or _STATES_UNIT.search(head):
             return False
@@ -45,28 +45,10 @@ class XyzText:
         )
 
     def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
-        """Return the heights of points x, y, z on their regular grid, or of points x, z along a profile.
+        """Heights of points x, y, z on their regular grid, or of points x, z along a profile.
 
-        Parameters
-        ----------
-        stream : binary file
-            The text, open for reading: three numbers on each line, or two on each, separated by blanks, commas or
-            semicolons; in any order of lines. Lines before the first point and lines that start with ``#`` are
-            skipped. A point whose height is written ``nan``, ``Bad`` or ``No Data``, and a grid position without a
-            point, was not measured.
-        path : Path
-            Of the file, for messages.
-
-        Returns
-        -------
-        SurfaceReading
-            The first row has the smallest y. Points of one y, or of one x, are a profile: one row, whose heights are
-            interpolated at even steps where its positions are uneven. The text does not state its unit.
-
-        Raises
-        ------
-        InvalidInput
-            Naming the byte at which a line is no point, or stating how the points fail to form a grid.
+        The first row has the smallest y. Points of one y, or of one x, are a profile: one row, whose heights are
+        interpolated at even steps where its positions are uneven. The text does not state its unit.
         """
         x, y, z = _points(stream, path)
         try:
@@ -77,20 +59,20 @@ class XyzText:
             raise InvalidInput(f"{path}: {refusal}") from None
 
     def _profile(self, position: Floats, z: Floats) -> SurfaceReading:
-        """Return the heights of points on one line."""
+        """Heights of points on one line."""
         height, spacing, notes = even_profile(position, z)
         return SurfaceReading(
             height=height, format_name=self.name, spacing_x=spacing, spacing_y=spacing, states_unit=False, notes=notes
         )
 
     def _map(self, x: Floats, y: Floats, z: Floats) -> SurfaceReading:
-        """Return the heights of points on a grid."""
+        """Heights of points on a grid."""
         for axis, positions in (("x", x), ("y", y)):
             _refuse_remote(positions, axis=axis)
         column, spacing_x = grid_index(x, axis="x")
         row, spacing_y = grid_index(y, axis="y")
         columns, rows = int(column.max()) + 1, int(row.max()) + 1
-        if z.size < _LEAST_FILLED * columns * rows:
+        if z.size < _MIN_FILLED * columns * rows:
             points = f"{z.size} points fill too little of a {columns} x {rows} grid"
             raise InvalidInput(f"{points}; are they scattered?")
         cell = row * columns + column
@@ -114,7 +96,7 @@ class XyzText:
 def _refuse_remote(positions: Floats, *, axis: str) -> None:
     """Refuse a lowest or highest position that is farther from all others than these can be of one grid."""
     distinct = np.unique(positions)
-    if distinct.size < _FEWEST_POSITIONS:
+    if distinct.size < _MIN_POSITIONS:
         return
     for rest, extreme in ((distinct[1:], distinct[0]), (distinct[:-1], distinct[-1])):
         gap, extent = np.abs(rest - extreme).min(), rest[-1] - rest[0]
@@ -123,7 +105,7 @@ def _refuse_remote(positions: Floats, *, axis: str) -> None:
 
 
 def _numbers_on(line: bytes) -> int:
-    """Return how many numbers a line of text has as a point, the last of which may be a missing value; 0 for others."""
+    """How many numbers a line of text has as a point, the last of which may be a missing value; 0 for others."""
     try:
         return len(_point(line) or ())
     except ValueError:
@@ -131,7 +113,7 @@ def _numbers_on(line: bytes) -> int:
 
 
 def _points(stream: BinaryIO, path: Path) -> tuple[Floats, Floats, Floats]:
-    """Return the coordinates of all points of the text; y is zero in a text of two columns."""
+    """Coordinates of all points of the text; y is zero in a text of two columns."""
     stream.seek(0)
     values = array("d")
     offset = header_lines = columns = 0
@@ -142,7 +124,7 @@ def _points(stream: BinaryIO, path: Path) -> tuple[Floats, Floats, Floats]:
                 raise ValueError(_WANTED[columns])
         except ValueError as failure:
             header_lines += 1
-            if values or header_lines > _MOST_HEADER_LINES or len(line) == _LONGEST_LINE:
+            if values or header_lines > _MAX_HEADER_LINES or len(line) == _LONGEST_LINE:
                 raise InvalidInput(f"{path}: byte {offset}: {failure}: {line[:40].decode('latin-1')!r}") from None
         else:
             values.extend(point)
@@ -155,7 +137,7 @@ def _points(stream: BinaryIO, path: Path) -> tuple[Floats, Floats, Floats]:
 
 
 def _point(line: bytes) -> tuple[float, ...] | None:
-    """Return the point on a line, x y z or x z; None for a blank line and a comment."""
+    """Point on a line, x y z or x z; None for a blank line and a comment."""
     words = line.translate(_SEPARATORS).split()
     try:
         numbers = tuple(map(float, words))
@@ -173,7 +155,7 @@ def _point(line: bytes) -> tuple[float, ...] | None:
 
 
 def _unmeasured(words: list[bytes]) -> tuple[float, ...]:
-    """Return a point whose height is a missing-value text, as NaN."""
+    """Point whose height is a missing-value text, as NaN."""
     for count in (2, 1):
         if [word.lower() for word in words[count:]] in _MISSING:
             try:

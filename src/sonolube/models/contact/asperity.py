@@ -40,7 +40,7 @@ class AsperityLaw(Protocol):
     breakpoints: ClassVar[tuple[float, ...]]
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak contact pressure at the onset of yielding. [Pa]
+        """Peak contact pressure at the onset of yielding. [Pa]
 
         Parameters
         ----------
@@ -52,7 +52,7 @@ class AsperityLaw(Protocol):
         """
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the force over that of an elastic asperity at the same interference. []
+        """Force over that of an elastic asperity at the same interference. []
 
         Parameters
         ----------
@@ -66,7 +66,7 @@ class AsperityLaw(Protocol):
         """
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the contact area over that of an elastic asperity at the same interference. []
+        """Contact area over that of an elastic asperity at the same interference. []
 
         Parameters
         ----------
@@ -98,15 +98,15 @@ class ElasticAsperity:
     breakpoints: ClassVar[tuple[float, ...]] = ()
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak contact pressure at the onset of yielding: infinite. [Pa]"""
+        """Peak contact pressure at the onset of yielding: infinite. [Pa]"""
         return math.inf
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the force over that of an elastic asperity: one. []"""
+        """Force over that of an elastic asperity: one. []"""
         return np.ones_like(interference_ratio)
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the contact area over that of an elastic asperity: one. []"""
+        """Contact area over that of an elastic asperity: one. []"""
         return np.ones_like(interference_ratio)
 
 
@@ -136,15 +136,15 @@ class Dong2015Asperity:
     breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak contact pressure at the onset of yielding, C_nu (1 - nu^2) Y_0. [Pa]"""
+        """Peak contact pressure at the onset of yielding, C_nu (1 - nu^2) Y_0. [Pa]"""
         return _hardness_coefficient(pair) * (1 - pair.poisson_ratio**2) * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the force over that of an elastic asperity. []"""
+        """Force over that of an elastic asperity. []"""
         return _constant_volume_force_ratio(interference_ratio)
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the contact area over that of an elastic asperity. []"""
+        """Contact area over that of an elastic asperity. []"""
         return _constant_volume_area_ratio(interference_ratio)
 
 
@@ -181,15 +181,15 @@ class ChangEtsionBogy:
     breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak contact pressure at the onset of yielding, C_nu Y_0. [Pa]"""
+        """Peak contact pressure at the onset of yielding, C_nu Y_0. [Pa]"""
         return _hardness_coefficient(pair) * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the force over that of an elastic asperity. []"""
+        """Force over that of an elastic asperity. []"""
         return _constant_volume_force_ratio(interference_ratio)
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the contact area over that of an elastic asperity. []"""
+        """Contact area over that of an elastic asperity. []"""
         return _constant_volume_area_ratio(interference_ratio)
 
 
@@ -214,35 +214,35 @@ class ChangEtsionBogy1987:
     breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak contact pressure at the onset of yielding, 0.6 H with the hardness H = 2.8 Y_0. [Pa]"""
+        """Peak contact pressure at the onset of yielding, 0.6 H with the hardness H = 2.8 Y_0. [Pa]"""
         return 0.6 * 2.8 * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the force over that of an elastic asperity. []"""
+        """Force over that of an elastic asperity. []"""
         return _constant_volume_force_ratio(interference_ratio)
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the contact area over that of an elastic asperity. []"""
+        """Contact area over that of an elastic asperity. []"""
         return _constant_volume_area_ratio(interference_ratio)
 
 
 def _hardness_coefficient(pair: ContactPair) -> float:
-    """Return C_nu, the peak pressure at the onset of yielding over the yield strength. []"""
+    """C_nu, the peak pressure at the onset of yielding over the yield strength. []"""
     return 1.234 + 1.256 * pair.poisson_ratio  # D 3.1
 
 
 def _constant_volume_force_ratio(r: Floats) -> Floats:
-    """Return the force at constant pressure and volume over that of Hertz, for interferences over the critical one."""
+    """Force at constant pressure and volume over that of Hertz, for interferences over the critical one."""
     return _piecewise(r, (1.0,), lambda r: 1.5 * (2 * r - 1) / r**1.5)
 
 
 def _constant_volume_area_ratio(r: Floats) -> Floats:
-    """Return the area at constant volume over that of Hertz, for interferences over the critical one."""
+    """Area at constant volume over that of Hertz, for interferences over the critical one."""
     return _piecewise(r, (1.0,), lambda r: 2 - 1 / r)
 
 
 def _piecewise(r: Floats, breakpoints: tuple[float, ...], *yielded: Piece) -> Floats:
-    """Return 1 below the onset of yielding and one expression from each breakpoint on."""
+    """1 below the onset of yielding and one expression from each breakpoint on."""
     return np.piecewise(r, [r >= 0, *(r >= each for each in breakpoints)], [1.0, *yielded])
 
 
@@ -274,11 +274,11 @@ class KogutEtsion:
     breakpoints: ClassVar[tuple[float, ...]] = (1.0, 6.0, 110.0)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak contact pressure at the onset of yielding, K H with the hardness H = 2.8 Y_0. [Pa]"""
+        """Peak contact pressure at the onset of yielding, K H with the hardness H = 2.8 Y_0. [Pa]"""
         return self._pressure_coefficient(pair) * 2.8 * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the force over that of an elastic asperity. []"""
+        """Force over that of an elastic asperity. []"""
         plastic = 3 / self._pressure_coefficient(pair)  # 2 pi R w H over the force at the onset, 2/3 K H pi R w_c
         return _piecewise(
             interference_ratio,
@@ -289,12 +289,12 @@ class KogutEtsion:
         )
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the contact area over that of an elastic asperity. []"""
+        """Contact area over that of an elastic asperity. []"""
         pieces = (lambda r: 0.93 * r**0.136, lambda r: 0.94 * r**0.146, 2.0)
         return _piecewise(interference_ratio, self.breakpoints, *pieces)
 
     def _pressure_coefficient(self, pair: ContactPair) -> float:
-        """Return K, the peak pressure at the onset of yielding over the hardness. []"""
+        """K, the peak pressure at the onset of yielding over the hardness. []"""
         return 0.454 + 0.41 * pair.poisson_ratio
 
 
@@ -327,11 +327,11 @@ class JacksonGreen:
     breakpoints: ClassVar[tuple[float, ...]] = (1.0, 1.9)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak contact pressure at the onset of yielding, C Y_0. [Pa]"""
+        """Peak contact pressure at the onset of yielding, C Y_0. [Pa]"""
         return self._pressure_coefficient(pair) * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the force over that of an elastic asperity. []"""
+        """Force over that of an elastic asperity. []"""
         C = self._pressure_coefficient(pair)
         yield_strain = pair.yield_strength / pair.effective_modulus
 
@@ -345,11 +345,11 @@ class JacksonGreen:
         return _piecewise(interference_ratio, (1.9,), yielded)
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the contact area over that of an elastic asperity. []"""
+        """Contact area over that of an elastic asperity. []"""
         return _piecewise(interference_ratio, (1.9,), lambda r: self._area_growth(pair, r))
 
     def _area_growth(self, pair: ContactPair, r: Floats) -> Floats:
-        """Return the contact area over that of Hertz beyond 1.9 critical interferences. []"""
+        """Contact area over that of Hertz beyond 1.9 critical interferences. []"""
         yield_strain = pair.yield_strength / pair.effective_modulus
         if yield_strain > 0.05:
             raise OutsideRange(
@@ -361,7 +361,7 @@ class JacksonGreen:
         return growth
 
     def _pressure_coefficient(self, pair: ContactPair) -> float:
-        """Return C, the peak pressure at the onset of yielding over the yield strength. []"""
+        """C, the peak pressure at the onset of yielding over the yield strength. []"""
         return 1.295 * math.exp(0.736 * pair.poisson_ratio)
 
 

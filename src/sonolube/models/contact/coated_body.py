@@ -43,7 +43,7 @@ class CoatedBody:
 
 
 def layer_compliance_ratio(body: CoatedBody, *, wavenumber: ArrayLike) -> Floats:
-    r"""Return the normal compliance of the coated body to a harmonic pressure over that of the layer material alone. []
+    r"""Normal compliance of the coated body to a harmonic pressure over that of the layer material alone. []
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def layer_compliance_ratio(body: CoatedBody, *, wavenumber: ArrayLike) -> Floats
 
 
 def equivalent_plane_strain_modulus(body: CoatedBody, *, contact_radius: ArrayLike) -> Floats:
-    r"""Return the plane-strain modulus of the homogeneous half-space with the same stiffness at a contact radius. [Pa]
+    r"""Plane-strain modulus of the homogeneous half-space with the same stiffness at a contact radius. [Pa]
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def equivalent_plane_strain_modulus(body: CoatedBody, *, contact_radius: ArrayLi
 
 
 def _stiffness_ratio(body: CoatedBody, radius: float) -> float:
-    """Return the stiffness under a flat punch over that of the layer material alone; its radius is in thicknesses."""
+    """Stiffness under a flat punch over that of the layer material alone; its radius is in thicknesses."""
     node, weight = np.polynomial.legendre.leggauss(24 + math.ceil(4 * radius))
     t, dt = radius * (1 + node) / 2, radius * weight / 2
     # f/2 + (1/pi) integral of f(s) M(t, s) ds = 1/2 over 0 < s < a; the load is the integral of f
@@ -144,7 +144,7 @@ def _stiffness_ratio(body: CoatedBody, radius: float) -> float:
 
 
 def _wave_nodes(radius: float) -> tuple[Floats, Floats]:
-    """Return quadrature nodes and weights over wavenumbers, dense enough for the kernel and the contact radius."""
+    """Quadrature nodes and weights over wavenumbers, dense enough for the kernel and the contact radius."""
     panels = np.linspace(0.0, _LARGEST_WAVENUMBER, 8 + math.ceil(_LARGEST_WAVENUMBER * radius / 12))
     half = np.diff(panels)[:, None] / 2
     q = panels[:-1, None] + half * (1 + _WAVES[0])
@@ -152,7 +152,7 @@ def _wave_nodes(radius: float) -> tuple[Floats, Floats]:
 
 
 def _compliance_ratio(body: CoatedBody, q: Floats) -> Floats:
-    """Return the compliance ratio for angular wavenumbers times the thickness."""
+    """Compliance ratio for angular wavenumbers times the thickness."""
     mu = body.layer.shear_modulus / body.substrate.shear_modulus
     a_1, a_2 = 3 - 4 * body.layer.poisson_ratio, 3 - 4 * body.substrate.poisson_ratio
     lam, kappa = (mu * a_2 - a_1) / (1 + mu * a_2), (mu - 1) / (mu + a_1)
@@ -162,5 +162,5 @@ def _compliance_ratio(body: CoatedBody, q: Floats) -> Floats:
 
 
 def _plane_modulus(body: ElasticBody) -> float:
-    """Return the plane-strain modulus E/(1 - nu^2). [Pa]"""
+    """Plane-strain modulus E/(1 - nu^2). [Pa]"""
     return body.youngs_modulus / (1 - body.poisson_ratio**2)

@@ -20,7 +20,7 @@ from sonolube.checks import (
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.contact.rough import RoughContact, normal_force, normal_stiffness, separation
 
-_MOST_KEPT = 2048  # samples of motions that are kept at another number of phases
+_MAX_KEPT = 2048  # samples of motions that are kept at another number of phases
 _SAMPLES = 256  # per period
 
 
@@ -87,7 +87,7 @@ class ContactMotion:
         return np.fft.irfft(harmonics, n)
 
     def resampled(self, samples: int) -> "ContactMotion":
-        """Return the same motion at another number of phases, by its harmonics.
+        """Same motion at another number of phases, by its harmonics.
 
         Parameters
         ----------
@@ -98,7 +98,7 @@ class ContactMotion:
         -------
         ContactMotion
         """
-        return (_resampled_motion if samples <= _MOST_KEPT else _resampled_motion.__wrapped__)(self, samples)
+        return (_resampled_motion if samples <= _MAX_KEPT else _resampled_motion.__wrapped__)(self, samples)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -150,7 +150,7 @@ class GapMotionBatch:
 
 
 def gap_harmonics(motion: ContactMotion) -> GapMotionBatch:
-    """Return the Fourier coefficients of one motion, as a batch of one.
+    """Fourier coefficients of one motion, as a batch of one.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def sinusoidal_motion(
     frequency: ArrayLike,
     samples: int = _SAMPLES,
 ) -> ContactMotion:
-    r"""Return a sinusoidal motion of prescribed amplitude about the separation at rest.
+    r"""Sinusoidal motion of prescribed amplitude about the separation at rest.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def sinusoidal_motion(
 
 
 def load_balanced_motion(contact: RoughContact, motion: ContactMotion) -> ContactMotion:
-    r"""Return the same vibration about the mean gap at which the mean normal force equals the load.
+    r"""Same vibration about the mean gap at which the mean normal force equals the load.
 
     Parameters
     ----------
@@ -270,22 +270,7 @@ def load_balanced_motion(contact: RoughContact, motion: ContactMotion) -> Contac
 
 
 def require_open_gap(contact: RoughContact, motion: ContactMotion) -> Floats:
-    """Return the separation at rest of a motion, and refuse a motion that closes the gap. [m]
-
-    Parameters
-    ----------
-    contact : RoughContact
-    motion : ContactMotion
-
-    Returns
-    -------
-    ndarray, shape ()
-
-    Raises
-    ------
-    OutsideRange
-        If the mean planes meet at some phase, or no separation carries the load.
-    """
+    """Separation at rest of a motion; refuses a motion that closes the gap. [m]"""
     d = separation(contact, normal_load=motion.normal_load)
     smallest = float(d + np.min(motion.displacement))
     if smallest <= 0:
@@ -297,18 +282,9 @@ def require_open_gap(contact: RoughContact, motion: ContactMotion) -> Floats:
 
 
 def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
-    """Return the oscillating part of a sampled period, delayed by a phase.
+    """Oscillating part of a sampled period, delayed by a phase.
 
-    Parameters
-    ----------
-    values : ndarray, shape (..., n)
-        Samples at uniform phases.
-    phase : float
-        Phase lag of the fundamental. [rad]
-
-    Returns
-    -------
-    ndarray, shape (..., n)
+    `values` has shape (..., n).
     """
     samples = values.shape[-1]
     harmonics = np.fft.rfft(values) * np.exp(-1j * phase * np.arange(samples // 2 + 1))
@@ -318,7 +294,7 @@ def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
 
 @lru_cache(maxsize=256)
 def _resampled_motion(motion: ContactMotion, samples: int) -> ContactMotion:
-    """Return a motion at another number of uniform phases; kept for models that are fitted to it."""
+    """Motion at another number of uniform phases; kept for models that are fitted to it."""
     return replace(
         motion,
         displacement=_resampled(motion.displacement, samples),
@@ -329,7 +305,7 @@ def _resampled_motion(motion: ContactMotion, samples: int) -> ContactMotion:
 
 
 def _resampled(values: Floats, samples: int) -> Floats:
-    """Return a sampled period at another number of uniform phases, by its harmonics."""
+    """Sampled period at another number of uniform phases, by its harmonics."""
     n = values.size
     if samples == n:
         return values

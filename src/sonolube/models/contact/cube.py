@@ -14,7 +14,7 @@ from sonolube.models.contact.rough import RoughContact, real_contact_area
 
 
 def cube_tangential_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    r"""Return the tangential stiffness of the cube as a beam with fixed ends in bending. [N/m]
+    r"""Tangential stiffness of the cube as a beam with fixed ends in bending. [N/m]
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def cube_tangential_stiffness(contact: RoughContact, *, separation: ArrayLike) -
 
 
 def cube_axial_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    r"""Return the axial stiffness of the cube, along the surface normal. [N/m]
+    r"""Axial stiffness of the cube, along the surface normal. [N/m]
 
     Parameters
     ----------

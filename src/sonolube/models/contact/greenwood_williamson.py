@@ -44,13 +44,13 @@ class SeparationFunction(Protocol):
     """A positive quantity as a function of the normalized separation."""
 
     def value(self, h: Floats) -> Floats:
-        """Return the quantity f at these separations."""
+        """Quantity f at these separations."""
 
     def decay_rate(self, h: Floats) -> Floats:
-        """Return the logarithmic decay rate -d ln f/dh at these separations."""
+        """Logarithmic decay rate -d ln f/dh at these separations."""
 
     def inverse(self, value: Floats) -> Floats:
-        """Return the separations at which a monotonically falling quantity has these values."""
+        """Separations at which a monotonically falling quantity has these values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,15 +61,15 @@ class ExponentialDecay:
     rate: float
 
     def value(self, h: Floats) -> Floats:
-        """Return the quantity f at these separations."""
+        """Quantity f at these separations."""
         return np.exp(self.log_at_zero - self.rate * h)
 
     def decay_rate(self, h: Floats) -> Floats:
-        """Return the logarithmic decay rate -d ln f/dh at these separations."""
+        """Logarithmic decay rate -d ln f/dh at these separations."""
         return np.full_like(h, self.rate)
 
     def inverse(self, value: Floats) -> Floats:
-        """Return the separations at which the quantity has these values."""
+        """Separations at which the quantity has these values."""
         return (self.log_at_zero - np.log(value)) / self.rate
 
 
@@ -84,17 +84,17 @@ class LogSpline:
         self._slope = self._log.derivative()
 
     def value(self, h: Floats) -> Floats:
-        """Return the quantity f at these separations."""
+        """Quantity f at these separations."""
         log_value: Floats = self._log(h)
         return np.exp(log_value)
 
     def decay_rate(self, h: Floats) -> Floats:
-        """Return the logarithmic decay rate -d ln f/dh at these separations."""
+        """Logarithmic decay rate -d ln f/dh at these separations."""
         slope: Floats = self._slope(h)
         return -slope
 
     def inverse(self, value: Floats) -> Floats:
-        """Return the separations at which the quantity has these values, by Newton's method from the table."""
+        """Separations at which the quantity has these values, by Newton's method from the table."""
         target = np.log(value)
         h: Floats = np.interp(-target, -self._log_values, self._h)
         for _ in range(2):
@@ -121,21 +121,7 @@ class GreenwoodWilliamsonIntegrals:
 def greenwood_williamson_integrals(
     *, roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
 ) -> GreenwoodWilliamsonIntegrals:
-    """Return force, area and number of all asperities of a rough contact as functions of the separation.
-
-    Parameters
-    ----------
-    roughness : Roughness
-    pair : ContactPair
-    nominal_area : float
-        Area over which the summits are distributed. [m2]
-    heights : HeightDistribution
-    asperity : AsperityLaw
-
-    Returns
-    -------
-    GreenwoodWilliamsonIntegrals
-    """
+    """Force, area and number of all asperities of a rough contact as functions of the separation."""
     deviation = heights.standard_deviation
     w, per_height = _per_height(roughness, pair, nominal_area, heights, asperity)
     if isinstance(heights, ExponentialHeights):
@@ -155,21 +141,9 @@ def greenwood_williamson_integrals(
 def log_normal_force_function(
     *, roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
 ) -> Callable[[Floats], Floats]:
-    """Return a function for the logarithm of the force of all asperities at a few separations, without a table.
+    """Function for the logarithm of the force of all asperities at a few separations, without a table.
 
-    Parameters
-    ----------
-    roughness : Roughness
-    pair : ContactPair
-    nominal_area : float
-        Area over which the summits are distributed. [m2]
-    heights : HeightDistribution
-    asperity : AsperityLaw
-
-    Returns
-    -------
-    callable
-        Of separations over R_q, shape (n,): that of the table to 1e-10, for forces in N.
+    Of separations over R_q, shape (n,): that of the table to 1e-10, for forces in N.
     """
     w, per_height = _per_height(roughness, pair, nominal_area, heights, asperity)
     return lambda h: _log_integrals(heights, h, w, per_height)[:, 0]
@@ -178,7 +152,7 @@ def log_normal_force_function(
 def _per_height(
     roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
 ) -> tuple[Floats, Floats]:
-    """Return interferences over R_q, and what summits at each add to the integrals per density of the heights.
+    """Interferences over R_q, and what summits at each add to the integrals per density of the heights.
 
     The columns are elastic and plastic force, elastic and plastic area, and number.
     """
@@ -195,7 +169,7 @@ def _per_height(
 
 
 def _log_integrals(heights: HeightDistribution, h: Floats, w: Floats, per_height: Floats) -> Floats:
-    """Return the logarithms of force, area, count and elastic fractions of force and area, one row per separation."""
+    """Logarithms of force, area, count and elastic fractions of force and area, one row per separation."""
     # relative to the density at the separation itself, which underflows far out
     log_at_h = heights.log_density(h)
     density = np.exp(heights.log_density(h[:, None] + w) - log_at_h[:, None])
@@ -207,7 +181,7 @@ def _log_integrals(heights: HeightDistribution, h: Floats, w: Floats, per_height
 
 
 def _quadrature(breakpoints: Iterable[float], *, standard_deviation: float) -> tuple[Floats, Floats]:
-    """Return interferences over R_q and their weights, by Gauss-Legendre rules on panels between breakpoints."""
+    """Interferences over R_q and their weights, by Gauss-Legendre rules on panels between breakpoints."""
     limit = MAXIMUM_INTERFERENCE * standard_deviation
     inside = [each for each in breakpoints if each < limit]
     finest = min([standard_deviation / 1024, *inside])

@@ -38,7 +38,7 @@ class HeightDistribution(Protocol):
         """Standard deviation of the summit heights over R_q; it sets the range and the step of quadrature. []"""
 
     def log_density(self, normalized_height: Floats) -> Floats:
-        """Return the natural logarithm of the density, finite also where the density itself underflows. []
+        """Natural logarithm of the density, finite also where the density itself underflows. []
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class ExponentialHeights:
         return 1 / self.decay
 
     def log_density(self, normalized_height: Floats) -> Floats:
-        """Return the natural logarithm of the density. []"""
+        """Natural logarithm of the density. []"""
         return math.log(self.amplitude) - self.decay * normalized_height  # D 3.2
 
 
@@ -143,7 +143,7 @@ class GaussianHeights:
 
     @classmethod
     def from_roughness_parameter(cls, *, roughness_parameter: float) -> "GaussianHeights":
-        r"""Return the distribution of summit heights of an isotropic Gaussian surface after McCool.
+        r"""Distribution of summit heights of an isotropic Gaussian surface after McCool.
 
         Parameters
         ----------
@@ -181,13 +181,13 @@ class GaussianHeights:
         return self.summit_deviation_ratio
 
     def log_density(self, normalized_height: Floats) -> Floats:
-        """Return the natural logarithm of the density. []"""
+        """Natural logarithm of the density. []"""
         s = self.summit_deviation_ratio
         return -0.5 * np.square(normalized_height / s) - math.log(s * math.sqrt(2 * math.pi))
 
 
 def height_density(heights: HeightDistribution, *, normalized_height: ArrayLike) -> Floats:
-    """Return the probability density of summit heights. []
+    """Probability density of summit heights. []
 
     Parameters
     ----------

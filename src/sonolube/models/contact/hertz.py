@@ -42,7 +42,7 @@ class SphereOnFlat:
 
 
 def hertz_contact_radius(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the radius of the contact circle. [m]
+    r"""Radius of the contact circle. [m]
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def hertz_contact_radius(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Flo
 
 
 def hertz_approach(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the approach of distant points of the two bodies. [m]
+    r"""Approach of distant points of the two bodies. [m]
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def hertz_approach(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
 
 
 def hertz_peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the peak contact pressure, at the centre of the contact circle. [Pa]
+    r"""Peak contact pressure, at the centre of the contact circle. [Pa]
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def hertz_peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floa
 
 
 def hertz_mean_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the mean contact pressure, load over area of the contact circle. [Pa]
+    r"""Mean contact pressure, load over area of the contact circle. [Pa]
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def hertz_mean_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floa
 
 
 def hertz_stiffness(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the normal stiffness of the contact. [N/m]
+    r"""Normal stiffness of the contact. [N/m]
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def hertz_stiffness(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
 def hertz_axial_stresses(
     sphere: SphereOnFlat, *, normal_load: ArrayLike, depth: ArrayLike, poisson_ratio: ArrayLike
 ) -> tuple[Floats, Floats]:
-    r"""Return the normal stresses along and across the axis of the contact, tension positive. [Pa]
+    r"""Normal stresses along and across the axis of the contact, tension positive. [Pa]
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ def hertz_axial_stresses(
 def hertz_axial_shear_stress(
     sphere: SphereOnFlat, *, normal_load: ArrayLike, depth: ArrayLike, poisson_ratio: ArrayLike
 ) -> Floats:
-    r"""Return the maximum shear stress at a point of the axis of the contact. [Pa]
+    r"""Maximum shear stress at a point of the axis of the contact. [Pa]
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ def hertz_axial_shear_stress(
 
 
 def maximum_axial_shear(*, poisson_ratio: ArrayLike) -> tuple[Floats, Floats]:
-    """Return the largest shear stress on the axis over the peak pressure, and its depth over the contact radius. []
+    """Largest shear stress on the axis over the peak pressure, and its depth over the contact radius. []
 
     Parameters
     ----------
@@ -283,7 +283,7 @@ def maximum_axial_shear(*, poisson_ratio: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def yield_onset_load(sphere: SphereOnFlat, *, yield_strength: ArrayLike, poisson_ratio: ArrayLike) -> Floats:
-    r"""Return the load at the onset of yielding, below the centre of the contact. [N]
+    r"""Load at the onset of yielding, below the centre of the contact. [N]
 
     Parameters
     ----------
@@ -319,7 +319,7 @@ def yield_onset_load(sphere: SphereOnFlat, *, yield_strength: ArrayLike, poisson
 def tip_radius_for_pressure(
     *, mean_pressure: ArrayLike, normal_load: ArrayLike, effective_modulus: ArrayLike
 ) -> Floats:
-    r"""Return the tip radius for a mean contact pressure under a load. [m]
+    r"""Tip radius for a mean contact pressure under a load. [m]
 
     Parameters
     ----------
@@ -353,7 +353,7 @@ def tip_radius_for_pressure(
 
 
 def nominal_area_from_groove(*, groove_width: ArrayLike) -> Floats:
-    r"""Return the nominal contact area as a circle of the width of the wear groove. [m2]
+    r"""Nominal contact area as a circle of the width of the wear groove. [m2]
 
     Parameters
     ----------
@@ -379,7 +379,7 @@ def nominal_area_from_groove(*, groove_width: ArrayLike) -> Floats:
 
 
 def worn_flat_pressure(*, normal_load: ArrayLike, groove_width: ArrayLike) -> Floats:
-    """Return the mean pressure under a pin worn flat to the width of its groove. [Pa]
+    """Mean pressure under a pin worn flat to the width of its groove. [Pa]
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from sonolube.models.contact.rough import RoughContact, normal_stiffness
 
 
 def mindlin_tangential_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    r"""Return the tangential stiffness of sticking asperities after Mindlin. [N/m]
+    r"""Tangential stiffness of sticking asperities after Mindlin. [N/m]
 
     Parameters
     ----------

@@ -86,7 +86,7 @@ class ContactPair:
 
 
 def identical_materials_mindlin_ratio(*, poisson_ratio: float) -> float:
-    r"""Return Mindlin's ratio of tangential to normal contact stiffness for two bodies of one material. []
+    r"""Mindlin's ratio of tangential to normal contact stiffness for two bodies of one material. []
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def identical_materials_mindlin_ratio(*, poisson_ratio: float) -> float:
 
 
 def contact_pair(*, softer: ElasticBody, harder: ElasticBody, yield_strength: float) -> ContactPair:
-    """Return the combined constants of two bodies in contact.
+    """Combined constants of two bodies in contact.
 
     Parameters
     ----------

@@ -15,27 +15,8 @@ _UNCONVERGED = "the average over a period does not converge with {samples} sampl
 def richardson_period_mean(
     mean: Callable[[ContactMotion], Floats], motion: ContactMotion, *, tolerance: float = 1e-5
 ) -> Floats:
-    r"""Return an average over the period by doubling the samples and Richardson's extrapolation.
+    r"""Average over the period by doubling the samples and Richardson's extrapolation.
 
-    Parameters
-    ----------
-    mean : callable
-        Returns the average, or several, for a sampled motion, with an error of second order in the phase step.
-    motion : ContactMotion
-    tolerance : float
-        Largest error of the result, relative to the larger of the average and one.
-
-    Returns
-    -------
-    ndarray, shape of what `mean` returns
-
-    Raises
-    ------
-    OutsideRange
-        If the average does not converge with 65536 phases.
-
-    Notes
-    -----
     With the averages m_n at n phases the result is :math:`m_{2n} + (m_{2n} - m_n)/3`, once the correction is within the
     tolerance.
     """
@@ -55,24 +36,9 @@ def richardson_period_mean(
 def richardson_period_means(
     mean: Callable[[Integers, Floats, Floats], Floats], motions: Sequence[ContactMotion], *, tolerance: float = 1e-5
 ) -> Floats:
-    """Return an average over the period of each of many motions, each with the samples that it needs alone.
+    """Average over the period of each of many motions, each with the samples that it needs alone.
 
-    Parameters
-    ----------
-    mean : callable
-        Returns the averages of some motions from their indices, and their displacement and normal force, a row each.
-    motions : sequence of ContactMotion
-    tolerance : float
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        As `richardson_period_mean` of each.
-
-    Raises
-    ------
-    OutsideRange
-        If an average does not converge with 65536 phases.
+    As `richardson_period_mean` of each.
     """
     means = np.empty(len(motions))
     sizes = np.maximum([motion.displacement.size for motion in motions], _MINIMUM_SAMPLES)
@@ -92,6 +58,6 @@ def richardson_period_means(
 
 
 def _stacked(motions: Sequence[ContactMotion], rows: Integers, samples: int) -> tuple[Floats, Floats]:
-    """Return displacement and normal force of some motions at a number of phases, a row each."""
+    """Displacement and normal force of some motions at a number of phases, a row each."""
     sampled = [motions[row].resampled(samples) for row in rows]
     return np.stack([each.displacement for each in sampled]), np.stack([each.normal_force for each in sampled])

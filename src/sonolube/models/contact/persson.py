@@ -84,7 +84,7 @@ class PerssonContact:
 def persson_area_fraction(
     *, nominal_pressure: ArrayLike, effective_modulus: ArrayLike, rms_gradient: ArrayLike
 ) -> Floats:
-    r"""Return the real contact area over the nominal one by Persson's theory. []
+    r"""Real contact area over the nominal one by Persson's theory. []
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def persson_area_fraction(
 
 
 def persson_area(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
-    """Return the real contact area under a load by Persson's theory. [m2]
+    """Real contact area under a load by Persson's theory. [m2]
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def persson_area(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
 
 
 def persson_separation(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the mean gap between the deformed surfaces under a load by Persson's theory. [m]
+    r"""Mean gap between the deformed surfaces under a load by Persson's theory. [m]
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def persson_separation(contact: PerssonContact, *, normal_load: ArrayLike) -> Fl
 
 
 def persson_stiffness(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
-    """Return the normal stiffness under a load by Persson's theory, -dF/du of the mean gap u. [N/m]
+    """Normal stiffness under a load by Persson's theory, -dF/du of the mean gap u. [N/m]
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def persson_stiffness(contact: PerssonContact, *, normal_load: ArrayLike) -> Flo
 
 
 def persson_load(contact: PerssonContact, *, separation: ArrayLike) -> Floats:
-    """Return the load at a mean gap by Persson's theory, the inverse of `persson_separation`. [N]
+    """Load at a mean gap by Persson's theory, the inverse of `persson_separation`. [N]
 
     Parameters
     ----------
@@ -261,7 +261,7 @@ def persson_load(contact: PerssonContact, *, separation: ArrayLike) -> Floats:
 
 
 def _bands(spectrum: RadialSpectrum) -> tuple[Floats, Floats]:
-    """Return sqrt(pi) q^2 C w dq, a length, and w, for bands of the spectrum between neighbouring wavenumbers.
+    """sqrt(pi) q^2 C w dq, a length, and w, for bands of the spectrum between neighbouring wavenumbers.
 
     w is E* over the width of the pressure distribution. The last band has zero length, and the w of the whole surface.
     """
@@ -280,7 +280,7 @@ def _bands(spectrum: RadialSpectrum) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=1)
 def _tail_integral() -> CubicSpline:
-    """Return the integral from s to infinity of erf^2(s) exp(-s^2)/s as a function of s up to 6."""
+    """Integral from s to infinity of erf^2(s) exp(-s^2)/s as a function of s up to 6."""
     node, weight = np.polynomial.legendre.leggauss(8)
     half = np.diff(_ABSCISSAE)[:, None] / 2
     s = _ABSCISSAE[:-1, None] + half * (1 + node)

@@ -11,7 +11,7 @@ from sonolube.models.contact.single_asperity import critical_interference
 
 
 def elastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the real contact area of the asperities below the critical interference. [m2]
+    """Real contact area of the asperities below the critical interference. [m2]
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def elastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
 
 
 def plastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the real contact area of the asperities beyond the critical interference. [m2]
+    """Real contact area of the asperities beyond the critical interference. [m2]
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def plastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
 
 
 def elastic_load_fraction(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the fraction of the normal force on asperities below the critical interference. []
+    """Fraction of the normal force on asperities below the critical interference. []
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def elastic_load_fraction(contact: RoughContact, *, separation: ArrayLike) -> Fl
 
 
 def plasticity_index(contact: RoughContact) -> float:
-    r"""Return the plasticity index after Chang, Etsion and Bogy. []
+    r"""Plasticity index after Chang, Etsion and Bogy. []
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ class RoughContact:
 
 
 def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the separation of the mean planes at which the asperities carry a load. [m]
+    r"""Separation of the mean planes at which the asperities carry a load. [m]
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
 
 
 def separation_range(contact: RoughContact) -> tuple[float, float]:
-    """Return the smallest and the largest separation for which the height distribution is evaluated. [m]
+    """Smallest and the largest separation for which the height distribution is evaluated. [m]
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def separation_range(contact: RoughContact) -> tuple[float, float]:
 
 
 def normal_force(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    r"""Return the normal force on all asperities. [N]
+    r"""Normal force on all asperities. [N]
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def normal_force(contact: RoughContact, *, separation: ArrayLike) -> Floats:
 
 
 def real_contact_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    r"""Return the real contact area of all asperities. [m2]
+    r"""Real contact area of all asperities. [m2]
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def real_contact_area(contact: RoughContact, *, separation: ArrayLike) -> Floats
 
 
 def contact_count(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the expected number of asperities in contact. []
+    """Expected number of asperities in contact. []
 
     Parameters
     ----------
@@ -259,7 +259,7 @@ def contact_count(contact: RoughContact, *, separation: ArrayLike) -> Floats:
 
 
 def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    r"""Return the normal contact stiffness. [N/m]
+    r"""Normal contact stiffness. [N/m]
 
     Parameters
     ----------
@@ -303,7 +303,7 @@ def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
 
 
 def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) -> Floats:
-    r"""Return the decay length of the contact force: normal force over normal stiffness. [m]
+    r"""Decay length of the contact force: normal force over normal stiffness. [m]
 
     Parameters
     ----------
@@ -341,7 +341,7 @@ def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) 
 
 @lru_cache(maxsize=512)
 def _integrals(contact: RoughContact) -> GreenwoodWilliamsonIntegrals:
-    """Return the integrals over all asperities of a contact, computed once."""
+    """Integrals over all asperities of a contact, computed once."""
     return greenwood_williamson_integrals(**summit_population(contact))
 
 
@@ -360,26 +360,9 @@ def summit_population(contact: RoughContact) -> dict[str, Any]:
 
 
 def integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:
-    """Return the integrals over all asperities of a contact, and the separations over the rms height of its heights.
+    """Integrals over all asperities of a contact, and the separations over the rms height of its heights.
 
-    Parameters
-    ----------
-    contact : RoughContact
-    separation : array_like, any shape
-        Separation of the mean planes. [m]
-
-    Returns
-    -------
-    integrals : GreenwoodWilliamsonIntegrals
-    h : ndarray, shape of `separation`
-        Normalized separation.
-
-    Raises
-    ------
-    InvalidInput
-        If a separation is not finite.
-    OutsideRange
-        If a separation lies outside the range of the height distribution.
+    `h`: Normalized separation.
     """
     d = require_finite(separation=separation)
     _require_range(contact, *separation_range(contact), "separation", "m", d)

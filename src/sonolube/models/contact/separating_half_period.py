@@ -15,29 +15,10 @@ _BLOCK = 4096  # points whose samples together still fit a processor's cache
 def separating_half_period_mean(
     value: Callable[[Floats], Floats], *, separation: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
-    r"""Return the average of a function of the gap over the separating half period of a sine.
+    r"""Average of a function of the gap over the separating half period of a sine.
 
-    Parameters
-    ----------
-    value : callable
-        Returns the quantity g, elementwise, for an array of separations.
-    separation : array_like
-        Separation about which the surfaces vibrate. [m]
-    vibration_amplitude : array_like, broadcast against `separation`
-        Amplitude of the normal vibration. [m]
+    In the unit of the quantity.
 
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-        In the unit of the quantity.
-
-    Raises
-    ------
-    InvalidInput
-        If a separation is not positive, or an amplitude negative.
-
-    Notes
-    -----
     .. math:: \bar g = \frac1\pi \int_0^\pi g(d + a \sin\theta)\, \mathrm{d}\theta
 
     by Gauss-Legendre quadrature in the phase. The separating half period does not close the gap at any amplitude; the
@@ -47,9 +28,7 @@ def separating_half_period_mean(
     --------
     sampled_separating_mean : The same for a sampled motion.
 
-    References
-    ----------
-    .. [1] D 3.15 and 3.28.
+    Source: D 3.15 and 3.28.
     """
     a = require_non_negative(vibration_amplitude=vibration_amplitude)
     d, a = np.broadcast_arrays(require_positive(separation=separation), a)
@@ -62,27 +41,10 @@ def separating_half_period_mean(
 
 
 def sampled_separating_mean(value: Callable[[Floats], Floats], *, displacement: ArrayLike) -> Floats:
-    """Return the average of a function of the displacement over the part of a sampled period in which it is positive.
+    """Average of a function of the displacement over the part of a sampled period in which it is positive.
 
-    Parameters
-    ----------
-    value : callable
-        Returns the quantity, elementwise, for an array of displacements.
-    displacement : array_like, shape (n,)
-        Displacement from the position at rest, at uniform phases of one period. [m]
+    In the unit of the quantity; its value at rest if the displacement is never positive.
 
-    Returns
-    -------
-    ndarray, shape ()
-        In the unit of the quantity; its value at rest if the displacement is never positive.
-
-    Raises
-    ------
-    InvalidInput
-        If a displacement is not finite.
-
-    Notes
-    -----
     Displacement and quantity are interpolated linearly between samples: second order in the phase step.
 
     See Also
@@ -103,13 +65,10 @@ def sampled_separating_mean(value: Callable[[Floats], Floats], *, displacement: 
 
 @cache
 def separating_half_period_quadrature() -> tuple[Floats, Floats]:
-    """Return the nodes and weights of a Gauss-Legendre rule for averages over the separating half period of a sine.
+    """Nodes and weights of a Gauss-Legendre rule for averages over the separating half period of a sine.
 
-    Returns
-    -------
-    sines, weights : ndarray
-        Displacements over the amplitude at phases from rest to the peak, whose mirror images are the way back, and
-        weights that sum to 1.
+    Displacements over the amplitude at phases from rest to the peak, whose mirror images are the way back, and weights
+    that sum to 1.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     sines, weights = np.sin((nodes + 1) * np.pi / 4), weights / 2

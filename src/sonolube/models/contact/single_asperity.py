@@ -19,7 +19,7 @@ from sonolube.models.contact.pair import ContactPair
 
 
 def critical_interference(law: AsperityLaw, pair: ContactPair, *, summit_radius: float) -> float:
-    r"""Return the critical interference, at which an asperity begins to yield. [m]
+    r"""Critical interference, at which an asperity begins to yield. [m]
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def critical_interference(law: AsperityLaw, pair: ContactPair, *, summit_radius:
 
 
 def asperity_force(law: AsperityLaw, pair: ContactPair, *, summit_radius: float, interference: ArrayLike) -> Floats:
-    r"""Return the normal force on one asperity at an interference. [N]
+    r"""Normal force on one asperity at an interference. [N]
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def asperity_force(law: AsperityLaw, pair: ContactPair, *, summit_radius: float,
 
 
 def asperity_area(law: AsperityLaw, pair: ContactPair, *, summit_radius: float, interference: ArrayLike) -> Floats:
-    r"""Return the contact area of one asperity at an interference. [m2]
+    r"""Contact area of one asperity at an interference. [m2]
 
     Parameters
     ----------

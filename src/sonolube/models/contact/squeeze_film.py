@@ -26,7 +26,7 @@ def squeeze_number(
     viscosity: ArrayLike = AIR_VISCOSITY,
     ambient_pressure: ArrayLike = STANDARD_ATMOSPHERE,
 ) -> Floats:
-    r"""Return the squeeze number of a gas film under a circular face. []
+    r"""Squeeze number of a gas film under a circular face. []
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def squeeze_number(
 def squeeze_film_pressure(
     *, vibration_amplitude: ArrayLike, film_thickness: ArrayLike, ambient_pressure: ArrayLike
 ) -> Floats:
-    r"""Return the mean excess pressure of a gas film at high squeeze number. [Pa]
+    r"""Mean excess pressure of a gas film at high squeeze number. [Pa]
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def levitation_gap(
     viscosity: ArrayLike = AIR_VISCOSITY,
     ambient_pressure: ArrayLike = STANDARD_ATMOSPHERE,
 ) -> Floats:
-    r"""Return the mean film thickness at which a gas film carries a load on a circular face. [m]
+    r"""Mean film thickness at which a gas film carries a load on a circular face. [m]
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ class TangentialStiffness(Protocol):
     """Tangential stiffness of a rough contact at a separation of the mean planes, by one model."""
 
     def __call__(self, contact: RoughContact, *, separation: ArrayLike) -> Floats:
-        """Return the tangential stiffness, shape of `separation`. [N/m]"""
+        """Tangential stiffness, shape of `separation`. [N/m]"""
 
 
 TANGENTIAL_STIFFNESSES: VariantTable[TangentialStiffness] = VariantTable(

@@ -35,7 +35,7 @@ _SECANTS = 6  # between two of them, to rounding
 
 @lru_cache(maxsize=64)
 def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) -> tuple[float, float] | None:
-    """Return the range of normalized separations in which exponential heights approximate Gaussian ones.
+    """Range of normalized separations in which exponential heights approximate Gaussian ones.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) ->
 
 
 def _crossing(function: Callable[[Floats], Floats], level: float, low: float, high: float) -> float:
-    """Return where a nearly straight function has a level, by secants from two places on either side of it."""
+    """Where a nearly straight function has a level, by secants from two places on either side of it."""
     x = np.array([low, high])
     y = function(x) - level
     for _ in range(_SECANTS):
@@ -108,7 +108,7 @@ def _crossing(function: Callable[[Floats], Floats], level: float, low: float, hi
 
 
 def contact_caveats(contact: RoughContact, *, separation: ArrayLike) -> tuple[str, ...]:
-    """Return the caveats against the statistical model for a contact at these separations, each with a remedy.
+    """Caveats against the statistical model for a contact at these separations, each with a remedy.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def contact_caveats(contact: RoughContact, *, separation: ArrayLike) -> tuple[st
 
 
 def _roughness_caveat(contact: RoughContact) -> str:
-    """Return the caveat against an untypical roughness parameter, or an empty text."""
+    """Caveat against an untypical roughness parameter, or an empty text."""
     beta = contact.roughness.roughness_parameter
     low, high = TYPICAL_ROUGHNESS_PARAMETERS
     if low <= beta <= high:
@@ -153,7 +153,7 @@ def _roughness_caveat(contact: RoughContact) -> str:
 
 
 def _separation_caveat(lowest: float) -> str:
-    """Return the caveat against mean planes that touch, or an empty text."""
+    """Caveat against mean planes that touch, or an empty text."""
     if lowest > 0:
         return ""
     return (
@@ -163,7 +163,7 @@ def _separation_caveat(lowest: float) -> str:
 
 
 def _exponential_caveat(contact: RoughContact, lowest: float, highest: float) -> str:
-    """Return the caveat against exponential heights outside their range, or an empty text."""
+    """Caveat against exponential heights outside their range, or an empty text."""
     if not isinstance(contact.heights, ExponentialHeights) or contact.decay_length is not None:
         return ""  # a decay length that is known itself is no fit to the tail of Gaussian heights
     valid = exponential_validity_range(contact)
@@ -183,7 +183,7 @@ def _exponential_caveat(contact: RoughContact, lowest: float, highest: float) ->
 
 
 def _area_caveat(contact: RoughContact, lowest: float) -> str:
-    """Return the caveat against a large real area, or an empty text."""
+    """Caveat against a large real area, or an empty text."""
     fraction = float(real_contact_area(contact, separation=lowest)) / contact.nominal_area
     if fraction <= MAXIMUM_AREA_FRACTION:
         return ""
@@ -194,7 +194,7 @@ def _area_caveat(contact: RoughContact, lowest: float) -> str:
 
 
 def _count_caveat(contact: RoughContact, highest: float) -> str:
-    """Return the caveat against too few asperities in contact, or an empty text."""
+    """Caveat against too few asperities in contact, or an empty text."""
     count = float(contact_count(contact, separation=highest))
     if count >= MINIMUM_CONTACT_COUNT:
         return ""

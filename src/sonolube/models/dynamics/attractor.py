@@ -22,7 +22,7 @@ _SETTLING = 0.7  # deviation of the later strobed samples over that of the earli
 _CHAOTIC = 0.02  # Lyapunov exponent per period above which a motion is chaotic
 _EXPONENT_ERROR = 0.005  # of the Lyapunov exponent
 _ROUND = 16  # periods between renormalisations of the disturbance
-_MOST_ROUNDS = 64
+_MAX_ROUNDS = 64
 _DISTURBANCE = 1e-6  # over the motion itself
 _RECORDED = 32  # periods in which the time without contact is measured
 _SUBDIVISIONS = 8  # of a step, for the time without contact
@@ -173,7 +173,7 @@ def classify_attractor(
     diverged = observed.status == "diverged"
     order, settling = _repetition(observed, f)
     stiffness = gap_law.stiffness(np.zeros_like(load), load)
-    rounds = min(periods // _ROUND, _MOST_ROUNDS)
+    rounds = min(periods // _ROUND, _MAX_ROUNDS)
     exponent = _lyapunov_exponent(structure, advance_pair, observed.final_state, f, stiffness, rounds)
     slow = beat(displacement=observed.strobed.displacement, interval=1 / f)
     kind = np.select(
@@ -196,7 +196,7 @@ def classify_attractor(
 
 
 def settling_time(envelope: Envelope, *, band: float = 0.02) -> Floats:
-    """Return the settling time: when the first-harmonic amplitude enters a band about its last value for good. [s]
+    """Settling time: when the first-harmonic amplitude enters a band about its last value for good. [s]
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def settling_time(envelope: Envelope, *, band: float = 0.02) -> Floats:
 
 
 def beat(*, displacement: ArrayLike, interval: ArrayLike) -> Beat:
-    """Return frequency and amplitude of the strongest slow oscillation in samples, by linear prediction.
+    """Frequency and amplitude of the strongest slow oscillation in samples, by linear prediction.
 
     Parameters
     ----------
@@ -260,7 +260,7 @@ def beat(*, displacement: ArrayLike, interval: ArrayLike) -> Beat:
 
 
 def _cycles_per_sample(samples: Floats) -> float:
-    """Return the frequency of the strongest slow oscillation in one row of samples, in cycles per sample."""
+    """Frequency of the strongest slow oscillation in one row of samples, in cycles per sample."""
     centred = samples - samples.mean()
     if not np.all(np.isfinite(centred)) or np.ptp(centred) <= 1e-9 * np.abs(samples).max(initial=0.0):
         return 0.0
@@ -274,7 +274,7 @@ def _cycles_per_sample(samples: Floats) -> float:
 
 
 def _repetition(observed: Trajectories, f: Floats) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Return the number of periods after which each motion repeats, 0 for never, and whether its samples converge."""
+    """Number of periods after which each motion repeats, 0 for never, and whether its samples converge."""
     strobed, omega = observed.strobed, 2 * np.pi * f[..., np.newaxis]
     samples = np.stack([strobed.displacement, strobed.velocity / omega], axis=-1)
     scale = np.ptp(observed.last_periods.displacement, axis=-1)
@@ -295,7 +295,7 @@ def _lyapunov_exponent(
     stiffness: Floats,
     rounds: int,
 ) -> Floats:
-    """Return the largest Lyapunov exponent per period, from the growth of a small disturbance in the later rounds.
+    """Largest Lyapunov exponent per period, from the growth of a small disturbance in the later rounds.
 
     The norm of a disturbance is the root of its energy, with the contact linearised, which does not oscillate in
     undamped free motion.
@@ -328,7 +328,7 @@ def _lyapunov_exponent(
 
 
 def _contact_loss_fraction(gap_law: GapLaw, motion: ContactSamples, load: Floats, rate: Floats) -> Floats:
-    """Return the fraction of the time without contact, between steps by cubic Hermite interpolation."""
+    """Fraction of the time without contact, between steps by cubic Hermite interpolation."""
     s = (np.arange(_SUBDIVISIONS) / _SUBDIVISIONS)[:, np.newaxis]
     x = motion.displacement[..., np.newaxis, :]
     v = motion.velocity[..., np.newaxis, :] / rate[..., np.newaxis, np.newaxis]
@@ -340,7 +340,7 @@ def _contact_loss_fraction(gap_law: GapLaw, motion: ContactSamples, load: Floats
 
 
 def _descriptions(found: Attractors, advice: NDArray[np.str_]) -> NDArray[np.str_]:
-    """Return the description of every attractor."""
+    """Description of every attractor."""
     columns = [getattr(found, each.name) for each in fields(found)[:6]]  # kind to beat_amplitude
     lists = (values.ravel().tolist() for values in (*columns, advice))
     texts = [_description(*values) for values in zip(*lists, strict=True)]
@@ -350,7 +350,7 @@ def _descriptions(found: Attractors, advice: NDArray[np.str_]) -> NDArray[np.str
 def _description(
     kind: str, order: int, exponent: float, loss: float, frequency: float, amplitude: float, advice: str
 ) -> str:
-    """Return the description of one attractor: kind, stability, beat, time without contact and advice."""
+    """Description of one attractor: kind, stability, beat, time without contact and advice."""
     slow = f"{frequency:.4g} Hz with an amplitude of {amplitude * 1e6:.3g} um"
     decays = exponent < -_EXPONENT_ERROR
     texts = {

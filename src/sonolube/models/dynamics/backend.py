@@ -12,26 +12,7 @@ Backend = Literal["cpu", "gpu"]
 
 
 def usable_backend(backend: Backend) -> Backend:
-    """Return the requested backend where it can be used, else "cpu" with a warning.
-
-    Parameters
-    ----------
-    backend : {"cpu", "gpu"}
-
-    Returns
-    -------
-    {"cpu", "gpu"}
-
-    Raises
-    ------
-    InvalidInput
-        If there is no such backend.
-
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
-    """
+    """Requested backend where it can be used, else "cpu" with a warning."""
     if backend not in get_args(Backend):
         raise InvalidInput(f"backend must be cpu or gpu, got {backend!r}")
     if backend == "gpu" and gpu_obstacle():
@@ -41,32 +22,18 @@ def usable_backend(backend: Backend) -> Backend:
 
 
 def device_name(backend: Backend) -> str:
-    """Return the name of the GPU that a backend uses, an empty text where it uses none.
-
-    Parameters
-    ----------
-    backend : {"cpu", "gpu"}
-
-    Returns
-    -------
-    str
-    """
+    """Name of the GPU that a backend uses, an empty text where it uses none."""
     return _gpu()[0] if backend == "gpu" else ""
 
 
 def gpu_obstacle() -> str:
-    """Return the reason why no GPU can be used, with its remedy; an empty text where one can.
-
-    Returns
-    -------
-    str
-    """
+    """Reason why no GPU can be used, with its remedy; an empty text where one can."""
     return _gpu()[1]
 
 
 @cache
 def _gpu() -> tuple[str, str]:
-    """Return the name of the GPU and an empty text, or an empty text and the reason why no GPU can be used."""
+    """Name of the GPU and an empty text, or an empty text and the reason why no GPU can be used."""
     if not EXTRAS["gpu"].is_installed:
         return "", f"JAX is missing: {EXTRAS['gpu'].command}"
     try:

@@ -115,7 +115,7 @@ class LumpedChain:
 
 
 def chain_structure(chain: LumpedChain) -> Structure:
-    r"""Return the structure of a lumped chain, whose coordinates are the heights of its masses.
+    r"""Structure of a lumped chain, whose coordinates are the heights of its masses.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def pin_on_disc_chain(
     arm_damping: float,
     tip_damping: float = 0.0,
 ) -> LumpedChain:
-    """Return the three-mass chain of the pin-on-disc tribometer: tip, reaction mass, loading arm.
+    """Three-mass chain of the pin-on-disc tribometer: tip, reaction mass, loading arm.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def modal_structure(
     contact_participation: ArrayLike,
     clamped_capacitance: float,
 ) -> Structure:
-    """Return the structure in modal coordinates, from natural frequencies, damping ratios and participation factors.
+    """Structure in modal coordinates, from natural frequencies, damping ratios and participation factors.
 
     Parameters
     ----------
@@ -285,7 +285,7 @@ def modal_structure(
 
 
 def _elongation_vector(names: list[str], ends: tuple[str, str]) -> Floats:
-    """Return the derivative of the distance from the first end to the second with respect to each coordinate."""
+    """Derivative of the distance from the first end to the second with respect to each coordinate."""
     first, second = ends
     return np.array([float(name == second) - float(name == first) for name in names])
 

@@ -9,7 +9,7 @@ from sonolube.models.dynamics.linear import modes, poles
 from sonolube.models.dynamics.structure import Structure, with_contact_spring
 
 _OSCILLATING = 1e-9  # imaginary part of a pole over its modulus, above rounding
-_WIDENING, _MOST_WIDENINGS = 1.5, 20  # of the bracket of a stiffness
+_WIDENING, _MAX_WIDENINGS = 1.5, 20  # of the bracket of a stiffness
 _RELATIVE_ERROR = 1e-12
 
 
@@ -120,7 +120,7 @@ def stiffness_at_resonance(structure: Structure, *, mode: int, frequency: float)
         return float(contact_resonances(structure, normal_stiffness=np.exp(log_stiffness))[mode]) - target
 
     lower = upper = np.log(start)
-    for _ in range(_MOST_WIDENINGS):
+    for _ in range(_MAX_WIDENINGS):
         if above(lower) < 0:
             break
         lower -= _WIDENING
@@ -130,7 +130,7 @@ def stiffness_at_resonance(structure: Structure, *, mode: int, frequency: float)
             f"frequency {target:.8g} Hz is not above the {free:.8g} Hz of mode {mode} without contact: a contact"
             " raises it; compare the same mode in both spectra"
         )
-    for _ in range(_MOST_WIDENINGS):
+    for _ in range(_MAX_WIDENINGS):
         if above(upper) > 0:
             break
         upper += _WIDENING

@@ -82,7 +82,7 @@ def response_curve(
     orders: int = 12,
     most_points: int = 4000,
 ) -> ResponseCurve:
-    r"""Return the steady vibration along a range of voltage or frequency, by pseudo-arclength continuation.
+    r"""Steady vibration along a range of voltage or frequency, by pseudo-arclength continuation.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def response_curve(
 
 
 def solutions_at(curve: ResponseCurve, *, at: float) -> ResponseCurve:
-    """Return all steady vibrations of a response curve at one value of its parameter, in the curve's order.
+    """All steady vibrations of a response curve at one value of its parameter, in the curve's order.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def solutions_at(curve: ResponseCurve, *, at: float) -> ResponseCurve:
 
 
 def reached_by_ramp(curve: ResponseCurve, *, at: float, backward: bool = False) -> ResponseCurve:
-    """Return the steady vibration at the end of a slow ramp of the parameter, with jumps at the folds.
+    """Steady vibration at the end of a slow ramp of the parameter, with jumps at the folds.
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ class _Path:
         return self.first + fraction * (self.last - self.first)
 
     def linearise(self, y: Floats) -> tuple[Floats, Floats]:
-        """Return the residual and its derivatives, the last column by the fraction of the range."""
+        """Residual and its derivatives, the last column by the fraction of the range."""
         value = float(self.parameter(y[-1]))
         volts, hertz = (value, self.fixed) if self.along == "voltage" else (self.fixed, value)
         balance = self.equations.at(y[:-1] * self.length, omega=2 * np.pi * hertz, scale=volts)
@@ -253,7 +253,7 @@ class _Path:
         return balance.residual / unit, matrix / unit[:, np.newaxis]
 
     def correct(self, y: Floats, normal: Floats, offset: float) -> Floats | None:
-        """Return the point of the curve in the plane normal . y = offset, or None if Newton's method fails."""
+        """Point of the curve in the plane normal . y = offset, or None if Newton's method fails."""
         for _ in range(_CORRECTOR_STEPS):
             residual, matrix = self.linearise(y)
             step = np.linalg.solve(np.vstack([matrix, normal]), np.append(residual, normal @ y - offset))
@@ -265,11 +265,11 @@ class _Path:
         return None
 
     def solve_at(self, y: Floats, fraction: float) -> Floats | None:
-        """Return the nearby point of the curve at a fraction of the range, or None if Newton's method fails."""
+        """Nearby point of the curve at a fraction of the range, or None if Newton's method fails."""
         return self.correct(y, np.eye(y.size)[-1], fraction)
 
     def tangent(self, y: Floats, previous: Floats) -> Floats:
-        """Return the unit tangent at a point, in the direction of the previous one."""
+        """Unit tangent at a point, in the direction of the previous one."""
         _, matrix = self.linearise(y)
         direction = np.linalg.solve(np.vstack([matrix, previous]), np.append(np.zeros(y.size - 1), 1.0))
         return np.asarray(direction / np.linalg.norm(direction))
@@ -296,7 +296,7 @@ class _Path:
             yield y
 
     def _next(self, y: Floats, tangent: Floats, step: float) -> tuple[Floats | None, Floats, float]:
-        """Return the next point, its tangent and the arclength step to try from there."""
+        """Next point, its tangent and the arclength step to try from there."""
         while step > _SHORTEST:
             found = self.correct(y + step * tangent, tangent, float(tangent @ y) + step)
             if found is not None:
@@ -308,7 +308,7 @@ class _Path:
 
 
 def _path_of(curve: ResponseCurve) -> _Path:
-    """Return the dimensionless form of a response curve."""
+    """Dimensionless form of a response curve."""
     other = curve.frequency if curve.along == "voltage" else curve.voltage_amplitude
     return _Path(
         equations=curve.equations,
@@ -321,21 +321,21 @@ def _path_of(curve: ResponseCurve) -> _Path:
 
 
 def _row(curve: ResponseCurve, index: int) -> Floats:
-    """Return one point of a response curve in dimensionless form."""
+    """One point of a response curve in dimensionless form."""
     path = _path_of(curve)
     unknowns = curve.equations.stack(float(curve.mean_displacement[index]), curve.harmonics[index])
     return np.append(unknowns / path.length, path.fraction(float(curve.parameter[index])))
 
 
 def _interpolated(curve: ResponseCurve, index: int, at: float) -> Floats:
-    """Return the linear interpolation between a point and its successor at one value of the parameter."""
+    """Linear interpolation between a point and its successor at one value of the parameter."""
     before, after = curve.parameter[index], curve.parameter[index + 1]
     weight = (at - before) / (after - before)
     return (1 - weight) * _row(curve, index) + weight * _row(curve, index + 1)  # type: ignore[no-any-return]
 
 
 def _curve(path: _Path, rows: Floats, *, complete: bool) -> ResponseCurve:
-    """Return the response curve of points in dimensionless form, with their measures and stability."""
+    """Response curve of points in dimensionless form, with their measures and stability."""
     own = path.equations
     mean, parameter = rows[:, 0] * path.length, path.parameter(rows[:, -1])
     harmonics = (rows[:, 1 : own.orders + 1] + 1j * rows[:, own.orders + 1 : -1]) * path.length

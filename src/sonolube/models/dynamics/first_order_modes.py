@@ -57,23 +57,8 @@ class FirstOrderModes:
 
 
 def first_order_modes(structure: Structure) -> FirstOrderModes:
-    r"""Return the block-diagonal first-order form of a structure.
+    r"""Block-diagonal first-order form of a structure.
 
-    Parameters
-    ----------
-    structure : Structure
-
-    Returns
-    -------
-    FirstOrderModes
-
-    Raises
-    ------
-    InvalidInput
-        If poles of modes that the damping couples coincide, so that the state matrix cannot be block-diagonalised.
-
-    Notes
-    -----
     A mode that the damping does not couple to others (a rigid-body mode for example) is a pair by itself, with its
     modal displacement and velocity as states. The coupled modes are sorted into pairs of poles; the invariant plane of
     each pair is spanned by an orthonormal basis, which stays well conditioned for critically damped pairs.
@@ -114,7 +99,7 @@ def first_order_modes(structure: Structure) -> FirstOrderModes:
 
 
 def _coupled_groups(coupled: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    """Return the groups of modes that are coupled, directly or through others, in the order of their first modes."""
+    """Groups of modes that are coupled, directly or through others, in the order of their first modes."""
     reached = coupled | coupled.T | np.eye(len(coupled), dtype=bool)
     for _ in range(len(coupled).bit_length()):  # each product doubles the length of the paths
         reached = reached @ reached
@@ -123,7 +108,7 @@ def _coupled_groups(coupled: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
 
 
 def _invariant_planes(matrix: Floats) -> Floats:
-    """Return orthonormal bases of two-dimensional invariant subspaces of a state matrix, as columns."""
+    """Orthonormal bases of two-dimensional invariant subspaces of a state matrix, as columns."""
     poles = np.linalg.eigvals(matrix)
     oscillating = poles[poles.imag > 0]
     overdamped = np.sort(poles[poles.imag == 0].real)
@@ -140,7 +125,7 @@ def _invariant_planes(matrix: Floats) -> Floats:
 
 
 def _invariant_plane(matrix: Floats, pair: tuple[complex, complex]) -> Floats:
-    """Return an orthonormal basis of the invariant subspace of one pair of poles, by inverse iteration with both."""
+    """Orthonormal basis of the invariant subspace of one pair of poles, by inverse iteration with both."""
     # the two nearest poles of the matrix are the pair, and the next one must be another
     nearest = np.sort(np.abs(np.linalg.eigvals(matrix)[:, np.newaxis] - np.array(pair)).min(axis=1))
     if nearest[2] <= _COINCIDENT * np.abs(pair).max():

@@ -29,7 +29,7 @@ from sonolube.models.dynamics.friction_average.elliptic_quadrature import (
 from sonolube.models.dynamics.friction_average.piecewise_linear_kernel import piecewise_linear_averages
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw, force_decay_length
 from sonolube.models.dynamics.gap_laws.table import kernel_law
-from sonolube.models.dynamics.harmonic_balance.solver import MOST_HARMONICS
+from sonolube.models.dynamics.harmonic_balance.solver import MAX_HARMONICS
 from sonolube.models.dynamics.steady_state_response import steady_state
 from sonolube.models.dynamics.steady_states import Status, SteadyStates
 from sonolube.models.dynamics.structure import Structure
@@ -141,7 +141,7 @@ def steady_friction(
 
 
 def friction_averages(states: SteadyStates, *, sliding_speed: ArrayLike, workers: int = 1) -> FrictionAverages:
-    r"""Return the kinematic friction factors of every steady state at every sliding speed.
+    r"""Kinematic friction factors of every steady state at every sliding speed.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def friction_averages(states: SteadyStates, *, sliding_speed: ArrayLike, workers
 
 
 def _averages(states: SteadyStates, speeds: Floats, workers: int) -> tuple[Floats, Floats]:
-    """Return plain and force-weighted averages at positive speeds, each of shape (p, s).
+    """Plain and force-weighted averages at positive speeds, each of shape (p, s).
 
     Motions with two extrema are grouped by the number of nodes that they require.
     """
@@ -210,7 +210,7 @@ def _averages(states: SteadyStates, speeds: Floats, workers: int) -> tuple[Float
     for_corners = _NODES_FOR_CORNERS if gap_law.has_corner else 0.0
     level = np.searchsorted(_EXTRA_NODES[:-1], np.maximum(_NODES_PER_DECAY_LENGTH * steepness, for_corners))
     group = np.where(has_two_extrema, _EXTRA_NODES.size * factor + level, 0)
-    demand = rows * (MOST_HARMONICS + 1) + count
+    demand = rows * (MAX_HARMONICS + 1) + count
     order = np.argsort(demand.astype(np.uint16), kind="stable")  # radix sort, in linear time
     precise: Floats = speeds.astype(sum_precision(states.relative_tolerance))
 

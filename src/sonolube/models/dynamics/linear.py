@@ -55,7 +55,7 @@ class StaticContact:
 
 
 def modes(structure: Structure) -> Modes:
-    r"""Return the natural modes of a structure, by the generalised symmetric eigenvalue problem of K and M.
+    r"""Natural modes of a structure, by the generalised symmetric eigenvalue problem of K and M.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def modes(structure: Structure) -> Modes:
 
 
 def _generalised_eigh(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
-    """Return the eigenvalues and eigenvectors of K and M, of unit modal mass, with the Cholesky factor of M."""
+    """Eigenvalues and eigenvectors of K and M, of unit modal mass, with the Cholesky factor of M."""
     factor = np.linalg.cholesky(mass)
     reduced = np.linalg.solve(factor, np.linalg.solve(factor, stiffness).T)
     squares, vectors = np.linalg.eigh((reduced + reduced.T) / 2)
@@ -106,7 +106,7 @@ def _generalised_eigh(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
 
 
 def poles(structure: Structure) -> Complexes:
-    r"""Return the poles of a structure, the exponents of its free motions, complex, in 1/s.
+    r"""Poles of a structure, the exponents of its free motions, complex, in 1/s.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def poles(structure: Structure) -> Complexes:
 
 
 def static_contact(structure: Structure) -> StaticContact:
-    r"""Return the static stiffness at the contact and the static displacement of the contact per volt.
+    r"""Static stiffness at the contact and the static displacement of the contact per volt.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def static_contact(structure: Structure) -> StaticContact:
 
 
 def equivalent_circuit(structure: Structure) -> ButterworthVanDyke:
-    r"""Return the Butterworth-Van Dyke equivalent circuit of a structure with its contact free.
+    r"""Butterworth-Van Dyke equivalent circuit of a structure with its contact free.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def equivalent_circuit(structure: Structure) -> ButterworthVanDyke:
 
 
 def resonance_frequencies(structure: Structure) -> CircuitResonances:
-    """Return the series and parallel resonance frequencies of the electrical admittance with the contact free.
+    """Series and parallel resonance frequencies of the electrical admittance with the contact free.
 
     Parameters
     ----------

@@ -21,13 +21,13 @@ from sonolube.models.dynamics.transient import NO_RAMP, march, trajectory
 from sonolube.models.dynamics.waveform import StartUpRamp, Waveform
 
 _DECAY_TIMES = 12.0  # of the slowest small motion, after which a transient has decayed to 6e-6
-_FEWEST_PERIODS, _MOST_PERIODS = 256, 200_000  # of a transient
-_FEWEST_STEPS, _MOST_STEPS_PER_PERIOD = 16, 1024  # steps per period to try
+_MIN_PERIODS, _MAX_PERIODS = 256, 200_000  # of a transient
+_MIN_STEPS, _MAX_STEPS_PER_PERIOD = 16, 1024  # steps per period to try
 _RECORDED_STEPS = 128  # least number of recorded steps per period
-_MOST_STEPS = 2**23  # to march with the final step, which take seconds
+_MAX_STEPS = 2**23  # to march with the final step, which take seconds
 _TABLE_COST = 8  # of a step with a tabulated force over one with a formula
-_MOST_RECORDED = 2**19  # steps
-_MOST_CONTINUATIONS = 40  # marches to add while the motion still changes
+_MAX_RECORDED = 2**19  # steps
+_MAX_CONTINUATIONS = 40  # marches to add while the motion still changes
 _GROWING, _DECAYING = 1.02, 0.7  # ratios of the deviation of strobed samples beyond which a motion still changes
 _ROUNDING = 1e-7  # deviation over the peak-to-peak displacement below which it is rounding
 _BEATS = 10  # to record of a motion that does not repeat
@@ -73,7 +73,7 @@ class LongTimeResponse:
 
 
 def settling_periods(structure: Structure, gap_law: GapLaw, *, normal_load: float, frequency: float) -> int:
-    r"""Return the number of drive periods in which small motions about equilibrium decay.
+    r"""Number of drive periods in which small motions about equilibrium decay.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def settling_periods(structure: Structure, gap_law: GapLaw, *, normal_load: floa
     stiffness = float(gap_law.stiffness(np.zeros(1), normal_load)[0])
     rates = -poles(with_contact_spring(structure, normal_stiffness=stiffness)).real
     slowest = min((float(rate) for rate in rates if rate > _UNDAMPED * frequency), default=math.inf)
-    return int(np.clip(math.ceil(_DECAY_TIMES * frequency / slowest), _FEWEST_PERIODS, _MOST_PERIODS))
+    return int(np.clip(math.ceil(_DECAY_TIMES * frequency / slowest), _MIN_PERIODS, _MAX_PERIODS))
 
 
 def march_until_settled(
@@ -115,7 +115,7 @@ def march_until_settled(
     waveform: Waveform | None = None,
     ramp: StartUpRamp = NO_RAMP,
 ) -> LongTimeResponse:
-    """Return the long-time response of one point: march it from rest until transients decay, then classify it.
+    """Long-time response of one point: march it from rest until transients decay, then classify it.
 
     Parameters
     ----------
@@ -165,21 +165,21 @@ def march_until_settled(
         "waveform": waveform,
     }
     run = partial(march, structure, gap_law, **point, strobed_periods=settling)
-    most = _MOST_STEPS // (_TABLE_COST if gap_law.kind == TABULATED else 1)
+    most = _MAX_STEPS // (_TABLE_COST if gap_law.kind == TABULATED else 1)
     ramped, steps = math.ceil(ramp.duration * frequency), _first_steps(structure, frequency)
     if ramped * steps > most:
         raise InvalidInput(f"a ramp of {ramp.duration:g} s is {ramped} periods of the drive, too many to march")
     with np.errstate(over="ignore", invalid="ignore"):  # of coarse steps that diverge
-        for periods in (ramped + min(settling, _FEWEST_PERIODS), ramped + settling):  # divergence occurs early
+        for periods in (ramped + min(settling, _MIN_PERIODS), ramped + settling):  # divergence occurs early
             while True:
                 periods = min(periods, most // steps)
                 marched = run(periods=periods, ramp=ramp, steps_per_period=steps)
-                if marched.status == "marched" or steps >= _MOST_STEPS_PER_PERIOD:
+                if marched.status == "marched" or steps >= _MAX_STEPS_PER_PERIOD:
                     break
                 steps *= 2
     if marched.status == "diverged":
         raise InvalidInput(f"the march diverged at {frequency:.6g} Hz under {normal_load:.4g} N: {marched.advice}")
-    for _ in range(_MOST_CONTINUATIONS):
+    for _ in range(_MAX_CONTINUATIONS):
         if (periods + settling) * steps > most:
             break
         earlier = marched
@@ -192,7 +192,7 @@ def march_until_settled(
     )
     recorded = int(attractor.order) or _multiple_of_sixteen(_BEATS * _periods_per_beat(attractor, frequency))
     finer = max(steps, _RECORDED_STEPS)
-    recorded = min(recorded, _MOST_RECORDED // finer)
+    recorded = min(recorded, _MAX_RECORDED // finer)
     record = trajectory(
         structure, gap_law, **point, initial_state=attractor.final_state, periods=recorded, steps_per_period=finer
     )
@@ -209,32 +209,32 @@ def march_until_settled(
 
 
 def _first_steps(structure: Structure, frequency: float) -> int:
-    """Return the number of steps per period to try first: 16 times a power of two."""
+    """Number of steps per period to try first: 16 times a power of two."""
     fewest = minimum_steps(first_order_modes(structure), frequency=frequency)
-    doublings = max(math.ceil(math.log2(fewest / _FEWEST_STEPS)), 0)
-    return int(min(_FEWEST_STEPS * 2**doublings, _MOST_STEPS_PER_PERIOD))
+    doublings = max(math.ceil(math.log2(fewest / _MIN_STEPS)), 0)
+    return int(min(_MIN_STEPS * 2**doublings, _MAX_STEPS_PER_PERIOD))
 
 
 def _changes(earlier: Trajectories, later: Trajectories) -> bool:
-    """Return whether the deviation of the strobed samples still grows or decays from one march to the next."""
+    """Whether the deviation of the strobed samples still grows or decays from one march to the next."""
     before, now = (float(np.std(each.strobed.displacement)) for each in (earlier, later))
     rounding = _ROUNDING * float(np.ptp(later.last_periods.displacement))
     return max(before, now) > rounding and not _DECAYING * before <= now <= _GROWING * before
 
 
 def _multiple_of_sixteen(periods: float) -> int:
-    """Return a number of periods rounded up to a multiple of 16, from 256 to 4096."""
-    return int(np.clip(16 * math.ceil(periods / 16), _FEWEST_PERIODS, _LONGEST))
+    """Number of periods rounded up to a multiple of 16, from 256 to 4096."""
+    return int(np.clip(16 * math.ceil(periods / 16), _MIN_PERIODS, _LONGEST))
 
 
 def _periods_per_beat(attractor: Attractors, frequency: float) -> float:
-    """Return the number of drive periods per beat, zero without a beat."""
+    """Number of drive periods per beat, zero without a beat."""
     slow = float(attractor.beat_frequency)
     return frequency / slow if slow > 0 else 0.0
 
 
 def _dissipated_power(structure: Structure, gap_law: GapLaw, record: Trajectory, load: float) -> float:
-    r"""Return the mean power dissipated by dampers and contact, in W.
+    r"""Mean power dissipated by dampers and contact, in W.
 
     Notes
     -----

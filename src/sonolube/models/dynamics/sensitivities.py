@@ -16,7 +16,7 @@ from sonolube.models.dynamics.steady_states import Status, SteadyStates
 from sonolube.models.dynamics.structure import Structure
 
 _NEWTON_STEPS = 3  # that converge the solution to rounding before it is differentiated
-_FEWEST_HARMONICS = 24
+_MIN_HARMONICS = 24
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -63,7 +63,7 @@ def steady_state_sensitivities(
     sliding_speed: ArrayLike = (),
     structure_changes: Mapping[str, StructureChange] | None = None,
 ) -> Sensitivities:
-    r"""Return the sensitivities of amplitude, mean displacement and kinematic friction factor to every parameter.
+    r"""Sensitivities of amplitude, mean displacement and kinematic friction factor to every parameter.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def steady_state_sensitivities(
 def _one_state(
     states: SteadyStates, index: tuple[int, ...], speeds: Floats, changes: dict[str, StructureChange]
 ) -> dict[str, tuple[float, float, Floats]]:
-    """Return derivatives of amplitude, mean displacement and friction factor of one state, by parameter."""
+    """Derivatives of amplitude, mean displacement and friction factor of one state, by parameter."""
     balance = _converged_residual(states, index)
     own, structure = balance.equations, states.structure
     residuals = {
@@ -137,8 +137,8 @@ def _one_state(
 
 
 def _converged_residual(states: SteadyStates, index: tuple[int, ...]) -> HarmonicBalanceResidual:
-    """Return the equations of one state at a solution converged to rounding, with twice its harmonics."""
-    orders = max(2 * int(states.harmonic_count[index]), _FEWEST_HARMONICS)
+    """Equations of one state at a solution converged to rounding, with twice its harmonics."""
+    orders = max(2 * int(states.harmonic_count[index]), _MIN_HARMONICS)
     equations = HarmonicBalanceEquations(
         structure=states.structure,
         gap_law=states.gap_law,
@@ -157,7 +157,7 @@ def _converged_residual(states: SteadyStates, index: tuple[int, ...]) -> Harmoni
 
 
 def _force_by_law(gap_law: GapLaw, balance: HarmonicBalanceResidual) -> dict[str, Floats]:
-    """Return the derivatives of the contact force over the period by the load and each parameter of the law."""
+    """Derivatives of the contact force over the period by the load and each parameter of the law."""
     load, x = balance.equations.normal_load, balance.displacement
     factor = np.maximum(1 - gap_law.force_damping * balance.velocity, 0.0)
     by_damping = -gap_law.force(x, load) * balance.velocity * (factor > 0)
@@ -166,7 +166,7 @@ def _force_by_law(gap_law: GapLaw, balance: HarmonicBalanceResidual) -> dict[str
 
 
 def _residual_by_structure(structure: Structure, balance: HarmonicBalanceResidual, change: StructureChange) -> Floats:
-    """Return the derivative of the residual by one parameter of the structure."""
+    """Derivative of the residual by one parameter of the structure."""
     own, k = balance.equations, balance.equations.multiples[:, np.newaxis, np.newaxis] * balance.omega
     stiffness, damping, mass = (
         np.zeros_like(whole) if part is None else np.asarray(part, dtype=np.float64)
@@ -192,7 +192,7 @@ def _residual_by_structure(structure: Structure, balance: HarmonicBalanceResidua
 def _static_residual_by_structure(
     structure: Structure, balance: HarmonicBalanceResidual, change: StructureChange, stiffness: Floats
 ) -> float:
-    """Return the derivative of the static equation's residual, S_0 (mean - static displacement) - (mean force - load).
+    """Derivative of the static equation's residual, S_0 (mean - static displacement) - (mean force - load).
 
     It is -S_0 times the derivative of the mean displacement under constant mean force and voltage.
     """
@@ -212,7 +212,7 @@ def _static_residual_by_structure(
 
 
 def _extremum_phases(states: SteadyStates, index: tuple[int, ...]) -> Floats:
-    """Return the phases of the highest and the lowest displacement of one state, however many extrema it has."""
+    """Phases of the highest and the lowest displacement of one state, however many extrema it has."""
     if np.all(np.isfinite(states.extremum_phases[index])):
         return states.extremum_phases[index]  # type: ignore[no-any-return]
     harmonics, k = states.harmonics[index], np.arange(1, states.harmonics.shape[-1] + 1)
@@ -234,7 +234,7 @@ def _outputs(
     speeds: Floats,
     omega_derivative: float,
 ) -> tuple[float, float, Floats]:
-    r"""Return the derivatives of amplitude, mean displacement and friction factor from those of the unknowns.
+    r"""Derivatives of amplitude, mean displacement and friction factor from those of the unknowns.
 
     Notes
     -----

@@ -9,7 +9,7 @@ from sonolube.models.dynamics.steady_states import Status, SteadyStates, contact
 
 
 def floquet_multipliers(states: SteadyStates, *, kicks: int = 512) -> Complexes:
-    r"""Return the Floquet multipliers of steady states: factors by which small disturbances grow in one period.
+    r"""Floquet multipliers of steady states: factors by which small disturbances grow in one period.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def floquet_multipliers(states: SteadyStates, *, kicks: int = 512) -> Complexes:
 
 
 def _monodromy_matrix(model: PoleResidueModel, states: SteadyStates, index: tuple[int, ...], kicks: int) -> Floats:
-    """Return the monodromy matrix of one steady state on the pairs of states, from mid-kick to mid-kick."""
+    """Monodromy matrix of one steady state on the pairs of states, from mid-kick to mid-kick."""
     from scipy.linalg import block_diag, expm
 
     pairs = model.trace.size

@@ -21,7 +21,7 @@ from sonolube.models.dynamics.gap_laws.protocol import GapLaw
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution, concatenate
 from sonolube.models.dynamics.harmonic_balance.receptance import pole_residue_model
-from sonolube.models.dynamics.harmonic_balance.solver import MOST_HARMONICS, solve
+from sonolube.models.dynamics.harmonic_balance.solver import MAX_HARMONICS, solve
 from sonolube.models.dynamics.steady_states import Status, SteadyStates
 from sonolube.models.dynamics.structure import Structure
 from sonolube.models.dynamics.warm_up import compile_in_parallel
@@ -44,7 +44,7 @@ def steady_state(
     workers: int = 1,
     backend: Backend = "cpu",
 ) -> SteadyStates:
-    r"""Return the periodic steady-state vibration of a structure against its contact, by harmonic balance.
+    r"""Periodic steady-state vibration of a structure against its contact, by harmonic balance.
 
     Parameters
     ----------
@@ -129,8 +129,8 @@ def steady_state(
     ([1.25, 2.5], [0.0, 0.0])
     """
     harmonics = drive_harmonics(voltage_amplitude, voltage_harmonics)
-    if not 1 <= minimum_harmonics <= MOST_HARMONICS:
-        raise InvalidInput(f"minimum_harmonics must lie between 1 and {MOST_HARMONICS}, got {minimum_harmonics!r}")
+    if not 1 <= minimum_harmonics <= MAX_HARMONICS:
+        raise InvalidInput(f"minimum_harmonics must lie between 1 and {MAX_HARMONICS}, got {minimum_harmonics!r}")
     if not 1e-8 <= relative_tolerance <= 1e-3:
         raise InvalidInput(f"relative_tolerance must lie between 1e-8 and 1e-3, got {relative_tolerance!r}")
     load, f = require_positive(normal_load=normal_load), require_positive(frequency=frequency)
@@ -178,14 +178,14 @@ _SHARED_FIELDS = {field.name for field in fields(SteadyStates)} & set(BatchSolut
 
 
 def _solve(problem: BatchProblem, workers: int) -> BatchSolution:
-    """Return the solution of a batch, in chunks."""
+    """Solution of a batch, in chunks."""
     variant, _ = kernel_law(problem.gap_law)
     with compile_in_parallel(variant, stability=problem.stability, tolerance=problem.tolerance):
         return concatenate(map_chunks(lambda own: solve(problem.select(own)), problem.omega.size, workers))
 
 
 def _batch_shape(*shapes: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the broadcast shape of the points, at least one."""
+    """Broadcast shape of the points, at least one."""
     given = f"load, frequency, voltage, offset and gap{{}} shapes{{}} {', '.join(map(str, shapes))}"
     try:
         shape = np.broadcast_shapes(*shapes)
@@ -197,23 +197,9 @@ def _batch_shape(*shapes: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def drive_harmonics(amplitude: ArrayLike | None, harmonics: ArrayLike | None) -> Complexes:
-    """Return the harmonics of a drive given either by its amplitude or by its harmonics, shape (..., K), in V.
+    """Harmonics of a drive given either by its amplitude or by its harmonics, shape (..., K), in V.
 
-    Parameters
-    ----------
-    amplitude : array_like or None
-        Amplitude of a sinusoidal drive, in V.
-    harmonics : array_like of complex, shape (..., K), or None
-        Harmonics of any other drive, in V.
-
-    Returns
-    -------
-    ndarray of complex
-
-    Raises
-    ------
-    InvalidInput
-        If not exactly one of them is given, or a value is negative or not finite.
+    `harmonics` has shape (..., K).
     """
     if (amplitude is None) == (harmonics is None):
         raise InvalidInput("give either voltage_amplitude or voltage_harmonics")
@@ -221,15 +207,15 @@ def drive_harmonics(amplitude: ArrayLike | None, harmonics: ArrayLike | None) ->
         return require_non_negative(voltage_amplitude=amplitude)[..., np.newaxis].astype(np.complex128)
     assert harmonics is not None
     drive = require_finite_complex(voltage_harmonics=harmonics)
-    if drive.ndim == 0 or not 1 <= drive.shape[-1] <= MOST_HARMONICS:
+    if drive.ndim == 0 or not 1 <= drive.shape[-1] <= MAX_HARMONICS:
         raise InvalidInput(
-            f"voltage_harmonics must have 1 to {MOST_HARMONICS} harmonics along the last axis, got shape {drive.shape}"
+            f"voltage_harmonics must have 1 to {MAX_HARMONICS} harmonics along the last axis, got shape {drive.shape}"
         )
     return drive
 
 
 def _status(solution: BatchSolution) -> NDArray[np.int8]:
-    """Return the status of each point."""
+    """Status of each point."""
     status = np.full(solution.mean_displacement.shape, Status.PERIODIC, dtype=np.int8)
     status[np.isfinite(solution.coexisting_amplitude)] = Status.MULTISTABLE
     status[solution.unstable] = Status.UNSTABLE

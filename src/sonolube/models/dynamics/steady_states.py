@@ -115,7 +115,7 @@ class SteadyStates:
     relative_tolerance: float
 
     def reason(self, point: int | tuple[int, ...]) -> str:
-        """Return the meaning of the status of one point, with a remedy where it is not periodic.
+        """Meaning of the status of one point, with a remedy where it is not periodic.
 
         Parameters
         ----------
@@ -152,11 +152,11 @@ class SteadyStates:
         return "periodic: the vibration has the period of the drive" + self.contact_loss_note(point)
 
     def stability_undetermined(self, point: int | tuple[int, ...]) -> bool:
-        """Return whether one point's drive is too slow beside the fastest mode to compute its stability."""
+        """Whether one point's drive is too slow beside the fastest mode to compute its stability."""
         return bool(stability_undetermined(pole_residue_model(self.structure), 2 * np.pi * self.frequency[point]))
 
     def contact_loss_note(self, point: int | tuple[int, ...]) -> str:
-        """Return a note on the fraction of the period without contact of one point; empty where contact is kept.
+        """Note on the fraction of the period without contact of one point; empty where contact is kept.
 
         Parameters
         ----------
@@ -172,7 +172,7 @@ class SteadyStates:
 
 
 def contact_motion(states: SteadyStates, point: int | tuple[int, ...], *, samples: int = 512) -> ContactSamples:
-    """Return the motion of one point's contact over a period of the drive.
+    """Motion of one point's contact over a period of the drive.
 
     Parameters
     ----------

@@ -94,7 +94,7 @@ class Structure:
 
 
 def dynamic_stiffness(structure: Structure, *, frequency: ArrayLike) -> Complexes:
-    r"""Return the dynamic stiffness matrix, complex, in N/m.
+    r"""Dynamic stiffness matrix, complex, in N/m.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def dynamic_stiffness(structure: Structure, *, frequency: ArrayLike) -> Complexe
 
 
 def contact_receptance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
-    r"""Return the receptance of the contact: displacement per contact force, stack short-circuited, in m/N.
+    r"""Receptance of the contact: displacement per contact force, stack short-circuited, in m/N.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def contact_receptance(structure: Structure, *, frequency: ArrayLike) -> Complex
 
 
 def drive_receptance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
-    r"""Return the displacement of the free contact per volt of the drive, complex, in m/V.
+    r"""Displacement of the free contact per volt of the drive, complex, in m/V.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def drive_receptance(structure: Structure, *, frequency: ArrayLike) -> Complexes
 
 
 def electrical_admittance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
-    r"""Return the electrical admittance of the stack with the contact free, complex, in siemens.
+    r"""Electrical admittance of the stack with the contact free, complex, in siemens.
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def electrical_admittance(structure: Structure, *, frequency: ArrayLike) -> Comp
 
 
 def with_contact_spring(structure: Structure, *, normal_stiffness: float, contact_damping: float = 0.0) -> Structure:
-    r"""Return the structure with a linear spring and damper at its contact: the contact linearised about equilibrium.
+    r"""Structure with a linear spring and damper at its contact: the contact linearised about equilibrium.
 
     Parameters
     ----------
@@ -240,7 +240,7 @@ def with_contact_spring(structure: Structure, *, normal_stiffness: float, contac
 
 
 def _response(structure: Structure, frequency: ArrayLike, force: Floats) -> Complexes:
-    """Return the complex coordinates under a harmonic generalised force, shape of `frequency` with (n,) appended."""
+    """Complex coordinates under a harmonic generalised force, shape of `frequency` with (n,) appended."""
     stiffness = dynamic_stiffness(structure, frequency=frequency)
     forces = np.broadcast_to(force.astype(np.complex128)[:, np.newaxis], (*stiffness.shape[:-1], 1))
     return np.asarray(np.linalg.solve(stiffness, forces)[..., 0], dtype=np.complex128)

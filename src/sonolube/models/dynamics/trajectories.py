@@ -136,7 +136,7 @@ class Trajectory:
 
 
 def displacement_harmonics(motion: ContactSamples, *, steps_per_period: int, count: int) -> tuple[Floats, Complexes]:
-    r"""Return mean and harmonics of the contact's displacement over the last period, by discrete Fourier transform.
+    r"""Mean and harmonics of the contact's displacement over the last period, by discrete Fourier transform.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ def march(
     strobed_periods: int = 64,
     workers: int = 1,
 ) -> Trajectories:
-    """Return the trajectories of a batch of points, by time marching with an exponential integrator.
+    """Trajectories of a batch of points, by time marching with an exponential integrator.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def trajectory(
     ramp: StartUpRamp = NO_RAMP,
     initial_state: State | None = None,
 ) -> Trajectory:
-    """Return the trajectory of one point with every time step, by the integrator of `march`.
+    """Trajectory of one point with every time step, by the integrator of `march`.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def _problem(
     initial_state: State | None,
     schedule: MarchingSchedule,
 ) -> tuple[MarchingProblem, tuple[int, ...]]:
-    """Return the marching problem of checked and broadcast loads, frequencies, voltages and offsets, and its shape."""
+    """Marching problem of checked and broadcast loads, frequencies, voltages and offsets, and its shape."""
     normal_load, frequency, voltage_peak_to_peak, voltage_offset = points
     checked = (
         require_positive(normal_load=normal_load),
@@ -241,7 +241,7 @@ def _problem(
 
 
 def _start(modes: FirstOrderModes, structure: Structure, state: State | None, shape: tuple[int, ...]) -> Floats:
-    """Return the initial states of all points, shape (2 n, points)."""
+    """Initial states of all points, shape (2 n, points)."""
     n, count = structure.coordinates, int(np.prod(shape))
     if state is None:
         return np.zeros((2 * n, count))
@@ -260,14 +260,14 @@ def _start(modes: FirstOrderModes, structure: Structure, state: State | None, sh
 
 
 def _state(modes: FirstOrderModes, states: Floats, shape: tuple[int, ...]) -> State:
-    """Return coordinates and velocities from pairs of states."""
+    """Coordinates and velocities from pairs of states."""
     n = modes.state_matrix.shape[0]
     x, v = (each.reshape(n, 2 * n) @ states for each in (modes.to_displacement, modes.to_velocity))
     return State(coordinates=x.T.reshape(*shape, n), velocities=v.T.reshape(*shape, n))
 
 
 def _contact_motion(problem: MarchingProblem, states: Floats, shape: tuple[int, ...]) -> ContactSamples:
-    """Return the motion of the contact and its force from pairs of states, shape (times, 2 n, points)."""
+    """Motion of the contact and its force from pairs of states, shape (times, 2 n, points)."""
     x, v = (np.einsum("m,tml->lt", row.ravel(), states) for row in problem.contact_output)
     with np.errstate(over="ignore", invalid="ignore"):  # of points that diverged
         force = damped_force(problem.gap_law, x, v, problem.normal_load[:, np.newaxis])
@@ -276,7 +276,7 @@ def _contact_motion(problem: MarchingProblem, states: Floats, shape: tuple[int, 
 
 
 def _envelope(problem: MarchingProblem, solution: MarchingSolution, shape: tuple[int, ...]) -> Envelope:
-    """Return the envelope from the statistics of the windows."""
+    """Envelope from the statistics of the windows."""
     schedule, statistics = problem.schedule, solution.statistics
     ends = np.minimum(np.arange(1, statistics.shape[0] + 1) * schedule.window, schedule.periods)
     samples = np.diff(ends, prepend=0)[:, np.newaxis] * schedule.steps

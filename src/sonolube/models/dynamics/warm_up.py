@@ -33,22 +33,12 @@ _KERNELS = (newton_solve, monodromy_power_norms, elliptic_averages)
 
 
 def compiled_code_folder() -> Path:
-    """Return the folder in which numba keeps the compiled kernels; without a place for it the import fails.
-
-    Returns
-    -------
-    Path
-    """
+    """Folder in which numba keeps the compiled kernels; without a place for it the import fails."""
     return newton_solve.cache_folder
 
 
 def is_compiled() -> bool:
-    """Return whether every kernel of a steady state and its friction has been compiled and kept, for any contact law.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether every kernel of a steady state and its friction has been compiled and kept, for any contact law."""
     names = [(each.cache_folder, f"*.{each.py_func.__name__}-*.nbi") for each in _KERNELS]
     return all(any(folder.glob(name)) for folder, name in names)
 
@@ -98,18 +88,7 @@ class CompileProcess:
 def compile_in_parallel(variant: KernelVariant, *, stability: bool, tolerance: float) -> Iterator[CompileProcess]:
     """Compile the kernels for stability and friction in a second process if `newton_solve` has to be compiled within.
 
-    Parameters
-    ----------
-    variant : KernelVariant
-    stability : bool
-        Whether stability is to be computed.
-    tolerance : float
-        Relative error of the steady states, which determines the precision of their friction averages.
-
-    Yields
-    ------
-    CompileProcess
-        It has ended when the context has.
+    It has ended when the context has.
     """
     process = CompileProcess(variant, stability, tolerance)
     if runs_plain(1) or (os.cpu_count() or 1) == 1 or not sys.executable or getattr(sys, "frozen", False):
@@ -127,15 +106,7 @@ def compile_in_parallel(variant: KernelVariant, *, stability: bool, tolerance: f
 
 
 def compile_remaining_kernels(kind: int, damped: int, stability: bool, tolerance: float) -> None:
-    """Compile, and so cache, the kernels that follow `newton_solve`, by calling them with empty batches.
-
-    Parameters
-    ----------
-    kind, damped : int
-        Lengths of the tuples of `KernelVariant`.
-    stability, tolerance
-        As in `compile_in_parallel`.
-    """
+    """Compile, and so cache, the kernels that follow `newton_solve`, by calling them with empty batches."""
     variant, law = KernelVariant((0,) * kind, (0,) * damped), LawParameters(0.0, 0.0, np.empty((0, 4)))
     empty, points = np.empty((0, 0)), np.empty(0, dtype=np.int64)
     speeds = np.ones(1, dtype=sum_precision(tolerance))

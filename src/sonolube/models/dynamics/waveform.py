@@ -72,7 +72,7 @@ Waveform = Sine | PiecewiseLinear
 
 
 def sampled_waveform(samples: ArrayLike) -> PiecewiseLinear:
-    """Return the piecewise linear waveform through equally spaced samples of one period, normalised.
+    """Piecewise linear waveform through equally spaced samples of one period, normalised.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def sampled_waveform(samples: ArrayLike) -> PiecewiseLinear:
 
 
 def waveform_value(waveform: Waveform, *, phase: ArrayLike) -> Floats:
-    """Return the value of a waveform at a phase; at a jump, the value after it.
+    """Value of a waveform at a phase; at a jump, the value after it.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def waveform_value(waveform: Waveform, *, phase: ArrayLike) -> Floats:
 
 
 def fourier_coefficients(waveform: Waveform, count: int) -> Complexes:
-    r"""Return the exact Fourier coefficients c_0 to c_count of a waveform.
+    r"""Exact Fourier coefficients c_0 to c_count of a waveform.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def fourier_coefficients(waveform: Waveform, count: int) -> Complexes:
 
 
 def jump_phases(waveform: Waveform) -> Floats:
-    """Return the phases within one period at which the waveform jumps, in increasing order, in rad.
+    """Phases within one period at which the waveform jumps, in increasing order, in rad.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def jump_phases(waveform: Waveform) -> Floats:
 
 
 def waveform_extremes(waveform: Waveform) -> tuple[float, float]:
-    """Return the lowest and the highest value of a waveform.
+    """Lowest and the highest value of a waveform.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def waveform_extremes(waveform: Waveform) -> tuple[float, float]:
 
 
 def _pieces(*pieces: tuple[float, float, float]) -> PiecewiseLinear:
-    """Return the waveform of pieces, each given by its start in units of pi, its first and its last value."""
+    """Waveform of pieces, each given by its start in units of pi, its first and its last value."""
     start, first, last = np.array(pieces).T
     return PiecewiseLinear(starts_at=start * np.pi, first=first, last=last)
 
@@ -238,7 +238,7 @@ def drive_voltage(
     frequency: ArrayLike,
     time: ArrayLike,
 ) -> Floats:
-    r"""Return the drive voltage at given times. [V]
+    r"""Drive voltage at given times. [V]
 
     Parameters
     ----------
@@ -302,7 +302,7 @@ class StartUpRamp:
 
 
 def ramp_factor(ramp: StartUpRamp, *, time: ArrayLike) -> Floats:
-    r"""Return the fraction of the full drive amplitude that a ramp has reached. []
+    r"""Fraction of the full drive amplitude that a ramp has reached. []
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ from sonolube.models.fem.solver.resonances import coupled_resonances
 _REFINEMENT = 0.62  # ratio of the element sizes of successive meshes
 _ORDERS = range(2, 6)  # of the elements on one mesh, before it is refined
 _FAINTER = 0.3  # of the least coupling factor, from which a mode of the model before may be the same mode
-_LEAST_REPORTED = 0.01  # coupling factor from which a mode counts as driven
+_MIN_REPORTED = 0.01  # coupling factor from which a mode counts as driven
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -168,7 +168,7 @@ def _electromechanical_model(
 ) -> ElectromechanicalModel:
     """Electromechanical model with the named modes of a reduction."""
     series, parallel, coupling = coupled_resonances(reduction)
-    reported = np.flatnonzero((coupling > _LEAST_REPORTED) & (series < highest_frequency))
+    reported = np.flatnonzero((coupling > _MIN_REPORTED) & (series < highest_frequency))
     _, vectors = np.linalg.eigh(reduction.stiffness.real)
     shapes = np.tensordot(vectors[:, reported].T, coordinates, axes=1)
     natural = NaturalModes(natural_frequency=series[reported], shapes=shapes, rigid_body_count=0)

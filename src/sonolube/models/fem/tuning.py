@@ -20,10 +20,10 @@ Advance = Callable[[str, int, int], None]
 _COARSE_ORDER, _FINE_ORDER = 2, 3  # element orders of the search and of its first correction
 _COARSE_TOLERANCE = 3e-3  # of the frequency: reproducibility of free meshes of one element size at the coarse order
 _TOLERANCE = 5e-4  # of the frequency, of the result
-_MOST_STEPS = 12
+_MAX_STEPS = 12
 _FIRST_STEP, _LARGEST_STEP = 0.05, 0.2  # of the length; the first must exceed the scatter between meshes
 _DIFFERENCE = 0.06  # of the length, to either side for the slope, large against the scatter between meshes
-_MOST_CORRECTIONS = 5
+_MAX_CORRECTIONS = 5
 _FARTHEST = 10.0  # length after a correction over that before, at which the frequency hardly depends on it
 _NO_LENGTH = "no length near {start:.4g} m gives {target:g} Hz; start nearer to the solution, or tune another size"
 
@@ -223,7 +223,7 @@ def tuned_mode(
     exponent = float(np.log(coarse_frequency(longer) / coarse_frequency(shorter)) / np.log(longer / shorter))
     slope = exponent * frequency / found
     found = _corrected(found, frequency_at(found, _FINE_ORDER) - frequency, slope, frequency)
-    for _ in range(_MOST_CORRECTIONS):
+    for _ in range(_MAX_CORRECTIONS):
         found = _seven_digits(found)
         mode = named_mode(
             lambda size, at=found: model_at(at, size),  # type: ignore[misc]
@@ -269,7 +269,7 @@ def _secant_length(frequency_at: Callable[[float], float], target: float, start:
     length, difference = start, frequency_at(start) / target - 1
     candidate = length * (1 + float(np.sign(difference) * np.clip(abs(difference), _FIRST_STEP, _LARGEST_STEP)))
     lower, upper = 0.0, np.inf  # lengths known to be too short and too long
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         if abs(difference) < _COARSE_TOLERANCE:
             return length
         lower, upper = (max(lower, length), upper) if difference > 0 else (lower, min(upper, length))

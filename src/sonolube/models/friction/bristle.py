@@ -64,23 +64,11 @@ RIGID = Holder()
 
 
 def holder_propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Floats]:
-    r"""Return the matrices of one exact time step of a holder with mass under a force linear in time.
+    r"""Matrices of one exact time step of a holder with mass under a force linear in time.
 
-    Parameters
-    ----------
-    holder : Holder
-    step : float
-        Time step, in s.
+    `transition`: Matrix of the state (y, dy/dt). `by_first, by_last`: Response of the state to the force at the start
+    and at the end of the step.
 
-    Returns
-    -------
-    transition : ndarray, shape (2, 2)
-        Matrix of the state (y, dy/dt).
-    by_first, by_last : ndarray, shape (2,)
-        Response of the state to the force at the start and at the end of the step.
-
-    Notes
-    -----
     .. math:: m \ddot y + c \dot y + K y = F(t)
 
     by the exponential of the augmented matrix of state, force and rate of the force.
@@ -98,7 +86,7 @@ def holder_propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Flo
 
 @kernel(**INNER)
 def _force_after_slide(force: float, k: float, limit: float, slide: float, exponent: float) -> float:
-    """Return the force after a slide at constant stiffness and limit, before the clipping to the next limit."""
+    """Force after a slide at constant stiffness and limit, before the clipping to the next limit."""
     if exponent == 0.0 or slide == 0.0:
         return force + k * slide
     if limit <= 0.0:
@@ -109,22 +97,9 @@ def _force_after_slide(force: float, k: float, limit: float, slide: float, expon
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady: Floats, exponent: float) -> Floats:
-    """Return the mean force of a bristle on a holder without mass over its steady period, for each sliding speed.
+    """Mean force of a bristle on a holder without mass over its steady period, for each sliding speed.
 
-    Parameters
-    ----------
-    k, limit : ndarray, shape (n,)
-        Stiffness [N/m] and friction limit [N] at n uniform phases.
-    slides : ndarray, shape (n,)
-        In-plane vibration displacement within each step [m].
-    steady : ndarray, shape (m,)
-        Displacement by sliding within a step [m].
-    exponent : float
-        Exponent of Dahl, 0 or 1.
-
-    Returns
-    -------
-    ndarray, shape (m,)
+    Shape (m,).
     """
     n = k.size
     largest = 0.0
@@ -160,25 +135,10 @@ def mean_force_inertial_holder(
     by_last: Floats,
     deflection: Floats,
 ) -> tuple[Floats, bool]:
-    """Return the mean force of a bristle on a holder with mass over its steady period, for each sliding speed.
+    """Mean force of a bristle on a holder with mass over its steady period, for each sliding speed.
 
-    Parameters
-    ----------
-    k, limit, slides, steady, exponent
-        As for `mean_force_massless_holder`.
-    step : float
-        Time step [s].
-    transition, by_first, by_last : ndarray
-        Matrices of `holder_propagators`.
-    deflection : ndarray, shape (m,)
-        First estimate of the displacement of the slider [m].
-
-    Returns
-    -------
-    means : ndarray, shape (m,)
-    settled : bool
-        False where Newton's method on the map of one period did not converge; the mean is then that of the last
-        periods of a time integration.
+    `means` has shape (m,). `settled`: False where Newton's method on the map of one period did not converge; the mean
+    is then that of the last periods of a time integration.
     """
     means = np.empty(steady.size)
     settled = True
@@ -219,7 +179,7 @@ def _period(
     by_first: Floats,
     by_last: Floats,
 ) -> tuple[Floats, Floats, float]:
-    """Return the state after one period, its derivative with respect to the state before, and the mean force."""
+    """State after one period, its derivative with respect to the state before, and the mean force."""
     n = k.size
     force, y, w = state
     jacobian = np.eye(3)

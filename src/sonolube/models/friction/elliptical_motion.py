@@ -18,7 +18,7 @@ _FEW = 20_000  # points for which plain Python takes less than compiling
 def contact_time_fraction(
     *, normal_load: ArrayLike, normal_stiffness: ArrayLike, normal_amplitude: ArrayLike
 ) -> Floats:
-    r"""Return the fraction of the period in which a vibrating surface is in contact with a heavy slider. []
+    r"""Fraction of the period in which a vibrating surface is in contact with a heavy slider. []
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def elliptical_traction_ratio(
     relative_velocity: ArrayLike = 0.0,
     phase: ArrayLike = np.pi / 2,
 ) -> Floats:
-    r"""Return the mean traction of an elliptically vibrating surface on a slider over their steady friction. []
+    r"""Mean traction of an elliptically vibrating surface on a slider over their steady friction. []
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def elliptical_traction_ratio(
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def _half_contact_phases(load_ratio: Floats) -> Floats:
-    """Return half the phase of contact for each load over the amplitude of the force."""
+    """Half the phase of contact for each load over the amplitude of the force."""
     phases = np.empty(load_ratio.size)
     for i in range(load_ratio.size):
         phases[i] = _half_contact_phase(load_ratio[i])
@@ -141,7 +141,7 @@ def _half_contact_phases(load_ratio: Floats) -> Floats:
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def _half_contact_phase(load_ratio: float) -> float:
-    """Return the root h of sin h - h cos h = pi times the load over the amplitude of the force, by Halley's method."""
+    """Root h of sin h - h cos h = pi times the load over the amplitude of the force, by Halley's method."""
     if load_ratio >= 1.0:
         return pi
     root = (3 * pi * load_ratio) ** (1 / 3)
@@ -160,14 +160,14 @@ def _half_contact_phase(load_ratio: float) -> float:
 
 @kernel(**INNER)
 def _force_integral(low: float, high: float, half: float, offset: float) -> float:
-    """Return the integral of max(cos x + offset, 0), which vanishes beyond +-half, over an interval."""
+    """Integral of max(cos x + offset, 0), which vanishes beyond +-half, over an interval."""
     low, high = max(low, -half), min(high, half)
     return sin(high) - sin(low) + offset * (high - low) if high > low else 0.0
 
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def _traction(load_ratio: Floats, amplitude_ratio: Floats, v_1: Floats, v: Floats, lag: Floats) -> Floats:
-    """Return the mean traction over the friction, from load and force amplitude over each other, velocities and lag."""
+    """Mean traction over the friction, from load and force amplitude over each other, velocities and lag."""
     ratio = np.empty(load_ratio.size)
     for i in range(load_ratio.size):
         speed = abs(v_1[i])

@@ -77,7 +77,7 @@ class StribeckCurve:
 
 
 def hersey_number(*, dynamic_viscosity: ArrayLike, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> Floats:
-    r"""Return the Hersey number: viscosity times speed over pressure. [m]
+    r"""Hersey number: viscosity times speed over pressure. [m]
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def hersey_number(*, dynamic_viscosity: ArrayLike, sliding_speed: ArrayLike, nom
 
 
 def stribeck_coefficient(curve: StribeckCurve, *, hersey_number: ArrayLike) -> Floats:
-    """Return the coefficient of friction on a Stribeck curve. []
+    """Coefficient of friction on a Stribeck curve. []
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def stribeck_coefficient(curve: StribeckCurve, *, hersey_number: ArrayLike) -> F
 
 
 def lubrication_regime(curve: StribeckCurve, *, hersey_number: ArrayLike) -> NDArray[np.str_]:
-    """Return the lubrication regime on a Stribeck curve, as values of `LubricationRegime`.
+    """Lubrication regime on a Stribeck curve, as values of `LubricationRegime`.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ class LubricationCoefficients(NamedTuple):
 
 
 def asperity_load_fraction(lubricant: BoundaryLubricant, *, nominal_pressure: ArrayLike) -> Floats:
-    r"""Return the fraction of the load on asperities that penetrate a lubricant film. []
+    r"""Fraction of the load on asperities that penetrate a lubricant film. []
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def lubrication_coefficients(
     friction_ratio: ArrayLike,
     nominal_pressure: ArrayLike,
 ) -> LubricationCoefficients:
-    r"""Return the coefficients of friction of the four lubrication methods.
+    r"""Coefficients of friction of the four lubrication methods.
 
     Parameters
     ----------
@@ -297,7 +297,7 @@ def lubrication_coefficients(
 
 
 def best_lubrication_method(coefficients: LubricationCoefficients, *, smallest_gain: float = 0.0) -> NDArray[np.str_]:
-    """Return the lubrication method with the lowest friction, as values of `LubricationMethod`.
+    """Lubrication method with the lowest friction, as values of `LubricationMethod`.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ no constant of `acoustic_softening_ratio` follows from it."""
 def acoustic_intensity(
     *, density: ArrayLike, wave_speed: ArrayLike, frequency: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
-    r"""Return the acoustic intensity of a travelling wave. [W/m2]
+    r"""Acoustic intensity of a travelling wave. [W/m2]
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def acoustic_intensity(
 def superposed_mean_stress(
     *, yield_strength: ArrayLike, youngs_modulus: ArrayLike, strain_amplitude: ArrayLike
 ) -> Floats:
-    r"""Return an estimate of the mean flow stress of a metal under an oscillating strain, by stress superposition. [Pa]
+    r"""Estimate of the mean flow stress of a metal under an oscillating strain, by stress superposition. [Pa]
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def superposed_mean_stress(
 
 
 def acoustic_softening_ratio(*, acoustic_intensity: ArrayLike, reference_intensity: ArrayLike) -> Floats:
-    r"""Return an estimate of the flow stress under ultrasound over that without, by acoustic softening. []
+    r"""Estimate of the flow stress under ultrasound over that without, by acoustic softening. []
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def acoustic_softening_ratio(*, acoustic_intensity: ArrayLike, reference_intensi
 
 
 def reference_intensity_from_test(*, stress_ratio: ArrayLike, acoustic_intensity: ArrayLike) -> Floats:
-    r"""Return the reference intensity of acoustic softening from one test on a metal. [W/m2]
+    r"""Reference intensity of acoustic softening from one test on a metal. [W/m2]
 
     Parameters
     ----------

@@ -12,17 +12,7 @@ _FEW = 1000  # points for which numpy takes less than loading special functions
 
 
 def scaled_bessel_i0(argument: ArrayLike) -> Floats:
-    """Return exp(-x) I_0(x), to 1e-13.
-
-    Parameters
-    ----------
-    argument : array_like, any shape
-        x, not negative.
-
-    Returns
-    -------
-    ndarray, shape of `argument`
-    """
+    """exp(-x) I_0(x), to 1e-13."""
     x = np.asarray(argument, dtype=np.float64)
     if runs_plain(x.size, most=_FEW):
         below, above = np.minimum(x, _LARGEST), np.maximum(x, _LARGEST)

@@ -60,7 +60,7 @@ class FaceVibrationMode:
 def exponential_layer_ratio(
     mode: FaceVibrationMode, *, vibration_amplitude: ArrayLike, decay_length: ArrayLike
 ) -> Floats:
-    r"""Return the friction ratio of a vibrating face on a layer with exponential pressure. []
+    r"""Friction ratio of a vibrating face on a layer with exponential pressure. []
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def exponential_layer_ratio(
 def linear_layer_ratio(
     mode: FaceVibrationMode, *, vibration_amplitude: ArrayLike, static_indentation: ArrayLike
 ) -> Floats:
-    r"""Return the friction ratio of a vibrating face on a layer of constant stiffness. []
+    r"""Friction ratio of a vibrating face on a layer of constant stiffness. []
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def linear_layer_ratio(
 
 
 def _patches(mode: FaceVibrationMode) -> tuple[Floats, Floats]:
-    """Return the relative amplitudes of patches over that of the centre, and their fractions of the area."""
+    """Relative amplitudes of patches over that of the centre, and their fractions of the area."""
     rim = mode.rim_displacement_ratio
     followed = mode.following_fraction * (1 + rim) / 2
     centre, rim = 1 - followed, rim - followed
@@ -164,7 +164,7 @@ def _patches(mode: FaceVibrationMode) -> tuple[Floats, Floats]:
 
 
 def _mean_force(mean: Floats, amplitude: Floats) -> tuple[Floats, Floats]:
-    """Return the mean of max(mean - amplitude cos, 0) over a period, and the fraction of it with a positive value."""
+    """Mean of max(mean - amplitude cos, 0) over a period, and the fraction of it with a positive value."""
     quotient = np.ones(np.broadcast_shapes(mean.shape, amplitude.shape))
     c = np.clip(np.divide(mean, amplitude, out=quotient, where=amplitude > 0), -1, 1)
     fraction = 1 - np.arccos(c) / np.pi

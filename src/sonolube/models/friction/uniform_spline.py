@@ -18,14 +18,7 @@ def spline_coefficients(values: Floats) -> Floats:
     The third derivative is continuous at the second node from either end too, so that the ends are as accurate as the
     inside.
 
-    Parameters
-    ----------
-    values : ndarray, shape (n,) or (n, m)
-        At least five along each axis.
-
-    Returns
-    -------
-    ndarray, shape (n + 2,) or (n + 2, m + 2)
+    Shape (n + 2,).
     """
     coefficients = np.asarray(values, dtype=np.float64)
     for _ in range(coefficients.ndim):  # along the first axis, which then becomes the last
@@ -43,16 +36,7 @@ def spline_coefficients(values: Floats) -> Floats:
 def spline_values(coefficients: Floats, *places: Floats) -> Floats:
     """Values of a spline.
 
-    Parameters
-    ----------
-    coefficients : ndarray, shape (n + 2,) or (n + 2, m + 2)
-        By `spline_coefficients`.
-    *places : ndarray, shape (p,)
-        Along each axis, from 0 at the first node to n - 1 at the last.
-
-    Returns
-    -------
-    ndarray, shape (p,)
+    `coefficients` has shape (n + 2,). Shape (p,).
     """
     below = [np.minimum(p.astype(np.int64), n - 4) for p, n in zip(places, coefficients.shape, strict=True)]
     weights = [_weights(p - i) for p, i in zip(places, below, strict=True)]
@@ -70,18 +54,7 @@ def spline_values(coefficients: Floats, *places: Floats) -> Floats:
 
 
 def in_chunks(function: Callable[[Floats, Floats], Floats], one: Floats, other: Floats) -> Floats:
-    """Values of a function of two arrays, which broadcast, by so many points at a time as stay in the cache of a core.
-
-    Parameters
-    ----------
-    function : callable
-        Of two arrays of shape (p,), with a result of that shape.
-    one, other : ndarray
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arrays
-    """
+    """Values of a function of two arrays, which broadcast, by so many points at a time as stay in the cache of a core."""
     shape = np.broadcast_shapes(one.shape, other.shape)
     first, second = (np.broadcast_to(each, shape).ravel() for each in (one, other))
     values = np.empty(first.size)

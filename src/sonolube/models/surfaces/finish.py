@@ -89,7 +89,7 @@ class TypicalSummits:
 
 
 def surface_finish(text: str) -> SurfaceFinish:
-    """Return the range of roughness of a finish in words.
+    """Range of roughness of a finish in words.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def surface_finish(text: str) -> SurfaceFinish:
 
 
 def surface_finish_names() -> tuple[str, ...]:
-    """Return the names of the processes in alphabetical order, then the grades from fine to rough."""
+    """Names of the processes in alphabetical order, then the grades from fine to rough."""
     return (*sorted({each.name for each in _processes().values()}), *_grades())
 
 
@@ -273,7 +273,7 @@ _POLISHED_REASON = (
 
 
 def _graded(process: SurfaceFinish, grade: SurfaceFinish) -> SurfaceFinish:
-    """Return the finish of a process held to a grade, with a note where the process does not give it."""
+    """Finish of a process held to a grade, with a note where the process does not give it."""
     apart = (
         grade.roughness_average_high < process.roughness_average_low
         or grade.roughness_average_low > process.roughness_average_high
@@ -290,13 +290,13 @@ def _graded(process: SurfaceFinish, grade: SurfaceFinish) -> SurfaceFinish:
 
 @cache
 def _content() -> Mapping[str, Any]:
-    """Return the content of the file of finishes."""
+    """Content of the file of finishes."""
     return tomllib.loads(files("sonolube.models.surfaces").joinpath("finishes.toml").read_text(encoding="utf-8"))
 
 
 @cache
 def _grades() -> Mapping[str, SurfaceFinish]:
-    """Return the grades of ISO 1302 by name, each from half its limit to its limit."""
+    """Grades of ISO 1302 by name, each from half its limit to its limit."""
     content = _content()
     return {
         name: SurfaceFinish(
@@ -313,7 +313,7 @@ def _grades() -> Mapping[str, SurfaceFinish]:
 
 @cache
 def _processes() -> Mapping[str, SurfaceFinish]:
-    """Return the processes by name and alias."""
+    """Processes by name and alias."""
     content = _content()
     return {
         re.sub(r"[\s-]+", "_", each): SurfaceFinish(

@@ -15,11 +15,11 @@ _SAMPLE = 4096  # pixels of the least-trimmed-squares fit
 _TRIALS = 3000  # elemental fits, divided by the number of terms
 _REFINED_TRIALS = 5  # best of the trials, which are refined
 _CONCENTRATION_STEPS = 20
-_MOST_ITERATIONS = 50
+_MAX_ITERATIONS = 50
 _BISQUARE_REACH = 4.685  # in standard deviations: 95 % efficiency for Gaussian heights
 _DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
 _CONVERGED = 1e-4  # largest change of the form over the scale of the residuals
-_LEAST_SCALE = 1e-9  # of the residuals, over the range of heights
+_MIN_SCALE = 1e-9  # of the residuals, over the range of heights
 
 
 def fit_form(surface: HeightMap, *, degree: int = 1, robust: bool = False, reference: Mask | None = None) -> HeightMap:
@@ -217,10 +217,10 @@ def _least_trimmed_squares(basis: _Basis, z: Floats, counted: Mask, coefficients
 
 def _robust_fit(basis: _Basis, z: Floats, counted: Mask, coefficients: Floats) -> Floats:
     """Coefficients by iteratively reweighted least squares with Tukey's bisquare, from least trimmed squares."""
-    floor = _LEAST_SCALE * float(np.ptp(z[counted])) or np.finfo(float).tiny
+    floor = _MIN_SCALE * float(np.ptp(z[counted])) or np.finfo(float).tiny
     coefficients = _least_trimmed_squares(basis, z, counted, coefficients)
     current = _values(basis, coefficients)
-    for _ in range(_MOST_ITERATIONS):
+    for _ in range(_MAX_ITERATIONS):
         residual = np.abs(z - current)
         scale = max(_DEVIATION_OVER_MEDIAN * float(np.median(residual[counted])), floor)
         weights = counted * np.maximum(0.0, 1 - (residual / (_BISQUARE_REACH * scale)) ** 2) ** 2

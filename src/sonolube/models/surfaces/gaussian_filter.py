@@ -20,9 +20,9 @@ _WIDTH_OVER_CUTOFF = {
     0: math.sqrt(math.log(2) / math.pi),  # alpha of ISO 16610-21: transmission exp(-u), u = pi (alpha lc/l)^2
     2: 0.7309134280946760,  # gamma of ISO 16610-31: transmission (1 + u) exp(-u), half where u = 1.67834699
 }
-_LEAST_PIXELS = 5  # per cutoff (ISO 25178-3, table 1)
+_MIN_PIXELS = 5  # per cutoff (ISO 25178-3, table 1)
 _BISQUARE_REACH = 4.4478  # medians of the absolute residuals, three standard deviations (ISO 16610-31)
-_MOST_ITERATIONS = 50
+_MAX_ITERATIONS = 50
 _CONVERGED = 1e-3  # relative change of the scale
 
 
@@ -211,9 +211,9 @@ def _widths(order: int, cutoff_length: float, *, spacing_x: float, spacing_y: fl
     if spacing_y is not None:
         coarsest = max(coarsest, spacing_y)
     require_positive(cutoff_length=cutoff_length)
-    if cutoff_length < _LEAST_PIXELS * coarsest * (1 - 1e-9):
+    if cutoff_length < _MIN_PIXELS * coarsest * (1 - 1e-9):
         raise OutsideRange(
-            f"cutoff_length must be at least {_LEAST_PIXELS} pixels of {coarsest:g} m, which resolve a wave of that"
+            f"cutoff_length must be at least {_MIN_PIXELS} pixels of {coarsest:g} m, which resolve a wave of that"
             f" length; got {cutoff_length:g} m"
         )
     width = _WIDTH_OVER_CUTOFF[order] * cutoff_length
@@ -235,7 +235,7 @@ def _smooth(height: Floats, widths: Widths, *, order: int, robust: bool) -> Floa
 def _robust_smooth(z: Floats, measured: Mask, smooth: Floats, widths: Widths, order: int) -> Floats:
     """Robust regression by iteratively reweighted least squares with Tukey's bisquare, from a first smooth."""
     scale = math.inf
-    for _ in range(_MOST_ITERATIONS):
+    for _ in range(_MAX_ITERATIONS):
         residual = np.abs(z - smooth)
         previous, scale = scale, _BISQUARE_REACH * float(np.median(residual[measured]))
         if scale == 0 or abs(previous - scale) <= _CONVERGED * scale:
@@ -243,5 +243,5 @@ def _robust_smooth(z: Floats, measured: Mask, smooth: Floats, widths: Widths, or
         weights = measured * np.maximum(0.0, 1 - (residual / scale) ** 2) ** 2
         refined = local_regression(z, weights, widths=widths, order=order)
         smooth = np.where(np.isfinite(refined), refined, smooth)  # unchanged where only outliers are within reach
-    warn_of_range(f"the robust filter has not converged in {_MOST_ITERATIONS} iterations", stacklevel=4)
+    warn_of_range(f"the robust filter has not converged in {_MAX_ITERATIONS} iterations", stacklevel=4)
     return smooth

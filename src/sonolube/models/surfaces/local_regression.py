@@ -16,8 +16,8 @@ from sonolube.execution.compilation import kernel
 
 REACH = 3.2  # in widths of the weight, which is 1e-14 there
 _STRIP = 1 << 21  # pixels per strip, which bounds the memory
-_LEAST_PIVOT = 1e-6  # over the sum of weights: a smaller pivot is rounding
-_LEAST_WEIGHT = 1e-9  # over the weight of a full neighbourhood
+_MIN_PIVOT = 1e-6  # over the sum of weights: a smaller pivot is rounding
+_MIN_WEIGHT = 1e-9  # over the weight of a full neighbourhood
 
 Widths = tuple[float | None, float | None]
 """Widths of the weight exp(-pi (distance/width)^2) in pixels, along the columns and along the rows; None: not used."""
@@ -26,24 +26,10 @@ Widths = tuple[float | None, float | None]
 def local_regression(z: Floats, weights: Floats, *, widths: Widths, order: int) -> Floats:
     r"""Local polynomial regression of a map: the value at each pixel of the polynomial fitted around it.
 
-    Parameters
-    ----------
-    z : ndarray, shape (rows, columns)
-        Heights, finite also where their weight is zero.
-    weights : ndarray, shape of `z`
-        Weight of each pixel, from 0 to 1.
-    widths : pair of float or None
-        Widths :math:`w` of the Gaussian weight in pixels.
-    order : int
-        0 for the weighted mean, 2 for a local paraboloid.
+    `z` has shape (rows, columns).
 
-    Returns
-    -------
-    ndarray, shape of `z`
-        NaN where no pixel within reach has weight.
+    NaN where no pixel within reach has weight.
 
-    Notes
-    -----
     At each pixel :math:`r` the coefficients of the polynomial :math:`p_r` of the order minimise
 
     .. math:: \sum_s g(s - r)\, \omega_s \left[z_s - p_r(s - r)\right]^2 , \qquad
@@ -51,9 +37,7 @@ def local_regression(z: Floats, weights: Floats, *, widths: Widths, order: int) 
 
     with the weights :math:`\omega`, and the result is :math:`p_r(0)`.
 
-    References
-    ----------
-    .. [1] ISO 16610-31:2016 and ISO 16610-71:2014, Gaussian regression filters.
+    Source: ISO 16610-31:2016 and ISO 16610-71:2014, Gaussian regression filters.
     """
     if order == 0:
         return _patch_regression(z, weights, widths, order)
@@ -76,7 +60,7 @@ def _strips(shape: tuple[int, ...], width: float | None) -> Iterator[tuple[slice
 def _patch_regression(z: Floats, weights: Floats, widths: Widths, order: int) -> Floats:
     """Local polynomial regression of a map that fits into memory as a whole."""
     sums = _Correlation.of(z.shape, widths, order)
-    uniform, least = bool(np.all(weights == 1)), _LEAST_WEIGHT * sums.full_weight
+    uniform, least = bool(np.all(weights == 1)), _MIN_WEIGHT * sums.full_weight
     spectrum_z = sums.forward(z if uniform else weights * z)
     spectrum_w = None if uniform else sums.forward(weights)
 
@@ -180,7 +164,7 @@ def _constant_terms(
             for j in range(i + 1):
                 a[i, j] = moments[table[i, j], pixel]
         for i in range(terms - 1):
-            if a[i, i] <= _LEAST_PIVOT * weight:
+            if a[i, i] <= _MIN_PIVOT * weight:
                 continue
             for j in range(i + 1, terms):
                 factor = a[j, i] / a[i, i]

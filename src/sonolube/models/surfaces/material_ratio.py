@@ -11,7 +11,7 @@ from sonolube.models.surfaces.height_map import HeightMap
 
 _SECANT = 0.4  # material ratio spanned by the secant of least slope (ISO 25178-2)
 _PEAKS_END, _CORE_END = 0.1, 0.8  # material ratios that bound the core volume (ISO 25178-3)
-_LEAST_PIXELS = 10
+_MIN_PIXELS = 10
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -174,7 +174,7 @@ def functional_parameters(surface: HeightMap | MaterialRatioCurve) -> Functional
     """
     curve = surface if isinstance(surface, MaterialRatioCurve) else material_ratio_curve(surface)
     z = curve.height
-    if z.size < _LEAST_PIXELS or z[0] == z[-1]:
+    if z.size < _MIN_PIXELS or z[0] == z[-1]:
         raise InvalidInput(f"functional parameters require ten measured pixels of different heights, got {z.size}")
     top, slope = _equivalent_line(z)
     bottom = top + slope

@@ -14,7 +14,7 @@ from sonolube.models.surfaces.height_map import HeightMap
 from sonolube.models.surfaces.roughness_profile import ProfileParameters, profile_parameters
 
 _SECTIONS = 5
-_LEAST_POINTS = 5  # of a cutoff, that the filter needs
+_MIN_POINTS = 5  # of a cutoff, that the filter needs
 _SHORTFALL = 0.01  # of a section, by which a length may fall short of whole sections
 
 
@@ -164,7 +164,7 @@ def evaluate_profile(
     fitting = [each for each in SETTING_CLASSES if _whole_sections(length, each.long_cutoff_length) >= _SECTIONS]
     if not fitting and _whole_sections(length, SETTING_CLASSES[0].long_cutoff_length):
         fitting = [SETTING_CLASSES[0]]
-    if not fitting or fitting[0].long_cutoff_length < _LEAST_POINTS * spacing:
+    if not fitting or fitting[0].long_cutoff_length < _MIN_POINTS * spacing:
         return _evaluated(levelled, spacing, short_cutoff_length, None)
     for settings in fitting:
         short = settings.short_cutoff_length if short_cutoff_length is None else short_cutoff_length
@@ -179,9 +179,9 @@ def _check_cutoffs(length: float, spacing: float, short: float | None, long: flo
     require_positive(long_cutoff_length=long)
     if short is not None and short >= long:
         raise InvalidInput(f"short_cutoff_length {short:g} m must be less than long_cutoff_length {long:g} m")
-    if not _whole_sections(length, long) or long < _LEAST_POINTS * spacing:
+    if not _whole_sections(length, long) or long < _MIN_POINTS * spacing:
         raise InvalidInput(
-            f"long_cutoff_length must be from {_LEAST_POINTS} points to the length of the profile, {length:g} m,"
+            f"long_cutoff_length must be from {_MIN_POINTS} points to the length of the profile, {length:g} m,"
             f" got {long:g} m"
         )
 
@@ -196,7 +196,7 @@ def _evaluated(
 ) -> ProfileEvaluation:
     """Evaluation of a levelled profile with given cutoffs."""
     caveats = []
-    if short is not None and short < _LEAST_POINTS * spacing * (1 - 1e-9):
+    if short is not None and short < _MIN_POINTS * spacing * (1 - 1e-9):
         caveats.append(
             f"no S-filter: steps of {_micrometres(spacing)} are too coarse for its cutoff of {_micrometres(short)}"
         )

@@ -15,7 +15,7 @@ from sonolube.models.surfaces.spectrum import ProfileDirection, profiles
 
 _SECTIONS = 5
 _POINTS_PER_SECTION = 10  # with fewer the height of a section depends on the sampling
-_LEAST_ELEMENT = 0.1  # height of the peak and depth of the pit of a profile element, over Rz
+_MIN_ELEMENT = 0.1  # height of the peak and depth of the pit of a profile element, over Rz
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -244,7 +244,7 @@ def _sections(height: Floats, points: int) -> list[Floats]:
 
 def _mean_element_spacing(position: Floats, deviation: Floats, section_height: float) -> float | None:
     """Mean distance of crossings of the mean line in one direction, between peaks and pits beyond the threshold."""
-    beyond = np.flatnonzero(np.abs(deviation) >= _LEAST_ELEMENT * section_height)
+    beyond = np.flatnonzero(np.abs(deviation) >= _MIN_ELEMENT * section_height)
     reversals = beyond[1:][np.diff(np.sign(deviation[beyond])) != 0]
     crossings = np.flatnonzero(np.signbit(deviation[1:]) != np.signbit(deviation[:-1]))
     last = crossings[np.searchsorted(crossings, reversals, side="left") - 1]

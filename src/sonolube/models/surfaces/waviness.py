@@ -10,7 +10,7 @@ from sonolube.models.surfaces.form_removal import remove_form
 from sonolube.models.surfaces.height_map import HeightMap
 
 _PADDING = 8  # zero padding, so that a parabola locates the peak of the spectrum
-_FEWEST_WAVES = 1.5  # in the map: longer waves are not distinguishable from form
+_MIN_WAVES = 1.5  # in the map: longer waves are not distinguishable from form
 
 
 def dominant_wavelengths(surface: HeightMap, *, along: Literal["rows", "columns"] = "rows", most: int = 3) -> Floats:
@@ -58,7 +58,7 @@ def dominant_wavelengths(surface: HeightMap, *, along: Literal["rows", "columns"
     power = np.mean(np.abs(spectrum) ** 2, axis=0)
     inner = power[1:-1]
     waves = np.arange(1, power.size - 1) / _PADDING  # in the map
-    peak = (inner > power[:-2]) & (inner >= power[2:]) & (waves >= _FEWEST_WAVES) & (waves <= points / 4)
+    peak = (inner > power[:-2]) & (inner >= power[2:]) & (waves >= _MIN_WAVES) & (waves <= points / 4)
     peak &= inner > 1e-3 * np.max(inner, initial=0.0)  # side lobes of the window are below
     found = 1 + np.flatnonzero(peak)
     left, middle, right = np.log(power[found - 1]), np.log(power[found]), np.log(power[found + 1])

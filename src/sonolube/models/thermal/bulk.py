@@ -112,7 +112,7 @@ class HeatedDisc:
 
 
 def half_space_rise(solid: ThermalSolid, *, heat_flux: ArrayLike, time: ArrayLike, depth: ArrayLike = 0.0) -> Floats:
-    r"""Return the transient temperature rise in a half-space under a constant, uniform surface heat flux. [K]
+    r"""Transient temperature rise in a half-space under a constant, uniform surface heat flux. [K]
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def half_space_rise(solid: ThermalSolid, *, heat_flux: ArrayLike, time: ArrayLik
 def lumped_rise(
     *, heat_rate: ArrayLike, thermal_conductance: ArrayLike, heat_capacity: ArrayLike, time: ArrayLike
 ) -> Floats:
-    r"""Return the transient temperature rise of a body of uniform temperature by the lumped-capacitance method. [K]
+    r"""Transient temperature rise of a body of uniform temperature by the lumped-capacitance method. [K]
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def lumped_rise(
 
 
 def pin_rise(pin: HeatedPin, *, heat_rate: ArrayLike, depth: ArrayLike = 0.0) -> Floats:
-    r"""Return the steady temperature rise along a pin, a fin whose far end is held at the temperature of the air. [K]
+    r"""Steady temperature rise along a pin, a fin whose far end is held at the temperature of the air. [K]
 
     Parameters
     ----------
@@ -238,7 +238,7 @@ def pin_rise(pin: HeatedPin, *, heat_rate: ArrayLike, depth: ArrayLike = 0.0) ->
 
 
 def pin_conductance(pin: HeatedPin) -> float:
-    """Return the steady thermal conductance of a pin: heat into its face per kelvin of rise of that face. [W/K]
+    """Steady thermal conductance of a pin: heat into its face per kelvin of rise of that face. [W/K]
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def pin_conductance(pin: HeatedPin) -> float:
 
 
 def disc_track_rise(disc: HeatedDisc, *, heat_rate: ArrayLike) -> Floats:
-    r"""Return the steady temperature rise of a thin disc on the circle along which it is heated. [K]
+    r"""Steady temperature rise of a thin disc on the circle along which it is heated. [K]
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class ContactTemperatureHistory:
 
 
 def frictional_heat_rate(*, friction_force: ArrayLike, sliding_speed: ArrayLike) -> Floats:
-    r"""Return the frictional heat per time, the work of friction at the mean sliding speed. [W]
+    r"""Frictional heat per time, the work of friction at the mean sliding speed. [W]
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def frictional_heat_rate(*, friction_force: ArrayLike, sliding_speed: ArrayLike)
 def superimposed_heat_rate(
     *, friction_force: ArrayLike, sliding_speed: ArrayLike, vibration_velocity: ArrayLike
 ) -> Floats:
-    r"""Return the frictional heat per time at the superimposed speed, as published in D 4.3.4. [W]
+    r"""Frictional heat per time at the superimposed speed, as published in D 4.3.4. [W]
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def contact_temperature_history(
     sliding_speed: ArrayLike,
     vibration_heat_rate: ArrayLike = 0.0,
 ) -> ContactTemperatureHistory:
-    r"""Return the temperature history of a contact under stepwise constant frictional heat and heat of vibration.
+    r"""Temperature history of a contact under stepwise constant frictional heat and heat of vibration.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ class MovingRise(Protocol):
     def __call__(
         self, solid: ThermalSolid, source: HeatSource, /, *, heat_flux: ArrayLike, sliding_speed: ArrayLike
     ) -> FlashRise:
-        """Return the steady rise under the source, for a mean flux in W/m2 and a speed in m/s."""
+        """Steady rise under the source, for a mean flux in W/m2 and a speed in m/s."""
 
 
 class ContactRise(NamedTuple):
@@ -55,7 +55,7 @@ class ContactRise(NamedTuple):
 
 
 def peclet_number(solid: ThermalSolid, source: HeatSource, *, sliding_speed: ArrayLike) -> Floats:
-    r"""Return the Peclet number of a heat source that moves over a solid. []
+    r"""Peclet number of a heat source that moves over a solid. []
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def peclet_number(solid: ThermalSolid, source: HeatSource, *, sliding_speed: Arr
 
 
 def low_peclet_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike) -> FlashRise:
-    r"""Return the steady rise under a stationary source, the limit of zero Peclet number.
+    r"""Steady rise under a stationary source, the limit of zero Peclet number.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def low_peclet_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: Array
 def high_peclet_rise(
     solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike
 ) -> FlashRise:
-    r"""Return the steady rise under a fast source, the limit of high Peclet number.
+    r"""Steady rise under a fast source, the limit of high Peclet number.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def high_peclet_rise(
 
 
 def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike) -> FlashRise:
-    r"""Return the steady flash temperature rise under a sliding source by Tian and Kennedy's interpolation.
+    r"""Steady flash temperature rise under a sliding source by Tian and Kennedy's interpolation.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike,
 def moving_ellipse_rise(
     solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike
 ) -> FlashRise:
-    r"""Return the steady flash temperature rise under a uniform elliptic source at any speed, by quadrature.
+    r"""Steady flash temperature rise under a uniform elliptic source at any speed, by quadrature.
 
     Parameters
     ----------
@@ -290,7 +290,7 @@ def contact_rise(
     sliding_speed: ArrayLike,
     moving_rise: MovingRise = flash_rise,
 ) -> ContactRise:
-    r"""Return the flash temperature of a contact and its heat partition by equal mean temperatures, after Jaeger.
+    r"""Flash temperature of a contact and its heat partition by equal mean temperatures, after Jaeger.
 
     Parameters
     ----------
@@ -345,7 +345,7 @@ def contact_rise(
 def blok_partition(
     stationary: ThermalSolid, moving: ThermalSolid, source: HeatSource, *, sliding_speed: ArrayLike
 ) -> Floats:
-    r"""Return the fraction of the heat into the stationary body by equal peak temperatures, after Blok. []
+    r"""Fraction of the heat into the stationary body by equal peak temperatures, after Blok. []
 
     Parameters
     ----------
@@ -385,10 +385,10 @@ def blok_partition(
 
 
 def _partition(first: Floats, second: Floats) -> Floats:
-    """Return the fraction of the heat into the first of two bodies, from their rises under equal flux."""
+    """Fraction of the heat into the first of two bodies, from their rises under equal flux."""
     return second / (first + second)
 
 
 def _rise_scale(solid: ThermalSolid, source: HeatSource, heat_flux: ArrayLike) -> Floats:
-    """Return the unit of dimensionless rises, mean flux times half length over conductivity, in K."""
+    """Unit of dimensionless rises, mean flux times half length over conductivity, in K."""
     return require_non_negative(heat_flux=heat_flux) * source.half_length / solid.thermal_conductivity

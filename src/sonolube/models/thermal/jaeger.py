@@ -21,7 +21,7 @@ def moving_band_rise(
     sliding_speed: ArrayLike,
     distance_ahead: ArrayLike,
 ) -> Floats:
-    r"""Return the steady surface temperature rise around a uniform moving band source, by Jaeger's integral. [K]
+    r"""Steady surface temperature rise around a uniform moving band source, by Jaeger's integral. [K]
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def moving_rectangle_rise(
     transverse_distance: ArrayLike = 0.0,
     duration: float | None = None,
 ) -> Floats:
-    r"""Return the surface temperature rise around a uniform rectangular source, at rest or moving, by quadrature. [K]
+    r"""Surface temperature rise around a uniform rectangular source, at rest or moving, by quadrature. [K]
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def moving_rectangle_rise(
     speed = v * b / solid.thermal_diffusivity
 
     def integrand(s: float) -> Floats:
-        """Return the contribution of heat of one age; s is its diffusion length over the source's half length."""
+        """Contribution of heat of one age; s is its diffusion length over the source's half length."""
         passed = speed * s**2
         longitudinal = erf((along + passed + 1) / (2 * s)) - erf((along + passed - 1) / (2 * s))
         return np.asarray(longitudinal * (erf((across + width) / (2 * s)) - erf((across - width) / (2 * s))))

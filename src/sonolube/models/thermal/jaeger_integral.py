@@ -28,7 +28,7 @@ _K1_SERIES = _I1 / 2 * (digamma(_ORDERS + 1) + digamma(_ORDERS + 2))  # of 1 + l
 
 
 def _polynomial_in_inverse(function: Callable[[Floats], Floats]) -> Floats:
-    """Return the coefficients of a Chebyshev interpolant in powers of w = 2/s on 0 < w <= 1."""
+    """Coefficients of a Chebyshev interpolant in powers of w = 2/s on 0 < w <= 1."""
     near_zero = np.finfo(np.float64).tiny
     smooth = Chebyshev.interpolate(lambda w: function(2 / np.maximum(w, near_zero)), 17, domain=[0, 1])
     return np.asarray(smooth.convert(kind=Polynomial, domain=[-1, 1]).coef, dtype=np.float64)
@@ -40,7 +40,7 @@ _POSITIVE_U = _polynomial_in_inverse(lambda s: s * np.sqrt(s) * (k1e(s) - k0e(s)
 
 @kernel(cache=True)
 def moving_band_integrals(first: Floats, last: Floats) -> Floats:
-    """Return the integrals of exp(-t) K0(abs t) from each `first` to its `last`."""
+    """Integrals of exp(-t) K0(abs t) from each `first` to its `last`."""
     integrals = np.empty(first.size)
     for i in range(first.size):
         integrals[i] = _integral_from_zero(last[i]) - _integral_from_zero(first[i])
@@ -49,7 +49,7 @@ def moving_band_integrals(first: Floats, last: Floats) -> Floats:
 
 @kernel(cache=True)
 def _integral_from_zero(u: float) -> float:
-    """Return the integral of exp(-t) K0(abs t) from 0 to u."""
+    """Integral of exp(-t) K0(abs t) from 0 to u."""
     s = abs(u)
     if s == 0.0:
         return 0.0
@@ -65,7 +65,7 @@ def _integral_from_zero(u: float) -> float:
 
 @kernel(cache=True)
 def _polynomial(coefficients: Floats, x: float) -> float:
-    """Return a polynomial's value by Horner's scheme, lowest coefficient first."""
+    """Polynomial's value by Horner's scheme, lowest coefficient first."""
     total = coefficients[-1]
     for k in range(coefficients.size - 2, -1, -1):
         total = total * x + coefficients[k]

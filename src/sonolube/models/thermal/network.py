@@ -54,7 +54,7 @@ class ThermalNetwork:
 
 
 def network_rise(network: ThermalNetwork, *, time: ArrayLike, heat_rate: ArrayLike) -> Floats:
-    r"""Return the transient temperature rise of every body of a network under stepwise constant heat input. [K]
+    r"""Transient temperature rise of every body of a network under stepwise constant heat input. [K]
 
     Parameters
     ----------
@@ -103,6 +103,6 @@ def network_rise(network: ThermalNetwork, *, time: ArrayLike, heat_rate: ArrayLi
 
 
 def _step_response(rates: Floats, interval: float) -> Floats:
-    """Return (1 - exp(-rate interval))/rate, in its limit the interval where the rate is zero."""
+    """(1 - exp(-rate interval))/rate, in its limit the interval where the rate is zero."""
     safe = np.where(rates > 0, rates, 1.0)
     return np.where(rates > 0, -np.expm1(-safe * interval) / safe, interval)

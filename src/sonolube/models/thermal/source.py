@@ -31,7 +31,7 @@ def _complete_elliptic_integral(complement: float) -> float:
 
 
 def _beta(a: float, b: float) -> float:
-    """Return the beta function."""
+    """Beta function."""
     return math.gamma(a) * math.gamma(b) / math.gamma(a + b)
 
 

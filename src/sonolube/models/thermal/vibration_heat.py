@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 def half_wave_bar_energy(
     *, density: ArrayLike, cross_section: ArrayLike, length: ArrayLike, frequency: ArrayLike, axial_amplitude: ArrayLike
 ) -> Floats:
-    r"""Return the vibration energy stored in a prismatic half-wave bar in axial resonance. [J]
+    r"""Vibration energy stored in a prismatic half-wave bar in axial resonance. [J]
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def half_wave_bar_energy(
 
 
 def vibration_loss_heat_rate(*, stored_energy: ArrayLike, frequency: ArrayLike, quality_factor: ArrayLike) -> Floats:
-    r"""Return the heat per time dissipated by a vibration of known stored energy and quality factor. [W]
+    r"""Heat per time dissipated by a vibration of known stored energy and quality factor. [W]
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def vibration_loss_heat_rate(*, stored_energy: ArrayLike, frequency: ArrayLike, 
 
 
 def adiabatic_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike, duration: ArrayLike) -> Floats:
-    r"""Return the heat per time inferred from the adiabatic temperature rise of a body. [W]
+    r"""Heat per time inferred from the adiabatic temperature rise of a body. [W]
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def adiabatic_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike
 def interface_conductance(
     *, temperature_rise: ArrayLike, rise_behind_interface: ArrayLike, convection_coefficient: ArrayLike
 ) -> Floats:
-    r"""Return the thermal conductance of an interface from the steady rises on both of its sides. [W/(m2 K)]
+    r"""Thermal conductance of an interface from the steady rises on both of its sides. [W/(m2 K)]
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def interface_conductance(
 
 
 def layer_conductance(*, thermal_conductivity: ArrayLike, thickness: ArrayLike) -> Floats:
-    r"""Return the thermal conductance of a plane layer through its thickness. [W/(m2 K)]
+    r"""Thermal conductance of a plane layer through its thickness. [W/(m2 K)]
 
     Parameters
     ----------

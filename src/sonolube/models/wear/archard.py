@@ -41,7 +41,7 @@ class ArchardWear:
 
 
 def archard_wear_rate(law: ArchardWear, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the volume lost per sliding distance by Archard's law. [m2]
+    r"""Volume lost per sliding distance by Archard's law. [m2]
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from sonolube.models.contact.separating_half_period import sampled_separating_me
 
 
 def cube_wear_rate(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
-    r"""Return the volume lost per sliding distance by the cube model of Dong (2015). [m2]
+    r"""Volume lost per sliding distance by the cube model of Dong (2015). [m2]
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def cube_wear_rate(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
 def vibrating_cube_wear_rate(
     contact: RoughContact, *, normal_load: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
-    r"""Return the volume lost per sliding distance by the cube model under a sinusoidal normal vibration. [m2]
+    r"""Volume lost per sliding distance by the cube model under a sinusoidal normal vibration. [m2]
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def vibrating_cube_wear_rate(
 
 
 def full_period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
-    r"""Return the ratio of wear rates with and without vibration by the cube model over the full period. []
+    r"""Ratio of wear rates with and without vibration by the cube model over the full period. []
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def full_period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floa
 
 
 def half_period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
-    r"""Return the ratio of wear rates with and without vibration by the cube model over the separating half period. []
+    r"""Ratio of wear rates with and without vibration by the cube model over the separating half period. []
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def half_period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floa
 
 
 def load_balanced_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
-    r"""Return the ratio of wear rates with and without vibration by the cube model about the load-balanced mean gap. []
+    r"""Ratio of wear rates with and without vibration by the cube model about the load-balanced mean gap. []
 
     Parameters
     ----------
@@ -208,12 +208,12 @@ def load_balanced_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Fl
 
 
 def _about_rest(motion: ContactMotion) -> ContactMotion:
-    """Return a motion without the shift of its mean gap; its forces, which wear does not take, stay as they are."""
+    """Motion without the shift of its mean gap; its forces, which wear does not take, stay as they are."""
     return replace(motion, displacement=motion.displacement - np.mean(motion.displacement))
 
 
 def _period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
-    """Return the mean wear rate over a motion as it is, over that at rest. []"""
+    """Mean wear rate over a motion as it is, over that at rest. []"""
     d, at_rest = _separation_and_rate(contact, motion)
     return richardson_period_mean(
         lambda sampled: np.asarray(np.mean(_wear_rate(contact, d + sampled.displacement) / at_rest)), motion
@@ -221,12 +221,12 @@ def _period_wear_ratio(contact: RoughContact, motion: ContactMotion) -> Floats:
 
 
 def _separation_and_rate(contact: RoughContact, motion: ContactMotion) -> tuple[Floats, Floats]:
-    """Return the separation [m] and the wear rate [m2] at rest."""
+    """Separation [m] and the wear rate [m2] at rest."""
     d = separation(contact, normal_load=motion.normal_load)
     return d, _wear_rate(contact, require_positive(separation=d))
 
 
 def _wear_rate(contact: RoughContact, d: Floats) -> Floats:
-    """Return half the volume of the cube over the length of the nominal contact. [m2]"""
+    """Half the volume of the cube over the length of the nominal contact. [m2]"""
     rate: Floats = real_contact_area(contact, separation=d) * d / (2 * np.sqrt(contact.nominal_area))  # D 3.26, 3.27
     return rate

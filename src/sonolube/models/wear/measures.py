@@ -6,7 +6,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 
 
 def specific_wear_rate(*, wear_rate: ArrayLike, normal_load: ArrayLike) -> Floats:
-    r"""Return the specific wear rate: volume lost per sliding distance and load. [m2/N]
+    r"""Specific wear rate: volume lost per sliding distance and load. [m2/N]
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def specific_wear_rate(*, wear_rate: ArrayLike, normal_load: ArrayLike) -> Float
 
 
 def mass_loss(*, wear_volume: ArrayLike, density: ArrayLike) -> Floats:
-    """Return the mass of a worn volume. [kg]
+    """Mass of a worn volume. [kg]
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def mass_loss(*, wear_volume: ArrayLike, density: ArrayLike) -> Floats:
 
 
 def vibration_contact_count(*, frequency: ArrayLike, duration: ArrayLike) -> Floats:
-    """Return the number of contacts made by a vibration, one per period. []
+    """Number of contacts made by a vibration, one per period. []
 
     Parameters
     ----------

@@ -90,7 +90,7 @@ class WearMechanismAssessment:
 
 
 def assess_wear_mechanism(first: WearPairBody, second: WearPairBody) -> WearMechanismAssessment:
-    """Return the wear mechanism of two bodies and the effect of vibration, by the rule of D 2.5.
+    """Wear mechanism of two bodies and the effect of vibration, by the rule of D 2.5.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def assess_wear_mechanism(first: WearPairBody, second: WearPairBody) -> WearMech
 
 
 def _mechanism(softer: WearPairBody, harder: WearPairBody) -> tuple[WearMechanism, str]:
-    """Return the wear mechanism by the hardnesses, and the reason."""
+    """Wear mechanism by the hardnesses, and the reason."""
     ratio = harder.hardness / softer.hardness
     compared = f"{harder.name} is {ratio:.2f} times as hard as {softer.name}"
     if softer.hardness >= _PLOUGHED_BELOW:
@@ -136,7 +136,7 @@ def _mechanism(softer: WearPairBody, harder: WearPairBody) -> tuple[WearMechanis
 
 
 def _vibration_effect(first: WearPairBody, second: WearPairBody) -> tuple[VibrationEffect, str]:
-    """Return the effect of vibration by the crystal structures, and the reason."""
+    """Effect of vibration by the crystal structures, and the reason."""
     hexagonal = [body.name for body in (first, second) if body.structure is CrystalStructure.HEXAGONAL]
     if hexagonal:
         return (
@@ -151,7 +151,7 @@ def _vibration_effect(first: WearPairBody, second: WearPairBody) -> tuple[Vibrat
 
 
 def _untested(first: WearPairBody, second: WearPairBody) -> tuple[str, ...]:
-    """Return the limit of the evidence that a pair exceeds, if any."""
+    """Limit of the evidence that a pair exceeds, if any."""
     if first.structure is second.structure is CrystalStructure.NOT_A_METAL:
         return ("No pair without a metal was tested: the rule does not cover such pairs.",)
     return ()

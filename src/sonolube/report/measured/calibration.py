@@ -49,23 +49,7 @@ class CalibrationSettings:
 
 
 def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> sheet.Sheet:
-    """Calibration of a force gauge by the Preisach model and by polynomials, from recorded loops.
-
-    Parameters
-    ----------
-    path : Path
-        A recording with `displacement` and `applied_force`, else `friction_force`.
-    settings : CalibrationSettings
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read or its displacement does not vary.
-    """
+    """Calibration of a force gauge by the Preisach model and by polynomials, from recorded loops."""
     recording = read_recording(path, mapping=settings.mapping)
     x, force = channel_values(recording, "displacement"), _applied_force(recording)
     hysteresis = fit_preisach(displacement=x, applied_force=force, levels=settings.levels)
@@ -89,23 +73,7 @@ def _applied_force(recording: "xr.Dataset") -> Floats:
 
 
 def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> PreisachCalibration:
-    """Preisach model of a force gauge, fitted to recorded loops.
-
-    Parameters
-    ----------
-    path : Path
-        A recording with `displacement` and `applied_force`, else `friction_force`.
-    settings : CalibrationSettings
-
-    Returns
-    -------
-    PreisachCalibration
-
-    Raises
-    ------
-    InvalidInput
-        As `calibration_sheet`.
-    """
+    """Preisach model of a force gauge, fitted to recorded loops."""
     recording = read_recording(path, mapping=settings.mapping)
     return fit_preisach(
         displacement=channel_values(recording, "displacement"),
@@ -115,26 +83,7 @@ def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> Preis
 
 
 def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: CalibrationSettings) -> sheet.Sheet:
-    """Force by a calibrated gauge from a recorded displacement, with its uncertainty.
-
-    Parameters
-    ----------
-    path : Path
-        A recording with `displacement`, from the unloaded state on.
-    calibration : PreisachCalibration
-    settings : CalibrationSettings
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read.
-    OutsideRange
-        If the displacement leaves the range that was calibrated.
-    """
+    """Force by a calibrated gauge from a recorded displacement, with its uncertainty."""
     recording = read_recording(path, mapping=settings.mapping)
     estimate = force_from_preisach(
         calibration,

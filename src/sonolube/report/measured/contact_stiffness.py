@@ -51,28 +51,7 @@ def contact_stiffness_sheet(
 ) -> tuple[sheet.Sheet, tuple[str, ...]]:
     """Stiffness of a contact by the shift of a resonance, from files of spectra.
 
-    Parameters
-    ----------
-    free : Path
-        Spectrum with the contact lifted, in a format of `read_resonance_spectrum`.
-    pressed : Path
-        Under the load.
-    settings : StiffnessSettings
-    again : Path or None
-        Lifted again, after the pressed one.
-    large : Path or None
-        Under the load, at a large vibration.
-
-    Returns
-    -------
-    sheet : Sheet
-    rig_lines : tuple of str
-        Lines of a rig file that state the stiffness by all that was measured; empty where it was not found.
-
-    Raises
-    ------
-    InvalidInput
-        If a file cannot be read or shows no resonance, or the settings do not fit together.
+    `rig_lines`: Lines of a rig file that state the stiffness by all that was measured; empty where it was not found.
     """
     spectra = [read_resonance_spectrum(path) for path in (free, *([] if again is None else [again]))]
     found = measured_contact_stiffness(
@@ -105,15 +84,7 @@ def contact_stiffness_sheet(
 def rig_lines(stiffness: LogEstimate) -> tuple[str, ...]:
     """Lines of a rig file that state a stiffness of the contact and its uncertainty.
 
-    Parameters
-    ----------
-    stiffness : LogEstimate
-        In N/m.
-
-    Returns
-    -------
-    tuple of str
-        Two tables of a line each.
+    Two tables of a line each.
     """
     return (
         "[contact]",

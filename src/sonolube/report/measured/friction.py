@@ -40,7 +40,7 @@ _LARGE = 1 << 29  # bytes of a TDMS file beyond which it is read in blocks, for 
 _CHANNELS = ("friction_force", "friction_coefficient")
 _ONE_VOLTAGE = 0.1  # of the highest voltage, up to which its range is no change of the vibration
 _LONG_REST = 0.5  # s, from which a rest is named
-_MOST_LISTED = 3
+_MAX_LISTED = 3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -81,23 +81,7 @@ class FrictionSettings:
 
 
 def friction_sheet(path: Path, *, settings: FrictionSettings) -> sheet.Sheet:
-    """Friction in a recording: level, fluctuation, running-in, voltage steps, stick-slip, work and wobble.
-
-    Parameters
-    ----------
-    path : Path
-        In any format of `read_recording`; TDMS files beyond 512 MB are read in blocks, for their windows only.
-    settings : FrictionSettings
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read or records no friction.
-    """
+    """Friction in a recording: level, fluctuation, running-in, voltage steps, stick-slip, work and wobble."""
     if path.is_file() and path.stat().st_size > _LARGE and recording_format_name(path) == TDMS:
         return _streamed(path, settings)
     return recording_sheet(read_recording(path, mapping=settings.mapping), title=path.name, settings=settings)
@@ -198,8 +182,8 @@ def _rest_caveat(recording: "xr.Dataset", rest: Mask) -> list[sheet.Sheet]:
     spans = [(float(time[a]), float(time[b - 1])) for a, b in stretches(rest) if time[b - 1] - time[a] > _LONG_REST]
     if not spans:
         return []
-    listed = ", ".join(f"{format_si(a, 's')} to {format_si(b, 's')}" for a, b in spans[:_MOST_LISTED])
-    more = f" and {len(spans) - _MOST_LISTED} more" if len(spans) > _MOST_LISTED else ""
+    listed = ", ".join(f"{format_si(a, 's')} to {format_si(b, 's')}" for a, b in spans[:_MAX_LISTED])
+    more = f" and {len(spans) - _MAX_LISTED} more" if len(spans) > _MAX_LISTED else ""
     by = "the force, below half of that without voltage" if recorded_speed(recording) is None else "the speed"
     return [sheet.Sheet(caveats=(f"at rest by {by}, and left out: {listed}{more}",))]
 

@@ -12,15 +12,7 @@ _LEVELS = ("steady_friction_force", "friction_force", "mean_force", "mean_coeffi
 def comparison_sheet(with_vibration: Sequence[sheet.Sheet], without_vibration: Sequence[sheet.Sheet]) -> sheet.Sheet:
     """Friction reduction from tests with and without vibration, with its interval and its significance.
 
-    Parameters
-    ----------
-    with_vibration, without_vibration : sequence of Sheet
-        As `friction_sheet` gives them. Steady friction is compared where every test has it, else the mean.
-
-    Returns
-    -------
-    Sheet
-        With what is not known, where there are fewer than two tests of a kind.
+    With what is not known, where there are fewer than two tests of a kind.
     """
     every = [*with_vibration, *without_vibration]
     level = next((name for name in _LEVELS if all(_value(test, name) for test in every)), None)

@@ -44,31 +44,7 @@ class RingSettings:
 def groove_sheet(
     path: Path, *, settings: SurfaceSettings, track_number: int | None = None
 ) -> tuple[sheet.Sheet, Groove]:
-    """Wear groove in a scan: width, depth, volumes and pile-up.
-
-    Parameters
-    ----------
-    path : Path
-        In any format of `read_surface_file`, as measured.
-    settings : SurfaceSettings
-        Of which spacing and unit are taken.
-    track_number : int, optional
-        Which of several tracks, from 1: from the left, or from the innermost radius.
-
-    Returns
-    -------
-    Sheet
-    Groove
-
-    Raises
-    ------
-    NoGroove
-        If nothing stands out of the scan as a groove.
-    SeveralGrooves
-        If there are several tracks and no number.
-    InvalidInput
-        If the file cannot be read or too little was measured.
-    """
+    """Wear groove in a scan: width, depth, volumes and pile-up."""
     file = surface_file(path, settings)
     groove = measure_groove(file.height_map, track_number=track_number)
     values = [
@@ -115,26 +91,7 @@ def groove_sheet(
 def ring_sheet(
     title: str, grooves: Sequence[tuple[str, Groove | str]], *, settings: RingSettings
 ) -> tuple[sheet.Sheet, WearTrack]:
-    """Wear of a ring by the mean section of its scans and the theorem of Pappus.
-
-    Parameters
-    ----------
-    title : str
-        Which ring it is.
-    grooves : sequence of (str, Groove or str)
-        Name of each scan, and its groove or why it shows none.
-    settings : RingSettings
-
-    Returns
-    -------
-    Sheet
-    WearTrack
-
-    Raises
-    ------
-    InvalidInput
-        If fewer than two scans show a whole groove.
-    """
+    """Wear of a ring by the mean section of its scans and the theorem of Pappus."""
     ring = wear_track_from_grooves(
         [groove for _, groove in grooves],
         groove_diameter=settings.groove_diameter,
@@ -167,17 +124,7 @@ def ring_sheet(
 
 
 def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> sheet.Sheet:
-    """Wear reduction by vibration from worn rings, with its interval.
-
-    Parameters
-    ----------
-    without, with_vibration : sequence of WearTrack
-        One a specimen.
-
-    Returns
-    -------
-    Sheet
-    """
+    """Wear reduction by vibration from worn rings, with its interval."""
     reduction: WearReduction = wear_reduction_between_tracks(without, with_vibration)
     caveats: tuple[str, ...] = ()
     if not reduction.between_specimens:
@@ -190,26 +137,7 @@ def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[
 
 
 def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None) -> sheet.Sheet:
-    """Wear of a pin by the scar in a scan of its tip.
-
-    Parameters
-    ----------
-    path : Path
-        A scan of the tip.
-    settings : SurfaceSettings
-        Of which spacing and unit are taken.
-    tip_radius : float or None
-        Radius of the tip, fitted to what is unworn where None. [m]
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    SonolubeError
-        If the file cannot be read or shows no scar.
-    """
+    """Wear of a pin by the scar in a scan of its tip."""
     file = surface_file(path, settings)
     cap = wear_scar(file.height_map, tip_radius=tip_radius)
     volume, error = cap.wear_volume, cap.wear_volume_uncertainty

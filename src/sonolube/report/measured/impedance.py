@@ -53,23 +53,7 @@ class ImpedanceSettings:
 
 
 def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
-    """Equivalent circuit fitted to a measured impedance spectrum, or the stack of a structure.
-
-    Parameters
-    ----------
-    path : Path
-        In any format of `read_impedance`, or a recording of a sweep as `swept_impedance` takes it.
-    settings : ImpedanceSettings
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, or nothing fits it.
-    """
+    """Equivalent circuit fitted to a measured impedance spectrum, or the stack of a structure."""
     spectrum, turned = passive_spectrum(swept_impedance(path) or read_impedance(path, sweep=settings.sweep))
     section = _circuit(spectrum, settings) if settings.stack is None else _stack(spectrum, settings, settings.stack)
     frequency = spectrum.frequency

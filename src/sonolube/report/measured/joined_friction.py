@@ -19,23 +19,8 @@ _COLUMNS = (sheet.Column("file", "File"), sheet.Column("start_time", "From", "s"
 def joined_friction_sheet(paths: Sequence[Path], *, settings: FrictionSettings) -> sheet.Sheet:
     """Friction in all files of one test, as of one recording, with a table of the files.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-        In the order of the test. Times that restart are continued, see `join_recordings`.
-    settings : FrictionSettings
-
-    Returns
-    -------
-    Sheet
-        The analyses of `friction_sheet` over all files, so that cycles of a reciprocating motion may extend over
-        several of them; and per file its time, mean friction and scatter, and work and distance where the velocity
-        was recorded.
-
-    Raises
-    ------
-    InvalidInput
-        If a file cannot be read or records no friction, or the files have no channel in common.
+    The analyses of `friction_sheet` over all files, so that cycles of a reciprocating motion may extend over several of
+    them; and per file its time, mean friction and scatter, and work and distance where the velocity was recorded.
     """
     parts = [read_recording(path, mapping=settings.mapping) for path in paths]
     joined = join_recordings(parts)

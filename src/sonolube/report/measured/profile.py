@@ -34,30 +34,7 @@ def profile_sheet(
     short_cutoff_length: float | None,
     long_cutoff_length: float | None,
 ) -> sheet.Sheet:
-    """Profile parameters and power spectrum of a file that holds one profile.
-
-    Parameters
-    ----------
-    file : SurfaceFile
-        Whose height map is one row or one column.
-    source : dict of str to str
-        Its origin.
-    degree : int
-        Of the form taken off first.
-    robust : bool
-        Whether points far from the form lose their weight.
-    short_cutoff_length, long_cutoff_length : float or None
-        Cutoffs of both filters; by the setting class where None. [m]
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        As `evaluate_profile`.
-    """
+    """Profile parameters and power spectrum of a file that holds one profile."""
     heights = file.height_map.height
     spacing = file.height_map.spacing_x if heights.shape[0] == 1 else file.height_map.spacing_y
     found = surfaces.evaluate_profile(

@@ -12,18 +12,7 @@ _BINS = 5000  # along the page, more than it resolves
 
 @captioned("Profile", "Above, the primary profile without form; below, the profile evaluated, with its sections.")
 def profile(found: ProfileEvaluation, *, spacing: float) -> Chart:
-    """Primary profile above the one evaluated.
-
-    Parameters
-    ----------
-    found : ProfileEvaluation
-    spacing : float
-        Distance of neighbouring points. [m]
-
-    Returns
-    -------
-    Chart
-    """
+    """Primary profile above the one evaluated."""
     x = spacing * np.arange(found.primary.size, dtype=np.float64)
     across, per_metre = length_scale(x)
     edges = found.start * spacing + found.section_length * np.arange(found.section_count + 1)

@@ -35,23 +35,7 @@ class RotationSettings:
 
 
 def rotation_sheet(path: Path, *, settings: RotationSettings) -> sheet.Sheet:
-    """Rotation speed of a disc, and speed of the pin on it, from the pulses of a Hall probe.
-
-    Parameters
-    ----------
-    path : Path
-        A recording with `magnetic_flux_density`.
-    settings : RotationSettings
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read or shows fewer pulses than a turn needs.
-    """
+    """Rotation speed of a disc, and speed of the pin on it, from the pulses of a Hall probe."""
     recording = read_recording(path, mapping=settings.mapping)
     rotation = analyse_rotation(
         recording, groove_diameter=settings.groove_diameter, magnets=settings.magnets, prominence=settings.prominence

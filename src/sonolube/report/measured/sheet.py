@@ -105,7 +105,7 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
 
     def texts(self) -> tuple[list[str], list[list[str]]]:
-        """Return heads and rows as text, the quantities of a column with one prefix, without columns that are empty."""
+        """Heads and rows as text, the quantities of a column with one prefix, without columns that are empty."""
         columns = [column.texts([row[place] for row in self.rows]) for place, column in enumerate(self.columns)]
         kept = [(column.label, cells) for column, cells in zip(self.columns, columns, strict=True) if any(cells)]
         return [label for label, _ in kept], [list(row) for row in zip(*(cells for _, cells in kept), strict=True)]
@@ -165,7 +165,7 @@ class Sheet:
     not_found: tuple[str, ...] = ()
 
     def size(self) -> dict[str, str]:
-        """Return the origins that text gives as well as the page: those that say how large a scan is."""
+        """Origins that text gives as well as the page: those that say how large a scan is."""
         return {name: text for name, text in self.source.items() if name in _SIZE}
 
 
@@ -198,25 +198,7 @@ def quantity_value(
     uncertainty: float | None = None,
     interval: tuple[float, float] | None = None,
 ) -> Value:
-    """Value of a quantity of the vocabulary, which gives its unit and its default label.
-
-    Parameters
-    ----------
-    name : str
-        Of the vocabulary.
-    value : float
-        In SI.
-    label : str
-        What people read instead of the vocabulary's meaning.
-    uncertainty : float or None
-        Standard uncertainty.
-    interval : tuple of two float, or None
-        Ends of a confidence interval.
-
-    Returns
-    -------
-    Value
-    """
+    """Value of a quantity of the vocabulary, which gives its unit and its default label."""
     word = quantities()[name]
     return Value(name, label or word.meaning, value, word.unit, uncertainty=uncertainty, interval=interval)
 

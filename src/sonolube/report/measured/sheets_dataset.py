@@ -13,17 +13,10 @@ if TYPE_CHECKING:
 def sheets_dataset(sheets: Sequence[Sheet]) -> "xr.Dataset":
     """Labelled dataset of sheets in SI.
 
-    Parameters
-    ----------
-    sheets : sequence of Sheet
-
-    Returns
-    -------
-    xarray.Dataset
-        Values by their names over the dimension `sheet`, scalars where there is one sheet; standard uncertainties and
-        intervals as `NAME_uncertainty`, `NAME_lower` and `NAME_upper`; NaN for what a sheet does not have. Columns of
-        tables over a dimension of the table's name, with the titles of their sheets as `TABLE_sheet`; origins, such
-        as digests, as coordinates `source_NAME`.
+    Values by their names over the dimension `sheet`, scalars where there is one sheet; standard uncertainties and
+    intervals as `NAME_uncertainty`, `NAME_lower` and `NAME_upper`; NaN for what a sheet does not have. Columns of
+    tables over a dimension of the table's name, with the titles of their sheets as `TABLE_sheet`; origins, such as
+    digests, as coordinates `source_NAME`.
     """
     import xarray as xr
 

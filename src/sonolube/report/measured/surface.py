@@ -86,23 +86,7 @@ class SurfaceSettings:
 
 
 def spacings(text: str | float | None, *, name: str) -> tuple[float | None, float | None]:
-    """Distances of columns and rows from a number or text such as "0.5um" or "0.5um,0.6um"; None without it. [m]
-
-    Parameters
-    ----------
-    text : str, float or None
-    name : str
-        How a refusal calls it.
-
-    Returns
-    -------
-    tuple of float or None
-
-    Raises
-    ------
-    InvalidInput
-        If a distance is no length.
-    """
+    """Distances of columns and rows from a number or text such as "0.5um" or "0.5um,0.6um"; None without it. [m]"""
     if text is None or not isinstance(text, str):
         return text, text
     first, _, second = text.partition(",")
@@ -111,23 +95,7 @@ def spacings(text: str | float | None, *, name: str) -> tuple[float | None, floa
 
 
 def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
-    """Areal and profile parameters, spectra and summits of a surface file, or profile parameters of one profile.
-
-    Parameters
-    ----------
-    path : Path
-        In any format of `read_surface_file`.
-    settings : SurfaceSettings
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, levelled or filtered as asked, or its heights have no parameters.
-    """
+    """Areal and profile parameters, spectra and summits of a surface file, or profile parameters of one profile."""
     file = surface_file(path, settings)
     if is_profile(file.height_map):
         return profile_sheet(

@@ -48,23 +48,7 @@ class TemperatureSettings:
 
 
 def temperature_sheet(path: Path, *, settings: TemperatureSettings) -> sheet.Sheet:
-    """Final rise, time constants and scatter of a temperature after a step of the heat.
-
-    Parameters
-    ----------
-    path : Path
-        A recording with `temperature`.
-    settings : TemperatureSettings
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, or the span holds fewer than 8 temperatures or none that vary.
-    """
+    """Final rise, time constants and scatter of a temperature after a step of the heat."""
     recording = read_recording(path, mapping=settings.mapping)
     time, temperature = channel_values(recording, "time"), channel_values(recording, "temperature")
     start = float(time[0]) if settings.start_time is None else settings.start_time

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _STRETCHES = 8  # of a recording, whose scatter tells how well an amplitude is known
-_LEAST_PERIODS = 2.0  # in each
+_MIN_PERIODS = 2.0  # in each
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,23 +60,7 @@ class VibrationSettings:
 
 
 def vibration_sheet(path: Path, *, settings: VibrationSettings) -> sheet.Sheet:
-    """Amplitude and phase of every recorded point at the drive frequency, and the operating shape.
-
-    Parameters
-    ----------
-    path : Path
-        A recording whose channels in metres or metres per second are points, and whose one in volts, if any, the drive.
-    settings : VibrationSettings
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, records no motion, or is too short or too coarse for the frequency.
-    """
+    """Amplitude and phase of every recorded point at the drive frequency, and the operating shape."""
     recording = read_recording(path, mapping=settings.mapping)
     points, signals, velocities = _points(recording, path)
     time, f = channel_values(recording, "time"), settings.frequency
@@ -112,17 +96,7 @@ def has_voltage(each: sheet.Sheet) -> bool:
 
 
 def proportion_sheet(sheets: Sequence[sheet.Sheet]) -> sheet.Sheet:
-    """Linearity of amplitude over voltage, from recordings at several voltages.
-
-    Parameters
-    ----------
-    sheets : sequence of Sheet
-        As `vibration_sheet` gives them; those without a voltage are passed over.
-
-    Returns
-    -------
-    Sheet
-    """
+    """Linearity of amplitude over voltage, from recordings at several voltages."""
     found_in = [
         (each.title, found["voltage_peak_to_peak"], found["vibration_amplitude"])
         for each in sheets
@@ -166,7 +140,7 @@ def _drive_voltage(recording: "xr.Dataset", time: Floats, frequency: float) -> c
 def _errors(time: Floats, signals: Floats, frequency: float) -> Floats:
     """Standard errors of the amplitudes by their scatter over eight stretches; NaN for short recordings."""
     edges = np.linspace(0, time.size, _STRETCHES + 1).astype(int)
-    if np.diff(edges).min() < 2 or (time[edges[1] - 1] - time[0]) * frequency < _LEAST_PERIODS:
+    if np.diff(edges).min() < 2 or (time[edges[1] - 1] - time[0]) * frequency < _MIN_PERIODS:
         return np.full(signals.shape[0], np.nan)
     each = np.stack(
         [

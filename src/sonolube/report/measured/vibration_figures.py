@@ -9,14 +9,14 @@ from sonolube.checks import Floats
 from sonolube.measurement.vibration import AmplitudePerVolt, OperatingDeflectionShape
 from sonolube.report.measured.sheet import captioned
 
-_MOST_NUMBERED = 12  # points
+_MAX_NUMBERED = 12  # points
 
 
 @captioned("Operating shape", "Motion in phase with the whole, scaled to 1, and the phase of each point.")
 def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> Chart:
     """Operating shape and phase, point by point."""
     place = np.arange(1.0, len(points) + 1)
-    across = Axis(label="Point", ticks=tuple(place) if place.size <= _MOST_NUMBERED else ())
+    across = Axis(label="Point", ticks=tuple(place) if place.size <= _MAX_NUMBERED else ())
     phase = (np.degrees(operating.phase) + 90) % 360 - 90
     motion = (
         Line(x=place, y=operating.shape),

@@ -43,24 +43,7 @@ _BURST_COLUMNS = (
 
 
 def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> sheet.Sheet:
-    """Friction, its reduction and stick-slip at each step of the voltage of a recording.
-
-    Parameters
-    ----------
-    recording : xarray.Dataset
-        With `friction_force`, and `voltage_peak_to_peak` or `stack_voltage`.
-    rotation_speed : float or None
-        Turns per time, to take off the wobble; found in the friction without it. [1/s]
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    InvalidInput
-        If the recording has no step long enough, or none without voltage.
-    """
+    """Friction, its reduction and stick-slip at each step of the voltage of a recording."""
     found = analyse_rotation_speed(recording) if rotation_speed is None else None
     speed = found if rotation_speed is None else rotation_speed
     steps = analyse_voltage_steps(recording, rotation_speed=speed)

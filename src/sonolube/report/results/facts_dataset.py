@@ -10,21 +10,7 @@ if TYPE_CHECKING:
 
 
 def facts_dataset(kind: str, values: Mapping[str, Mapping[str, float]], titles: Mapping[str, str]) -> "xr.Dataset":
-    """Quantities of the vocabulary of several things, over their names; NaN where one is not known.
-
-    Parameters
-    ----------
-    kind : str
-        What they are, such as "material": the name of the dimension.
-    values : mapping of str to mapping of str to float
-        Quantities in SI by the name of the thing and that of the quantity.
-    titles : mapping of str to str
-        Title of each thing.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Quantities of the vocabulary of several things, over their names; NaN where one is not known."""
     import numpy as np
     import xarray as xr
 
@@ -42,17 +28,7 @@ def facts_dataset(kind: str, values: Mapping[str, Mapping[str, float]], titles: 
 
 
 def scalar_dataset(content: Mapping[str, Any]) -> "xr.Dataset":
-    """Quantities and texts of a JSON object as a dataset of scalars.
-
-    Parameters
-    ----------
-    content : mapping of str to object
-        Of which entries with value and unit become variables, and texts attributes.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Quantities and texts of a JSON object as a dataset of scalars."""
     import numpy as np
     import xarray as xr
 

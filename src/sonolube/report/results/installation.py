@@ -145,17 +145,7 @@ class Installation:
 
 
 def installation(advance: Callable[[str, int, int], None]) -> Installation:
-    """State of this installation, all self-checks made.
-
-    Parameters
-    ----------
-    advance : callable
-        Called with the title of each check, the number done and their total.
-
-    Returns
-    -------
-    Installation
-    """
+    """State of this installation, all self-checks made."""
     warm, outcomes = is_compiled(), []
     for done, check in enumerate(SELF_CHECKS):
         advance(check.title, done, len(SELF_CHECKS))

@@ -44,16 +44,7 @@ class Measurement:
 def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[Measurement, ...]:
     """Published friction tests under the contact, load, speed, friction, frequency and amplitude of a rig.
 
-    Parameters
-    ----------
-    rig : Rig
-    vibration_amplitude : float
-        Its amplitude, zero to peak. [m]
-
-    Returns
-    -------
-    tuple of Measurement
-        Roughness and asperity law are not compared: they are assumed for most tests.
+    Roughness and asperity law are not compared: they are assumed for most tests.
     """
     if rig.drive is None:
         return ()

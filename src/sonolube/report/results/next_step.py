@@ -11,14 +11,7 @@ from sonolube.text.units import format_si
 def next_command(run: Run) -> str:
     """Command for what was recorded: decay length, calibration, friction, impedance, rotation, or to show it.
 
-    Parameters
-    ----------
-    run : Run
-
-    Returns
-    -------
-    str
-        Names the folder of the run where the command takes all parts of the recording.
+    Names the folder of the run where the command takes all parts of the recording.
     """
     parts = run.part_channels
     friction = _having(parts, "friction_force")

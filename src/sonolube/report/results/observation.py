@@ -14,16 +14,7 @@ _SHOWN: Final = ("friction_force", "normal_load", "temperature", "voltage_peak_t
 
 
 def observation_line(seen: Observation) -> str:
-    """Line of a look at a run: state, step, time, means of the last second, set points, and what is wrong.
-
-    Parameters
-    ----------
-    seen : Observation
-
-    Returns
-    -------
-    str
-    """
+    """Line of a look at a run: state, step, time, means of the last second, set points, and what is wrong."""
     parts = [seen.state, step_text(seen), time_text(seen), means_text(seen), set_points_text(seen), *warnings(seen)]
     return "; ".join(filter(None, parts))
 

@@ -20,16 +20,7 @@ def operating_point(rig: "Rig") -> str:
 
 
 def rig_settings(rig: "Rig") -> list[tuple[str, str]]:
-    """Rig of a page: title, file, source, load, speed, friction without vibration, friction model and amplitude.
-
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    list of pair of str
-    """
+    """Rig of a page: title, file, source, load, speed, friction without vibration, friction model and amplitude."""
     return [
         ("rig", rig.title if rig.file is None else f"{rig.title} ({rig.file.name})"),
         *([("source of its numbers", rig.source)] if rig.source else []),

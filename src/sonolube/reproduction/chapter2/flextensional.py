@@ -35,18 +35,18 @@ def flextensional_rows() -> Iterator[Row]:
 
 
 def gain_of_slow_test() -> float:
-    """Return the gain at resonance at which asperity stick-slip has the friction measured at 3.5 mm/s. []"""
+    """Gain at resonance at which asperity stick-slip has the friction measured at 3.5 mm/s. []"""
     test = _slow_test()
     return float(brentq(lambda gain: _ratio(test, gain) - test.friction_ratio, 1e-3, FLEXTENSIONAL_GAINS[1]))
 
 
 def _slow_test() -> FrictionTest:
-    """Return test H-1, at 3.5 mm/s."""
+    """Test H-1, at 3.5 mm/s."""
     return friction_tests("H")[0]
 
 
 def _ratio(test: FrictionTest, gain: float = 1.0) -> float:
-    """Return the friction ratio of a test by asperity stick-slip at a gain of the stroke. []"""
+    """Friction ratio of a test by asperity stick-slip at a gain of the stroke. []"""
     return float(
         sine_stick_slip_ratio(
             decay_length=_decay_length(test),
@@ -58,12 +58,12 @@ def _ratio(test: FrictionTest, gain: float = 1.0) -> float:
 
 
 def _decay_length(test: FrictionTest) -> float:
-    """Return the decay length of the contact of a test. [m]"""
+    """Decay length of the contact of a test. [m]"""
     return float(decay_length(test.contact, separation=separation(test.contact, normal_load=test.normal_load)))
 
 
 def _pulling_force() -> Row:
-    """Return the pulling force over the friction of one plate from the balance of forces."""
+    """Pulling force over the friction of one plate from the balance of forces."""
     test = _slow_test()
     friction = test.friction_coefficient * test.normal_load
     note = (

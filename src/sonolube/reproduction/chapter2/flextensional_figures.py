@@ -27,7 +27,7 @@ _REDUCTION: Final = "Friction reduction [%]"
 
 
 def flextensional_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 2.2."""
+    """Figures of section 2.2."""
     gain = gain_of_slow_test()
     assumed = (
         f"Asperity stick-slip with R_q of Table 3.2 and a coefficient of friction of {_test().friction_coefficient:g}, "
@@ -54,19 +54,7 @@ def flextensional_figures() -> Iterator[ReportFigure]:
 
 
 def reduction(*, gain: ArrayLike, sliding_speed: ArrayLike) -> Floats:
-    """Return the friction reduction at a gain of the quasi-static stroke by asperity stick-slip. []
-
-    Parameters
-    ----------
-    gain : array_like, any shape
-        Amplitude over half the quasi-static stroke at 4 V peak to peak.
-    sliding_speed : array_like, broadcast against `gain`
-        Speed of the sliding. [m/s]
-
-    Returns
-    -------
-    ndarray, the broadcast shape
-    """
+    """Friction reduction at a gain of the quasi-static stroke by asperity stick-slip. []"""
     test = _test()
     gain, speed = np.broadcast_arrays(np.asarray(gain, dtype=np.float64), np.asarray(sliding_speed, dtype=np.float64))
     return 1 - sine_stick_slip_ratio(
@@ -80,7 +68,7 @@ def reduction(*, gain: ArrayLike, sliding_speed: ArrayLike) -> Floats:
 
 
 def _test() -> FrictionTest:
-    """Return test H-1, 2.6 N and 3.5 mm/s."""
+    """Test H-1, 2.6 N and 3.5 mm/s."""
     return friction_tests("H")[0]
 
 

@@ -47,19 +47,7 @@ class BendingLine:
 
 @cache
 def bending_line(shape: HornShape, solid: HornSolid, *, normal_load: float) -> BendingLine:
-    """Return the bending line of the plain block of a horn under a load across its middle.
-
-    Parameters
-    ----------
-    shape : HornShape
-    solid : HornSolid
-    normal_load : float
-        Load across the middle of the face. [N]
-
-    Returns
-    -------
-    BendingLine
-    """
+    """Bending line of the plain block of a horn under a load across its middle."""
     cells = round(shape.length / _CELL)
     mesh = fem.box_mesh(
         length=shape.length, width=shape.width / 2, thickness=shape.thickness, divisions=(cells, _ACROSS, _THROUGH)
@@ -87,5 +75,5 @@ def bending_line(shape: HornShape, solid: HornSolid, *, normal_load: float) -> B
 
 
 def _within(centres: Floats, *, centre: float, half_length: float) -> NDArray[np.bool_]:
-    """Return which element faces have their centres within a length along the horn."""
+    """Which element faces have their centres within a length along the horn."""
     return np.asarray(np.abs(centres[:, 0] - centre) < half_length)

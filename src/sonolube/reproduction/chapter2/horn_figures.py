@@ -28,7 +28,7 @@ _HORN_NOTE: Final = (
 
 
 def horn_figures() -> Iterator[ReportFigure]:
-    """Return the figures of the horn."""
+    """Figures of the horn."""
     yield ReportFigure(
         name="figure-2-3-horn-assumptions",
         title="First axial mode under single assumptions",
@@ -141,18 +141,7 @@ def _friction() -> "Figure":
 
 
 def face_friction_chart(horn: Horn, friction: FaceFriction) -> Chart:
-    """Friction along the face of a horn, with the transition region of Table 2.1.
-
-    Parameters
-    ----------
-    horn : str
-        Material of the horn.
-    friction : FaceFriction
-
-    Returns
-    -------
-    Chart
-    """
+    """Friction along the face of a horn, with the transition region of Table 2.1."""
     first, last = (np.array([1e3 * end]) for end in _transition_region(horn))
     parts = (
         Zone(first=first, last=last, label="transition region, Table 2.1", colour="0.8"),
@@ -187,11 +176,11 @@ def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: floa
 
 
 def _transition_region(horn: Horn) -> tuple[float, float]:
-    """Return the ends of the transition region of a horn in Table 2.1, in m."""
+    """Ends of the transition region of a horn in Table 2.1, in m."""
     start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") for side in ("start", "end"))
     return start, end
 
 
 def _motion(horn: Horn) -> FaceMotion:
-    """Return the motion of the face of a horn at the frequency of the welder."""
+    """Motion of the face of a horn at the frequency of the welder."""
     return driven_face(horn, frequency=si_value("2.1.2-welder-frequency"))

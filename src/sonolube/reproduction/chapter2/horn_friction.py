@@ -45,7 +45,7 @@ class FaceFriction:
     node: float
 
     def at(self, position: float) -> float:
-        """Return the friction ratio at a position in m, by linear interpolation. []"""
+        """Friction ratio at a position in m, by linear interpolation. []"""
         return float(np.interp(position, self.position, self.ratio))
 
 
@@ -56,23 +56,7 @@ def driven_face(
     axial_amplitude: float | None = None,
     elastic_loss: float = poisson_horn.ELASTIC_LOSS,
 ) -> poisson_horn.FaceMotion:
-    """Return the motion of the face of a horn by the assumed shape and solid.
-
-    Parameters
-    ----------
-    horn : str
-        Material of the horn.
-    frequency : float
-        Frequency of the drive. [Hz]
-    axial_amplitude : float, optional
-        Of the driven end, zero to peak; the full amplitude of the welder by default. [m]
-    elastic_loss : float
-        Loss tangent of the stiffness. []
-
-    Returns
-    -------
-    FaceMotion
-    """
+    """Motion of the face of a horn by the assumed shape and solid."""
     return poisson_horn.face_motion(
         poisson_horn.assumed_shape(),
         poisson_horn.ASSUMED_SOLIDS[horn],
@@ -83,7 +67,7 @@ def driven_face(
 
 
 def spring_contact(horn: Horn, *, bodies: Bodies = "aluminium_steel") -> tuple[SpringContact, float]:
-    """Return the spring-coupled contact under a horn, and the approach at which its springs carry the load. [m]"""
+    """Spring-coupled contact under a horn, and the approach at which its springs carry the load. [m]"""
     rough = poisson_contact(bodies=bodies)
     springs = SpringContact(friction_coefficient=si_value(_COEFFICIENT[horn]), mindlin_ratio=rough.pair.mindlin_ratio)
     return springs, float(decay_length(rough))
@@ -92,23 +76,7 @@ def spring_contact(horn: Horn, *, bodies: Bodies = "aluminium_steel") -> tuple[S
 def friction_on_face(
     horn: Horn, *, frequency: float, axial_amplitude: float | None = None, sliding_speed: float | None = None
 ) -> FaceFriction:
-    """Return the friction along the face of a driven horn.
-
-    Parameters
-    ----------
-    horn : str
-        Material of the horn.
-    frequency : float
-        Frequency of the drive. [Hz]
-    axial_amplitude : float, optional
-        Of the driven end, zero to peak; the full amplitude of the welder by default. [m]
-    sliding_speed : float, optional
-        That of the tests by default. [m/s]
-
-    Returns
-    -------
-    FaceFriction
-    """
+    """Friction along the face of a driven horn."""
     contact, approach = spring_contact(horn)
     motion = driven_face(horn, frequency=frequency, axial_amplitude=axial_amplitude)
     return friction_along(motion, contact, approach=approach, sliding_speed=sliding_speed)
@@ -117,21 +85,7 @@ def friction_on_face(
 def friction_along(
     motion: poisson_horn.FaceMotion, contact: SpringContact, *, approach: float, sliding_speed: float | None = None
 ) -> FaceFriction:
-    """Return the friction of a block that slides along a moving face towards its node.
-
-    Parameters
-    ----------
-    motion : FaceMotion
-    contact : SpringContact
-    approach : float
-        Approach at which the springs carry the load. [m]
-    sliding_speed : float, optional
-        That of the tests of D 2.1.2 by default. [m/s]
-
-    Returns
-    -------
-    FaceFriction
-    """
+    """Friction of a block that slides along a moving face towards its node."""
     node = poisson_horn.node_position(position=motion.position, axial=motion.axial.real)
     sides = [np.linspace(-FACE_END, node, _POSITIONS), np.linspace(node, FACE_END, _POSITIONS)[1:]]
     position = np.concatenate(sides)
@@ -151,7 +105,7 @@ def friction_along(
 
 
 def transition_region(friction: FaceFriction) -> tuple[float, float]:
-    """Return the limits of the transition region about the node, in which friction resists in both directions. [m]
+    """Limits of the transition region about the node, in which friction resists in both directions. [m]
 
     A limit is NaN where the face drives the block nowhere on its side.
     """
@@ -162,7 +116,7 @@ def transition_region(friction: FaceFriction) -> tuple[float, float]:
 
 
 def _first_reversal(position: Floats, ratio: Floats) -> float:
-    """Return the first position at which the friction ratio changes sign, by linear interpolation. [m]"""
+    """First position at which the friction ratio changes sign, by linear interpolation. [m]"""
     after = int(np.argmax(ratio < 0))
     if not after:
         return float("nan")

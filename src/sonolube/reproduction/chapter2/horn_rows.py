@@ -72,7 +72,7 @@ def _transition_regions() -> Iterator[Row]:
 
 
 def _transition_limits(horn: Horn, frequency: float, drive: str) -> list[tuple[float, str]]:
-    """Return the limits of the transition region of a driven horn in m, each with its note."""
+    """Limits of the transition region of a driven horn in m, each with its note."""
     friction = horn_friction.friction_on_face(horn, frequency=frequency)
     note = (
         "Position at which the friction of a block at 5 mm/s towards the node reverses: finite elements, "
@@ -105,7 +105,7 @@ def _friction() -> Iterator[Row]:
 
 
 def _bending() -> Row:
-    """Return the coefficient of friction of the aluminium horn from that of steel and the bending of both."""
+    """Coefficient of friction of the aluminium horn from that of steel and the bending of both."""
     slopes = {
         horn: bending_line(printed_shape(), printed_solid(horn), normal_load=_BENDING_LOAD).largest_slope
         for horn in HORNS

@@ -19,12 +19,9 @@ _WEDGE: Final = 0.1
 
 @cache
 def frequency_changes() -> dict[str, float]:
-    """Return the relative changes of the first axial frequency of the plain steel block by single assumptions. []
+    """Relative changes of the first axial frequency of the plain steel block by single assumptions. []
 
-    Returns
-    -------
-    dict of str to float
-        By the assumption in words.
+    By the assumption in words.
     """
     solid = horn.printed_solid("steel")
     plain = horn.axial_mode(horn.printed_shape(), solid).natural_frequency
@@ -59,12 +56,9 @@ def _varied(shape: horn.HornShape, solid: horn.HornSolid) -> Iterator[tuple[str,
 
 @cache
 def node_positions() -> dict[str, float]:
-    """Return the nodes of the axial motion of the steel horn of the printed frequency under single asymmetries. [m]
+    """Nodes of the axial motion of the steel horn of the printed frequency under single asymmetries. [m]
 
-    Returns
-    -------
-    dict of str to float
-        Position from the centre, by the asymmetry in words.
+    Position from the centre, by the asymmetry in words.
     """
     return dict(_asymmetric())
 
@@ -90,18 +84,7 @@ def _asymmetric() -> Iterator[tuple[str, float]]:
 
 
 def with_tip(model: Model, *, tip_mass: float) -> Model:
-    """Return the model of a horn with a mass on its right end, distributed over the last layer of elements.
-
-    Parameters
-    ----------
-    model : Model
-    tip_mass : float
-        Mass on the end of the whole horn. [kg]
-
-    Returns
-    -------
-    Model
-    """
+    """Model of a horn with a mass on its right end, distributed over the last layer of elements."""
     mesh, medium = model.mesh, model.media["block"]
     corners = mesh.nodes[mesh.elements[:, :4]]
     last = corners[:, :, 0].mean(axis=1) > np.unique(mesh.nodes[:, 0].round(9))[-3]
@@ -115,6 +98,6 @@ def with_tip(model: Model, *, tip_mass: float) -> Model:
 
 
 def _on_pads(model: Model) -> Model:
-    """Return the model of a horn on two pads on either face."""
+    """Model of a horn on two pads on either face."""
     spring = FaceSpring(face="-z", spring_stiffness=2 * PAD_STIFFNESS / 2, along=(0.0, 0.0, 1.0))
     return replace(model, springs=(spring,))

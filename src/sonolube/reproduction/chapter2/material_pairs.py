@@ -28,7 +28,7 @@ def material_pair_rows() -> Iterator[Row]:
 
 
 def material_pair_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 2.5."""
+    """Figures of section 2.5."""
     yield ReportFigure(
         name="table-2-14-pairs",
         title="Reductions of friction and wear for six pairs of materials",

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def metal_forming_figures() -> Iterator[ReportFigure]:
-    """Return the figure of section 2.4.1."""
+    """Figure of section 2.4.1."""
     yield ReportFigure(
         name="figures-2-28-2-29-metal-forming",
         title="Mechanisms of ultrasonic metal forming, by models",
@@ -36,7 +36,7 @@ def metal_forming_figures() -> Iterator[ReportFigure]:
 
 
 def zinc_intensity() -> float:
-    """Return the intensity over that of flow without load at which acoustic softening has the 40 % on zinc. []"""
+    """Intensity over that of flow without load at which acoustic softening has the 40 % on zinc. []"""
     ratio = 1 - si_value("2.4.1-blaha-force-reduction")
     return 1 / float(reference_intensity_from_test(stress_ratio=ratio, acoustic_intensity=1.0))
 

@@ -35,7 +35,7 @@ def poisson_effect_rows() -> Iterator[Row]:
 
 
 def poisson_effect_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 2.1."""
+    """Figures of section 2.1."""
     yield ReportFigure(
         name="figure-2-4-loci",
         title="Paths of three points on the waveguide's surface",
@@ -66,7 +66,7 @@ def _uniform_bar_modes() -> Iterator[Row]:
 
 
 def _half_wave_frequency(youngs_modulus: float, length: float, *, density: float) -> float:
-    """Return the first axial natural frequency of a uniform free bar. [Hz]"""
+    """First axial natural frequency of a uniform free bar. [Hz]"""
     return float(free_bar_frequency(length=length, wave_speed=sqrt(youngs_modulus / density)))
 
 
@@ -107,7 +107,7 @@ def _friction_reductions() -> Iterator[Row]:
 def _cube_reduction(
     amplitude: str, *, bodies: Bodies, horn: Horn, normal_load: float, yield_strength: float = STEEL_YIELD_STRENGTH
 ) -> float:
-    """Return the friction reduction by the cube at a published axial amplitude, given by its id. []"""
+    """Friction reduction by the cube at a published axial amplitude, given by its id. []"""
     ratio = poisson_friction_ratio(
         bodies=bodies,
         horn=horn,

@@ -73,7 +73,7 @@ class HornShape:
 
 
 def printed_shape() -> HornShape:
-    """Return the plain block of D 2.1.2."""
+    """Plain block of D 2.1.2."""
     return HornShape(
         length=si_value("2.1.2-waveguide-length"),
         width=si_value("2.1.2-waveguide-width"),
@@ -82,12 +82,12 @@ def printed_shape() -> HornShape:
 
 
 def assumed_shape() -> HornShape:
-    """Return the block whose last inch at either end tapers from 1 in to 3/4 in."""
+    """Block whose last inch at either end tapers from 1 in to 3/4 in."""
     return replace(printed_shape(), end_thickness_ratio=0.75)
 
 
 def printed_solid(horn: Horn) -> HornSolid:
-    """Return the elastic constants of a horn from Table 3.1, its density from the data sheet of its alloy."""
+    """Elastic constants of a horn from Table 3.1, its density from the data sheet of its alloy."""
     return HornSolid(
         youngs_modulus=si_value(f"table-3.1-youngs_modulus_{horn}-1"),
         poisson_ratio=si_value(f"table-3.1-poisson_ratio_{horn}-1"),
@@ -142,28 +142,16 @@ class FaceMotion:
     normal: Complexes
 
     def at(self, position: ArrayLike) -> tuple[Complexes, Complexes]:
-        """Return the complex amplitudes along the horn and out of its face at positions in m, by cubic splines. [m]"""
+        """Complex amplitudes along the horn and out of its face at positions in m, by cubic splines. [m]"""
         return CubicSpline(self.position, self.axial)(position), CubicSpline(self.position, self.normal)(position)
 
 
 def horn_model(
     shape: HornShape, solid: HornSolid, *, elastic_loss: float = 0.0, divisions: tuple[int, int, int] = _DIVISIONS
 ) -> fem.Model:
-    """Return the finite-element model of a quarter of a horn.
+    """Finite-element model of a quarter of a horn.
 
-    Parameters
-    ----------
-    shape : HornShape
-    solid : HornSolid
-    elastic_loss : float
-        Loss tangent of the stiffness. []
-    divisions : tuple of three int
-        Elements along, across and through the quarter.
-
-    Returns
-    -------
-    Model
-        The sliding face is "-z", its middle line the edge with "-y".
+    The sliding face is "-z", its middle line the edge with "-y".
     """
     medium = fem.isotropic_medium(**asdict(solid), elastic_loss=elastic_loss)
     return fem.Model(mesh=_quarter(shape, divisions), media={"block": medium}, fixed=_SYMMETRY)
@@ -171,24 +159,12 @@ def horn_model(
 
 @cache
 def axial_mode(shape: HornShape, solid: HornSolid, *, divisions: tuple[int, int, int] = _DIVISIONS) -> AxialMode:
-    """Return the first axial mode: of the lowest symmetric modes the one with the largest axial fraction.
-
-    Parameters
-    ----------
-    shape : HornShape
-    solid : HornSolid
-    divisions : tuple of three int
-        Elements along, across and through the quarter.
-
-    Returns
-    -------
-    AxialMode
-    """
+    """First axial mode: of the lowest symmetric modes the one with the largest axial fraction."""
     return axial_mode_of(horn_model(shape, solid, divisions=divisions))
 
 
 def axial_mode_of(model: fem.Model) -> AxialMode:
-    """Return the first axial mode of the model of a quarter of a horn."""
+    """First axial mode of the model of a quarter of a horn."""
     modes = fem.natural_modes(model, count=_MODE_COUNT)
     x = model.mesh.nodes[:, 0]
     stretch = np.sign(x - x.mean())
@@ -209,23 +185,7 @@ def axial_mode_of(model: fem.Model) -> AxialMode:
 def face_motion(
     shape: HornShape, solid: HornSolid, *, frequency: float, axial_amplitude: float, elastic_loss: float = ELASTIC_LOSS
 ) -> FaceMotion:
-    """Return the motion of the sliding face under a force along the horn on its right end.
-
-    Parameters
-    ----------
-    shape : HornShape
-    solid : HornSolid
-    frequency : float
-        Frequency of the force. [Hz]
-    axial_amplitude : float
-        Mean axial amplitude of the driven end, which sets the force. [m]
-    elastic_loss : float
-        Loss tangent of the stiffness. []
-
-    Returns
-    -------
-    FaceMotion
-    """
+    """Motion of the sliding face under a force along the horn on its right end."""
     model = horn_model(shape, solid, elastic_loss=elastic_loss)
     displacement = fem.forced_response(model, load=fem.Output(face="+x", along="x"), frequency=frequency)
     end = displacement[model.mesh.face_nodes("+x"), 0].mean()
@@ -235,24 +195,12 @@ def face_motion(
 
 
 def node_position(*, position: Floats, axial: Floats) -> float:
-    """Return the position of the node of an axial motion; of several nodes, of the one nearest to the centre. [m]
-
-    Parameters
-    ----------
-    position : ndarray, shape (k,)
-        Position along the horn, from the centre. [m]
-    axial : ndarray, shape (k,)
-        Axial displacement.
-
-    Returns
-    -------
-    float
-    """
+    """Position of the node of an axial motion; of several nodes, of the one nearest to the centre. [m]"""
     return float(min(CubicSpline(position, axial).roots(extrapolate=False), key=abs))
 
 
 def _quarter(shape: HornShape, divisions: tuple[int, int, int]) -> fem.Mesh:
-    """Return the mesh of a quarter of a horn: a box mapped to tapers and wedge."""
+    """Mesh of a quarter of a horn: a box mapped to tapers and wedge."""
     half, step = shape.length / 2, shape.length / divisions[0]
     flat = half - shape.taper_length
     columns = [-half, -half + _TAPER_CELLS * step, half - _TAPER_CELLS * step, half]

@@ -30,7 +30,7 @@ def tribometer_rows() -> Iterator[Row]:
 
 
 def reductions_of_table_2_3(column: str) -> list[ComputedValue]:
-    """Return the reductions of a column of Table 2.3 under vibration at the three speeds. []"""
+    """Reductions of a column of Table 2.3 under vibration at the three speeds. []"""
     return [
         propagate_rounding(formulas.friction_reduction, f"table-2.3-{column}-{off}", f"table-2.3-{column}-{off + 1}")
         for off in (1, 3, 5)
@@ -38,7 +38,7 @@ def reductions_of_table_2_3(column: str) -> list[ComputedValue]:
 
 
 def wear_reductions(table_id: str) -> list[ComputedValue]:
-    """Return the wear reductions of the three pairs of wear rates of Table 2.5 or 2.7. []"""
+    """Wear reductions of the three pairs of wear rates of Table 2.5 or 2.7. []"""
     return [
         propagate_rounding(
             formulas.wear_reduction,
@@ -148,7 +148,7 @@ def _wear_of_first_study() -> Iterator[Row]:
 
 
 def _wear_reduction_of_the_cube() -> Row:
-    """Return the wear reduction by the cube, with Table 3.2 and the rounding of the amplitude."""
+    """Wear reduction by the cube, with Table 3.2 and the rounding of the amplitude."""
     contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
     off = float(cube_wear_rate(contact, normal_load=load))
 

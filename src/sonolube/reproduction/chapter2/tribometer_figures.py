@@ -24,7 +24,7 @@ _OFFSET: Final = 1.2  # mm/s between points of one speed, so that none covers an
 
 
 def tribometer_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 2.3."""
+    """Figures of section 2.3."""
     yield ReportFigure(
         name="figure-2-20-friction-against-speed",
         title="Friction against sliding speed",
@@ -118,17 +118,17 @@ def _wear_reduction_against_revolutions() -> "Figure":
 
 
 def _speeds() -> Floats:
-    """Return the three sliding speeds of Table 2.2. [m/s]"""
+    """Three sliding speeds of Table 2.2. [m/s]"""
     return table("2.2").columns["sliding_speed"].values
 
 
 def _numbers(column: str) -> list[PrintedNumber]:
-    """Return the six numbers of a column of Table 2.3."""
+    """Six numbers of a column of Table 2.3."""
     return [published_number(f"table-2.3-{column}-{row}") for row in range(1, 7)]
 
 
 def _scatter(column: str) -> list[float]:
-    """Return the scatter of the reductions of a column of Table 2.3, that of both numbers taken as independent. [%]"""
+    """Scatter of the reductions of a column of Table 2.3, that of both numbers taken as independent. [%]"""
     numbers = _numbers(column)
     return [
         100 * on.value / off.value * hypot(*((number.high - number.value) / number.value for number in (off, on)))

@@ -25,7 +25,7 @@ def welder_rows() -> Iterator[Row]:
 
 
 def welder_friction_reductions(tip: int) -> list[ComputedValue]:
-    """Return the reductions of the lower and of the upper forces of a tip, row 1 or 2 of Table 2.9. []"""
+    """Reductions of the lower and of the upper forces of a tip, row 1 or 2 of Table 2.9. []"""
     off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
     return [
         propagate_rounding(formulas.friction_reduction, *pair) for pair in zip(off.limits(), on.limits(), strict=True)
@@ -52,14 +52,14 @@ def _stresses() -> Iterator[Row]:
 
 
 def _stress_range(row: int) -> tuple[ComputedValue, ComputedValue]:
-    """Return the nominal stress on the worn and on the new area of a row of Table 2.8. [Pa]"""
+    """Nominal stress on the worn and on the new area of a row of Table 2.8. [Pa]"""
     load = as_setting(f"table-2.8-normal_load-{row}")
     new, worn = published_number(f"table-2.8-nominal_area-{row}").limits()
     return propagate_rounding(truediv, load, worn), propagate_rounding(truediv, load, new)
 
 
 def _peak_stress() -> Row:
-    """Return the peak over the mean stress of the round tip by the theory of Hertz."""
+    """Peak over the mean stress of the round tip by the theory of Hertz."""
     load = si_value("table-2.8-normal_load-1")
     modulus = poisson_contact(bodies="steel_steel").pair.effective_modulus
     radius = tip_radius_for_pressure(
@@ -165,7 +165,7 @@ def _wear() -> Iterator[Row]:
 
 
 def _wear_rate(row: int) -> ComputedValue:
-    """Return a wear rate of Table 2.10 within the rounding of both its volume and its volume per turn. [m2]"""
+    """Wear rate of Table 2.10 within the rounding of both its volume and its volume per turn. [m2]"""
     distance, turns = f"table-2.10-sliding_distance-{row}", si_value("table-2.8-revolutions-1")
     total = propagate_rounding(formulas.wear_rate, f"table-2.10-wear_volume-{row}", distance)
     by_turn = propagate_rounding(

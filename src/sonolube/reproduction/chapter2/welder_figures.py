@@ -46,7 +46,7 @@ _GAUGE: Final = (
 
 
 def welder_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 2.4."""
+    """Figures of section 2.4."""
     yield ReportFigure(
         name="figure-2-32-calibration",
         title="Calibration of friction over the deflection of the waveguide",
@@ -85,7 +85,7 @@ class Readings:
 
 @cache
 def waveguide() -> PreisachCalibration:
-    """Return the assumed waveguide: a spring with relays of one density over the plane of Preisach."""
+    """Assumed waveguide: a spring with relays of one density over the plane of Preisach."""
     plane = PreisachPlane(lowest=0.0, highest=_LARGEST_DEFLECTION, levels=_LEVELS)
     up, down = np.tril_indices(_LEVELS)
     share = np.where(up == down, 0.5, 1.0)  # cells on the diagonal are triangles
@@ -100,7 +100,7 @@ def waveguide() -> PreisachCalibration:
 
 @cache
 def readings() -> Readings:
-    """Return the generated readings of pulls that are released at five deflections, with scatter of the load cell."""
+    """Generated readings of pulls that are released at five deflections, with scatter of the load cell."""
     turns = [0.0]
     for pull in _PULLS:
         turns += [pull * _LARGEST_DEFLECTION, 0.0]
@@ -112,7 +112,7 @@ def readings() -> Readings:
 
 @cache
 def calibration() -> PreisachCalibration:
-    """Return Preisach's calibration by the readings."""
+    """Preisach's calibration by the readings."""
     found = readings()
     return fit_preisach(displacement=found.deflection, applied_force=found.applied_force, levels=_LEVELS)
 
@@ -137,18 +137,9 @@ class TipRecord:
 
 
 def tip_record(tip: int, *, samples: int = 401) -> TipRecord:
-    """Return the record of the test with a tip: 1 round, 2 flat, rows of Table 2.9.
+    """Record of the test with a tip: 1 round, 2 flat, rows of Table 2.9.
 
-    Parameters
-    ----------
-    tip : int
-    samples : int
-        Number of samples.
-
-    Returns
-    -------
-    TipRecord
-        Of the duration of the printed revolutions.
+    Of the duration of the printed revolutions.
     """
     slow, fast = (si_value(f"table-2.8-rotation_speed-{row}") for row in (2 * tip - 1, 2 * tip))
     first, last = _VIBRATED
@@ -170,13 +161,13 @@ def tip_record(tip: int, *, samples: int = 401) -> TipRecord:
 
 
 def forces(tip: int) -> tuple[PrintedNumber, PrintedNumber]:
-    """Return friction without and with vibration with a tip, Table 2.9."""
+    """Friction without and with vibration with a tip, Table 2.9."""
     off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
     return off, on
 
 
 def _deflection(force: float, *before: float) -> float:
-    """Return the deflection at which the assumed waveguide carries a force, after others that it had. [m]"""
+    """Deflection at which the assumed waveguide carries a force, after others that it had. [m]"""
 
     def excess(x: float) -> float:
         return float(force_from_preisach(waveguide(), displacement=[0.0, *before, x]).applied_force[-1]) - force
@@ -235,7 +226,7 @@ def _friction_in_time() -> "Figure":
 
 
 def stick_slip_ratio(tip: int) -> float:
-    """Return the friction ratio of the test with a tip by asperity stick-slip: 1 round, 2 flat. []"""
+    """Friction ratio of the test with a tip by asperity stick-slip: 1 round, 2 flat. []"""
     test = friction_tests("G")[tip - 1]
     at_rest = separation(test.contact, normal_load=test.normal_load)
     return float(

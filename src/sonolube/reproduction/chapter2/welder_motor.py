@@ -26,7 +26,7 @@ def welder_motor_rows() -> Iterator[Row]:
 
 
 def welder_motor(tip: int) -> metrics.DCMotor:
-    """Return the motor identified from the test with a tip: 1 round, 2 flat."""
+    """Motor identified from the test with a tip: 1 round, 2 flat."""
     return metrics.motor_from_two_operating_points(
         motor_voltage=si_value("2.4.2-motor-voltage"),
         motor_current=list(_currents(tip)),
@@ -35,7 +35,7 @@ def welder_motor(tip: int) -> metrics.DCMotor:
 
 
 def friction_drop_from_current(tip: int) -> float:
-    """Return the drop of friction that corresponds to the drop of the current with a tip. [N]"""
+    """Drop of friction that corresponds to the drop of the current with a tip. [N]"""
     off, on = _currents(tip)
     return float(
         metrics.friction_from_current(
@@ -79,11 +79,11 @@ def _rows_of_tip(tip: int) -> Iterator[Row]:
 
 
 def _currents(tip: int) -> tuple[float, float]:
-    """Return the motor current without and with vibration. [A]"""
+    """Motor current without and with vibration. [A]"""
     off, on = (si_value(f"table-2.9-{state}_motor_current-{tip}") for state in ("intrinsic", "reduced"))
     return off, on
 
 
 def _groove_diameter(tip: int) -> float:
-    """Return the groove diameter of the test with a tip. [m]"""
+    """Groove diameter of the test with a tip. [m]"""
     return si_value(f"table-2.8-groove_diameter-{2 * tip - 1}")

@@ -33,7 +33,7 @@ _PAIRS: tuple[tuple[str, Bodies], ...] = (("aluminium on steel", "aluminium_stee
 
 
 def cube_figures() -> Iterator[ReportFigure]:
-    """Return the figures of sections 3.1 and 3.2."""
+    """Figures of sections 3.1 and 3.2."""
     yield ReportFigure(
         name="figure-3-2a-separation",
         title="Separation against load",

@@ -134,14 +134,14 @@ def _friction() -> Iterator[Row]:
 
 
 def _mean_error(reduction: Floats, published: str) -> float:
-    """Return the mean error of friction over the loads against a test whose reduction falls over a printed range. []"""
+    """Mean error of friction over the loads against a test whose reduction falls over a printed range. []"""
     measured = published_number(published)
     test = 1 - np.linspace(measured.high, measured.low, reduction.size)
     return float(np.mean(np.abs(1 - reduction - test) / test))
 
 
 def _reductions(amplitude: str, *, bodies: Bodies, horn: Horn, yield_strength: float = STEEL_YIELD_STRENGTH) -> Floats:
-    """Return the friction reduction by the cube at each load, at a published axial amplitude, given by its id. []"""
+    """Friction reduction by the cube at each load, at a published axial amplitude, given by its id. []"""
     return 1 - poisson_friction_ratio(
         bodies=bodies,
         horn=horn,
@@ -189,7 +189,7 @@ def _wear() -> Iterator[Row]:
 
 
 def _coupling_factor() -> Row:
-    """Return the coupling factor of Table 3.5 from its other constants."""
+    """Coupling factor of Table 3.5 from its other constants."""
     return formula_row(
         "table-3.5-coupling_factor-1",
         "k^2 = (N d33)^2 k_p/C with C free.",
@@ -199,7 +199,7 @@ def _coupling_factor() -> Row:
 
 
 def _loss_of_contact() -> Row:
-    """Return the row of the displacement of "hopping" of section 3.3.5, at which k_t "becomes virtually zero"."""
+    """Row of the displacement of "hopping" of section 3.3.5, at which k_t "becomes virtually zero"."""
     contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
     printed = published_value("3.3.5-hopping-displacement")
     at_rest, reach = separation(contact, normal_load=load), printed.number.value
@@ -222,11 +222,11 @@ def _loss_of_contact() -> Row:
 
 
 def _loads() -> Floats:
-    """Return the loads of section 3.1.4. [N]"""
+    """Loads of section 3.1.4. [N]"""
     loads, step = published_number("3.1.4-normal-load"), si_value("3.1.4-load-step")
     return np.arange(loads.low, loads.high + step / 2, step)
 
 
 def _percent_range(values: Floats) -> str:
-    """Return the range of values as text in per cent."""
+    """Range of values as text in per cent."""
     return f"{100 * values.min():.1f} to {100 * values.max():.1f} %"

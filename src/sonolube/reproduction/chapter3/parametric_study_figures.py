@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def parametric_study_figures() -> Iterator[ReportFigure]:
-    """Return the figures of sections 3.3.4 and 3.3.5."""
+    """Figures of sections 3.3.4 and 3.3.5."""
     yield ReportFigure(
         name="figure-3-13-start-up",
         title="Start-up of the tribometer",

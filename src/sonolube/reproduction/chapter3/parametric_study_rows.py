@@ -70,7 +70,7 @@ def _friction_errors() -> Iterator[Row]:
 
 
 def _least_error(errors: Floats) -> str:
-    r"""Return the least largest error that one common factor of the computed values leaves, as text in per cent.
+    r"""Least largest error that one common factor of the computed values leaves, as text in per cent.
 
     With q = 1 + error, the factor 2/(max q + min q) leaves (max q - min q)/(max q + min q) at both ends.
     """
@@ -79,7 +79,7 @@ def _least_error(errors: Floats) -> str:
 
 
 def _errors(friction_model: str) -> Floats:
-    """Return the relative errors of friction over Table 2.3 by a friction model. []"""
+    """Relative errors of friction over Table 2.3 by a friction model. []"""
     speeds, off, on = (
         np.array([si_value(f"table-2.3-{column}-{row}") for row in (first, first + 2, first + 4)])
         for column, first in (("sliding_speed", 2), ("friction_force", 1), ("friction_force", 2))
@@ -111,13 +111,13 @@ def _voltage() -> Iterator[Row]:
 
 
 def _voltages_and_ratios(friction_model: str) -> tuple[Floats, Floats]:
-    """Return voltages in V and friction ratios by a friction model."""
+    """Voltages in V and friction ratios by a friction model."""
     response = tribometer_response.response_over_voltage(friction_model)
     return response["voltage_peak_to_peak"].values, np.round(response["raw_friction_ratio"].values, _DECIMALS)
 
 
 def _knee(volts: Floats, ratios: Floats) -> float:
-    """Return the voltage at which a falling curve is farthest below its chord. [V]"""
+    """Voltage at which a falling curve is farthest below its chord. [V]"""
     chord = ratios[0] + (ratios[-1] - ratios[0]) * volts / volts[-1]
     return float(volts[np.argmax(chord - ratios)])
 
@@ -151,7 +151,7 @@ def _frequency() -> Iterator[Row]:
 
 
 def _power() -> Row:
-    """Return the amplifier's power at resonance over the least elsewhere, for one reduction of friction."""
+    """Amplifier's power at resonance over the least elsewhere, for one reduction of friction."""
     study, peak = tribometer_response.least_power_over_frequency(), tribometer_response.resonance()
     f, amplifier, dissipated = (study[name].values for name in ("frequency", "actuator_power", "dissipated_power"))
     at_peak, possible = peak.nearest(f), ~np.isnan(amplifier)
@@ -183,28 +183,28 @@ def _waveforms() -> Iterator[Row]:
 
 
 def _waveform_ratios(friction_model: str) -> dict[str, float]:
-    """Return the friction ratio of each waveform by a friction model. []"""
+    """Friction ratio of each waveform by a friction model. []"""
     response = tribometer_response.response_over_waveform(friction_model)
     names = [str(name) for name in response["waveform"].values]
     return dict(zip(names, response["raw_friction_ratio"].values.tolist(), strict=True))
 
 
 def _listed(ratios: dict[str, float]) -> str:
-    """Return friction ratios by waveform as text, in increasing order."""
+    """Friction ratios by waveform as text, in increasing order."""
     return ", ".join(f"{name} {ratio:.3g}" for name, ratio in sorted(ratios.items(), key=lambda item: item[1]))
 
 
 def _largest_step(ratios: Floats) -> float:
-    """Return the largest ratio of neighbours along the first axis, the later over the earlier. []"""
+    """Largest ratio of neighbours along the first axis, the later over the earlier. []"""
     return float((ratios[1:] / ratios[:-1]).max())
 
 
 def _curves() -> str:
-    """Return the voltages of the curves as text."""
+    """Voltages of the curves as text."""
     volts = tribometer_response.response_over_speed()["voltage_peak_to_peak"].values
     return f"{', '.join(f'{u:g}' for u in volts[:-1])} and {volts[-1]:g} V"
 
 
 def _percents(errors: Floats) -> str:
-    """Return relative errors as text in per cent."""
+    """Relative errors as text in per cent."""
     return ", ".join(f"{100 * error:+.0f} %" for error in errors)

@@ -38,7 +38,7 @@ _DURATION: Final = 0.1  # s, twice the stated time to the steady state
 
 @cache
 def response_over_voltage(friction_model: str = "asperity_stick_slip") -> "xr.Dataset":
-    """Return the response over the voltages of figure 3.15."""
+    """Response over the voltages of figure 3.15."""
     volts = published_number("3.3.5-voltage")
     return voltage_study(
         tribometer_rig(friction_model=friction_model), voltage_peak_to_peak=np.linspace(volts.low, volts.high, 101)
@@ -47,7 +47,7 @@ def response_over_voltage(friction_model: str = "asperity_stick_slip") -> "xr.Da
 
 @cache
 def response_over_speed() -> "xr.Dataset":
-    """Return the response over the sliding speeds of figure 3.16, from a thousandth of the highest."""
+    """Response over the sliding speeds of figure 3.16, from a thousandth of the highest."""
     highest = published_number("3.3.5-sliding-speed").high
     return speed_study(
         tribometer_rig(), sliding_speed=np.geomspace(1e-3 * highest, highest, 31), voltage_peak_to_peak=CURVE_VOLTAGES
@@ -56,13 +56,13 @@ def response_over_speed() -> "xr.Dataset":
 
 @cache
 def response_over_frequency() -> "xr.Dataset":
-    """Return the response over the frequencies of figure 3.17."""
+    """Response over the frequencies of figure 3.17."""
     return frequency_study(tribometer_rig(), frequency=_frequencies(), voltage_peak_to_peak=CURVE_VOLTAGES)
 
 
 @cache
 def least_power_over_frequency() -> "xr.Dataset":
-    """Return voltage and powers over frequency at the friction of the tests."""
+    """Voltage and powers over frequency at the friction of the tests."""
     rig = tribometer_rig()
     return least_power_study(
         rig,
@@ -74,7 +74,7 @@ def least_power_over_frequency() -> "xr.Dataset":
 
 @cache
 def response_over_waveform(friction_model: str = "asperity_stick_slip") -> "xr.Dataset":
-    """Return the response to the waveforms of figure 3.18, from 0 to 200 V."""
+    """Response to the waveforms of figure 3.18, from 0 to 200 V."""
     rig, volts = tribometer_rig(friction_model=friction_model), si_value("3.3.5-waveform-voltage")
     drive = replace(
         rig.drive, voltage_peak_to_peak=volts, voltage_offset=volts / 2, frequency=si_value("3.3.5-waveform-frequency")
@@ -84,7 +84,7 @@ def response_over_waveform(friction_model: str = "asperity_stick_slip") -> "xr.D
 
 @cache
 def start_up_from_rest() -> StartUp:
-    """Return the start-up of the tribometer from rest, figure 3.13."""
+    """Start-up of the tribometer from rest, figure 3.13."""
     return start_up(tribometer_rig(), duration=_DURATION)
 
 
@@ -106,7 +106,7 @@ class Envelope:
 
 
 def envelope(*, displacement: Floats) -> Envelope:
-    """Return the envelope of a displacement of the start-up.
+    """Envelope of a displacement of the start-up.
 
     Parameters
     ----------
@@ -141,17 +141,17 @@ class Resonance:
     damping_ratio: float
 
     def nearest(self, frequency: Floats) -> int:
-        """Return the index of the frequency nearest to the resonance."""
+        """Index of the frequency nearest to the resonance."""
         return int(np.argmin(np.abs(frequency - self.natural_frequency)))
 
     def outside(self, frequency: Floats) -> NDArray[np.bool_]:
-        """Return which frequencies are outside the half-power bandwidth."""
+        """Which frequencies are outside the half-power bandwidth."""
         return np.asarray(np.abs(frequency / self.natural_frequency - 1) > self.damping_ratio)
 
 
 @cache
 def resonance() -> Resonance:
-    """Return the resonance of the tribometer."""
+    """Resonance of the tribometer."""
     natural = modes(structure_in_contact(tribometer_rig()))
     return Resonance(
         natural_frequency=float(natural.natural_frequency[-1]), damping_ratio=float(natural.damping_ratio[-1])
@@ -159,6 +159,6 @@ def resonance() -> Resonance:
 
 
 def _frequencies() -> Floats:
-    """Return the frequencies of figure 3.17, concentrated about the resonance. [Hz]"""
+    """Frequencies of figure 3.17, concentrated about the resonance. [Hz]"""
     limits = published_number("3.3.5-frequency")
     return frequency_grid(tribometer_rig(), lowest=limits.low, highest=limits.high, points=60, resonance_points=31)

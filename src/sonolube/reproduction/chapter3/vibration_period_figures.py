@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _VOLTAGES: Final = (50.0, 100.0, 150.0, 200.0)
 _SAMPLES: Final = 1024  # friction peaks within a hundredth of the period
-_LEAST_DRAWN: Final = 1e-4  # of the value at rest: "virtually zero" in D 3.3.5
+_MIN_DRAWN: Final = 1e-4  # of the value at rest: "virtually zero" in D 3.3.5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -48,7 +48,7 @@ class VibrationPeriod:
 
 
 def vibration_period_figures() -> Iterator[ReportFigure]:
-    """Return the figure of one period."""
+    """Figure of one period."""
     yield ReportFigure(
         name="figure-3-15-period",
         title="Velocity, tangential stiffness and friction in one period",
@@ -63,17 +63,7 @@ def vibration_period_figures() -> Iterator[ReportFigure]:
 
 @cache
 def vibration_period(voltage: float) -> VibrationPeriod:
-    """Return one period of the tribometer at a voltage with the cube on it, D 3.44 and 3.47.
-
-    Parameters
-    ----------
-    voltage : float
-        Peak to peak; one of those of figure 3.15. [V]
-
-    Returns
-    -------
-    VibrationPeriod
-    """
+    """One period of the tribometer at a voltage with the cube on it, D 3.44 and 3.47."""
     rig, study = tribometer_rig(), response_over_voltage()
     sampled = study["displacement"].sel(voltage_peak_to_peak=voltage, method="nearest").values
     harmonics = np.fft.rfft(sampled, norm="forward")
@@ -91,7 +81,7 @@ def vibration_period(voltage: float) -> VibrationPeriod:
 
 
 def mean_friction_ratio(voltage: float) -> float:
-    """Return the mean friction ratio at a voltage by D 3.48 as printed, about the mean at rest. []"""
+    """Mean friction ratio at a voltage by D 3.48 as printed, about the mean at rest. []"""
     study = response_over_voltage("dong_2015_full_period")
     return float(study["raw_friction_ratio"].sel(voltage_peak_to_peak=voltage, method="nearest"))
 
@@ -110,7 +100,7 @@ def _period() -> "Figure":
     stiffness.set(ylabel="Tangential stiffness over that at rest [1]")
     friction.set(ylabel="Friction over that without vibration [1]")
     for axes in (stiffness, friction):
-        axes.set(yscale="log", ylim=(_LEAST_DRAWN, 1e3), yticks=(1e-4, 1e-2, 1, 100))
+        axes.set(yscale="log", ylim=(_MIN_DRAWN, 1e3), yticks=(1e-4, 1e-2, 1, 100))
         axes.yaxis.set_major_formatter("{x:g}")
         axes.minorticks_off()
         axes.axhline(1.0, color="0.4", linestyle=":", linewidth=1)

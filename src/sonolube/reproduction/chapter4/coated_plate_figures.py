@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def coated_plate_figures() -> Iterator[ReportFigure]:
-    """Return the figure of the maps on coated steel."""
+    """Figure of the maps on coated steel."""
     yield ReportFigure(
         name="figures-4-12-b-coated-power-maps",
         title="Friction reduction over sliding speed and power on coated steel",
@@ -34,7 +34,7 @@ def coated_plate_figures() -> Iterator[ReportFigure]:
 
 
 def coated_plate_rig() -> DrivenRig:
-    """Return the tribometer with the coated steel plates of section 4.1: the roughness of the coating on steel."""
+    """Tribometer with the coated steel plates of section 4.1: the roughness of the coating on steel."""
     rig = plate_rig()
     height = RMS_OVER_ARITHMETIC_MEAN * si_value("4.1.3-roughness-coated")
     rough = replace(rig.contact.roughness, rms_height=height)
@@ -48,7 +48,7 @@ def coated_plate_rig() -> DrivenRig:
 
 @cache
 def coated_power_maps() -> "xr.Dataset":
-    """Return the friction reduction on coated steel over the speeds, powers and loads of the maps on uncoated steel."""
+    """Friction reduction on coated steel over the speeds, powers and loads of the maps on uncoated steel."""
     uncoated = power_maps()
     return velocity_power_map(
         coated_plate_rig(),

@@ -74,33 +74,22 @@ class PulledRod:
 
 @cache
 def response_model(collar: Collar, *, clamped: bool = False, open_top: bool = False) -> ReducedModel:
-    """Return the reduced model of a collar under voltage."""
+    """Reduced model of a collar under voltage."""
     return reduced_collar_model(collar, clamped=clamped, open_top=open_top)
 
 
 @cache
 def mode_frequency(collar: Collar, kind: BoreMotion) -> float:
-    """Return the frequency of the mode of a kind with the largest motion of the inner ring. [Hz]"""
+    """Frequency of the mode of a kind with the largest motion of the inner ring. [Hz]"""
     return collar_modes(collar, count=_MODES, parity=_parity(kind)).dominant_frequency(kind)
 
 
 @cache
 def mode_frequency_range(collar: Collar, kind: BoreMotion, *, assumed: tuple[str, ...]) -> tuple[float, float]:
-    """Return the frequencies of a mode at two corners of the ranges of assumed dimensions. [Hz]
+    """Frequencies of a mode at two corners of the ranges of assumed dimensions. [Hz]
 
-    Parameters
-    ----------
-    collar : Collar
-    kind : BoreMotion
-        Motion of the bore in the mode.
-    assumed : tuple of str
-        Dimensions that are not printed, of `ASSUMED_RANGES`.
-
-    Returns
-    -------
-    tuple of float
-        Lower and higher one: of a thick and narrow inner ring with thin bolts and pillars, and of a thin and wide one
-        with thick ones. By a coarse mesh, in proportion to what it gives for the collar itself.
+    Lower and higher one: of a thick and narrow inner ring with thin bolts and pillars, and of a thin and wide one with
+    thick ones. By a coarse mesh, in proportion to what it gives for the collar itself.
     """
     over_coarse = mode_frequency(collar, kind) / _coarse_frequency(collar, kind)
     corners: list[dict[str, Any]] = [
@@ -111,19 +100,19 @@ def mode_frequency_range(collar: Collar, kind: BoreMotion, *, assumed: tuple[str
 
 
 def _coarse_frequency(collar: Collar, kind: BoreMotion) -> float:
-    """Return the frequency of a mode by a mesh of half the fineness and of quadratic elements. [Hz]"""
+    """Frequency of a mode by a mesh of half the fineness and of quadratic elements. [Hz]"""
     found = collar_modes(collar, count=_MODES, parity=_parity(kind), element_size=2 * ELEMENT_SIZE, order=2)
     return found.dominant_frequency(kind)
 
 
 def _parity(kind: BoreMotion) -> Parity:
-    """Return the symmetry of the modes with a motion of the bore."""
+    """Symmetry of the modes with a motion of the bore."""
     return Parity(odd_across=kind in (BoreMotion.TORSIONAL, BoreMotion.DIAGONAL_OVAL, BoreMotion.TRANSLATION_ALONG_X))
 
 
 @cache
 def pulled_rod() -> PulledRod:
-    """Return the pulled rod of D 4.5.4 at the printed voltage and the main resonance of the free collar."""
+    """Pulled rod of D 4.5.4 at the printed voltage and the main resonance of the free collar."""
     radius = si_value("4.5.4-rod-diameter") / 2
     rod_mass = material("stainless_steel_304").value("density") * np.pi * radius**2 * ROD_LENGTH
     position = np.linspace(0.0, 1.0, _POSITIONS)

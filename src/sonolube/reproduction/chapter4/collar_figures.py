@@ -23,7 +23,7 @@ _POINTS: Final = 2001
 
 
 def collar_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 4.5; none if a package of the finite elements is missing."""
+    """Figures of section 4.5; none if a package of the finite elements is missing."""
     if finite_elements_missing():
         return
     yield ReportFigure(

@@ -52,7 +52,7 @@ _PULLED: Final = (
 
 
 def finite_elements_missing() -> str:
-    """Return the message on a package that finite elements lack; empty if none is missing."""
+    """Message on a package that finite elements lack; empty if none is missing."""
     try:
         cad_kernel()
     except MissingPackage as failure:
@@ -164,7 +164,7 @@ def _final_design() -> Iterator[Row]:
 
 
 def _resonance(collar: Collar, *, open_top: bool, origin: str) -> tuple[ComputedValue, str]:
-    """Return the main resonance of a collar in Hz, with its note."""
+    """Main resonance of a collar in Hz, with its note."""
     found = main_resonance(response_model(collar, open_top=open_top))
     note = f"Resonance of the largest k_eff, {found.coupling_factor:.2f}, between 15 and 40 kHz; {origin}"
     return _on_mesh(found.series_frequency), note
@@ -200,5 +200,5 @@ def _pulled_rod() -> Iterator[Row]:
 
 
 def _on_mesh(frequency: float) -> ComputedValue:
-    """Return a natural frequency with the interval of the discretisation error. [Hz]"""
+    """Natural frequency with the interval of the discretisation error. [Hz]"""
     return ComputedValue(value=frequency, low=frequency * (1 - _MESH_ERROR), high=frequency)

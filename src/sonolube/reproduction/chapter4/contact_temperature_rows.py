@@ -32,7 +32,7 @@ def contact_temperature_rows() -> Iterator[Row]:
 
 
 def _slopes() -> Row:
-    """Return the slope of the temperature over speed at 26 MPa over that at 52 MPa."""
+    """Slope of the temperature over speed at 26 MPa over that at 52 MPa."""
     rises = np.array([[_at_vibration_start(load, speed) for speed in tests.speeds()] for load in tests.loads()])
     low, high = (float(np.polyfit(tests.speeds(), rise, 1)[0]) for rise in rises)
     per_speed = rises[0] / tests.speeds()
@@ -45,7 +45,7 @@ def _slopes() -> Row:
 
 
 def _at_vibration_start(load: float, speed: float) -> float:
-    """Return the temperature rise at the start of the vibration. [K]"""
+    """Temperature rise at the start of the vibration. [K]"""
     record = tests.history(tests.TemperatureTest(normal_load=load, sliding_speed=speed, vibrated=False))
     return float(np.interp(si_value("4.3.3-vibration-start"), record.time, record.temperature_rise))
 
@@ -82,7 +82,7 @@ def _example_by_vibration_heat() -> Iterator[Row]:
 
 
 def _loss_tangent() -> float:
-    """Return the loss tangent of the ceramic. []"""
+    """Loss tangent of the ceramic. []"""
     return material(_CERAMIC).value("loss_tangent")
 
 
@@ -97,7 +97,7 @@ def _example(ratios: Floats, suffix: str, note: str, *, kind: RowKind, fitted: s
 
 
 def _low_speed() -> Row:
-    """Return the temperature without vibration over that with it at the lowest speed."""
+    """Temperature without vibration over that with it at the lowest speed."""
     slowest = float(tests.speeds()[0])
     dry = tests.dry_heat(normal_load=float(tests.loads()[0]), sliding_speed=slowest)
     least, most = (
@@ -117,7 +117,7 @@ def _low_speed() -> Row:
 
 
 def _tribometer_peak() -> Row:
-    """Return the highest temperature of the tests on the tribometer."""
+    """Highest temperature of the tests on the tribometer."""
     load, speed = float(tests.loads()[-1]), float(tests.speeds()[-1])
     record = tests.history(tests.TemperatureTest(normal_load=load, sliding_speed=speed))
     peak = tests.ROOM_TEMPERATURE + float(record.temperature_rise.max())
@@ -137,7 +137,7 @@ def _tribometer_peak() -> Row:
 
 
 def _waveguide_peak() -> Row:
-    """Return the row of the peak beside the waveguide, with the most that the welder's power could warm it to."""
+    """Row of the peak beside the waveguide, with the most that the welder's power could warm it to."""
     aluminium = material("aluminium_2024")
     length, width, thickness = (si_value(f"2.1.2-waveguide-{side}") for side in ("length", "width", "thickness"))
     volume, density = length * width * thickness, aluminium.value("density")
@@ -170,7 +170,7 @@ def _waveguide_peak() -> Row:
 
 
 def _foil_peak() -> Row:
-    """Return the row of the peak behind a foil, with what the conductance of the foil alone would leave of it."""
+    """Row of the peak behind a foil, with what the conductance of the foil alone would leave of it."""
     first, peak = (si_value(f"4.3.5-temperature-{state}") for state in ("first", "peak"))
     sheltered = si_value("4.3.5-foil-temperature-peak")
     foil = float(

@@ -26,7 +26,7 @@ _UNIFORM: Final = FaceVibrationMode(rim_displacement_ratio=1.0, following_fracti
 
 
 def cutter_head_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 4.4; that of the mode only where the packages of the finite elements are there."""
+    """Figures of section 4.4; that of the mode only where the packages of the finite elements are there."""
     stiffening, linear = soft_layer_fits()
     yield ReportFigure(
         name="figures-4-42-4-46-skin-replica",
@@ -79,7 +79,7 @@ class HeadMode:
 
 @cache
 def head_mode() -> HeadMode:
-    """Return the mode nearest to the frequency of Table 4.6 of those that move the centre of the disc."""
+    """Mode nearest to the frequency of Table 4.6 of those that move the centre of the disc."""
     head = cutter_head_quarter()
     mesh = generate_mesh(head.geometry, element_size=_ELEMENT_SIZE)
     modes = natural_modes(head.model(mesh), count=_MODES)
@@ -164,6 +164,6 @@ def _mode() -> "Figure":
 
 
 def _without_twins(points: Floats) -> tuple[Floats, Integers]:
-    """Return coordinates of shape (2, m) of points of which none occurs twice, and their places among all."""
+    """Coordinates of shape (2, m) of points of which none occurs twice, and their places among all."""
     _, first = np.unique(points.round(6), axis=0, return_index=True)
     return points[first].T, first

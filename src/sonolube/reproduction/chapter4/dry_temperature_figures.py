@@ -15,19 +15,19 @@ from sonolube.reproduction.plots import line_style, point_style, single_axes
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_LEAST_COEFFICIENT: Final = 0.067  # on coated steel; D 4.1.3 prints 0.67 N (E18)
+_MIN_COEFFICIENT: Final = 0.067  # on coated steel; D 4.1.3 prints 0.67 N (E18)
 _CELSIUS: Final = tests.ROOM_TEMPERATURE - 273.15
 
 
 def dry_temperature_figures() -> Iterator[ReportFigure]:
-    """Return the figure of the temperature before the vibration."""
+    """Figure of the temperature before the vibration."""
     last = si_value("4.1.3-friction-coated-last")
     yield ReportFigure(
         name="figure-4-31-temperature-over-speed",
         title="Contact temperature over sliding speed",
         caption="As D figure 4.31, of which no temperature is printed: computed at 12 s, after 10 s of sliding without "
         f"vibration, with the least-squares lines (dashed). {tests.ASSUMED}. Bands: coefficients of friction from "
-        f"{_LEAST_COEFFICIENT:g} to {last:g}, those of D 4.1.3 with their misprint (E18). Nearly "
+        f"{_MIN_COEFFICIENT:g} to {last:g}, those of D 4.1.3 with their misprint (E18). Nearly "
         "linear, and steeper at the higher stress, as in the text.",
         draw=_over_speed,
     )
@@ -35,13 +35,13 @@ def dry_temperature_figures() -> Iterator[ReportFigure]:
 
 @cache
 def dry_rises() -> Floats:
-    """Return the temperature rises when the vibration starts, by load and speed. [K]"""
+    """Temperature rises when the vibration starts, by load and speed. [K]"""
     start = si_value("4.3.3-vibration-start")
     return np.array([[_rise(float(load), float(speed), start) for speed in tests.speeds()] for load in tests.loads()])
 
 
 def _rise(load: float, speed: float, moment: float) -> float:
-    """Return the temperature rise of a test without vibration at a moment. [K]"""
+    """Temperature rise of a test without vibration at a moment. [K]"""
     record = tests.history(tests.TemperatureTest(normal_load=load, sliding_speed=speed, vibrated=False))
     return float(np.interp(moment, record.time, record.temperature_rise))
 
@@ -50,7 +50,7 @@ def _over_speed() -> "Figure":
     """Draw the temperatures of both stresses over speed with their lines."""
     figure, axes = single_axes()
     speeds, area = tests.speeds(), si_value("table-4.4-nominal_area-1")
-    least = _LEAST_COEFFICIENT / si_value("4.1.3-friction-coated-last")
+    least = _MIN_COEFFICIENT / si_value("4.1.3-friction-coated-last")
     for index, (load, rise) in enumerate(zip(tests.loads(), dry_rises(), strict=True)):
         low = _CELSIUS + rise * least  # heat, and so the rise, is proportional to friction
         axes.fill_between(1e3 * speeds, low, _CELSIUS + rise, color=COLOURS[index], alpha=0.2, linewidth=0)

@@ -26,7 +26,7 @@ _NO_EXCITATION: Final = (
 
 @cache
 def response_over_load() -> "xr.Dataset":
-    """Return the response of the tribometer with steel plates over the weights of section 4.1."""
+    """Response of the tribometer with steel plates over the weights of section 4.1."""
     loads = published_number("4.1.1-normal-load")
     return load_study(plate_rig(), normal_load=np.arange(loads.low, loads.high + 0.125, 0.25))
 
@@ -59,7 +59,7 @@ def load_rows() -> Iterator[Row]:
 
 
 def load_figures() -> Iterator[ReportFigure]:
-    """Return the figure of section 4.1.2 on load."""
+    """Figure of section 4.1.2 on load."""
     yield ReportFigure(
         name="figure-4-7-load",
         title="Normal load, hung on the arm",

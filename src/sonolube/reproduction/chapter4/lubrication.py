@@ -63,7 +63,7 @@ def lubrication_rows() -> Iterator[Row]:
 
 
 def lubrication_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 4.2."""
+    """Figures of section 4.2."""
     yield ReportFigure(
         name="figure-4-27-lubrication-regimes",
         title="Best method of lubrication over speed and stress",
@@ -77,17 +77,7 @@ def lubrication_figures() -> Iterator[ReportFigure]:
 
 
 def vibrated_ratio(*, sliding_speed: ArrayLike) -> Floats:
-    """Return the friction ratio of the dry contact under vibration in the tests of Table 4.3. []
-
-    Parameters
-    ----------
-    sliding_speed : array_like, any shape
-        Speed of the sliding. [m/s]
-
-    Returns
-    -------
-    ndarray, shape of `sliding_speed`
-    """
+    """Friction ratio of the dry contact under vibration in the tests of Table 4.3. []"""
     return friction.sine_stick_slip_ratio(
         decay_length=_DECAY_LENGTH,
         vibration_amplitude=si_value("table-4.3-vibration_amplitude-1"),
@@ -97,25 +87,13 @@ def vibrated_ratio(*, sliding_speed: ArrayLike) -> Floats:
 
 
 def molykote() -> friction.BoundaryLubricant:
-    """Return the lubricant whose film has the friction of the vibrated contact at the printed speed."""
+    """Lubricant whose film has the friction of the vibrated contact at the printed speed."""
     at_limit = float(vibrated_ratio(sliding_speed=si_value(_LIMIT)))
     return friction.BoundaryLubricant(film_coefficient=at_limit * _DRY, full_asperity_pressure=_FULL_ASPERITY_PRESSURE)
 
 
 def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> friction.LubricationCoefficients:
-    """Return the coefficients of friction of the four methods over that of the dry contact.
-
-    Parameters
-    ----------
-    sliding_speed : array_like
-        Speed of the sliding. [m/s]
-    nominal_pressure : array_like, broadcast against `sliding_speed`
-        Load over nominal area. [Pa]
-
-    Returns
-    -------
-    LubricationCoefficients
-    """
+    """Coefficients of friction of the four methods over that of the dry contact."""
     return friction.lubrication_coefficients(
         molykote(),
         friction_coefficient=_DRY,
@@ -125,13 +103,13 @@ def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> fr
 
 
 def _pressures() -> Floats:
-    """Return the nominal pressures of Table 4.3. [Pa]"""
+    """Nominal pressures of Table 4.3. [Pa]"""
     area = si_value("table-4.3-nominal_area-1")
     return np.array([load.value / area for load in column_numbers("4.3", "normal_load").values()])
 
 
 def _limit_speed(pressure: float) -> float:
-    """Return the speed up to which vibration alone is best. [m/s]"""
+    """Speed up to which vibration alone is best. [m/s]"""
 
     def excess(speed: float) -> float:
         of = coefficients(sliding_speed=speed, nominal_pressure=pressure)

@@ -20,7 +20,7 @@ _NAMES: Final = {"dry": "dry", "ultrasonic": "vibration", "lubricant": "Molykote
 
 
 def lubrication_method_figures() -> Iterator[ReportFigure]:
-    """Return the figure of friction in time and over speed."""
+    """Figure of friction in time and over speed."""
     yield ReportFigure(
         name="figures-4-24-4-26-lubrication-methods",
         title="Friction under three loads by four methods of lubrication",
@@ -34,29 +34,20 @@ def lubrication_method_figures() -> Iterator[ReportFigure]:
 
 
 def dry_coefficient() -> float:
-    """Return the assumed coefficient of friction without vibration and lubricant. []"""
+    """Assumed coefficient of friction without vibration and lubricant. []"""
     return si_value("4.1.2-friction-off") / si_value("4.1.2-normal-load")
 
 
 def load_scatter() -> float:
-    """Return the standard deviation of the load by wobble over the load, from the scatter of friction. []"""
+    """Standard deviation of the load by wobble over the load, from the scatter of friction. []"""
     off = published_number("4.1.2-friction-off")
     return (off.high - off.low) / 2 / off.value
 
 
 def coefficients(*, sliding_speed: Floats, normal_load: float) -> dict[str, Floats]:
-    """Return the coefficients of friction by method, by the names of `LubricationCoefficients`. []
+    """Coefficients of friction by method, by the names of `LubricationCoefficients`. []
 
-    Parameters
-    ----------
-    sliding_speed : ndarray, shape (n,)
-        Speed of the sliding. [m/s]
-    normal_load : float
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    dict of str to ndarray, shape (n,)
+    Shape (n,).
     """
     pressure = normal_load / si_value("table-4.3-nominal_area-1")
     relative = lubrication.coefficients(sliding_speed=sliding_speed, nominal_pressure=pressure)._asdict()
@@ -64,21 +55,10 @@ def coefficients(*, sliding_speed: Floats, normal_load: float) -> dict[str, Floa
 
 
 def friction_in_time(*, normal_load: float) -> tuple[Floats, Floats, dict[str, Floats]]:
-    """Return time, speed, and friction by method under a load and its wobble.
+    """Time, speed, and friction by method under a load and its wobble.
 
-    Parameters
-    ----------
-    normal_load : float
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    time : ndarray, shape (n,)
-        From the start of the test. [s]
-    sliding_speed : ndarray, shape (n,)
-        Rising from the lowest to the highest. [m/s]
-    friction_force : dict of str to ndarray, shape (n,)
-        By the names of `LubricationCoefficients`. [N]
+    `time`: From the start of the test. [s] `sliding_speed`: Rising from the lowest to the highest. [m/s]
+    `friction_force`: By the names of `LubricationCoefficients`. [N]
     """
     lowest, highest = (limit.value for limit in published_number("table-4.3-sliding_speed-1").limits())
     time = np.linspace(0.0, _DURATION, _SAMPLES)

@@ -76,7 +76,7 @@ def map_rows() -> Iterator[Row]:
 
 
 def map_figures() -> Iterator[ReportFigure]:
-    """Return the figures of the maps."""
+    """Figures of the maps."""
     yield ReportFigure(
         name="figure-4-9-stress-maps",
         title="Friction reduction over sliding speed and stress",
@@ -116,7 +116,7 @@ def map_figures() -> Iterator[ReportFigure]:
 
 @cache
 def stress_maps() -> "xr.Dataset":
-    """Return the friction reduction over the speeds and loads of Table 4.1 at its voltages."""
+    """Friction reduction over the speeds and loads of Table 4.1 at its voltages."""
     voltages = [point.voltage_peak_to_peak for point in power_map.example_points()]
     return velocity_stress_map(
         plate_rig(), sliding_speed=_speeds(), normal_load=_loads(), voltage_peak_to_peak=voltages
@@ -125,14 +125,14 @@ def stress_maps() -> "xr.Dataset":
 
 @cache
 def power_maps() -> "xr.Dataset":
-    """Return the friction reduction over the speeds and powers of Table 4.1 under its loads."""
+    """Friction reduction over the speeds and powers of Table 4.1 under its loads."""
     voltages = np.linspace(1.0, power_map.example_points()[-1].voltage_peak_to_peak, 26)
     return velocity_power_map(plate_rig(), sliding_speed=_speeds(), voltage_peak_to_peak=voltages, normal_load=_loads())
 
 
 @cache
 def extended_power_map() -> "xr.Dataset":
-    """Return the friction reduction over speed and powers up to those of 200 V, at the load of the example test."""
+    """Friction reduction over speed and powers up to those of 200 V, at the load of the example test."""
     return velocity_power_map(
         plate_rig(),
         sliding_speed=_speeds(),
@@ -142,18 +142,18 @@ def extended_power_map() -> "xr.Dataset":
 
 
 def _speeds() -> Floats:
-    """Return the speeds of the maps. [m/s]"""
+    """Speeds of the maps. [m/s]"""
     speed = published_number("table-4.1-sliding_speed-1")
     return np.linspace(speed.low, speed.high, 31)
 
 
 def _loads() -> list[float]:
-    """Return the loads of Table 4.1. [N]"""
+    """Loads of Table 4.1. [N]"""
     return [load.value for load in column_numbers("4.1", "normal_load").values()]
 
 
 def _plate_count() -> Row:
-    """Return the number of plates from the loads."""
+    """Number of plates from the loads."""
     loads, step = published_number("4.1.1-normal-load"), si_value("4.1.1-load-step")
     note = f"Loads from {loads.low:g} to {loads.high:g} N by {step:g} N; as many stresses in the captions of appendix B"
     return comparison_row(
@@ -162,7 +162,7 @@ def _plate_count() -> Row:
 
 
 def _hardness() -> Row:
-    """Return the row of the hardness of the plates, whose yield strength is not printed."""
+    """Row of the hardness of the plates, whose yield strength is not printed."""
     implied = si_value("4.1.3-hardness-uncoated") / _TABOR
     hardness = convert(_TABOR * STEEL_YIELD_STRENGTH, from_unit="Pa", to_unit="kgf/mm2")
     missing = (

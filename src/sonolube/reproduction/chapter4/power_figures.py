@@ -19,7 +19,7 @@ _OFFSET: Final = 3.0  # mm/s between points of one speed
 
 
 def power_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 4.1 on power and efficiency."""
+    """Figures of section 4.1 on power and efficiency."""
     sufficient = power_map.sufficient_power(power_map.example_test())
     yield ReportFigure(
         name="table-4-1-actuator-power",

@@ -37,17 +37,7 @@ class ExamplePoint:
 
 
 def actuator_power(*, voltage_peak_to_peak: ArrayLike) -> Floats:
-    """Return the amplifier's power for the actuator of Table 4.1, driven from zero to its highest voltage, D 1.9. [W]
-
-    Parameters
-    ----------
-    voltage_peak_to_peak : array_like, any shape
-        Drive voltage, peak to peak. [V]
-
-    Returns
-    -------
-    ndarray, shape of `voltage_peak_to_peak`
-    """
+    """Amplifier's power for the actuator of Table 4.1, driven from zero to its highest voltage, D 1.9. [W]"""
     return linear_amplifier_power(
         capacitance=si_value("table-4.1-capacitance-1"),
         voltage_maximum=voltage_peak_to_peak,
@@ -57,24 +47,14 @@ def actuator_power(*, voltage_peak_to_peak: ArrayLike) -> Floats:
 
 
 def vibration_amplitude(*, voltage_peak_to_peak: ArrayLike) -> Floats:
-    """Return the amplitude in proportion to the voltage, through the highest of both in Table 4.1. [m]
-
-    Parameters
-    ----------
-    voltage_peak_to_peak : array_like, any shape
-        Drive voltage, peak to peak. [V]
-
-    Returns
-    -------
-    ndarray, shape of `voltage_peak_to_peak`
-    """
+    """Amplitude in proportion to the voltage, through the highest of both in Table 4.1. [m]"""
     columns = table("4.1").columns
     amplitude, voltage = (np.nanmax(columns[name].values) for name in ("vibration_amplitude", "voltage_peak_to_peak"))
     return np.asarray(voltage_peak_to_peak, dtype=np.float64) * (amplitude / voltage)
 
 
 def example_test() -> dict[str, float]:
-    """Return friction without vibration, speed, area and load of the example test as arguments of metrics, in SI."""
+    """Friction without vibration, speed, area and load of the example test as arguments of metrics, in SI."""
     return {
         "intrinsic_friction_force": si_value("table-4.2-friction_force-1"),
         "sliding_speed": si_value("4.1.2-sliding-speed"),
@@ -84,7 +64,7 @@ def example_test() -> dict[str, float]:
 
 
 def example_points() -> tuple[ExamplePoint, ...]:
-    """Return the points of Table 4.2 with vibration."""
+    """Points of Table 4.2 with vibration."""
     return tuple(
         ExamplePoint(
             row=row,
@@ -98,19 +78,7 @@ def example_points() -> tuple[ExamplePoint, ...]:
 
 
 def cube_friction(*, voltage_peak_to_peak: ArrayLike, yield_strength: float = STEEL_YIELD_STRENGTH) -> Floats:
-    """Return the friction of the example test by the cube over the separating half period, D 3.15. [N]
-
-    Parameters
-    ----------
-    voltage_peak_to_peak : array_like, any shape
-        Drive voltage, peak to peak. [V]
-    yield_strength : float
-        Yield strength of the plates. [Pa]
-
-    Returns
-    -------
-    ndarray, shape of `voltage_peak_to_peak`
-    """
+    """Friction of the example test by the cube over the separating half period, D 3.15. [N]"""
     test = example_test()
     ratio = dong_2015_half_period_ratio(
         uncoated_plate_contact(yield_strength=yield_strength),
@@ -121,61 +89,29 @@ def cube_friction(*, voltage_peak_to_peak: ArrayLike, yield_strength: float = ST
 
 
 def point_efficiency(point: ExamplePoint, *, friction: float) -> float:
-    """Return the efficiency coefficient of the example test at a voltage and a friction, D 4.1. [m2/N]"""
+    """Efficiency coefficient of the example test at a voltage and a friction, D 4.1. [m2/N]"""
     return float(
         efficiency_coefficient(reduced_friction_force=friction, actuator_power=point.actuator_power, **example_test())
     )
 
 
 def sufficient_power(test: dict[str, float]) -> float:
-    """Return the power at which the efficiency line has no friction left, D 4.3. [W]
-
-    Parameters
-    ----------
-    test : dict
-        As `example_test` returns it.
-
-    Returns
-    -------
-    float
-    """
+    """Power at which the efficiency line has no friction left, D 4.3. [W]"""
     return float(power_for_friction(efficiency_line(), reduced_friction_force=0.0, **test))
 
 
 def line_friction(test: dict[str, float], *, actuator_power: ArrayLike) -> Floats:
-    """Return the friction at a power on the efficiency line, D 4.4: zero from the sufficient power on. [N]
-
-    Parameters
-    ----------
-    test : dict
-        As `example_test` returns it.
-    actuator_power : array_like, any shape
-        Power of the actuator. [W]
-
-    Returns
-    -------
-    ndarray, shape of `actuator_power`
-    """
+    """Friction at a power on the efficiency line, D 4.4: zero from the sufficient power on. [N]"""
     power = np.minimum(actuator_power, sufficient_power(test))
     return friction_at_power(efficiency_line(), actuator_power=power, **test)
 
 
 def line_efficiency(*, sliding_speed: ArrayLike) -> Floats:
-    """Return the efficiency coefficient on the efficiency line. [m2/N]
-
-    Parameters
-    ----------
-    sliding_speed : array_like, any shape
-        Macroscopic relative speed. [m/s]
-
-    Returns
-    -------
-    ndarray, shape of `sliding_speed`
-    """
+    """Efficiency coefficient on the efficiency line. [m2/N]"""
     return efficiency_at(efficiency_line(), sliding_speed=sliding_speed)
 
 
 def line_end() -> float:
-    """Return the sliding speed at which the efficiency line reaches zero. [m/s]"""
+    """Sliding speed at which the efficiency line reaches zero. [m/s]"""
     line = efficiency_line()
     return -line.intercept / line.slope

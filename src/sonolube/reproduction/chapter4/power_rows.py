@@ -68,28 +68,14 @@ def amplitude_rows(table_id: str) -> Iterator[Row]:
 
 
 def power_row(published: PublishedValue | str, voltage: float) -> Row:
-    """Return the row of a published actuator power at a voltage peak to peak in V."""
+    """Row of a published actuator power at a voltage peak to peak in V."""
     power = float(power_map.actuator_power(voltage_peak_to_peak=voltage))
     note = f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
     return comparison_row(published, power, note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def line_reduction_row(published: str, test: dict[str, float], *, actuator_power: float) -> Row:
-    """Return the row of a friction reduction on the efficiency line.
-
-    Parameters
-    ----------
-    published : str
-        Id of the published reduction.
-    test : dict
-        Settings as `example_test` returns them.
-    actuator_power : float
-        Power of the actuator. [W]
-
-    Returns
-    -------
-    Row
-    """
+    """Row of a friction reduction on the efficiency line."""
     off, on = test["intrinsic_friction_force"], float(power_map.line_friction(test, actuator_power=actuator_power))
     note = (
         f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and {test['sliding_speed'] * 1e3:g} "
@@ -99,13 +85,13 @@ def line_reduction_row(published: str, test: dict[str, float], *, actuator_power
 
 
 def _pressure_row(published: PublishedValue | str, load: float, area: PrintedNumber) -> Row:
-    """Return the row of a published nominal pressure of a load in N on a printed area."""
+    """Row of a published nominal pressure of a load in N on a printed area."""
     note = f"{load:g} N over {area.text} mm2, the load taken as exact"
     return formula_row(published, note, partial(truediv, load), area)
 
 
 def _highest_amplitude() -> Row:
-    """Return the highest amplitude of Table 4.1 from that of the wear tests, in proportion to the voltage."""
+    """Highest amplitude of Table 4.1 from that of the wear tests, in proportion to the voltage."""
     voltages, amplitude = column_numbers("4.1", "voltage_peak_to_peak"), published_number("2.3.1-amplitude")
     in_wear_tests = 2 * si_value("A.3.1.3-voltage-amplitude") * si_value("A.3.1.5-gain")
     last = max(voltages)
@@ -153,7 +139,7 @@ def _example_test() -> Iterator[Row]:
 
 
 def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
-    """Return the friction reduction of the mean forces of Table 4.2 at a voltage."""
+    """Friction reduction of the mean forces of Table 4.2 at a voltage."""
     off, on = power_map.example_test()["intrinsic_friction_force"], point.friction.value
     note = f"D 2.1 from the mean forces, {off:g} N and {on:g} N"
     # compared within the scatter of D alone: the rounding of the forces would hide that D averaged otherwise, E17
@@ -166,7 +152,7 @@ def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
 
 
 def _cube_friction(point: power_map.ExamplePoint) -> Row:
-    """Return the friction of the cube at a voltage."""
+    """Friction of the cube at a voltage."""
     off = power_map.example_test()["intrinsic_friction_force"]
     volts = point.voltage_peak_to_peak
     friction = float(power_map.cube_friction(voltage_peak_to_peak=volts))
@@ -189,7 +175,7 @@ def _cube_friction(point: power_map.ExamplePoint) -> Row:
 
 
 def _efficiency(point: power_map.ExamplePoint) -> Row:
-    """Return the intercept of the efficiency line from the efficiency coefficient at a voltage."""
+    """Intercept of the efficiency line from the efficiency coefficient at a voltage."""
     line, speed = efficiency_line(), power_map.example_test()["sliding_speed"]
     to_zero_speed = -line.slope * speed
     coefficient = power_map.point_efficiency(point, friction=point.friction.value)
@@ -206,7 +192,7 @@ def _efficiency(point: power_map.ExamplePoint) -> Row:
 
 
 def _line_friction(point: power_map.ExamplePoint) -> Row:
-    """Return the friction on the efficiency line at a voltage."""
+    """Friction on the efficiency line at a voltage."""
     test = power_map.example_test()
     as_printed = test["intrinsic_friction_force"] * (1 + point.actuator_power / power_map.sufficient_power(test))
     note = (
@@ -220,7 +206,7 @@ def _line_friction(point: power_map.ExamplePoint) -> Row:
 
 
 def _line_power(point: power_map.ExamplePoint) -> Row:
-    """Return the power on the efficiency line for the friction at a voltage."""
+    """Power on the efficiency line for the friction at a voltage."""
 
     def power(friction: float) -> float:
         return float(power_for_friction(efficiency_line(), reduced_friction_force=friction, **power_map.example_test()))
@@ -235,7 +221,7 @@ def _line_power(point: power_map.ExamplePoint) -> Row:
 
 
 def _surplus_power_note(point: power_map.ExamplePoint) -> str:
-    """Return the note on power beyond the sufficient one; empty below it."""
+    """Note on power beyond the sufficient one; empty below it."""
     sufficient = power_map.sufficient_power(power_map.example_test())
     if point.actuator_power <= sufficient:
         return ""
@@ -246,7 +232,7 @@ def _surplus_power_note(point: power_map.ExamplePoint) -> str:
 
 
 def _intrinsic_friction() -> Row:
-    """Return the friction without vibration of section 4.1.3 from Table 4.2."""
+    """Friction without vibration of section 4.1.3 from Table 4.2."""
     test = power_map.example_test()
     off, load = test["intrinsic_friction_force"], test["normal_load"]
     note = f"friction of Table 4.2 at {load:g} N; over that load a coefficient of {off / load:.3f}"
@@ -254,6 +240,6 @@ def _intrinsic_friction() -> Row:
 
 
 def _over_scatter(function: Callable[[float], float], measured: PrintedNumber) -> ComputedValue:
-    """Return a monotonic function of a measured mean with the interval of its scatter."""
+    """Monotonic function of a measured mean with the interval of its scatter."""
     limits = function(measured.low), function(measured.high)
     return ComputedValue(value=function(measured.value), low=min(limits), high=max(limits))

@@ -62,7 +62,7 @@ def skin_replica_rows() -> Iterator[Row]:
 
 
 def skin_replica_figures() -> Iterator[ReportFigure]:
-    """Return the figure of section 4.4."""
+    """Figure of section 4.4."""
     yield ReportFigure(
         name="section-4-4-skin-replica",
         title="Friction coefficient on the skin replica",
@@ -74,7 +74,7 @@ def skin_replica_figures() -> Iterator[ReportFigure]:
 
 @cache
 def soft_layer_fits() -> tuple[SoftLayerFit, ...]:
-    """Return both soft-layer models, each with its parameter fitted to the three friction ratios by least squares."""
+    """Both soft-layer models, each with its parameter fitted to the three friction ratios by least squares."""
     loads = _loads()
     newtons = np.array([load.value for load in loads])
     measured = np.array([_force("on", load).value / _force("off", load).value for load in loads])
@@ -94,7 +94,7 @@ def soft_layer_fits() -> tuple[SoftLayerFit, ...]:
 
 
 def _fit(name: str, parameter: str, model: Callable[[float], Floats], measured: Floats) -> SoftLayerFit:
-    """Return a soft-layer model fitted to measured friction ratios."""
+    """Soft-layer model fitted to measured friction ratios."""
     best = minimize_scalar(
         lambda value: float(np.sum((model(value) - measured) ** 2)),
         bounds=(0.01, 20.0),
@@ -153,7 +153,7 @@ def _soft_layers() -> Iterator[Row]:
 
 
 def _soft_layer(fit: SoftLayerFit, index: int) -> tuple[float, str]:
-    """Return the friction coefficient with vibration by a soft-layer model under a load, with its note."""
+    """Friction coefficient with vibration by a soft-layer model under a load, with its note."""
     load, ratio = _loads()[index], fit.computed[index]
     off = _force("off", load).value
     note = (
@@ -188,10 +188,10 @@ def _friction_coefficients() -> "Figure":
 
 
 def _loads() -> list[PrintedNumber]:
-    """Return the three loads of one head, Table 4.6."""
+    """Three loads of one head, Table 4.6."""
     return list(column_numbers("4.6", "normal_load").values())
 
 
 def _force(state: str, load: PrintedNumber) -> PrintedNumber:
-    """Return the friction force without ("off") or with ("on") vibration under a load."""
+    """Friction force without ("off") or with ("on") vibration under a load."""
     return published_number(f"4.4.3-friction-{state}-{load.text}N")

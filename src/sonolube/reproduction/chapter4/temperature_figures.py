@@ -22,7 +22,7 @@ _VOLTAGE: Final = "Drive voltage, peak to peak [V]"
 
 
 def temperature_figures() -> Iterator[ReportFigure]:
-    """Return the figures of section 4.3."""
+    """Figures of section 4.3."""
     yield ReportFigure(
         name="figure-4-30-contact-temperature",
         title="Computed temperature of the contact in time",
@@ -114,7 +114,7 @@ def _superimposed_speeds() -> "Figure":
 
 
 def _peak_velocity(voltage: Floats) -> Floats:
-    """Return the peak vibration velocity at voltages peak to peak in V. [m/s]"""
+    """Peak vibration velocity at voltages peak to peak in V. [m/s]"""
     return peak_vibration_velocity(
         frequency=si_value("table-4.4-frequency-1"),
         vibration_amplitude=vibration_amplitude(voltage_peak_to_peak=voltage),

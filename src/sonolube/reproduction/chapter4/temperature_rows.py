@@ -68,7 +68,7 @@ def _superimposed_speeds() -> Iterator[Row]:
 
 
 def _raised_speed() -> Row:
-    """Return the superimposed speed of section 4.3.4."""
+    """Superimposed speed of section 4.3.4."""
     slowest, second, *_ = column_numbers("4.4", "sliding_speed").values()
     *_, peak = column_numbers("4.4", "vibration_velocity").values()
     note = (
@@ -91,7 +91,7 @@ def _speed_rises() -> Iterator[Row]:
 
 
 def _example_reduction() -> Row:
-    """Return the reduction of the example at 10.3 V, near the end of the efficiency line."""
+    """Reduction of the example at 10.3 V, near the end of the efficiency line."""
     load = si_value("table-4.4-normal_load-1")
     example = {
         "intrinsic_friction_force": si_value("4.1.3-friction-coated-last") * load,  # a coefficient: erratum E18

@@ -53,52 +53,34 @@ class TemperatureTest:
 
 
 def voltages() -> Floats:
-    """Return the five voltages, peak to peak. [V]"""
+    """Five voltages, peak to peak. [V]"""
     return _column("voltage_peak_to_peak")
 
 
 def speeds() -> Floats:
-    """Return the six sliding speeds. [m/s]"""
+    """Six sliding speeds. [m/s]"""
     return _column("sliding_speed")
 
 
 def loads() -> Floats:
-    """Return both loads. [N]"""
+    """Both loads. [N]"""
     return _column("normal_load")
 
 
 def dry_heat(*, normal_load: float, sliding_speed: float) -> float:
-    """Return the heat of friction without vibration. [W]
-
-    Parameters
-    ----------
-    normal_load : float
-        Force pressing the bodies together. [N]
-    sliding_speed : float
-        Sliding speed. [m/s]
-
-    Returns
-    -------
-    float
-    """
+    """Heat of friction without vibration. [W]"""
     friction = si_value("4.1.3-friction-coated-last") * normal_load  # a coefficient: erratum E18
     return float(thermal.frictional_heat_rate(friction_force=friction, sliding_speed=sliding_speed))
 
 
 def example_heat() -> float:
-    """Return the heat of friction of the example, 3 N and 220 mm/s, without vibration. [W]"""
+    """Heat of friction of the example, 3 N and 220 mm/s, without vibration. [W]"""
     return dry_heat(normal_load=float(loads()[0]), sliding_speed=si_value("4.3.4-example-speed"))
 
 
 def vibration_heat_window() -> tuple[float, float]:
-    """Return the limits of the fraction of the actuator's power at which the example cools and warms as in D. []
+    """Limits of the fraction of the actuator's power at which the example cools and warms as in D. []
 
-    Returns
-    -------
-    tuple of float
-
-    Notes
-    -----
     At 10.3 V the heat of vibration must be less than the loss of frictional heat, at 20.7 V more.
     """
     power = actuator_power(voltage_peak_to_peak=voltages())
@@ -107,19 +89,19 @@ def vibration_heat_window() -> tuple[float, float]:
 
 
 def vibration_heat_fraction() -> float:
-    """Return the fraction of the actuator's power that heats the contact: the geometric mean of its limits. []"""
+    """Fraction of the actuator's power that heats the contact: the geometric mean of its limits. []"""
     low, high = vibration_heat_window()
     return float(np.sqrt(low * high))
 
 
 def vibration_heat(fraction: float | None = None) -> Floats:
-    """Return the heat of vibration at the five voltages, by default at the geometric mean of the limits. [W]"""
+    """Heat of vibration at the five voltages, by default at the geometric mean of the limits. [W]"""
     share = vibration_heat_fraction() if fraction is None else fraction
     return share * actuator_power(voltage_peak_to_peak=voltages())
 
 
 def slow_friction_ratio() -> Floats:
-    """Return the friction ratio at the lowest speed and the five voltages by asperity stick-slip. []"""
+    """Friction ratio at the lowest speed and the five voltages by asperity stick-slip. []"""
     return sine_stick_slip_ratio(
         decay_length=RMS_OVER_ARITHMETIC_MEAN * si_value("4.1.3-roughness-coated") / ExponentialHeights().decay,
         vibration_amplitude=_column("vibration_amplitude"),
@@ -129,7 +111,7 @@ def slow_friction_ratio() -> Floats:
 
 
 def heated_contact(*, disc: thermal.ThermalSolid = POWDER_COATING) -> thermal.HeatedContact:
-    """Return the contact of the thermocouple's tip with the disc."""
+    """Contact of the thermocouple's tip with the disc."""
     pin = thermal_solid("stainless_steel_304")
     radius = float(np.sqrt(si_value("table-4.4-nominal_area-1") / np.pi))
     return thermal.HeatedContact(
@@ -138,18 +120,7 @@ def heated_contact(*, disc: thermal.ThermalSolid = POWDER_COATING) -> thermal.He
 
 
 def history(test: TemperatureTest, *, step: float = 0.25) -> thermal.ContactTemperatureHistory:
-    """Return the computed temperature history of a test.
-
-    Parameters
-    ----------
-    test : TemperatureTest
-    step : float
-        Time step, in s.
-
-    Returns
-    -------
-    ContactTemperatureHistory
-    """
+    """Computed temperature history of a test."""
     start, dry = si_value("4.3.3-motor-start"), si_value("4.3.3-vibration-start")
     level, rest = si_value("4.3.3-level-duration"), si_value("4.3.3-cooling-duration")
     end = dry + level * voltages().size
@@ -169,5 +140,5 @@ def history(test: TemperatureTest, *, step: float = 0.25) -> thermal.ContactTemp
 
 
 def _column(name: str) -> Floats:
-    """Return the numbers of a column of Table 4.4, in SI."""
+    """Numbers of a column of Table 4.4, in SI."""
     return np.array([number.value for number in column_numbers("4.4", name).values()])

@@ -66,7 +66,7 @@ class MotionPredictions:
 
 @cache
 def motion_predictions() -> tuple[MotionPredictions, ...]:
-    """Return the friction ratios by every model under every motion, for each test of both tables."""
+    """Friction ratios by every model under every motion, for each test of both tables."""
     return tuple(
         MotionPredictions(
             test=test,
@@ -77,16 +77,9 @@ def motion_predictions() -> tuple[MotionPredictions, ...]:
 
 
 def computed_motion_prediction(test: FrictionTest) -> Predictions:
-    """Return the friction ratio of a test of Table 2.3 or 4.2 by asperity stick-slip on the computed steady motion.
+    """Friction ratio of a test of Table 2.3 or 4.2 by asperity stick-slip on the computed steady motion.
 
-    Parameters
-    ----------
-    test : FrictionTest
-
-    Returns
-    -------
-    dict of str to (float, str)
-        Empty for a test of another table.
+    Empty for a test of another table.
     """
     predictions: Predictions = {}
     for one in motion_predictions():
@@ -102,7 +95,7 @@ def computed_motion_prediction(test: FrictionTest) -> Predictions:
 
 
 def computed_motion_figures() -> Iterator[ReportFigure]:
-    """Return the figure of friction on computed motions."""
+    """Figure of friction on computed motions."""
     yield ReportFigure(
         name="friction-models-on-computed-motion",
         title="Friction on computed motions and on a prescribed sine",
@@ -115,22 +108,7 @@ def computed_motion_figures() -> Iterator[ReportFigure]:
 
 
 def swinging_arm_motion(test: FrictionTest, moving: ContactMotion, *, swing: float, cycles: int) -> ContactMotion:
-    """Return a gap motion superimposed on a slow oscillation of the arm, load-balanced over the period of the arm.
-
-    Parameters
-    ----------
-    test : FrictionTest
-    moving : ContactMotion
-        One period of the drive.
-    swing : float
-        Amplitude of the arm at the contact, in m.
-    cycles : int
-        Periods of the drive in a period of the arm.
-
-    Returns
-    -------
-    ContactMotion
-    """
+    """Gap motion superimposed on a slow oscillation of the arm, load-balanced over the period of the arm."""
     one = moving.resampled(_SAMPLES_OF_ARM_PERIOD).displacement
     slow = swing * np.cos(2 * np.pi * np.arange(cycles * one.size) / (cycles * one.size))
     return load_balanced_motion(
@@ -155,13 +133,13 @@ def _motions(test: FrictionTest) -> Iterator[tuple[str, ContactMotion]]:
 
 
 def _ratio(model: str, test: FrictionTest, moving: ContactMotion) -> float:
-    """Return the friction ratio of a test by a friction model on a motion. []"""
+    """Friction ratio of a test by a friction model on a motion. []"""
     speed, mu = test.sliding_speed, test.friction_coefficient
     return float(FRICTION_MODELS[model]().ratio(test.contact, moving, sliding_speed=speed, friction_coefficient=mu))
 
 
 def _steady_motion(test: FrictionTest) -> ContactMotion:
-    """Return the steady motion of the identified tribometer by harmonic balance."""
+    """Steady motion of the identified tribometer by harmonic balance."""
     states = steady_state(
         identified_structure(),
         _gap_law(test),
@@ -174,7 +152,7 @@ def _steady_motion(test: FrictionTest) -> ContactMotion:
 
 
 def _integrated_motion(test: FrictionTest) -> ContactMotion:
-    """Return the last arm period of the tribometer by time integration from rest."""
+    """Last arm period of the tribometer by time integration from rest."""
     cycles = _arm_cycles(test)
     periods = round(si_value("3.3.4-settling-time") * test.frequency)
     contact = trajectory(
@@ -191,24 +169,24 @@ def _integrated_motion(test: FrictionTest) -> ContactMotion:
 
 
 def _gap_motion(displacement: Floats, force: Floats, test: FrictionTest, *, cycles: int = 1) -> ContactMotion:
-    """Return the gap motion of a test over one or several periods of the drive."""
+    """Gap motion of a test over one or several periods of the drive."""
     return ContactMotion(
         displacement=displacement, normal_force=force, frequency=test.frequency / cycles, normal_load=test.normal_load
     )
 
 
 def _gap_law(test: FrictionTest) -> ExponentialGap:
-    """Return the exponential gap law of the contact of a test."""
+    """Exponential gap law of the contact of a test."""
     return ExponentialGap(decay_length=float(decay_length(test.contact)))
 
 
 def _arm_cycles(test: FrictionTest) -> int:
-    """Return the number of periods of the drive in a period of the arm."""
+    """Number of periods of the drive in a period of the arm."""
     return round(test.frequency / si_value("3.3.4-residual-frequency"))
 
 
 def _voltage(test: FrictionTest) -> float:
-    """Return the voltage peak to peak by the amplitude per volt of Table 4.1. [V]"""
+    """Voltage peak to peak by the amplitude per volt of Table 4.1. [V]"""
     per_volt = si_value("table-4.1-vibration_amplitude-15") / si_value("table-4.1-voltage_peak_to_peak-15")
     return test.vibration_amplitude / per_volt
 

@@ -42,7 +42,7 @@ def power_map_test_rows() -> Iterator[Row]:
 
 
 def roughness_caveat() -> str:
-    """Return the doubt on the roughness of the friction tests, with the error that the printed one would leave."""
+    """Doubt on the roughness of the friction tests, with the error that the printed one would leave."""
     recorded, printed = (
         root_mean_square(
             [
@@ -60,19 +60,11 @@ def roughness_caveat() -> str:
 
 
 def within_scatter(test: FrictionTest) -> PublishedValue:
-    """Return the friction reduction of a test with the interval of its measurement.
+    """Friction reduction of a test with the interval of its measurement.
 
-    Parameters
-    ----------
-    test : FrictionTest
-        With a published reduction.
-
-    Returns
-    -------
-    PublishedValue
-        D derives a reduction from forces and prints both, the forces with their scatter. The interval is that of the
-        printed reduction and that of the forces together: where they differ (E16, E17, E27) they are two readings of
-        one test.
+    D derives a reduction from forces and prints both, the forces with their scatter. The interval is that of the
+    printed reduction and that of the forces together: where they differ (E16, E17, E27) they are two readings of one
+    test.
     """
     assert test.published is not None
     number, scatter = test.published.number, test.uncertainty or 0.0
@@ -100,7 +92,7 @@ def _rows(sets: str) -> Iterator[Row]:
 
 
 def _possible(test: FrictionTest) -> tuple[float, float] | None:
-    """Return the limits of the reduction of a flextensional test over the gain at resonance, not printed. []"""
+    """Limits of the reduction of a flextensional test over the gain at resonance, not printed. []"""
     if test.set_name != FLEXTENSIONAL:
         return None
     least, most = (
@@ -111,5 +103,5 @@ def _possible(test: FrictionTest) -> tuple[float, float] | None:
 
 
 def _predictions(test: FrictionTest) -> Predictions:
-    """Return the friction ratios of a test by all variants, mechanisms and motions, each with its note, by name."""
+    """Friction ratios of a test by all variants, mechanisms and motions, each with its note, by name."""
     return variant_predictions(test) | mechanism_predictions(test) | computed_motion_prediction(test)

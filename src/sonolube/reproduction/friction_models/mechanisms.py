@@ -86,7 +86,7 @@ class Mechanism:
 
 @cache
 def mechanisms() -> tuple[Mechanism, ...]:
-    """Return all mechanisms fitted to both tables."""
+    """All mechanisms fitted to both tables."""
     return tuple(
         Mechanism(
             fit=fit,
@@ -99,14 +99,10 @@ def mechanisms() -> tuple[Mechanism, ...]:
 
 
 def speeds_of_no_reduction() -> Floats:
-    r"""Return the sliding speed above which normal vibration has no effect, for each test of Table 4.2. [m/s]
+    r"""Sliding speed above which normal vibration has no effect, for each test of Table 4.2. [m/s]
 
-    Returns
-    -------
-    ndarray, shape (5,)
+    Shape (5,).
 
-    Notes
-    -----
     .. math:: v_c = \mu \omega a \frac{k_n}{k_t} = \omega a \frac{D_c}{l}
 
     with the ratio of stiffnesses, or the memory length, of Mindlin.
@@ -115,16 +111,7 @@ def speeds_of_no_reduction() -> Floats:
 
 
 def mechanism_predictions(test: FrictionTest) -> Predictions:
-    """Return the friction ratios of a test of Table 4.2 by the reported mechanisms; none of any other test.
-
-    Parameters
-    ----------
-    test : FrictionTest
-
-    Returns
-    -------
-    dict of str to (float, str)
-    """
+    """Friction ratios of a test of Table 4.2 by the reported mechanisms; none of any other test."""
     predictions: Predictions = {}
     if test not in friction_tests("B"):
         return predictions
@@ -140,7 +127,7 @@ def mechanism_predictions(test: FrictionTest) -> Predictions:
 
 
 def mechanism_figures() -> Iterator[ReportFigure]:
-    """Return the figure of the mechanisms."""
+    """Figure of the mechanisms."""
     yield ReportFigure(
         name="mechanisms-of-tables-2-3-and-4-2",
         title="Mechanisms that could explain both Table 2.3 and Table 4.2",
@@ -154,7 +141,7 @@ def mechanism_figures() -> Iterator[ReportFigure]:
 
 
 def _speed_of_no_reduction(test: FrictionTest) -> float:
-    """Return the sliding speed above which normal vibration has no effect on a test. [m/s]"""
+    """Sliding speed above which normal vibration has no effect on a test. [m/s]"""
     length = decay_length(test.contact, separation=separation(test.contact, normal_load=test.normal_load))
     memory = mindlin_memory_length(
         test.contact, friction_coefficient=test.friction_coefficient, normal_load=test.normal_load
@@ -169,7 +156,7 @@ def _with_zero_error(
     in_plane_fraction: float = 0.0,
     in_plane_phase: float = 0.0,
 ) -> Floats:
-    """Return the ratio of two force readings that both lack the same zero error. []"""
+    """Ratio of two force readings that both lack the same zero error. []"""
     ratio = asperity_stick_slip(
         test, memory_length=memory_length, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
     )
@@ -178,7 +165,7 @@ def _with_zero_error(
 
 
 def _with_slack_string(test: FrictionTest, memory_length: float) -> Floats:
-    """Return the ratio of two force readings by a string that is slack on the rig of Table 4.2. []"""
+    """Ratio of two force readings by a string that is slack on the rig of Table 4.2. []"""
     return _with_zero_error(test, memory_length, SLACK if test.set_name in RIGS["power map"] else 0.0)
 
 

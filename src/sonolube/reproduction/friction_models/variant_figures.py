@@ -34,7 +34,7 @@ _LARGEST_ERROR: Final = 0.5  # limit of the colour scale
 
 
 def variant_figures() -> Iterator[ReportFigure]:
-    """Return the figures of the variants of the friction models."""
+    """Figures of the variants of the friction models."""
     yield ReportFigure(
         name="friction-models-against-speed",
         title="Friction ratio against sliding speed, by friction model",
@@ -65,7 +65,7 @@ def variant_figures() -> Iterator[ReportFigure]:
 
 
 def _default_model_text() -> str:
-    """Return the parameter of the default friction model with its interval as text."""
+    """Parameter of the default friction model with its interval as text."""
     variant = next(one for one in FRICTION_MODEL_VARIANTS if one.name == DEFAULT)
     fit = fit_variant(variant, SETS_WITHOUT_POWER_MAP)
     low, high = profile_likelihood_interval(fit, 0)

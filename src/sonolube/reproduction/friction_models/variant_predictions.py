@@ -21,16 +21,7 @@ Predictions = dict[str, tuple[float, str]]
 
 
 def variant_predictions(test: FrictionTest) -> Predictions:
-    """Return the friction ratios of a test by the reported variants that reach it.
-
-    Parameters
-    ----------
-    test : FrictionTest
-
-    Returns
-    -------
-    dict of str to (float, str)
-    """
+    """Friction ratios of a test by the reported variants that reach it."""
     predictions: Predictions = {}
     for fit in reported_fits():
         ratio = fit.predict(test) if fit.variant.name in REPORTED else None
@@ -44,17 +35,17 @@ def variant_predictions(test: FrictionTest) -> Predictions:
 
 @cache
 def reported_fits() -> tuple[Fit, ...]:
-    """Return every variant fitted without Table 4.2, or with it if a parameter applies to its rig alone."""
+    """Every variant fitted without Table 4.2, or with it if a parameter applies to its rig alone."""
     return tuple(fit_variant(variant, _fitted_sets(variant)) for variant in FRICTION_MODEL_VARIANTS)
 
 
 def is_fitted_to(test: FrictionTest) -> bool:
-    """Return whether the default model is fitted to the set of a test."""
+    """Whether the default model is fitted to the set of a test."""
     return any(fit.variant.name == DEFAULT and test.set_name in fit.sets for fit in reported_fits())
 
 
 def parameters_text(fit: Fit, sets: str) -> str:
-    """Return the fitted parameters that apply to sets as text."""
+    """Fitted parameters that apply to sets as text."""
     return ", ".join(
         f"{parameter.name} {value:.3g} {parameter.unit}".rstrip()
         for parameter, value in zip(fit.variant.parameters, fit.values, strict=True)
@@ -63,16 +54,16 @@ def parameters_text(fit: Fit, sets: str) -> str:
 
 
 def ratio_text(computed: float, measured: float) -> str:
-    """Return a computed and a measured friction ratio as a sentence."""
+    """Computed and a measured friction ratio as a sentence."""
     return f"Ratio {computed:.3f}, measured {measured:.3f}."
 
 
 def capitalised(text: str) -> str:
-    """Return a text with a capital first letter."""
+    """Text with a capital first letter."""
     return text[0].upper() + text[1:]
 
 
 def _fitted_sets(variant: ModelVariant) -> str:
-    """Return the letters of the sets that a variant is fitted to for the report."""
+    """Letters of the sets that a variant is fitted to for the report."""
     of_power_map = any(parameter.applicable_sets == RIGS["power map"] for parameter in variant.parameters)
     return FITTED_SETS if of_power_map else SETS_WITHOUT_POWER_MAP

@@ -34,7 +34,7 @@ class RoughnessSection(Section):
         self.roughness()
 
     def roughness(self) -> Roughness:
-        """Return the roughness."""
+        """Roughness."""
         return Roughness(**self.model_dump())
 
 
@@ -101,19 +101,11 @@ class BodySection(Section):
         self.elastic()
 
     def elastic(self) -> ElasticBody:
-        """Return the elastic constants."""
+        """Elastic constants."""
         return ElasticBody(youngs_modulus=self.value_of("youngs_modulus"), poisson_ratio=self.value_of("poisson_ratio"))
 
     def value_of(self, name: str) -> float:
-        """Return a property of the body, its own or that of its material.
-
-        Raises
-        ------
-        MissingProperty
-            If the body has neither.
-        UnknownName
-            If the catalogue does not have the material.
-        """
+        """Property of the body, its own or that of its material."""
         given: float | None = getattr(self, name)
         if given is not None:
             return given
@@ -136,7 +128,7 @@ class PairSection(Section):
         self.pair()
 
     def pair(self) -> ContactPair:
-        """Return the constants of the pair."""
+        """Constants of the pair."""
         ratio = identical_materials_mindlin_ratio(poisson_ratio=self.poisson_ratio)
         return ContactPair(**self.model_dump(), mindlin_ratio=ratio)
 
@@ -173,7 +165,7 @@ class ContactSection(Section):
             self.contact(self.roughness)
 
     def contact(self, roughness: RoughnessSection) -> RoughContact:
-        """Return the contact with a roughness."""
+        """Contact with a roughness."""
         return RoughContact(
             roughness=roughness.roughness(),
             pair=self._pair(),
@@ -184,19 +176,19 @@ class ContactSection(Section):
         )
 
     def own_decay_length(self) -> float | None:
-        """Return the decay length of the file, by itself or by the normal stiffness; None without either. [m]"""
+        """Decay length of the file, by itself or by the normal stiffness; None without either. [m]"""
         if self.normal_stiffness is None:
             return self.decay_length
         return (self.normal_load if self.stiffness_load is None else self.stiffness_load) / self.normal_stiffness
 
     def origin_of_decay_length(self) -> DecayLengthOrigin | None:
-        """Return how the decay length is known; None where the file gives none."""
+        """How the decay length is known; None where the file gives none."""
         if self.normal_stiffness is not None:
             return "normal_stiffness"
         return None if self.decay_length is None else self.decay_length_origin or "stated"
 
     def material_of(self, role: str) -> str | None:
-        """Return the material of the pin or the disc, where a body has that role and a material."""
+        """Material of the pin or the disc, where a body has that role and a material."""
         for body, other in ((self.softer, self.harder), (self.harder, self.softer)):
             if body is not None and other is not None and (body.role == role or other.role not in (None, role)):
                 return None if body.material is None else material(body.material).name

@@ -45,26 +45,11 @@ DERIVED_SUMMITS: Final = (f"{ROUGHNESS}.summit_radius", f"{ROUGHNESS}.summit_den
 
 
 def with_derived(content: Mapping[str, Any], file: RigFile) -> dict[str, Any]:
-    """Return the content of a rig file with the numbers that follow from what it states.
+    """Content of a rig file with the numbers that follow from what it states.
 
-    Parameters
-    ----------
-    content : mapping
-        The file as TOML gives it.
-    file : RigFile
-        The same, validated.
-
-    Returns
-    -------
-    dict
-        Each derived number has an assumption with the relation and a distribution with its spread, unless the file
-        gives one; content that states all numbers is returned as it is. A normal stiffness belongs to the load of the
-        file, so that the decay length stays the same under another one.
-
-    Raises
-    ------
-    InvalidInput
-        If the file gives a distribution of what a number follows from.
+    Each derived number has an assumption with the relation and a distribution with its spread, unless the file gives
+    one; content that states all numbers is returned as it is. A normal stiffness belongs to the load of the file, so
+    that the decay length stays the same under another one.
     """
     section = file.contact
     contact = dict(content["contact"])
@@ -91,7 +76,7 @@ def with_derived(content: Mapping[str, Any], file: RigFile) -> dict[str, Any]:
 
 
 def _roughness(section: StatedRoughnessSection) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Return the table of the roughness, reasons and distributions of what is derived."""
+    """Table of the roughness, reasons and distributions of what is derived."""
     height = _height(section)
     summits = typical_summits(rms_height=height.rms_height)
     table: dict[str, Any] = {"rms_height": f"{height.rms_height!r} m"}
@@ -121,7 +106,7 @@ def _height(section: StatedRoughnessSection) -> StatedHeight:
 def _body(
     table: Mapping[str, Any], name: str, hardness: float
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Return the table of a body, reason and distribution of its yield strength."""
+    """Table of a body, reason and distribution of its yield strength."""
     found = yield_strength_from_hardness(hardness=hardness)
     rest = {key: value for key, value in table.items() if key != "hardness"}
     key = f"contact.{name}.yield_strength"

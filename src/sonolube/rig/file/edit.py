@@ -9,7 +9,7 @@ _HEADING = re.compile(r"^\[\[?([\w.]+)\]", re.MULTILINE)
 
 
 def with_tables(text: str, tables: str) -> str:
-    """Return the text of a rig file with some of its tables replaced.
+    """Text of a rig file with some of its tables replaced.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ class FileEntries:
     changes: tuple[str, ...] = ()
 
     def replaced(self, key: str, value: str | float) -> Rig:
-        """Return the rig of the file with one entry replaced."""
+        """Rig of the file with one entry replaced."""
         content = deepcopy(dict(self.content))
         set_entry(content, key, value)
         with prefixed(f"replace({key!r}, {value!r})"):
@@ -52,34 +52,19 @@ class FileEntries:
 
 
 def with_entries(rig: Rig, entries: FileEntries) -> Rig:
-    """Return a rig that was just read, with the entries of its file."""
+    """Rig that was just read, with the entries of its file."""
     object.__setattr__(rig, "_entries", entries)
     return rig
 
 
 def from_file(rig: Rig, *, path: str, changes: tuple[str, ...]) -> Rig:
-    """Return a rig that was just read, with the path of its file and the entries that were replaced."""
+    """Rig that was just read, with the path of its file and the entries that were replaced."""
     entries: FileEntries = object.__getattribute__(rig, "_entries")
     return with_entries(rig, replace(entries, path=path, changes=changes))
 
 
 def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
-    """Set an entry of the content of a file, its tables made where they are missing.
-
-    Parameters
-    ----------
-    content : dict
-    key : str
-        Dotted, such as "drive.frequency"; "uncertainty.drive.frequency" for its spread.
-    value : str or float
-        Where a number follows from it, such as the rms height from a finish, it takes the place of that number; a decay
-        length takes that of a normal stiffness, and the reverse.
-
-    Raises
-    ------
-    InvalidInput
-        If a part of the key is empty, or names an entry that is no table.
-    """
+    """Set an entry of the content of a file, its tables made where they are missing."""
     *tables, name = key.strip().split(".")
     if tables and tables[0] == "uncertainty":
         tables, name = tables[:1], key.strip().partition(".")[2]  # the keys of this table are whole

@@ -31,6 +31,6 @@ class Guidance:
 
 @cache
 def guidance() -> Mapping[str, Guidance]:
-    """Return the guidance to every number that a rig file requires, by the name of its key."""
+    """Guidance to every number that a rig file requires, by the name of its key."""
     text = files("sonolube.rig.file").joinpath("guidance.toml").read_text(encoding="utf-8")
     return MappingProxyType({name: Guidance(**entry) for name, entry in tomllib.loads(text).items()})

@@ -7,7 +7,7 @@ from sonolube.rig.file.sections import RigFile
 
 
 def rig_schema() -> dict[str, Any]:
-    """Return the JSON schema (draft 2020-12) that every rig file follows.
+    """JSON schema (draft 2020-12) that every rig file follows.
 
     Returns
     -------
@@ -19,17 +19,7 @@ def rig_schema() -> dict[str, Any]:
 
 
 def tables_of(entry: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the names, among the definitions of the schema, of the tables that a key may hold, alone or in a list.
-
-    Parameters
-    ----------
-    entry : mapping
-        Schema of the key.
-
-    Yields
-    ------
-    str
-    """
+    """Yield the names, among the definitions of the schema, of the tables that a key may hold, alone or in a list."""
     if "$ref" in entry:
         yield entry["$ref"].rpartition("/")[2]
     if "items" in entry:

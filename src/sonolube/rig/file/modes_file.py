@@ -34,23 +34,7 @@ class ModesFile(Section):
 def read_modes(path: Path) -> dict[str, Any]:
     """Read the modes of a structure from a file.
 
-    Parameters
-    ----------
-    path : Path
-        A file of the ending .toml as `sonolube modes --contact` writes it, or a table: its first row names the columns,
-        each with its unit in brackets, such as ``natural_frequency [kHz]``; the other columns are ``damping_ratio``,
-        ``drive_participation [N/V]`` and ``contact_participation``, the last two for shapes of a modal mass of 1 kg.
-        Lines that begin with ``#`` are comments.
-
-    Returns
-    -------
-    dict
-        The four columns by name, as lists in SI; of a TOML file also `clamped_capacitance`, as it is written.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, a column is missing or unknown, or an entry is no number.
+    The four columns by name, as lists in SI; of a TOML file also `clamped_capacitance`, as it is written.
     """
     with prefixed(str(path)):
         if path.suffix == ".toml":
@@ -86,7 +70,7 @@ def _modes(text: str) -> dict[str, list[float]]:
 
 
 def _column(head: str) -> tuple[str, str]:
-    """Return the name of a column and the unit of its entries."""
+    """Name of a column and the unit of its entries."""
     name, _, rest = head.strip().partition("[")
     name, unit = name.strip(), rest.strip().removesuffix("]").strip()
     if name not in MODE_LISTS:

@@ -38,50 +38,12 @@ _ANY_UNIT = (1e-30, 1e30)
 
 
 def plausible_si(text: str, *, unit: str, name: str) -> float:
-    """Return the number in SI that a command's option stands for, where a rig can have it.
-
-    Parameters
-    ----------
-    text : str
-        A number and its unit.
-    unit : str
-        SI unit expected.
-    name : str
-        What to call the value in an error.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        As `to_si`, or if the magnitude lies outside `LIMITS`.
-    """
+    """Number in SI that a command's option stands for, where a rig can have it."""
     return require_plausible(to_si(text, unit=unit, name=name), unit=unit, text=f"{name} {text}")
 
 
 def require_plausible(value: float, *, unit: str, text: str) -> float:
-    """Return a value in SI, or refuse it where its magnitude lies beyond any rig.
-
-    Parameters
-    ----------
-    value : float
-        In SI; its sign, and zero, are for others to judge.
-    unit : str
-        Its SI unit.
-    text : str
-        How it was written.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        If the magnitude lies outside `LIMITS`.
-    """
+    """Value in SI, or refuse it where its magnitude lies beyond any rig."""
     least, largest = LIMITS.get(unit, _ANY_UNIT)
     if value and (abs(value) < least or abs(value) > largest):  # what is no number is for others as well
         bounds = " to ".join(format_si(bound, unit) for bound in (least, largest))

@@ -64,7 +64,7 @@ def rig_of_file(path: str | Path, content: Mapping[str, Any], *, changes: Sequen
 
 
 def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, Any]:
-    """Return the content of a rig's file, its entries as they are written.
+    """Content of a rig's file, its entries as they are written.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def _changed(content: dict[str, Any], changes: Sequence[str], *, folder: Path) -
 
 
 def structure_entries(content: Mapping[str, Any]) -> dict[str, float]:
-    """Return masses, stiffness and damping of the pin-on-disc chain of a rig's file, in SI.
+    """Masses, stiffness and damping of the pin-on-disc chain of a rig's file, in SI.
 
     Raises
     ------
@@ -172,7 +172,7 @@ def structure_by_stack(rig: Rig) -> tuple[PiezoStack, Callable[[PiezoStack], Str
 
 
 def _with_modes(content: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the content with the file of modes, where its structure names one, replaced by the modes."""
+    """Content with the file of modes, where its structure names one, replaced by the modes."""
     structure = content.get("structure")
     if isinstance(structure, dict) and structure.get("kind") == "modes" and isinstance(structure.get("file"), str):
         rest = {key: value for key, value in structure.items() if key != "file"}
@@ -185,7 +185,7 @@ def _with_modes(content: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _with_numbers(content: dict[str, Any]) -> dict[str, Any]:
-    """Return the content with the numbers that follow from what it states, where it is valid."""
+    """Content with the numbers that follow from what it states, where it is valid."""
     try:
         return with_derived(content, RigFile.model_validate(content))
     except ValidationError:

@@ -19,18 +19,7 @@ _NAMES = {
 
 
 def refuse_former_names(content: Mapping[str, Any]) -> None:
-    """Refuse content of a rig file that has a former key or name.
-
-    Parameters
-    ----------
-    content : mapping
-        The file as TOML gives it.
-
-    Raises
-    ------
-    InvalidInput
-        In one line that names the present key or name.
-    """
+    """Refuse content of a rig file that has a former key or name."""
     for key, present in _KEYS.items():
         if (value := _entry(content, key)) is not None:
             names = _NAMES.get(present, {})

@@ -67,7 +67,7 @@ class Section(BaseModel):
 
     @classmethod
     def quantity_of(cls, name: str) -> Quantity | None:
-        """Return the quantity that a key holds: the one its field is annotated with, else the vocabulary's.
+        """Quantity that a key holds: the one its field is annotated with, else the vocabulary's.
 
         Parameters
         ----------
@@ -100,24 +100,7 @@ class Section(BaseModel):
 
 
 def quantity_in_si(value: object, *, unit: str) -> float:
-    """Return a quantity written as text with its unit, or a pure number, in SI.
-
-    Parameters
-    ----------
-    value : object
-        What the file holds.
-    unit : str
-        SI unit that it is converted to; empty for pure numbers.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        If it is no such quantity, or far beyond what a rig can have.
-    """
+    """Quantity written as text with its unit, or a pure number, in SI."""
     if isinstance(value, str):
         return require_plausible(to_si(value, unit=unit, name=""), unit=unit, text=value)
     if isinstance(value, bool) or not isinstance(value, int | float):

@@ -44,13 +44,13 @@ class FrictionKeys(Section):
         self.friction_model()
 
     def friction_model(self) -> FrictionModel:
-        """Return the model with the parameters that the file gives."""
+        """Model with the parameters that the file gives."""
         given = {key: getattr(self, key) for key in _MODELS_BY_PARAMETER}
         return FRICTION_MODELS[self.model](**{key: value for key, value in given.items() if value is not None})
 
 
 def _parameters() -> tuple[dict[str, Quantity], dict[str, list[str]]]:
-    """Return the quantity of every parameter of a friction model, and the models that take it, by key."""
+    """Quantity of every parameter of a friction model, and the models that take it, by key."""
     keys: dict[str, Quantity] = {}
     models: dict[str, list[str]] = {}
     for name, model in FRICTION_MODELS.items():
@@ -105,7 +105,7 @@ class DriveSection(Section):
             sampled_waveform(self.waveform_samples)
 
     def drive(self) -> Drive:
-        """Return the drive."""
+        """Drive."""
         return Drive(**self.model_dump())
 
 
@@ -141,7 +141,7 @@ class StackSection(Section):
         self.stack()
 
     def stack(self) -> PiezoStack:
-        """Return the stack."""
+        """Stack."""
         return PiezoStack(**self.model_dump())
 
 
@@ -174,7 +174,7 @@ class VibrationSection(Section):
         self.measured_under()
 
     def measured_under(self) -> MeasuredUnder | None:
-        """Return drive and load of the measurement; None where there is none."""
+        """Drive and load of the measurement; None where there is none."""
         if self.vibration_amplitude is None:
             return None
         return MeasuredUnder(**self.model_dump(include={"voltage_peak_to_peak", "frequency", "normal_load"}))

@@ -51,62 +51,24 @@ class StatedHeight:
 
 
 def deviation_of_range(low: float, high: float) -> float:
-    """Return the standard deviation of the logarithm of a quantity of which a range holds 95 of 100. []"""
+    """Standard deviation of the logarithm of a quantity of which a range holds 95 of 100. []"""
     return log(high / low) / 4
 
 
 def height_from_roughness_average(*, roughness_average: float) -> StatedHeight:
-    """Return the root mean square height of a surface by its Ra.
-
-    Parameters
-    ----------
-    roughness_average : float
-        Arithmetic mean roughness. [m]
-
-    Returns
-    -------
-    StatedHeight
-    """
+    """Root mean square height of a surface by its Ra."""
     found = rms_height_from_roughness_average(arithmetic_mean_height=roughness_average)
     return _stated(found, f"Ra {format_si(roughness_average, 'm')}")
 
 
 def height_from_maximum_height(*, maximum_height: float) -> StatedHeight:
-    """Return the root mean square height of a surface by its Rz.
-
-    Parameters
-    ----------
-    maximum_height : float
-        Maximum height of a section, mean over the sections. [m]
-
-    Returns
-    -------
-    StatedHeight
-    """
+    """Root mean square height of a surface by its Rz."""
     found = rms_height_from_maximum_height(mean_section_height=maximum_height)
     return _stated(found, f"Rz {format_si(maximum_height, 'm')}")
 
 
 def height_of_finish(text: str) -> StatedHeight:
-    """Return the root mean square height of a surface by its process, its ISO grade or both, or by Ra, Rz or Rq.
-
-    Parameters
-    ----------
-    text : str
-        Such as "ground N6", "Ra 0.4", "Rz 3.2um" or "0.4um", which is read as Ra; a number alone behind Ra, Rz or Rq is
-        in micrometres. A process may stand before a number, which then gives the roughness: "ground Ra 0.4".
-
-    Returns
-    -------
-    StatedHeight
-
-    Raises
-    ------
-    UnknownName
-        If the finish is unknown.
-    InvalidInput
-        If the text has none of these forms, or its number lies beyond any finish.
-    """
+    """Root mean square height of a surface by its process, its ISO grade or both, or by Ra, Rz or Rq."""
     number = _NUMBER.fullmatch(text.strip())
     if number is not None:
         return _height_of_number(text.strip(), **number.groupdict(default=""))
@@ -118,7 +80,7 @@ def height_of_finish(text: str) -> StatedHeight:
 
 
 def _finish(text: str) -> SurfaceFinish:
-    """Return a process, a grade or both; refuse others with the forms that are read."""
+    """Process, a grade or both; refuse others with the forms that are read."""
     try:
         return surface_finish(text)
     except (InvalidInput, UnknownName) as refusal:
@@ -131,7 +93,7 @@ def is_roughness(text: str) -> bool:
 
 
 def _height_of_number(text: str, *, process: str, parameter: str, number: str, unit: str) -> StatedHeight:
-    """Return the height by Ra, Rz or Rq, with what was assumed in reading it."""
+    """Height by Ra, Rz or Rq, with what was assumed in reading it."""
     if process:
         _finish(process)
     if _THOUSANDS.fullmatch(number):
@@ -164,7 +126,7 @@ def _height_of_number(text: str, *, process: str, parameter: str, number: str, u
 
 
 def _stated(found: RmsHeightEstimate, stated: str, *, deviation: float = 0.0) -> StatedHeight:
-    """Return a height with the spread of the relation and that of what was stated."""
+    """Height with the spread of the relation and that of what was stated."""
     return StatedHeight(
         rms_height=found.rms_height,
         factor=exp(hypot(deviation, deviation_of_range(found.low, found.high))),

@@ -36,19 +36,19 @@ class PinOnDiscSection(Section):
     tip_damping: float = 0.0
 
     def structure(self, stack: PiezoStack) -> Structure:
-        """Return the structure with a stack in it."""
+        """Structure with a stack in it."""
         return chain_structure(pin_on_disc_chain(stack, **self.entries()))
 
     def entries(self) -> dict[str, float]:
-        """Return masses, stiffness and damping by key, in SI."""
+        """Masses, stiffness and damping by key, in SI."""
         return self.model_dump(exclude={"kind"})
 
     def with_entries(self, values: Mapping[str, float]) -> Self:
-        """Return the section with some of its entries replaced, in SI."""
+        """Section with some of its entries replaced, in SI."""
         return self.model_copy(update=dict(values))
 
     def lines(self, entry: EntryText) -> list[str]:
-        """Return the table as lines of TOML."""
+        """Table as lines of TOML."""
         return [f"{name} = {''.join(entry(name))}" for name in self.entries()]
 
 
@@ -85,7 +85,7 @@ class ChainSection(Section):
         return {name: quantity_in_si(value, unit="kg") for name, value in table.items()}
 
     def entries(self) -> dict[str, float]:
-        """Return masses, stiffnesses and dampings in SI: "masses.tip", "springs.0.spring_stiffness" and so on."""
+        """Masses, stiffnesses and dampings in SI: "masses.tip", "springs.0.spring_stiffness" and so on."""
         return {
             **{f"masses.{name}": mass for name, mass in self.masses.items()},
             **{f"springs.{index}.spring_stiffness": each.spring_stiffness for index, each in enumerate(self.springs)},
@@ -93,7 +93,7 @@ class ChainSection(Section):
         }
 
     def with_entries(self, values: Mapping[str, float]) -> Self:
-        """Return the section with some of its entries replaced, in SI."""
+        """Section with some of its entries replaced, in SI."""
         known = {**self.entries(), **values}
         return self.model_copy(
             update={
@@ -110,7 +110,7 @@ class ChainSection(Section):
         )
 
     def lines(self, entry: EntryText) -> list[str]:
-        """Return the table as lines of TOML."""
+        """Table as lines of TOML."""
 
         def elements(key: str, each_key: str, ends: Sequence[Sequence[str]]) -> list[str]:
             rows = ((json.dumps(list(pair)), *entry(f"{key}.{index}.{each_key}")) for index, pair in enumerate(ends))
@@ -132,7 +132,7 @@ class ChainSection(Section):
         ]
 
     def structure(self, stack: PiezoStack) -> Structure:
-        """Return the structure with a stack in it."""
+        """Structure with a stack in it."""
         (near, behind) = self.stack_between
         return chain_structure(
             LumpedChain(
@@ -181,7 +181,7 @@ class ModesSection(Section):
         return self
 
     def structure(self, stack: PiezoStack) -> Structure:
-        """Return the structure; the stack is part of its modes."""
+        """Structure; the stack is part of its modes."""
         if self.clamped_capacitance is None:
             raise InvalidInput("the file of the modes has not been read, or has no clamped_capacitance; give it here")
         return modal_structure(

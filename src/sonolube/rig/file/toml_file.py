@@ -25,22 +25,7 @@ _Content = TypeVar("_Content", bound=Section)
 
 @contextmanager
 def prefixed(place: str) -> Iterator[None]:
-    """Put a place before the message of every refusal within.
-
-    Parameters
-    ----------
-    place : str
-        File or key.
-
-    Yields
-    ------
-    None
-
-    Raises
-    ------
-    InvalidInput
-        In place of any error of sonolube.
-    """
+    """Put a place before the message of every refusal within."""
     try:
         yield
     except SeveralFaults as refusal:
@@ -50,24 +35,7 @@ def prefixed(place: str) -> Iterator[None]:
 
 
 def validated(file: type[_Content], content: Mapping[str, Any]) -> _Content:
-    """Return the content of a file as its sections.
-
-    Parameters
-    ----------
-    file : type
-        Section of the whole file.
-    content : mapping
-        The file as TOML gives it.
-
-    Returns
-    -------
-    Section
-
-    Raises
-    ------
-    InvalidInput
-        In one line that names the key and the value; a `SeveralFaults` with a line each where several are wrong.
-    """
+    """Content of a file as its sections."""
     try:
         return file.model_validate(content)
     except ValidationError as refusal:
@@ -80,7 +48,7 @@ def validated(file: type[_Content], content: Mapping[str, Any]) -> _Content:
 
 
 def _complaints(file: type[Section], refusal: ValidationError, content: Mapping[str, Any]) -> list[ErrorDetails]:
-    """Return what is wrong, misspelt keys first; the keys of a missing table stand in its place.
+    """What is wrong, misspelt keys first; the keys of a missing table stand in its place.
 
     A key that an unknown one of its table is like is misspelt and not missing.
     """
@@ -103,25 +71,25 @@ def _details(refusal: ValidationError) -> list[ErrorDetails]:
 
 
 def _is_other(complaint: ErrorDetails, meant: Collection[tuple[str | int, ...]]) -> bool:
-    """Return whether a complaint is neither of an unknown key nor of a missing one that was misspelt."""
+    """Whether a complaint is neither of an unknown key nor of a missing one that was misspelt."""
     kind = complaint["type"]
     return kind != "extra_forbidden" and not (kind == "missing" and complaint["loc"] in meant)
 
 
 def _with_table(content: Mapping[str, Any], place: Sequence[str | int]) -> dict[str, Any]:
-    """Return the content with an empty table at a place that has none."""
+    """Content with an empty table at a place that has none."""
     key, *rest = place
     inner = content.get(str(key), {})
     return {**content, str(key): _with_table(inner, rest) if rest else inner}
 
 
 def _without_tags(place: Sequence[str | int]) -> list[str | int]:
-    """Return a place in the file without the kinds that chose among tables."""
+    """Place in the file without the kinds that chose among tables."""
     return [part for at, part in enumerate(place) if not (at and part in TABLE_KINDS.get(str(place[at - 1]), ()))]
 
 
 def _fault(file: type[Section], complaint: ErrorDetails) -> str:
-    """Return a complaint in one line: the dotted key and what is wrong with it."""
+    """Complaint in one line: the dotted key and what is wrong with it."""
     place = complaint["loc"]
     reason = _reason_of(complaint)
     if complaint["type"] == "extra_forbidden":
@@ -132,23 +100,23 @@ def _fault(file: type[Section], complaint: ErrorDetails) -> str:
 
 
 def _key_of(complaint: ErrorDetails) -> str:
-    """Return the dotted key of a complaint."""
+    """Dotted key of a complaint."""
     return ".".join(map(str, _without_tags(complaint["loc"])))
 
 
 def _entry_of(file: type[Section], complaint: ErrorDetails) -> str:
-    """Return the dotted key of the entry that a complaint is about, also where its table makes it."""
+    """Dotted key of the entry that a complaint is about, also where its table makes it."""
     key, first = _key_of(complaint), _reason_of(complaint).partition(" ")[0]
     return f"{key}.{first}" if key and first in _keys(file, complaint["loc"]) else key
 
 
 def _reason_of(complaint: ErrorDetails) -> str:
-    """Return what a complaint says."""
+    """What a complaint says."""
     return str(complaint["msg"]).removeprefix("Value error, ").strip()
 
 
 def _missing(key: str) -> str:
-    """Return what a missing key means and how to obtain it, where that is known."""
+    """What a missing key means and how to obtain it, where that is known."""
     if key not in guidance():
         return "missing"
     meaning = quantity(key).meaning
@@ -157,12 +125,12 @@ def _missing(key: str) -> str:
 
 
 def _meant(file: type[Section], place: Sequence[str | int]) -> str:
-    """Return the known key of a table that an unknown one is like; empty where none is."""
+    """Known key of a table that an unknown one is like; empty where none is."""
     return suggestion(str(place[-1]), _keys(file, place[:-1])).removeprefix("did you mean ").removesuffix("?")
 
 
 def _keys(file: type[Section], tables: Sequence[str | int]) -> list[str]:
-    """Return the keys of a table; the kind of a structure, and the place in a list, follow its table's name."""
+    """Keys of a table; the kind of a structure, and the place in a list, follow its table's name."""
     schema = _schema(file)
     places = [schema]
     for name in tables:

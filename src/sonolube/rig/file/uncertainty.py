@@ -37,21 +37,9 @@ _POSSIBLE = {"poisson_ratio": (0.0, 0.5), "coupling_factor": (0.0, 1.0)} | dict.
 
 
 def distributions_of(file: RigFile) -> Mapping[str, Distribution]:
-    """Return the distributions of a rig file's uncertain entries, by dotted key.
+    """Distributions of a rig file's uncertain entries, by dotted key.
 
-    Parameters
-    ----------
-    file : RigFile
-
-    Returns
-    -------
-    mapping of str to Distribution
-        Cut off where the quantity can have no value: below zero for most.
-
-    Raises
-    ------
-    InvalidInput
-        If a key is none of a number, a text cannot be read, or more than half of a distribution is impossible.
+    Cut off where the quantity can have no value: below zero for most.
     """
     found = {}
     for key, text in file.uncertainty.items():
@@ -62,7 +50,7 @@ def distributions_of(file: RigFile) -> Mapping[str, Distribution]:
 
 @cache
 def number_keys() -> Mapping[str, Quantity]:
-    """Return the quantity of every single number of a rig file, by dotted key."""
+    """Quantity of every single number of a rig file, by dotted key."""
     return MappingProxyType(dict(_number_keys(RigFile, "")))
 
 

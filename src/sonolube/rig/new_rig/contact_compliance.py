@@ -12,24 +12,9 @@ _STATED_FACTOR: Final = 1.3
 
 
 def compliance_entries(*, decay_length: float | None, normal_stiffness: float | None) -> Entries:
-    """Return the entries of a new rig file for the decay length of its contact.
+    """Entries of a new rig file for the decay length of its contact.
 
-    Parameters
-    ----------
-    decay_length : float or None
-        As stated. [m]
-    normal_stiffness : float or None
-        As measured under the load of the rig. [N/m]
-
-    Returns
-    -------
-    Entries
-        Of the table contact; the median of worn contacts in published tests where both are None.
-
-    Raises
-    ------
-    InvalidInput
-        If both are given, or one is not positive.
+    Of the table contact; the median of worn contacts in published tests where both are None.
     """
     if decay_length is not None and normal_stiffness is not None:
         raise InvalidInput("give either decay_length or normal_stiffness, got both")
@@ -54,7 +39,7 @@ def compliance_entries(*, decay_length: float | None, normal_stiffness: float | 
 
 
 def _entries(table: dict[str, str], reason: str, factor: float) -> Entries:
-    """Return the entries of the table contact, its first key assumed and lognormal."""
+    """Entries of the table contact, its first key assumed and lognormal."""
     key = f"contact.{next(iter(table))}"
     return Entries(
         tables={"contact": table}, assumptions={key: reason}, uncertainty={key: f"lognormal factor {factor:.4g}"}

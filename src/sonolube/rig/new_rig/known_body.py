@@ -55,13 +55,7 @@ class KnownBody:
 
     @classmethod
     def of(cls, name: str) -> "KnownBody":
-        """Return the body of a material by its name.
-
-        Raises
-        ------
-        UnknownName
-            If the catalogue has no such material.
-        """
+        """Body of a material by its name."""
         return cls(material=material(name))
 
     @property
@@ -80,13 +74,7 @@ class KnownBody:
 
     @property
     def strength(self) -> YieldStrength:
-        """Yield strength, of metals by Tabor's relation from their hardness, of others that of the catalogue.
-
-        Raises
-        ------
-        MissingProperty
-            If neither the material nor its class has a hardness or a strength.
-        """
+        """Yield strength, of metals by Tabor's relation from their hardness, of others that of the catalogue."""
         is_metal, properties = self.material.family in _METALS, self.material.properties
         keys = ("hardness", "yield_strength") if is_metal else ("yield_strength", "hardness")
         own = next((key for key in (*keys, "ultimate_strength") if key in properties), None)
@@ -111,18 +99,9 @@ class KnownBody:
         )
 
     def entries(self, place: str, *, role: str) -> Entries:
-        """Return the table of the body as the softer or the harder one, without its strength.
+        """Table of the body as the softer or the harder one, without its strength.
 
-        Parameters
-        ----------
-        place : str
-            Table of the body, such as "contact.softer".
-        role : {"pin", "disc"}
-
-        Returns
-        -------
-        Entries
-            Properties that the catalogue lacks, and the modulus of a class with its spread, are stated.
+        Properties that the catalogue lacks, and the modulus of a class with its spread, are stated.
         """
         table = {"material": json.dumps(self.material.name), "role": json.dumps(role)}
         reasons, laws = {}, {}
@@ -138,7 +117,7 @@ class KnownBody:
         return Entries(tables={place: table}, assumptions=reasons, uncertainty=laws)
 
     def _property(self, key: str) -> SourcedValue:
-        """Return a property of the material, or of the class of its family where the catalogue lacks it."""
+        """Property of the material, or of the class of its family where the catalogue lacks it."""
         if key not in self.material.properties and self.material.family in material_classes():
             of_class = material(self.material.family)
             if key in of_class.properties:
@@ -151,5 +130,5 @@ class KnownBody:
 
 
 def _origin(known: SourcedValue) -> str:
-    """Return where a property of a class is from."""
+    """Where a property of a class is from."""
     return "; ".join(filter(None, (f"{_CLASS}: {known.source}", known.note)))

@@ -43,24 +43,7 @@ class KnownSurface:
 
 
 def finished_surface(finish: str) -> KnownSurface:
-    """Return a surface by its process, its ISO grade or both, or by Ra, Rz or Rq.
-
-    Parameters
-    ----------
-    finish : str
-        Such as "ground N6", "Ra 0.4" or "Rz 3.2um".
-
-    Returns
-    -------
-    KnownSurface
-
-    Raises
-    ------
-    UnknownName
-        If the finish is unknown.
-    InvalidInput
-        If the text has no form of a finish.
-    """
+    """Surface by its process, its ISO grade or both, or by Ra, Rz or Rq."""
     height = height_of_finish(finish)
     summits = typical_summits(rms_height=height.rms_height)
     return KnownSurface(
@@ -76,23 +59,10 @@ def finished_surface(finish: str) -> KnownSurface:
 
 
 def scanned_surface(path: str | Path) -> KnownSurface:
-    """Return a surface by a scan: rms height of the levelled map, and its summits.
+    """Surface by a scan: rms height of the levelled map, and its summits.
 
-    Parameters
-    ----------
-    path : str or Path
-        In any format of `read_surface_file`.
-
-    Returns
-    -------
-    KnownSurface
-        The height is taken as known within 10 %, the spread between places; the summits, which depend on the distance
-        of the pixels, within a factor of 1.5.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read or its heights have no summits.
+    The height is taken as known within 10 %, the spread between places; the summits, which depend on the distance of
+    the pixels, within a factor of 1.5.
     """
     levelled = remove_form(read_height_map(Path(path)), degree=1)
     summits = contact_roughness(levelled)
@@ -112,18 +82,8 @@ def scanned_surface(path: str | Path) -> KnownSurface:
 
 
 def surfaces_in_contact(pin: KnownSurface, disc: KnownSurface) -> KnownSurface:
-    r"""Return the combined roughness of two surfaces.
+    r"""Combined roughness of two surfaces.
 
-    Parameters
-    ----------
-    pin, disc : KnownSurface
-
-    Returns
-    -------
-    KnownSurface
-
-    Notes
-    -----
     Heights add as variances, summits as by `combined_roughness`:
 
     .. math:: R_q = \sqrt{R_{q,1}^2 + R_{q,2}^2}
@@ -147,7 +107,7 @@ def surfaces_in_contact(pin: KnownSurface, disc: KnownSurface) -> KnownSurface:
 
 
 def lognormal_text(deviation: float) -> str:
-    """Return a lognormal distribution as a rig file writes it, by the standard deviation of the logarithm."""
+    """Lognormal distribution as a rig file writes it, by the standard deviation of the logarithm."""
     return f"lognormal factor {exp(deviation):.4g}"
 
 

@@ -19,19 +19,7 @@ _LARGEST_AMPLITUDE: Final = 1e-3
 
 
 def toml_text(value: float, unit: str) -> str:
-    """Return a quantity as a TOML value.
-
-    Parameters
-    ----------
-    value : float
-        In SI.
-    unit : str
-        SI unit.
-
-    Returns
-    -------
-    str
-    """
+    """Quantity as a TOML value."""
     return json.dumps(format_si(value, unit, digits=4))
 
 
@@ -43,7 +31,7 @@ class PinShape(Protocol):
         """The shape in words."""
 
     def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
-        """Return the nominal contact area. [m2]"""
+        """Nominal contact area. [m2]"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,7 +55,7 @@ class FlatPin:
         return f"flat of {format_si(self.diameter, 'm')} in diameter"
 
     def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
-        """Return the area of the flat. [m2]"""
+        """Area of the flat. [m2]"""
         return pi * self.diameter**2 / 4
 
 
@@ -93,7 +81,7 @@ class RoundPin:
         return f"ball of {diameter} in diameter, tip radius {radius}: Hertzian circle before wear, which enlarges it"
 
     def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
-        """Return the area of the Hertzian circle. [m2]"""
+        """Area of the Hertzian circle. [m2]"""
         sphere = SphereOnFlat(tip_radius=self.tip_radius, effective_modulus=effective_modulus)
         return pi * float(hertz_contact_radius(sphere, normal_load=normal_load)) ** 2
 
@@ -119,7 +107,7 @@ class Vibration(Protocol):
     """What vibrates the contact."""
 
     def entries(self, frequency: float) -> Entries:
-        """Return the part of a rig file at a frequency in Hz."""
+        """Part of a rig file at a frequency in Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -140,7 +128,7 @@ class StatedAmplitude:
             raise InvalidInput(f"vibration_amplitude {given} is beyond any ultrasonic vibration: expected up to 1 mm")
 
     def entries(self, frequency: float) -> Entries:
-        """Return the tables drive and vibration."""
+        """Tables drive and vibration."""
         key = "vibration.vibration_amplitude"
         return Entries(
             tables={
@@ -174,13 +162,7 @@ class DrivenActuator:
             raise InvalidInput(f"voltage_peak_to_peak {voltage:g} V exceeds {span}, the range of {self.actuator.name}")
 
     def entries(self, frequency: float) -> Entries:
-        """Return the tables drive and actuator.
-
-        Raises
-        ------
-        InvalidInput
-            If the frequency is not below the resonance of the free actuator.
-        """
+        """Tables drive and actuator."""
         shown = self.actuator
         if frequency >= shown.resonance_frequency:
             resonance = format_si(shown.resonance_frequency, "Hz")

@@ -102,23 +102,9 @@ class LeastKnown:
 
 
 def new_rig_text(known: KnownRig) -> str:
-    """Return a rig file of what is known, as TOML with comments.
+    """Rig file of what is known, as TOML with comments.
 
-    Parameters
-    ----------
-    known : KnownRig
-
-    Returns
-    -------
-    str
-        Entries that nobody measured are in its table `uncertainty`, each with its reason in `assumptions`.
-
-    Raises
-    ------
-    InvalidInput
-        If a value is impossible.
-    MissingProperty
-        If the catalogue has no modulus of a material, or neither hardness nor strength, and none of its class.
+    Entries that nobody measured are in its table `uncertainty`, each with its reason in `assumptions`.
     """
     parts = [_contact(known), _friction(known), known.vibration.entries(known.frequency)]
     pin, disc = material(known.pin), material(known.disc)
@@ -135,26 +121,16 @@ def new_rig_text(known: KnownRig) -> str:
 
 
 def rig_of_known(known: KnownRig) -> Rig:
-    """Return the rig of what is known, which writes the file of `new_rig_text` with its comments."""
+    """Rig of what is known, which writes the file of `new_rig_text` with its comments."""
     text = new_rig_text(known)
     content = tomllib.loads(text)
     return with_entries(rig_from(content), FileEntries(content, rig_from, text=text))
 
 
 def least_known(rig: Rig, *, count: int = 3) -> Sequence[LeastKnown]:
-    """Return the uncertain entries of a rig that are known least, by the standard deviation of their logarithm.
+    """Uncertain entries of a rig that are known least, by the standard deviation of their logarithm.
 
-    Parameters
-    ----------
-    rig : Rig
-    count : int
-        Number of entries.
-
-    Returns
-    -------
-    sequence of LeastKnown
-        Those that friction depends on, the least known first; of entries that one measurement gives, the least known
-        one.
+    Those that friction depends on, the least known first; of entries that one measurement gives, the least known one.
     """
     entries: dict[str, LeastKnown] = {}
     for key, law in rig.uncertainty.items():
@@ -169,7 +145,7 @@ def least_known(rig: Rig, *, count: int = 3) -> Sequence[LeastKnown]:
 
 
 def _moves_friction(rig: Rig, key: str, low: float, high: float) -> bool:
-    """Return whether friction under vibration differs between two values of an entry, or is not known at one."""
+    """Whether friction under vibration differs between two values of an entry, or is not known at one."""
     unit = number_keys()[key].unit
     try:
         forces = [friction_point(rig.replace(key, f"{value:.9g} {unit}")).friction_force for value in (low, high)]
@@ -179,7 +155,7 @@ def _moves_friction(rig: Rig, key: str, low: float, high: float) -> bool:
 
 
 def _contact(known: KnownRig) -> Entries:
-    """Return the tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
+    """Tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
     pin, disc = KnownBody.of(known.pin), KnownBody.of(known.disc)
     softer, harder = (disc, pin) if disc.hardness < pin.hardness else (pin, disc)
     strength = softer.strength
@@ -232,7 +208,7 @@ def _contact(known: KnownRig) -> Entries:
 
 
 def _friction(known: KnownRig) -> Entries:
-    """Return the tables of dry friction and sliding."""
+    """Tables of dry friction and sliding."""
     key, sliding = "friction.friction_coefficient", {"sliding_speed": toml_text(known.sliding_speed, "m/s")}
     if known.friction_coefficient is not None:
         value, reason, law = known.friction_coefficient, "as stated, taken as measured: 5 %", _MEASURED_FRICTION
@@ -249,12 +225,12 @@ def _friction(known: KnownRig) -> Entries:
 
 
 def _quoted(parts: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Return texts by dotted key as keys and values of TOML."""
+    """Texts by dotted key as keys and values of TOML."""
     return {json.dumps(key): json.dumps(text) for part in parts for key, text in part.items()}
 
 
 def _table(name: str, entries: Mapping[str, str]) -> str:
-    """Return a table as TOML, each quantity with its meaning as a comment."""
+    """Table as TOML, each quantity with its meaning as a comment."""
     lines = [f"[{name}]"] if name else []
     return "\n".join([*lines, *(f"{key} = {value}{_comment(key)}" for key, value in entries.items())]) + "\n"
 

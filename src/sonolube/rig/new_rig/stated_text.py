@@ -55,19 +55,9 @@ class StatedSpeed:
 
 
 def reader(unit: str, *, name: str) -> Callable[[str], float]:
-    """Return a reader of a positive quantity.
+    """Reader of a positive quantity.
 
-    Parameters
-    ----------
-    unit : str
-        SI unit that the text is converted to.
-    name : str
-        How a refusal calls it.
-
-    Returns
-    -------
-    callable
-        From text with a unit to a number in SI.
+    From text with a unit to a number in SI.
     """
 
     def read(text: str) -> float:
@@ -80,13 +70,7 @@ def reader(unit: str, *, name: str) -> Callable[[str], float]:
 
 
 def pin_shape(text: str, *, name: str = "--shape") -> PinShape:
-    """Shape of the end of a pin, such as "flat 3mm" by its diameter, "ball 5mm" by its radius or "ball diameter 6mm".
-
-    Raises
-    ------
-    InvalidInput
-        If the text is no such shape.
-    """
+    """Shape of the end of a pin, such as "flat 3mm" by its diameter, "ball 5mm" by its radius or "ball diameter 6mm"."""
     found = _SHAPE.fullmatch(" ".join(text.split()))
     if found is None:
         raise InvalidInput(f"{name} {text!r} must be {SHAPE_FORMS}")
@@ -109,28 +93,6 @@ def speed_of(
 ) -> StatedSpeed:
     r"""Sliding speed as stated, such as "0.2m/s", or by the rotation of the disc, such as "100 rpm", and the track.
 
-    Parameters
-    ----------
-    text : str
-        Speed or rotational speed, with its unit.
-    track_radius : str or None
-        Radius of the track, for a rotational speed. [m]
-    track_diameter : str or None
-        Its diameter, in place of the radius.
-    name, radius_name, diameter_name : str
-        How a refusal calls them.
-
-    Returns
-    -------
-    StatedSpeed
-
-    Raises
-    ------
-    InvalidInput
-        If a text cannot be read, or a rotational speed and a track do not come together.
-
-    Notes
-    -----
     .. math:: v = 2 \pi r n
     """
     turns = rotation_of(text)
@@ -175,15 +137,7 @@ def rotation_of(text: str) -> float | None:
 
 
 def vibration_of(text: str, *, name: str = "--amplitude") -> Vibration:
-    """Vibration by its amplitude, such as "3um", or by an actuator with its voltage, such as "sa050510 50V".
-
-    Raises
-    ------
-    InvalidInput
-        If the text is neither.
-    UnknownName
-        If the catalogue has no such actuator.
-    """
+    """Vibration by its amplitude, such as "3um", or by an actuator with its voltage, such as "sa050510 50V"."""
     if text[:1].isalpha():
         actuator, _, voltage = text.partition(" ")
         volts = reader("V", name="--voltage" if name.startswith("--") else "voltage")(voltage)
@@ -192,13 +146,5 @@ def vibration_of(text: str, *, name: str = "--amplitude") -> Vibration:
 
 
 def surface_of(text: str) -> KnownSurface:
-    """Surface by its finish, such as "ground N6" or "Ra 0.4", or by the file of a scan.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, or the text has no form of a finish.
-    UnknownName
-        If there is no such finish.
-    """
+    """Surface by its finish, such as "ground N6" or "Ra 0.4", or by the file of a scan."""
     return scanned_surface(text) if Path(text).suffix and not is_roughness(text) else finished_surface(text)

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 _POINTS_AT_RESONANCE = 41  # frequencies about each resonance
-_MOST_POINTS = 10_000
+_MAX_POINTS = 10_000
 _OF_STRUCTURE = ("frequency", "power", "waveform")  # studies of a computed motion
 
 
@@ -234,8 +234,8 @@ def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: 
             f" {highest or usual.highest}"
         )
     count = usual.points if points is None else points
-    if not 2 <= count <= _MOST_POINTS:
-        raise InvalidInput(f"{shown('points')} {count} must lie between 2 and {_MOST_POINTS} for {shown('of')} {of}")
+    if not 2 <= count <= _MAX_POINTS:
+        raise InvalidInput(f"{shown('points')} {count} must lie between 2 and {_MAX_POINTS} for {shown('of')} {of}")
     if of in ("frequency", "power"):
         return frequency_grid(rig, lowest=low, highest=high, points=count, resonance_points=_POINTS_AT_RESONANCE)
     return np.geomspace(low, high, count) if usual.even_ratios else np.linspace(low, high, count)

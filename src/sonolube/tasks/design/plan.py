@@ -20,7 +20,7 @@ from sonolube.tasks.task import in_si, shown, task
 
 _SPEEDS, _AMPLITUDES = 7, 5  # values of a range without a count
 _SPEED_RANGE = 3.0  # times the rig's speed, and its part
-_LEAST_AMPLITUDE = 0.2  # of the rig's
+_MIN_AMPLITUDE = 0.2  # of the rig's
 
 
 @task
@@ -138,7 +138,7 @@ def _amplitudes(inputs: RigInputs, vibration: str | None, voltage: str | None) -
         return np.asarray(inputs.amplitude.value * volts / inputs.voltage_peak_to_peak)
     if vibration is not None:
         return factor_values(vibration, unit="m", option=shown("vibration"), count=_AMPLITUDES)
-    return inputs.amplitude.value * np.linspace(_LEAST_AMPLITUDE, 1.0, _AMPLITUDES)
+    return inputs.amplitude.value * np.linspace(_MIN_AMPLITUDE, 1.0, _AMPLITUDES)
 
 
 def _procedure(running_in: float | None, measuring_time: float, block: str) -> Procedure:

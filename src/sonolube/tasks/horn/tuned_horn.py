@@ -181,7 +181,7 @@ class HornAnswer(Answer):
         return files
 
     def dataset(self) -> "xr.Dataset":
-        """Return the quantities of the mode, and its axial displacement over the distance from the driven face."""
+        """Quantities of the mode, and its axial displacement over the distance from the driven face."""
         mode, axis = self.design.tuned.mode, self.design.body.axis
         place, displacement = section_motion(mode, axis)
         start = mode.model.mesh.nodes[:, "xyz".index(axis)].min()

@@ -74,12 +74,12 @@ class IdentificationAnswer(Answer):
         ]
 
     def file_text(self) -> str:
-        """Return the rig file, with the findings as comments before it."""
+        """Rig file, with the findings as comments before it."""
         comments = text_lines(self.blocks())
         return "\n".join([*(f"# {line}".rstrip() for line in comments), self.rig_text])
 
     def written_to(self, target: Path) -> "IdentificationAnswer":
-        """Return the answer for a file."""
+        """Answer for a file."""
         return replace(self, target=target)
 
     def object(self) -> dict[str, Any]:

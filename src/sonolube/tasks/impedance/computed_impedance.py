@@ -147,7 +147,7 @@ class ImpedanceAnswer(Answer):
         return files
 
     def dataset(self) -> "xr.Dataset":
-        """Return impedance, phase and motion per volt over frequency and support."""
+        """Impedance, phase and motion per volt over frequency and support."""
         import xarray as xr
 
         supports = xr.Variable("support", list(self.spectra), {"long_name": "Support of the transducer"})

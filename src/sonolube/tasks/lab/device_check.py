@@ -76,7 +76,7 @@ class CheckedDevices(Answer):
         )
 
     def dataset(self) -> "xr.Dataset":
-        """Return the readings, a variable each."""
+        """Readings, a variable each."""
         import xarray as xr
 
         readings = (self.readings or {}).items()

@@ -52,7 +52,7 @@ class RunAnswer(Answer):
         return {} if self.rig is None or not self.simulated else self.rig.assumptions
 
     def dataset(self) -> "xr.Dataset":
-        """Return the recording, where there is one."""
+        """Recording, where there is one."""
         return self.run.dataset().assign_attrs(self.notes()) if self.run.recordings else super().dataset()
 
     @property

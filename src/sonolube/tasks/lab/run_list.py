@@ -45,7 +45,7 @@ class FoundRunsAnswer(Answer):
         return self.found.caveats
 
     def dataset(self) -> "xr.Dataset":
-        """Return the runs, over `run` by the names of their folders."""
+        """Runs, over `run` by the names of their folders."""
         return results.found_runs_dataset(self.found.entries).assign_attrs(self.notes())
 
 

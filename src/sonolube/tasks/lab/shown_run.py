@@ -63,7 +63,7 @@ class ShownRun(Answer):
         return {name: Drawing(chart=lambda: channels_chart(self.run.dataset()), caption=caption)} | of_clocks
 
     def dataset(self) -> "xr.Dataset":
-        """Return the recording, where there is one."""
+        """Recording, where there is one."""
         return self.run.dataset().assign_attrs(self.notes()) if self.run.recordings else super().dataset()
 
 

@@ -78,7 +78,7 @@ class ExampleAnswer(Answer):
         return present != self.files().get(name)
 
     def dataset(self) -> "xr.Dataset":
-        """Return paths and titles by name."""
+        """Paths and titles by name."""
         import xarray as xr
 
         columns = {"path": [each.path for each in self.examples], "title": [each.title for each in self.examples]}

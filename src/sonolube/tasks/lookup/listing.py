@@ -39,5 +39,5 @@ class Listing(Answer):
         return self.content
 
     def dataset(self) -> "xr.Dataset":
-        """Return the table as a labelled dataset, with units."""
+        """Table as a labelled dataset, with units."""
         return super().dataset() if self.labelled is None else self.labelled()

@@ -255,7 +255,7 @@ class ModesAnswer(Answer):
         return files
 
     def dataset(self) -> "xr.Dataset":
-        """Return frequencies, errors and shapes of the elastic modes, with the surface of the part."""
+        """Frequencies, errors and shapes of the elastic modes, with the surface of the part."""
         return modes_dataset(self.solved).assign_attrs(self.notes())
 
     def _rows(self) -> range:

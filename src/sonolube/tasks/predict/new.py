@@ -162,7 +162,7 @@ class NewRig(Answer):
         return [self.rig.title, Table(heads, rows), *following]
 
     def written_to(self, target: Path) -> "NewRig":
-        """Return the answer for a file."""
+        """Answer for a file."""
         return replace(self, target=target)
 
     def object(self) -> dict[str, Any]:
@@ -175,7 +175,7 @@ class NewRig(Answer):
         }
 
     def dataset(self) -> "xr.Dataset":
-        """Return the uncertain entries of the rig: medians and 80 % intervals in SI, and their distributions."""
+        """Uncertain entries of the rig: medians and 80 % intervals in SI, and their distributions."""
         import xarray as xr
 
         laws, levels = self.rig.uncertainty, [0.1, 0.5, 0.9]

@@ -98,7 +98,7 @@ class RegimeAnswer(Answer):
         return {f"{self.rig.name}-regime": Drawing(chart=chart)}
 
     def dataset(self) -> "xr.Dataset":
-        """Return the coefficients of friction over `lubrication`, and the operating point."""
+        """Coefficients of friction over `lubrication`, and the operating point."""
         methods = self.result.coefficients._asdict()
         found = super().dataset().assign_coords(lubrication=list(methods))
         coefficients = [float(value) for value in methods.values()]

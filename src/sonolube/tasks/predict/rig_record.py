@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
-_LEAST_FORCE = 1e-6  # of the load, below which a friction force means nothing
+_MIN_FORCE = 1e-6  # of the load, below which a friction force means nothing
 _LABELS = {"amplitude_origin": "amplitude", "energy_balance": "energy"}
 
 
@@ -93,7 +93,7 @@ class RigRecord(Answer):
 
     def _text(self, name: str, value: float | None) -> str:
         """Quantity as text; a force that is nothing beside the load is said to be so."""
-        least, unit = _LEAST_FORCE * self.rig.normal_load, quantities()[name].unit
+        least, unit = _MIN_FORCE * self.rig.normal_load, quantities()[name].unit
         if unit == "N" and value is not None and 0 < abs(value) < least:
             return f"below {format_si(least, unit)}"
         return "none" if value is None else format_quantity(value, name)

@@ -8,7 +8,7 @@ const STOPS = {
   grey: ['#ffffff', '#f0f0f0', '#d9d9d9', '#bdbdbd', '#969696', '#737373', '#525252', '#252525', '#000000'],
 };
 const CATEGORIES = ['#bfbfbf', '#9ecae1', '#fdd0a2', '#c7e9c0', '#dadaeb'];
-const LEAST_PIECES = 4; // of a contour line that gets a label
+const MIN_PIECES = 4; // of a contour line that gets a label
 const MARGIN = 0.06; // of width and height, in which no label stands
 
 /** Colour of a share of a scale. */
@@ -161,7 +161,7 @@ function labelOf(found, {left, top, width, height}) {
   const far = ([[x, y]]) => Math.abs((x - left) / width - (top + height - y) / height);
   const inner = found.filter(([[x, y]]) => x > left + MARGIN * width && x < left + (1 - MARGIN) * width
     && y > top + MARGIN * height && y < top + (1 - MARGIN) * height);
-  if (inner.length < LEAST_PIECES) return null;
+  if (inner.length < MIN_PIECES) return null;
   const [[x, y], [nextX, nextY]] = inner.reduce((best, each) => (far(each) < far(best) ? each : best));
   const angle = Math.atan((nextY - y) / (nextX - x || 1e-9));
   return [(x + nextX) / 2, (y + nextY) / 2, angle];

@@ -3,7 +3,7 @@
 const SUPERSCRIPTS = '⁻⁰¹²³⁴⁵⁶⁷⁸⁹';
 const MARGIN = 0.05; // of the range of the data, at both ends
 const LOG_RATIO = 3; // of the ends of a logarithmic axis, below which its ticks are those of a linear one
-const LEAST_CONTRAST = {light: 3, dark: 4.5}; // of a curve against what it is drawn on
+const MIN_CONTRAST = {light: 3, dark: 4.5}; // of a curve against what it is drawn on
 const DASHES = [[], [7, 4], [8, 3, 2, 3], [2, 3], [9, 2], [5, 2, 2, 2, 2, 2], [1.5, 1.5]];
 
 export const dash = (number) => DASHES[(number ?? 0) % DASHES.length];
@@ -180,7 +180,7 @@ function contrast(one, other) {
 export function themeOf(element) {
   const style = getComputedStyle(element);
   const [ink, surface] = [rgb(style.color), rgb(style.backgroundColor)];
-  const least = luminance(surface) < 0.2 ? LEAST_CONTRAST.dark : LEAST_CONTRAST.light;
+  const least = luminance(surface) < 0.2 ? MIN_CONTRAST.dark : MIN_CONTRAST.light;
   const known = new Map();
   const shown = (colour, isStroke) => {
     const key = `${colour} ${isStroke}`;

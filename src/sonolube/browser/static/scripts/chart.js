@@ -8,7 +8,7 @@ import {categoryColour, ColourScale} from './chart-field.js';
 import {ChartPanel, panelName} from './chart-panel.js';
 import {dash, rangesOf, themeOf} from './chart-scale.js';
 
-const LEAST_WIDTH = 250; // px of a panel
+const MIN_WIDTH = 250; // px of a panel
 const [LOWEST, HIGHEST, WIDEST] = [180, 400, 760]; // px
 const GAP = 16;
 const COLOURS_WIDTH = 72;
@@ -100,7 +100,7 @@ const Legend = ({entries, theme, title}) => (entries.length ? html`<div class="c
 
 /** Width and height of each panel in px, and the number of columns. */
 function layoutOf(chart, ranges, width, isScaled) {
-  const columns = Math.max(1, Math.min(chart.columns ?? 1, Math.floor((width + GAP) / (LEAST_WIDTH + GAP))));
+  const columns = Math.max(1, Math.min(chart.columns ?? 1, Math.floor((width + GAP) / (MIN_WIDTH + GAP))));
   const isWhole = columns === (chart.columns ?? 1);
   const rows = Math.ceil(chart.panels.length / (chart.columns ?? 1));
   const [inchWide, inchHigh] = chart.size ?? [5.2, 3.6];

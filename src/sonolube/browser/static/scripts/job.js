@@ -3,7 +3,7 @@ import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useConnection} from './api.js';
 
 const BETWEEN = 400; // ms from one look at a job to the next
-const MOST_COMPARED = 12; // latest jobs of a task whose arguments are compared
+const MAX_COMPARED = 12; // latest jobs of a task whose arguments are compared
 
 export const isActive = (job) => ['waiting', 'running', 'running elsewhere'].includes(job?.state);
 /** Whether this workbench runs it, and so can stop it. */
@@ -22,7 +22,7 @@ export function duration(seconds) {
 async function found(task, args) {
   const {content} = await ask('api/jobs');
   const same = (content?.jobs ?? []).filter((job) => job.task === task && job.state !== 'cancelled' && job.state !== 'interrupted');
-  for (const job of same.slice(0, MOST_COMPARED)) {
+  for (const job of same.slice(0, MAX_COMPARED)) {
     const {content: known} = await ask(`api/jobs/${job.id}`);
     if (known && JSON.stringify(known.request.arguments) === JSON.stringify(args)) return known;
   }

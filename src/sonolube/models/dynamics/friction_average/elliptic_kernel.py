@@ -31,24 +31,12 @@ class FrictionWorkspace(NamedTuple):
 
 
 def sum_precision(tolerance: float) -> type[np.floating[Any]]:
-    """Return the floating-point type of the sums for states of a relative tolerance: single precision holds 1e-5."""
+    """Floating-point type of the sums for states of a relative tolerance: single precision holds 1e-5."""
     return np.float32 if tolerance >= _SINGLE_PRECISION_TOLERANCE else np.float64
 
 
 def friction_workspace(harmonics: int, speeds: Floats) -> FrictionWorkspace:
-    """Allocate the workspace of `elliptic_averages`, its sums of the precision of the speeds.
-
-    Parameters
-    ----------
-    harmonics : int
-        Largest number of harmonics of the motions.
-    speeds : ndarray of float64 or float32, shape (s,)
-        Sliding speeds, in m/s.
-
-    Returns
-    -------
-    FrictionWorkspace
-    """
+    """Allocate the workspace of `elliptic_averages`, its sums of the precision of the speeds."""
     nodes = np.empty((NODES_PER_PASS, 3, LANES), speeds.dtype)
     sums = np.empty((2, speeds.size, LANES), speeds.dtype)
     return FrictionWorkspace(np.empty((17, LANES)), np.empty((2 * harmonics, LANES)), nodes, sums)
@@ -71,32 +59,8 @@ def elliptic_averages(
 ) -> None:
     r"""Write the averages of v_r/sqrt(v_r^2 + v^2) over a period, plain and weighted by the contact force.
 
-    Parameters
-    ----------
-    kind, damped : tuple
-        See `sonolube.models.dynamics.kernels.contact_kernel.KernelVariant`.
-    law : LawParameters
-    settings : ndarray, shape (p, 7)
-        Columns ALPHA to EQUILIBRIUM: `moebius_parameters`, angular frequency, in rad/s, dead load, in N, mean
-        displacement, in m, and `GapLaw.equilibrium_coordinate`.
-    harmonics : ndarray, shape (p, 2 H)
-        Real and imaginary parts in turn, zero beyond `count`.
-    count : ndarray of int, shape (p,)
-        Number of harmonics of each motion.
-    table_row : ndarray of int, shape (p,)
-        Row of `nodes` for each motion.
-    chosen : ndarray of int
-        Motions to average, sorted by rows and harmonics.
-    speeds : ndarray of float64 or float32, shape (s,)
-        Sliding speeds v_r, in m/s, positive.
-    nodes : EllipticNodes
-    work : FrictionWorkspace
-        Of the precision of the speeds.
-    averages : ndarray, shape (2, p, s)
-        Written.
+    `settings` has shape (p, 7). `harmonics` has shape (p, 2 H). `averages` has shape (2, p, s).
 
-    Notes
-    -----
     .. math::
         \left\langle\frac{v_r}{\sqrt{v_r^2 + v^2}}\right\rangle, \qquad
         \left\langle\frac{F_n}{F_N}\,\frac{v_r}{\sqrt{v_r^2 + v^2}}\right\rangle

@@ -34,22 +34,10 @@ class EllipticNodes(NamedTuple):
 
 @lru_cache(maxsize=64)
 def elliptic_nodes(extra: int, tolerance: float = 1e-6) -> EllipticNodes:
-    r"""Return the table of nodes for each ratio of sliding speed to peak velocity.
+    r"""Table of nodes for each ratio of sliding speed to peak velocity.
 
-    Parameters
-    ----------
-    extra : int
-        Additional nodes for a steep contact force.
-    tolerance : float
-        Relative error.
+    Row r for the ratio :math:`q = 10^{-r/4}`.
 
-    Returns
-    -------
-    EllipticNodes
-        Row r for the ratio :math:`q = 10^{-r/4}`.
-
-    Notes
-    -----
     With the complementary parameter :math:`m_1 = q^2/(1 + q^2)`, n nodes are at
 
     .. math:: \varphi_j = \mathrm{am}\!\left(\tfrac{4 K}{n}\left(j + \tfrac12\right) \Big|\, 1 - m_1\right),
@@ -70,7 +58,7 @@ def elliptic_nodes(extra: int, tolerance: float = 1e-6) -> EllipticNodes:
 
 
 def _complete_integral(complement: float) -> float:
-    """Return the complete elliptic integral K(1 - complement) by the arithmetic-geometric mean."""
+    """Complete elliptic integral K(1 - complement) by the arithmetic-geometric mean."""
     mean, root = 1.0, math.sqrt(complement)
     while abs(mean - root) > 1e-15 * mean:
         mean, root = 0.5 * (mean + root), math.sqrt(mean * root)
@@ -78,7 +66,7 @@ def _complete_integral(complement: float) -> float:
 
 
 def _jacobi_amplitude(u: Floats, complement: float) -> Floats:
-    """Return am(u | 1 - complement) by descending Landen transformations, accurate for a complement near zero."""
+    """Am(u | 1 - complement) by descending Landen transformations, accurate for a complement near zero."""
     means, differences = [1.0], [0.0]
     root = np.sqrt(complement)
     while abs(means[-1] - root) > 1e-16 * means[-1] and len(means) < 12:
@@ -91,20 +79,12 @@ def _jacobi_amplitude(u: Floats, complement: float) -> Floats:
 
 
 def moebius_parameters(extremum_phases: Floats) -> Floats:
-    r"""Return the Moebius map of the unit circle that moves +-i to the two extrema of each motion.
+    r"""Moebius map of the unit circle that moves +-i to the two extrema of each motion.
 
-    Parameters
-    ----------
-    extremum_phases : ndarray, shape (p, 2)
-        Phases of maximum and minimum displacement, in rad.
+    `extremum_phases` has shape (p, 2).
 
-    Returns
-    -------
-    ndarray, shape (3, p)
-        Parameter :math:`\alpha`, and cosine and sine of the rotation :math:`\gamma`.
+    Shape (3, p). Parameter :math:`\alpha`, and cosine and sine of the rotation :math:`\gamma`.
 
-    Notes
-    -----
     .. math:: z = e^{i\gamma}\,\frac{w + \alpha}{1 + \alpha w}
     """
     half = 0.5 * (extremum_phases[:, 0] - extremum_phases[:, 1]) % np.pi
@@ -113,27 +93,19 @@ def moebius_parameters(extremum_phases: Floats) -> Floats:
 
 
 def node_table_row(ratio: Floats) -> Integers:
-    """Return the row of `elliptic_nodes` for a ratio of sliding speed to peak velocity."""
+    """Row of `elliptic_nodes` for a ratio of sliding speed to peak velocity."""
     smallest = 10.0 ** (-_LAST_ROW / _ROWS_PER_DECADE)
     steps = np.ceil(-_ROWS_PER_DECADE * np.log10(np.fmax(ratio, smallest)))  # the smallest for NaN, too
     return np.asarray(np.maximum(steps, 0).astype(np.int64))
 
 
 def node_count_factor(harmonics: Complexes) -> Integers:
-    """Return the factor on the number of nodes that motions with two extrema require for their higher harmonics.
+    """Factor on the number of nodes that motions with two extrema require for their higher harmonics.
 
-    Parameters
-    ----------
-    harmonics : ndarray of complex, shape (p, H)
-        Displacement harmonics, in m.
+    `harmonics` has shape (p, H).
 
-    Returns
-    -------
-    ndarray of int, shape (p,)
-        1, 2, 4 or 16.
+    1, 2, 4 or 16.
 
-    Notes
-    -----
     A velocity that nearly vanishes between the extrema brings further branch points close to the real axis. Twice the
     nodes square the error; the factors hold 1e-5 for sliding speeds down to a thousandth of the peak velocity.
     """
@@ -145,21 +117,9 @@ def node_count_factor(harmonics: Complexes) -> Integers:
 
 
 def quadrature_nodes(extremum_phases: Floats, ratio: float, factor: int) -> tuple[Complexes, Floats]:
-    """Return nodes exp(i theta) and weights for averages over one period of one motion.
+    """Nodes exp(i theta) and weights for averages over one period of one motion.
 
-    Parameters
-    ----------
-    extremum_phases : ndarray, shape (2,)
-        Phases of maximum and minimum displacement, in rad; NaN for a motion with more extrema.
-    ratio : float
-        Smallest sliding speed over peak velocity.
-    factor : int
-        From `node_count_factor`.
-
-    Returns
-    -------
-    nodes, weights : ndarray, shape (samples,)
-        Equally spaced for a motion with more than two extrema.
+    Equally spaced for a motion with more than two extrema.
     """
     if np.isnan(extremum_phases[0]):
         samples = 2**15

@@ -8,7 +8,7 @@ from sonolube.models.dynamics.friction_average.elliptic_kernel import EQUILIBRIU
 from sonolube.models.dynamics.kernels.contact_kernel import CompileTimeInt, LawParameters, contact_force
 from sonolube.models.dynamics.kernels.simd import ALLOCATING_KERNEL, INNER
 
-_CELLS_PER_HARMONIC, _FEWEST_CELLS = 256, 4096
+_CELLS_PER_HARMONIC, _MIN_CELLS = 256, 4096
 
 
 @kernel(**ALLOCATING_KERNEL)
@@ -25,12 +25,7 @@ def piecewise_linear_averages(
 ) -> None:
     """Write the averages of `elliptic_averages` for motions with any number of extrema.
 
-    Parameters
-    ----------
-    kind, damped, law, settings, count, chosen, speeds, averages
-        As in `elliptic_averages`.
-    harmonics : ndarray of complex, shape (p, H)
-        Displacement harmonics, in m.
+    `harmonics` has shape (p, H).
     """
     rapidity = np.empty(speeds.size)
     for point in chosen:
@@ -67,7 +62,7 @@ def _average(
         \left\langle\frac{v_r}{\sqrt{v_r^2 + v^2}}\right\rangle
         = \frac{v_r}{v_2 - v_1} \left(\mathrm{arsinh}\frac{v_2}{v_r} - \mathrm{arsinh}\frac{v_1}{v_r}\right) .
     """
-    cells = max(_CELLS_PER_HARMONIC * own.size, _FEWEST_CELLS)
+    cells = max(_CELLS_PER_HARMONIC * own.size, _MIN_CELLS)
     last_velocity, last_force = 0.0, 0.0
     for j in range(cells + 1):
         x, slope = _displacement_and_slope(own, 2 * np.pi * j / cells)
@@ -91,7 +86,7 @@ def _average(
 
 @kernel(**INNER)
 def _displacement_and_slope(own: Complexes, phase: float) -> tuple[float, float]:
-    """Return displacement about the mean and its derivative by phase."""
+    """Displacement about the mean and its derivative by phase."""
     cosine, sine = np.cos(phase), np.sin(phase)
     c, s, x, slope = 1.0, 0.0, 0.0, 0.0
     for k in range(1, own.size + 1):

@@ -52,22 +52,22 @@ class ExponentialGap:
         return self.decay_length
 
     def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the elastic contact force. [N]"""
+        """Elastic contact force. [N]"""
         return normal_load * np.exp(-displacement / self.decay_length)
 
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the contact stiffness -dF/dx. [N/m]"""
+        """Contact stiffness -dF/dx. [N/m]"""
         return self.force(displacement, normal_load) / self.decay_length
 
     def loss_displacement(self, normal_load: Floats | float) -> Floats:
-        """Return the displacement beyond which contact counts as lost. [m]"""
+        """Displacement beyond which contact counts as lost. [m]"""
         return np.full(np.shape(normal_load), -self.decay_length * math.log(CONTACT_LOSS_THRESHOLD))
 
     def equilibrium_coordinate(self, normal_load: Floats | float) -> Floats:
-        """Return zero: displacements count from equilibrium."""
+        """Zero: displacements count from equilibrium."""
         return np.zeros(np.shape(normal_load))
 
     def force_derivatives(self, displacement: Floats, normal_load: float) -> dict[str, Floats]:
-        """Return the derivatives of the elastic force by dead load and decay length."""
+        """Derivatives of the elastic force by dead load and decay length."""
         elastic = self.force(displacement, normal_load)
         return {"normal_load": elastic / normal_load, "decay_length": elastic * displacement / self.decay_length**2}

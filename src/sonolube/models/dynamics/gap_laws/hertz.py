@@ -58,23 +58,23 @@ class HertzGap:
         return self.coefficient
 
     def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the elastic contact force. [N]"""
+        """Elastic contact force. [N]"""
         return self.coefficient * self._approach(displacement, normal_load) ** 1.5
 
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the contact stiffness -dF/dx. [N/m]"""
+        """Contact stiffness -dF/dx. [N/m]"""
         return 1.5 * self.coefficient * np.sqrt(self._approach(displacement, normal_load))
 
     def loss_displacement(self, normal_load: Floats | float) -> Floats:
-        """Return the displacement beyond which contact counts as lost. [m]"""
+        """Displacement beyond which contact counts as lost. [m]"""
         return np.asarray((normal_load / self.coefficient) ** (2 / 3) * (1 - CONTACT_LOSS_THRESHOLD ** (2 / 3)))
 
     def equilibrium_coordinate(self, normal_load: Floats | float) -> Floats:
-        """Return the approach under the dead load, in m."""
+        """Approach under the dead load, in m."""
         return np.asarray((normal_load / self.coefficient) ** (2 / 3))
 
     def force_derivatives(self, displacement: Floats, normal_load: float) -> dict[str, Floats]:
-        """Return the derivatives of the elastic force by dead load, radius and modulus."""
+        """Derivatives of the elastic force by dead load, radius and modulus."""
         rest = (normal_load / self.coefficient) ** (2 / 3)
         approach = self._approach(displacement, normal_load)
         stiffness = 1.5 * self.coefficient * np.sqrt(approach)

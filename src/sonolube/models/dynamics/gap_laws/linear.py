@@ -46,23 +46,23 @@ class LinearGap:
         return self.normal_stiffness
 
     def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the elastic contact force. [N]"""
+        """Elastic contact force. [N]"""
         return np.maximum(normal_load - self.normal_stiffness * displacement, 0.0)
 
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the contact stiffness -dF/dx. [N/m]"""
+        """Contact stiffness -dF/dx. [N/m]"""
         return np.where(self.force(displacement, normal_load) > 0, self.normal_stiffness, 0.0)
 
     def loss_displacement(self, normal_load: Floats | float) -> Floats:
-        """Return the displacement beyond which contact counts as lost, infinite without stiffness. [m]"""
+        """Displacement beyond which contact counts as lost, infinite without stiffness. [m]"""
         with np.errstate(divide="ignore"):
             return np.divide((1 - CONTACT_LOSS_THRESHOLD) * np.asarray(normal_load), self.normal_stiffness)
 
     def equilibrium_coordinate(self, normal_load: Floats | float) -> Floats:
-        """Return zero: displacements count from equilibrium."""
+        """Zero: displacements count from equilibrium."""
         return np.zeros(np.shape(normal_load))
 
     def force_derivatives(self, displacement: Floats, normal_load: float) -> dict[str, Floats]:
-        """Return the derivatives of the elastic force by dead load and stiffness."""
+        """Derivatives of the elastic force by dead load and stiffness."""
         touching = np.asarray(self.force(displacement, normal_load) > 0, dtype=np.float64)
         return {"normal_load": touching, "normal_stiffness": -displacement * touching}

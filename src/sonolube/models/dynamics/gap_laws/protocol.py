@@ -39,45 +39,31 @@ class GapLaw(Protocol):
         """The one parameter that the compiled kernels take: see `LawParameters`."""
 
     def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the elastic contact force F, never negative. [N]"""
+        """Elastic contact force F, never negative. [N]"""
 
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the contact stiffness -dF/dx. [N/m]"""
+        """Contact stiffness -dF/dx. [N/m]"""
 
     def loss_displacement(self, normal_load: Floats | float) -> Floats:
-        """Return the displacement beyond which contact counts as lost, F < 0.01 F_N. [m]"""
+        """Displacement beyond which contact counts as lost, F < 0.01 F_N. [m]"""
 
     def equilibrium_coordinate(self, normal_load: Floats | float) -> Floats:
-        """Return the law's own coordinate at equilibrium: approach in m, position on the table in cells, or zero."""
+        """Law's own coordinate at equilibrium: approach in m, position on the table in cells, or zero."""
 
     def force_derivatives(self, displacement: Floats, normal_load: float) -> dict[str, Floats]:
-        """Return the derivatives of the elastic force by the dead load and by each parameter, named as these."""
+        """Derivatives of the elastic force by the dead load and by each parameter, named as these."""
 
 
 def damped_force(gap_law: GapLaw, x: Floats, v: Floats, load: Floats | float) -> Floats:
-    r"""Return the contact force with damping, in N.
+    r"""Contact force with damping, in N.
 
-    Parameters
-    ----------
-    gap_law : GapLaw
-    x, v : ndarray
-        Displacement and velocity of the contact, in m and m/s.
-    load : ndarray or float
-        Dead load, in N.
-
-    Returns
-    -------
-    ndarray
-
-    Notes
-    -----
     .. math:: F_n = F(x)\,\max(1 - \tau v,\, 0)
     """
     return gap_law.force(x, load) * np.maximum(1 - gap_law.force_damping * v, 0.0)
 
 
 def force_decay_length(gap_law: GapLaw, load: Floats | float) -> Floats:
-    r"""Return the decay length of the contact force at equilibrium: force over stiffness, in m.
+    r"""Decay length of the contact force at equilibrium: force over stiffness, in m.
 
     Parameters
     ----------

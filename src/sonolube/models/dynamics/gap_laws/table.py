@@ -23,23 +23,9 @@ GAP_LAWS: Mapping[str, type[GapLaw]] = MappingProxyType(
 
 
 def kernel_law(gap_law: GapLaw) -> tuple[KernelVariant, LawParameters]:
-    """Return a contact law in the form that the compiled kernels take.
+    """Contact law in the form that the compiled kernels take.
 
-    Parameters
-    ----------
-    gap_law : GapLaw
-
-    Returns
-    -------
-    KernelVariant
-        What kernels are compiled for.
-    LawParameters
-        Numbers that they take at run time.
-
-    Raises
-    ------
-    InvalidInput
-        If the law is none of `GAP_LAWS`.
+    What kernels are compiled for. Numbers that they take at run time.
     """
     if not is_compiled(gap_law):
         raise InvalidInput(
@@ -52,5 +38,5 @@ def kernel_law(gap_law: GapLaw) -> tuple[KernelVariant, LawParameters]:
 
 
 def is_compiled(gap_law: GapLaw) -> bool:
-    """Return whether a contact law is one of `GAP_LAWS`, which the compiled kernels evaluate."""
+    """Whether a contact law is one of `GAP_LAWS`, which the compiled kernels evaluate."""
     return isinstance(gap_law, tuple(GAP_LAWS.values()))

@@ -98,35 +98,35 @@ class TabulatedGap:
         return float((self.separation.size - 1) / (self.separation[-1] - self.separation[0]))
 
     def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the elastic contact force. [N]"""
+        """Elastic contact force. [N]"""
         return self._force_and_decay(displacement, normal_load)[0]
 
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        """Return the contact stiffness -dF/dx. [N/m]"""
+        """Contact stiffness -dF/dx. [N/m]"""
         force, decay = self._force_and_decay(displacement, normal_load)
         with np.errstate(over="ignore"):
             return np.asarray(force * decay)
 
     def loss_displacement(self, normal_load: Floats | float) -> Floats:
-        """Return the displacement beyond which contact counts as lost. [m]"""
+        """Displacement beyond which contact counts as lost. [m]"""
         load = np.asarray(normal_load)
         cells = self.equilibrium_coordinate(CONTACT_LOSS_THRESHOLD * load) - self.equilibrium_coordinate(load)
         return np.asarray(cells / self.kernel_parameter)
 
     def equilibrium_coordinate(self, normal_load: Floats | float) -> Floats:
-        """Return the equilibrium position on the table under a dead load, in cells."""
+        """Equilibrium position on the table under a dead load, in cells."""
         load = np.asarray(normal_load, dtype=np.float64)
         positions = np.empty(load.size)
         positions_of.for_points(load.size, most=64)(self.cells, np.log(load).ravel(), positions)
         return positions.reshape(load.shape)
 
     def force_derivatives(self, displacement: Floats, normal_load: float) -> dict[str, Floats]:
-        """Return the derivative of the elastic force by the dead load; the table itself has no parameter."""
+        """Derivative of the elastic force by the dead load; the table itself has no parameter."""
         at_rest = self.stiffness(np.zeros(()), normal_load)
         return {"normal_load": self.stiffness(displacement, normal_load) / at_rest}
 
     def _force_and_decay(self, displacement: Floats, normal_load: Floats | float) -> tuple[Floats, Floats]:
-        """Return the force, in N, and its logarithmic decay per displacement, in 1/m."""
+        """Force, in N, and its logarithmic decay per displacement, in 1/m."""
         position = self.equilibrium_coordinate(normal_load) + self.kernel_parameter * np.asarray(displacement)
         logs, slopes = np.empty((2, position.size))
         log_forces.for_points(position.size, most=2048)(self.cells, position.ravel(), logs, slopes)

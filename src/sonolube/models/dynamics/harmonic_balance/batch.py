@@ -26,7 +26,7 @@ class BatchProblem(NamedTuple):
     on_gpu: bool  # whether JAX solves on its GPU
 
     def select(self, points: NDArray[np.intp] | slice) -> "BatchProblem":
-        """Return the problem of some of the points."""
+        """Problem of some of the points."""
         return self._replace(
             omega=self.omega[points],
             load=self.load[points],
@@ -54,17 +54,7 @@ class BatchSolution(NamedTuple):
 
 
 def concatenate(parts: list[BatchSolution]) -> BatchSolution:
-    """Return the solution of a batch from those of its consecutive chunks.
-
-    Parameters
-    ----------
-    parts : list of BatchSolution
-        In the order of the points, at least one.
-
-    Returns
-    -------
-    BatchSolution
-    """
+    """Solution of a batch from those of its consecutive chunks."""
     if len(parts) == 1:
         return parts[0]
     capacity = max(part.harmonics.shape[1] for part in parts)

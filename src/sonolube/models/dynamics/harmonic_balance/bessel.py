@@ -20,20 +20,9 @@ LARGE_0, LARGE_1 = (
 
 
 def bessel_ratio(argument: Floats) -> Floats:
-    """Return I_1/I_0.
+    """I_1/I_0.
 
-    Parameters
-    ----------
-    argument : ndarray
-        Not negative.
-
-    Returns
-    -------
-    ndarray, shape of `argument`
-
-    References
-    ----------
-    .. [1] M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 9.8.1 to 9.8.4.
+    Source: M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 9.8.1 to 9.8.4.
     """
     near, far = _scaled_arguments(argument)
     small = argument * _polynomial(SMALL_1, near) / _polynomial(SMALL_0, near)
@@ -42,20 +31,9 @@ def bessel_ratio(argument: Floats) -> Floats:
 
 
 def log_bessel_i0(argument: Floats) -> Floats:
-    """Return ln I_0.
+    """Ln I_0.
 
-    Parameters
-    ----------
-    argument : ndarray
-        Not negative.
-
-    Returns
-    -------
-    ndarray, shape of `argument`
-
-    References
-    ----------
-    .. [1] M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 9.8.1 and 9.8.2.
+    Source: M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 9.8.1 and 9.8.2.
     """
     near, far = _scaled_arguments(argument)
     large = argument + np.log(_polynomial(LARGE_0, far) / np.sqrt(np.maximum(argument, BEND)))
@@ -63,24 +41,11 @@ def log_bessel_i0(argument: Floats) -> Floats:
 
 
 def wright_omega(argument: Floats) -> Floats:
-    r"""Return Wright's omega function of a real argument, the solution w of w + ln w = z, to rounding.
+    r"""Wright's omega function of a real argument, the solution w of w + ln w = z, to rounding.
 
-    Parameters
-    ----------
-    argument : ndarray
-        z.
-
-    Returns
-    -------
-    ndarray, shape of `argument`
-
-    Notes
-    -----
     Three steps of fourth order from exp(z), below z = 1, or from z - ln z.
 
-    References
-    ----------
-    .. [1] P. W. Lawrence, R. M. Corless and D. J. Jeffrey, ACM Trans. Math. Softw. 38, 20 (2012), equation 6.
+    Source: P. W. Lawrence, R. M. Corless and D. J. Jeffrey, ACM Trans. Math. Softw. 38, 20 (2012), equation 6.
     """
     z = np.maximum(argument, -700.0)  # below it w is exp(z), which underflows
     above, below = np.maximum(z, 1.0), np.minimum(z, 1.0)
@@ -93,12 +58,12 @@ def wright_omega(argument: Floats) -> Floats:
 
 
 def _scaled_arguments(argument: Floats) -> tuple[Floats, Floats]:
-    """Return the variables of the polynomials on either side of BEND, clipped to their ranges."""
+    """Variables of the polynomials on either side of BEND, clipped to their ranges."""
     return np.square(np.minimum(argument / BEND, 1.0)), BEND / np.maximum(argument, BEND)
 
 
 def _polynomial(coefficients: tuple[float, ...], argument: Floats) -> Floats:
-    """Return a polynomial by Horner's scheme, coefficients lowest power first."""
+    """Polynomial by Horner's scheme, coefficients lowest power first."""
     result = np.full_like(argument, coefficients[-1])
     for coefficient in coefficients[-2::-1]:
         result *= argument

@@ -47,21 +47,9 @@ class _Motions(NamedTuple):
 def response_measures(
     gap_law: GapLaw, omega: Floats, load: Floats, mean: Floats, harmonics: Complexes, count: Integers
 ) -> ResponseMeasures:
-    """Return the measures of periodic motions at the contact.
+    """Measures of periodic motions at the contact.
 
-    Parameters
-    ----------
-    gap_law : GapLaw
-    omega, load, mean : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
-    harmonics : ndarray of complex, shape (p, H)
-        Displacement harmonics, in m.
-    count : ndarray of int, shape (p,)
-        Number of harmonics of each motion.
-
-    Returns
-    -------
-    ResponseMeasures
+    `harmonics` has shape (p, H).
     """
     most = int(count.max(initial=1))
     rows = np.ascontiguousarray(harmonics[:, :most].T)
@@ -92,7 +80,7 @@ def _chunks(points: NDArray[np.intp], count: Integers) -> Iterator[tuple[NDArray
 
 
 def _acceleration(rows: Complexes, *, first: int) -> Floats:
-    """Return the sum of k^2 times the magnitude of harmonic k, the first one of a given order."""
+    """Sum of k^2 times the magnitude of harmonic k, the first one of a given order."""
     total = np.zeros(rows.shape[1])
     for k, row in enumerate(rows, start=first):
         total += k * k * (np.abs(row.real) + np.abs(row.imag))
@@ -100,7 +88,7 @@ def _acceleration(rows: Complexes, *, first: int) -> Floats:
 
 
 def _phase_derivatives(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats, Floats]:
-    """Return displacement about the mean and its first two derivatives by phase, by Horner's scheme.
+    """Displacement about the mean and its first two derivatives by phase, by Horner's scheme.
 
     Products are not formed in place: numpy rounds those of a single element otherwise than those of many.
     """
@@ -116,7 +104,7 @@ def _phase_derivatives(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floa
 
 
 def _displacement_and_slope(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats]:
-    """Return displacement about the mean and its derivative by phase, by Horner's scheme."""
+    """Displacement about the mean and its derivative by phase, by Horner's scheme."""
     value, slope = harmonics[-1].copy(), np.zeros_like(z)
     for k in range(len(harmonics) - 1, -1, -1):
         slope = (slope + value) * z
@@ -162,7 +150,7 @@ def _measure_between_extrema(
 
 
 def _extremum(harmonics: Complexes, near: Complexes) -> tuple[Floats, Floats]:
-    """Return the phase of the extremum near exp(i phase), and the displacement there about the mean."""
+    """Phase of the extremum near exp(i phase), and the displacement there about the mean."""
     z, displacement = near.copy(), np.empty(near.size)
     left: NDArray[np.intp] | slice = slice(None)
     for _ in range(_NEWTON_STEPS):
@@ -179,7 +167,7 @@ def _extremum(harmonics: Complexes, near: Complexes) -> tuple[Floats, Floats]:
 
 
 def _rotation(angle: Floats) -> Complexes:
-    """Return exp(2i arctan(angle/2)), a rational approximation of exp(i angle) on the unit circle."""
+    """exp(2i arctan(angle/2)), a rational approximation of exp(i angle) on the unit circle."""
     square = 0.25 * angle * angle
     rotation = np.empty(angle.shape, dtype=np.complex128)
     inverse = 1 / (1 + square)
@@ -188,7 +176,7 @@ def _rotation(angle: Floats) -> Complexes:
 
 
 def _fraction_above(harmonics: Complexes, level: Floats, upper: Floats, lower: Floats) -> Floats:
-    """Return the fraction of the period in which motions with two extrema exceed a level between these."""
+    """Fraction of the period in which motions with two extrema exceed a level between these."""
     size = np.abs(harmonics[0])
     cosine = np.clip(level / size, -_CLEAR, _CLEAR)
     first, aside = np.conj(harmonics[0]) / size, 1j * np.sqrt(1 - cosine * cosine)
@@ -205,7 +193,7 @@ def _fraction_above(harmonics: Complexes, level: Floats, upper: Floats, lower: F
 
 
 def _newton_crossing(harmonics: Complexes, level: Floats, near: Complexes) -> tuple[Complexes, Floats]:
-    """Return exp(i phase) of the crossing of a level near a phase, and the slope there: NaN if not converged."""
+    """exp(i phase) of the crossing of a level near a phase, and the slope there: NaN if not converged."""
     z, slope_there = near, np.full(near.size, np.nan)
     left: NDArray[np.intp] | slice = slice(None)
     for _ in range(_CROSSING_STEPS):
@@ -221,7 +209,7 @@ def _newton_crossing(harmonics: Complexes, level: Floats, near: Complexes) -> tu
 
 
 def _bracketed_crossing(harmonics: Complexes, level: Floats, upper: Floats, lower: Floats) -> Floats:
-    """Return the phase between maximum and minimum at which a level is crossed, by Newton's method with bisection."""
+    """Phase between maximum and minimum at which a level is crossed, by Newton's method with bisection."""
     inside, outside = upper.copy(), lower.copy()
     phase = upper + (lower - upper) / np.pi * np.arccos(np.clip(level / np.abs(harmonics[0]), -_CLEAR, _CLEAR))
     left = np.arange(phase.size)
@@ -242,7 +230,7 @@ def _bracketed_crossing(harmonics: Complexes, level: Floats, upper: Floats, lowe
 
 
 def _samples(motions: _Motions, count: int) -> tuple[Floats, Floats]:
-    """Return displacement about the mean and its derivative by phase at equally spaced phases, one row per motion."""
+    """Displacement about the mean and its derivative by phase at equally spaced phases, one row per motion."""
     spectra = np.zeros((2, motions.mean.size, count // 2 + 1), dtype=np.complex128)
     harmonics = motions.harmonics[: count // _SAMPLES_PER_HARMONIC]
     spectra[0, :, 1 : len(harmonics) + 1] = harmonics.T * (count / 2)
@@ -252,7 +240,7 @@ def _samples(motions: _Motions, count: int) -> tuple[Floats, Floats]:
 
 
 def _extremum_estimates(motions: _Motions, samples: int) -> tuple[Complexes, Complexes]:
-    """Return estimates exp(i phase) of maximum and minimum; NaN for motions with more, or nearly more, extrema."""
+    """Estimates exp(i phase) of maximum and minimum; NaN for motions with more, or nearly more, extrema."""
     here = _samples(motions, samples)[1]
     before, after = np.roll(here, 1, axis=1), np.roll(here, -1, axis=1)
     slow = _SLOW * np.abs(here).max(axis=1, keepdims=True)
@@ -298,7 +286,7 @@ def _measure_by_samples(
 
 
 def _parabolic_maximum(samples: Floats) -> Floats:
-    """Return the maximum of each row of periodic samples, by a parabola through the highest three."""
+    """Maximum of each row of periodic samples, by a parabola through the highest three."""
     rows, top = np.arange(samples.shape[0]), samples.argmax(axis=1)
     before, here = samples[rows, top - 1], samples[rows, top]
     after = samples[rows, (top + 1) % samples.shape[1]]

@@ -18,23 +18,12 @@ STABILITY_THRESHOLD = 1e-6
 _KICKS_PER_RADIAN = 8  # of the structure's fastest mode
 _FEW: Final = {"most": 20_000, "at_first": 200_000}  # kicks for which arrays take less than loading and compiling
 _HARMONICS_STEP = 4  # to which numbers of harmonics are rounded up
-_MOST_KICKS = 2**22  # per period, which take seconds
+_MAX_KICKS = 2**22  # per period, which take seconds
 
 
 def stability_undetermined(model: PoleResidueModel, omega: Floats) -> NDArray[np.bool_]:
-    """Return at which angular frequencies a period holds too many cycles of the fastest mode to compute stability.
-
-    Parameters
-    ----------
-    model : PoleResidueModel
-    omega : ndarray, any shape
-        Angular frequency of the drive, in rad/s.
-
-    Returns
-    -------
-    ndarray of bool, shape of `omega`
-    """
-    return np.asarray(_KICKS_PER_RADIAN * _fastest(model) > _MOST_KICKS * omega)
+    """At which angular frequencies a period holds too many cycles of the fastest mode to compute stability."""
+    return np.asarray(_KICKS_PER_RADIAN * _fastest(model) > _MAX_KICKS * omega)
 
 
 def floquet_exponents(
@@ -49,28 +38,12 @@ def floquet_exponents(
     *,
     on_gpu: bool = False,
 ) -> Floats:
-    r"""Return the largest Floquet exponent of each motion, per period of the drive.
+    r"""Largest Floquet exponent of each motion, per period of the drive.
 
-    Parameters
-    ----------
-    model : PoleResidueModel
-    gap_law : GapLaw
-    omega, load, mean : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
-    harmonics : ndarray of complex, shape (p, H)
-        Displacement harmonics, in m.
-    count, samples : ndarray of int, shape (p,)
-        Harmonics of each motion, and the least number of kicks per period.
-    on_gpu : bool
-        Whether JAX computes it.
+    `harmonics` has shape (p, H).
 
-    Returns
-    -------
-    ndarray, shape (p,)
-        Positive for unstable motions; compare with `STABILITY_THRESHOLD`.
+    Positive for unstable motions; compare with `STABILITY_THRESHOLD`.
 
-    Notes
-    -----
     With the Floquet multipliers :math:`\mu_i`, the eigenvalues of the monodromy matrix M, the exponent is
 
     .. math:: \max_i \ln|\mu_i| = \lim_{n\to\infty} \frac1n \left(\ln\|M^{2n}\| - \ln\|M^n\|\right),
@@ -108,18 +81,18 @@ def floquet_exponents(
 
 
 def _rounded_up(kicks: Integers) -> Integers:
-    """Return numbers of kicks rounded up to three binary digits."""
+    """Numbers of kicks rounded up to three binary digits."""
     unit = 2 ** np.maximum(np.floor(np.log2(kicks)) - 2, 0).astype(np.int64)
     return np.asarray(-(-kicks // unit) * unit)
 
 
 def _fastest(model: PoleResidueModel) -> float:
-    """Return the largest natural angular frequency of the structure, in rad/s."""
+    """Largest natural angular frequency of the structure, in rad/s."""
     return float(np.sqrt(np.abs(model.determinant).max()))
 
 
 def _transition_matrices(model: PoleResidueModel, duration: Floats) -> Floats:
-    r"""Return the state transition matrices exp(A t) of every pair, shape (p, 4 m), row by row.
+    r"""State transition matrices exp(A t) of every pair, shape (p, 4 m), row by row.
 
     Notes
     -----

@@ -57,17 +57,7 @@ class PeriodWorkspace(NamedTuple):
 
 
 def period_workspace(states: int, harmonics: int) -> PeriodWorkspace:
-    """Allocate the workspace of `monodromy_power_norms`.
-
-    Parameters
-    ----------
-    states, harmonics : int
-        States of the structure, and largest number of harmonics of the motions.
-
-    Returns
-    -------
-    PeriodWorkspace
-    """
+    """Allocate the workspace of `monodromy_power_norms`."""
     return PeriodWorkspace(
         rows=np.empty((9, LANES)),
         drift=np.empty((2 * states, LANES)),
@@ -98,28 +88,8 @@ def monodromy_power_norms(
 ) -> None:
     """Write the norm of the monodromy matrix to the power 2^22 of each chosen point, in two parts.
 
-    Parameters
-    ----------
-    kind, damped : tuple
-        See `sonolube.models.dynamics.kernels.contact_kernel.KernelVariant`.
-    law : LawParameters
-    pairs : ndarray, shape (m, 6)
-        Columns INPUT, DISPLACEMENT_OUTPUT and VELOCITY_OUTPUT of every pair of states.
-    settings : ndarray, shape (p, 4)
-        Columns OMEGA to MEAN: angular frequency, in rad/s, dead load, in N, `GapLaw.equilibrium_coordinate`, mean
-        displacement, in m.
-    drift : ndarray, shape (p, 4 m)
-        State transition matrices exp(A dt) between two kicks, row by row of each pair.
-    harmonics : ndarray, shape (p, 2 capacity)
-        Real and imaginary parts in turn, zero beyond `count`.
-    count, kicks : ndarray of int, shape (p,)
-        Harmonics of each motion, and kicks per period, equal for all points of a block.
-    chosen : ndarray of int
-        Points to treat, sorted by kicks and harmonics.
-    work : PeriodWorkspace
-    powers, norms : ndarray, shape (p,)
-        Written at the chosen points: the sum of the powers of two taken out, each doubled with every squaring, and the
-        square of the remaining Frobenius norm.
+    `pairs` has shape (m, 6). `settings` has shape (p, 4). `drift` has shape (p, 4 m). `harmonics` has shape (p, 2
+    capacity).
     """
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]

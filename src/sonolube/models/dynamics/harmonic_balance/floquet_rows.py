@@ -20,23 +20,8 @@ def power_norms_of_motions(
 ) -> tuple[Floats, Floats]:
     """Norms of the monodromy matrices to the power 2^22, in two parts, as `monodromy_power_norms` writes them.
 
-    Parameters
-    ----------
-    gap_law : GapLaw
-    pairs : ndarray, shape (m, 6)
-        As of `monodromy_power_norms`.
-    settings : ndarray, shape (p, 3)
-        Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
-    drift : ndarray, shape (p, 4 m)
-        As of `monodromy_power_norms`.
-    harmonics : ndarray of complex, shape (p, H)
-        Displacement harmonics, in m.
-    kicks : int
-        Kicks per period.
-
-    Returns
-    -------
-    powers, norms : ndarray, shape (p,)
+    `pairs` has shape (m, 6). `settings` has shape (p, 3). `drift` has shape (p, 4 m). `harmonics` has shape (p, H).
+    Shape (p,).
     """
     omega, load, mean = settings.T[:, :, np.newaxis]
     orders = np.arange(1, harmonics.shape[1] + 1)

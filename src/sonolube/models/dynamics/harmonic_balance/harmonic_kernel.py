@@ -88,17 +88,7 @@ class HarmonicWorkspace(NamedTuple):
 
 
 def harmonic_workspace(harmonics: int, coupled: int, samples: int) -> HarmonicWorkspace:
-    """Allocate the workspace of `newton_solve`.
-
-    Parameters
-    ----------
-    harmonics, coupled, samples : int
-        Largest values of the `Truncation` of the points.
-
-    Returns
-    -------
-    HarmonicWorkspace
-    """
+    """Allocate the workspace of `newton_solve`."""
     rows, instants = 2 * coupled + 1, samples // 2 + 1
     return HarmonicWorkspace(
         lanes=np.empty((7, LANES)),
@@ -130,29 +120,7 @@ def newton_solve(
 ) -> None:
     """Solve the equations of harmonic balance of the chosen points by Newton's method.
 
-    Parameters
-    ----------
-    kind, damped : tuple
-        See `sonolube.models.dynamics.kernels.contact_kernel.KernelVariant`.
-    poles : ndarray, shape (4, m)
-        From `PoleResidueModel.contact_poles`.
-    static_stiffness : float
-        Of the structure at the contact, in N/m.
-    law : LawParameters
-    iterates : Iterates
-    truncation : ndarray of int, shape (3, p)
-        Rows as the fields of `Truncation`.
-    chosen : ndarray of int
-        Points to solve; those of a block have one truncation: see `uniform_blocks`.
-    tolerance : float
-        Largest relative error of amplitude and force.
-    iterations : int
-        Largest number of Newton steps.
-    outcome : ndarray of int, shape (p,)
-        Written at the chosen points: CONVERGED, DIVERGED (then nothing else is written), NEEDS_HARMONICS or
-        NEEDS_SAMPLES.
-    work : HarmonicWorkspace
-        For the finest truncation of the chosen points.
+    `poles` has shape (4, m). `truncation` has shape (3, p).
     """
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]

@@ -64,24 +64,9 @@ def initial_guess(
     tolerance: float,
     upper_branch: bool,
 ) -> InitialGuess:
-    """Return the steady states of a batch with a single harmonic, and the truncation that the full ones require.
+    """Steady states of a batch with a single harmonic, and the truncation that the full ones require.
 
-    Parameters
-    ----------
-    model : PoleResidueModel
-    gap_law : GapLaw
-    omega, load, static_displacement : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, and mean displacement without contact force, in m.
-    free_harmonics : ndarray of complex, shape (p, K)
-        Displacement harmonics without contact force, in m.
-    tolerance : float
-        Largest harmonic to truncate, relative to the amplitude.
-    upper_branch : bool
-        Whether to return mean and harmonic of the solution of largest rather than smallest amplitude.
-
-    Returns
-    -------
-    InitialGuess
+    `free_harmonics` has shape (p, K).
     """
     decay_lengths, own = np.minimum(force_decay_length(gap_law, load), _LONGEST), free_harmonics[:, 0]
     response = receptance(model, CONTACT_PER_FORCE, omega)
@@ -100,7 +85,7 @@ def initial_guess(
 
 
 def _amplitudes(motions: _SinusoidalMotions) -> tuple[Floats, Floats]:
-    """Return the smallest and the largest root of the amplitude equation, in m.
+    """Smallest and the largest root of the amplitude equation, in m.
 
     Fixed-point iteration where the contact is weak beside the structure, else a search for all roots.
     """
@@ -125,7 +110,7 @@ def _amplitudes(motions: _SinusoidalMotions) -> tuple[Floats, Floats]:
 
 
 def _bracketed_amplitudes(motions: _SinusoidalMotions) -> tuple[Floats, Floats]:
-    """Return the smallest and the largest of possibly several amplitudes, bracketed on a grid."""
+    """Smallest and the largest of possibly several amplitudes, bracketed on a grid."""
 
     def excess(amplitude: Floats, own: _SinusoidalMotions = motions) -> Floats:
         return np.asarray(np.abs(amplitude + own.receptance * _force_amplitude(own, amplitude)) - own.free_amplitude)
@@ -154,7 +139,7 @@ def _bracketed_amplitudes(motions: _SinusoidalMotions) -> tuple[Floats, Floats]:
 
 
 def _amplitude_bound(motions: _SinusoidalMotions) -> Floats:
-    """Return upper bounds of all roots of the amplitude equation, in m."""
+    """Upper bounds of all roots of the amplitude equation, in m."""
     bound = 1.1 * motions.free_amplitude + _SMALL * motions.decay_length
     for _ in range(60):
         force = _force_amplitude(motions, bound)
@@ -169,7 +154,7 @@ def _amplitude_bound(motions: _SinusoidalMotions) -> Floats:
 def _regula_falsi(  # type: ignore[no-untyped-def]
     function, lower: Floats, lower_value: Floats, upper: Floats, upper_value: Floats, *, tolerance: Floats
 ) -> Floats:
-    """Return the bracketed roots of a function by false position (Illinois variant)."""
+    """Bracketed roots of a function by false position (Illinois variant)."""
     middle, above, found = upper, np.zeros(upper.size, dtype=bool), np.zeros(upper.size, dtype=bool)
     for _ in range(12):
         secant = (lower * upper_value - upper * lower_value) / np.maximum(upper_value - lower_value, _TINY)
@@ -187,12 +172,12 @@ def _regula_falsi(  # type: ignore[no-untyped-def]
 
 
 def _force_amplitude(motions: _SinusoidalMotions, amplitude: Floats) -> Floats:
-    """Return the amplitude of the contact force opposing a sinusoidal motion about the balanced mean, in N."""
+    """Amplitude of the contact force opposing a sinusoidal motion about the balanced mean, in N."""
     return _balanced_mean(motions, amplitude)[1]
 
 
 def _balanced_mean(motions: _SinusoidalMotions, amplitude: Floats) -> tuple[Floats, Floats]:
-    r"""Return the mean that satisfies the static equation under a sinusoidal motion, and the opposing force amplitude.
+    r"""Mean that satisfies the static equation under a sinusoidal motion, and the opposing force amplitude.
 
     Notes
     -----
@@ -212,7 +197,7 @@ def _balanced_mean(motions: _SinusoidalMotions, amplitude: Floats) -> tuple[Floa
 
 
 def _held_mean(motions: _SinusoidalMotions, floating_mean: Floats) -> tuple[Floats, Floats]:
-    r"""Return mean displacement and mean force of an exponential contact on a structure with static stiffness.
+    r"""Mean displacement and mean force of an exponential contact on a structure with static stiffness.
 
     Notes
     -----
@@ -230,7 +215,7 @@ def _held_mean(motions: _SinusoidalMotions, floating_mean: Floats) -> tuple[Floa
 
 
 def _iterated_mean(motions: _SinusoidalMotions, amplitude: Floats) -> tuple[Floats, Floats]:
-    """Return what `_balanced_mean` does for any law, by Newton's method in a bracket."""
+    """What `_balanced_mean` does for any law, by Newton's method in a bracket."""
     floating = motions.static_stiffness == 0.0
     lower = np.zeros_like(amplitude) if floating else np.minimum(motions.static_displacement, 0.0)
     upper = amplitude.copy() if floating else np.maximum(motions.static_displacement, amplitude)
@@ -258,7 +243,7 @@ def _iterated_mean(motions: _SinusoidalMotions, amplitude: Floats) -> tuple[Floa
 
 
 def _force_moments(motions: _SinusoidalMotions, mean: Floats, amplitude: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return mean force, amplitude of the opposing force and mean stiffness under a sinusoidal motion."""
+    """Mean force, amplitude of the opposing force and mean stiffness under a sinusoidal motion."""
     cosines = _ABSCISSAE if motions.gap_law.has_corner else _FEWER_ABSCISSAE
     x, load = mean[:, np.newaxis] + np.multiply.outer(amplitude, cosines), motions.load[:, np.newaxis]
     force, slope = motions.gap_law.force(x, load), motions.gap_law.stiffness(x, load)

@@ -52,21 +52,7 @@ def newton_solve(
 ) -> Integers:
     """Solve the equations of harmonic balance of the chosen points, writing those that do not diverge.
 
-    Parameters
-    ----------
-    problem : BatchProblem
-    iterates : Iterates
-        Of all points; read and written as by `harmonic_kernel.newton_solve`.
-    truncation : Truncation
-        Of all points.
-    chosen : ndarray of int, shape (c,)
-    steps : int
-        Largest number of Newton steps.
-
-    Returns
-    -------
-    ndarray of int, shape (c,)
-        CONVERGED, DIVERGED, NEEDS_HARMONICS or NEEDS_SAMPLES.
+    CONVERGED, DIVERGED, NEEDS_HARMONICS or NEEDS_SAMPLES.
     """
     (kind, damped), law = kernel_law(problem.gap_law)
     shared = problem.model.contact_poles(), problem.model.static_stiffness, tuple(law), problem.tolerance, steps
@@ -94,15 +80,7 @@ def monodromy_power_norms(
 ) -> tuple[Floats, Floats]:
     """Norms of the monodromy matrices to the power 2^22, in two parts, as `floquet_kernel` writes them.
 
-    Parameters
-    ----------
-    gap_law : GapLaw
-    pairs, settings, drift, harmonics, kicks
-        Of all points, as of `floquet_kernel.monodromy_power_norms`; harmonics complex.
-
-    Returns
-    -------
-    powers, norms : ndarray, shape (p,)
+    Shape (p,).
     """
     (kind, _), law = kernel_law(gap_law)
     powers, norms = np.empty((2, kicks.size))

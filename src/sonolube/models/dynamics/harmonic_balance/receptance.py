@@ -47,28 +47,14 @@ class PoleResidueModel(NamedTuple):
     clamped_capacitance: float  # in F
 
     def contact_poles(self) -> Floats:
-        """Return determinant, trace, numerator constant and slope of the contact receptance, shape (4, m)."""
+        """Determinant, trace, numerator constant and slope of the contact receptance, shape (4, m)."""
         constant, slope = self.numerator_constant[CONTACT_PER_FORCE], self.numerator_slope[CONTACT_PER_FORCE]
         return np.array([self.determinant, self.trace, constant, slope])
 
 
 @lru_cache(maxsize=16)
 def pole_residue_model(structure: Structure) -> PoleResidueModel:
-    """Return the receptances of a structure in pole-residue form.
-
-    Parameters
-    ----------
-    structure : Structure
-
-    Returns
-    -------
-    PoleResidueModel
-
-    Raises
-    ------
-    InvalidInput
-        If a constant voltage would accelerate a rigid-body mode without bound, or the contact vector is zero.
-    """
+    """Receptances of a structure in pole-residue form."""
     natural = modes(structure)
     contact = np.abs(structure.contact_vector @ natural.shapes)
     drive = np.abs(structure.drive_vector @ natural.shapes)
@@ -105,26 +91,15 @@ def pole_residue_model(structure: Structure) -> PoleResidueModel:
 
 
 def _participates(inputs: Floats) -> np.ndarray:
-    """Return which pairs of states an input excites, beyond rounding."""
+    """Which pairs of states an input excites, beyond rounding."""
     size = np.abs(inputs).max(axis=1)
     return np.asarray(size > _NEGLIGIBLE * size.max(initial=0.0))
 
 
 def receptance(model: PoleResidueModel, response: int, omega: Floats) -> Complexes:
-    """Return a receptance at angular frequencies, by its pole-residue form.
+    """Receptance at angular frequencies, by its pole-residue form.
 
-    Parameters
-    ----------
-    model : PoleResidueModel
-    response : int
-        CONTACT_PER_FORCE, CONTACT_PER_VOLT or CHARGE_PER_VOLT.
-    omega : ndarray, any shape
-        Angular frequency, in rad/s.
-
-    Returns
-    -------
-    ndarray of complex, shape of `omega`
-        In m/N, m/V (which is C/N) or C/V.
+    In m/N, m/V (which is C/N) or C/V.
     """
     real, imaginary = np.zeros((2, *omega.shape))
     square = np.square(omega)
@@ -142,16 +117,7 @@ def receptance(model: PoleResidueModel, response: int, omega: Floats) -> Complex
 def contact_receptances(poles: Floats, omega: Floats, order: float, receptances: Floats) -> None:
     """Write the contact receptance at a multiple of the angular frequency of each SIMD lane.
 
-    Parameters
-    ----------
-    poles : ndarray, shape (4, m)
-        From `PoleResidueModel.contact_poles`.
-    omega : ndarray, shape (lanes,)
-        Angular frequency, in rad/s.
-    order : float
-        Order of the harmonic.
-    receptances : ndarray, shape (2, lanes)
-        Written: real and imaginary part, in m/N.
+    `poles` has shape (4, m). `receptances` has shape (2, lanes).
     """
     for lane in range(LANES):
         receptances[0, lane], receptances[1, lane] = 0.0, 0.0

@@ -76,29 +76,19 @@ class HarmonicBalanceEquations:
         return padded
 
     def stack(self, mean: float, harmonics: Complexes) -> Floats:
-        """Return the vector of unknowns from mean and harmonics."""
+        """Vector of unknowns from mean and harmonics."""
         own = np.zeros(self.orders, dtype=np.complex128)
         own[: harmonics.size] = harmonics[: self.orders]
         return np.concatenate([[mean], own.real, own.imag])
 
     def unstack(self, unknowns: Floats) -> tuple[float, Complexes]:
-        """Return mean and harmonics from the vector of unknowns."""
+        """Mean and harmonics from the vector of unknowns."""
         return float(unknowns[0]), unknowns[1 : self.orders + 1] + 1j * unknowns[self.orders + 1 :]
 
     def at(self, unknowns: Floats, *, omega: float, scale: float) -> "HarmonicBalanceResidual":
-        """Return residual and derivatives at a vector of unknowns.
+        """Residual and derivatives at a vector of unknowns.
 
-        Parameters
-        ----------
-        unknowns : ndarray, shape (2H + 1,)
-        omega : float
-            Angular frequency of the drive, in rad/s.
-        scale : float
-            Factor on the harmonics of the drive.
-
-        Returns
-        -------
-        HarmonicBalanceResidual
+        `unknowns` has shape (2H + 1,).
         """
         mean, harmonics = self.unstack(unknowns)
         x = mean + (self.basis @ harmonics).real
@@ -183,8 +173,6 @@ class HarmonicBalanceResidual:
     def jacobian(self) -> Floats:
         r"""Derivatives of the residual by the unknowns, shape (2H + 1, 2H + 1).
 
-        Notes
-        -----
         With the Fourier coefficients :math:`\hat s_m` of the stiffness and :math:`\hat d_m` of the damping,
 
         .. math::
@@ -228,18 +216,18 @@ class HarmonicBalanceResidual:
         return self.by_dynamic_stiffness(change) + self.by_force(-self.damping * self.velocity / self.omega)  # type: ignore[arg-type]
 
     def by_dynamic_stiffness(self, change: Complexes) -> Floats:
-        """Return the derivative of the residual by a change of the dynamic stiffness, shape (H, n, n)."""
+        """Derivative of the residual by a change of the dynamic stiffness, shape (H, n, n)."""
         return self.equations.stack(0.0, np.einsum("ki,kij,kj->k", self.per_force, change, self.coordinates))
 
     def by_force(self, change: Floats) -> Floats:
-        """Return the derivative of the residual by a change of the contact force over the period, shape (samples,)."""
+        """Derivative of the residual by a change of the contact force over the period, shape (samples,)."""
         coefficients = _fourier_coefficients(change)
         receptance = self.per_force @ self.equations.structure.contact_vector
         harmonics = -receptance * 2 * coefficients[1 : self.equations.orders + 1]
         return self.equations.stack(-float(coefficients[0].real), harmonics)
 
     def _response(self, force: Floats) -> Complexes:
-        """Return the coordinates under a unit generalised force at each harmonic, shape (H, n)."""
+        """Coordinates under a unit generalised force at each harmonic, shape (H, n)."""
         own, omega = self.equations.structure, self.omega * self.equations.multiples[:, np.newaxis, np.newaxis]
         stiffness = own.stiffness_matrix + 1j * omega * own.damping_matrix - omega**2 * own.mass_matrix
         forces = np.broadcast_to(force + 0j, stiffness.shape[:-1])[..., np.newaxis]
@@ -247,5 +235,5 @@ class HarmonicBalanceResidual:
 
 
 def _fourier_coefficients(samples: Floats) -> Complexes:
-    """Return the complex Fourier coefficients of one period of samples."""
+    """Complex Fourier coefficients of one period of samples."""
     return np.asarray(np.fft.fft(samples) / samples.size, dtype=np.complex128)

@@ -30,9 +30,9 @@ from sonolube.models.dynamics.harmonic_balance.initial_guess import InitialGuess
 from sonolube.models.dynamics.harmonic_balance.receptance import CHARGE_PER_VOLT, CONTACT_PER_VOLT, receptance
 from sonolube.models.dynamics.kernels.simd import LANES, uniform_blocks
 
-MOST_HARMONICS = 64
+MAX_HARMONICS = 64
 """Largest number of harmonics of the contact. []"""
-_MOST_SAMPLES, _MOST_COUPLED = 2048, 32
+_MAX_SAMPLES, _MAX_COUPLED = 2048, 32
 _REFINEMENTS, _ITERATIONS = 9, 12
 _POINT = 500  # work of a point as plain Python beside its samples times harmonics, in units of these
 _FEW: Final = {"most": 4600, "at_first": 2_000_000}  # work for which plain Python takes less than loading and compiling
@@ -41,16 +41,7 @@ _DISTINCT = 1e-4  # relative difference of amplitude above which two solutions a
 
 
 def solve(problem: BatchProblem) -> BatchSolution:
-    """Return the steady states of a batch, one chunk of points solved together.
-
-    Parameters
-    ----------
-    problem : BatchProblem
-
-    Returns
-    -------
-    BatchSolution
-    """
+    """Steady states of a batch, one chunk of points solved together."""
     free = _receptances(problem, CONTACT_PER_VOLT) * problem.voltage
     guess = _guess(problem, free, upper_branch=problem.upper_branch)
     truncation = guess.truncation
@@ -67,13 +58,13 @@ def solve(problem: BatchProblem) -> BatchSolution:
 
 
 def _receptances(problem: BatchProblem, response: int) -> Complexes:
-    """Return a receptance at every harmonic of the drive of every point, shape (p, K)."""
+    """Receptance at every harmonic of the drive of every point, shape (p, K)."""
     orders = np.arange(1, problem.voltage.shape[1] + 1)
     return receptance(problem.model, response, problem.omega[:, np.newaxis] * orders)
 
 
 def _guess(problem: BatchProblem, free: Complexes, *, upper_branch: bool) -> InitialGuess:
-    """Return the steady states with a single harmonic, for some harmonics of the free motion."""
+    """Steady states with a single harmonic, for some harmonics of the free motion."""
     return initial_guess(
         problem.model,
         problem.gap_law,
@@ -87,7 +78,7 @@ def _guess(problem: BatchProblem, free: Complexes, *, upper_branch: bool) -> Ini
 
 
 def _iterates(problem: BatchProblem, free: Complexes, guess: InitialGuess) -> Iterates:
-    """Return the iterates that start from an initial guess."""
+    """Iterates that start from an initial guess."""
     capacity = max(int(guess.truncation.harmonics.max()), free.shape[1])
     harmonics = np.zeros((problem.omega.size, capacity), dtype=np.complex128)
     harmonics[:, 0] = guess.harmonic
@@ -105,7 +96,7 @@ def _iterates(problem: BatchProblem, free: Complexes, guess: InitialGuess) -> It
 def _raise_truncation(truncation: Truncation, harmonics: int) -> None:
     """Raise the numbers of harmonics, coupled harmonics and samples, in place."""
     np.maximum(truncation.harmonics, harmonics, out=truncation.harmonics)
-    np.maximum(truncation.coupled, min(harmonics, _MOST_COUPLED), out=truncation.coupled)
+    np.maximum(truncation.coupled, min(harmonics, _MAX_COUPLED), out=truncation.coupled)
     np.maximum(truncation.samples, 4 * truncation.harmonics, out=truncation.samples)
 
 
@@ -159,11 +150,11 @@ def _newton_on_gpu(
 def _refine_truncation(truncation: Truncation, pending: Integers, outcome: Integers) -> NDArray[np.bool_]:
     """Raise what each pending point lacks, in place; return which of them stay within the limits."""
     harmonics, coupled, samples = (values[pending] for values in truncation)
-    fully_coupled = (outcome == DIVERGED) & (coupled >= np.minimum(harmonics, _MOST_COUPLED))
-    coupled = np.where(outcome == DIVERGED, np.minimum(4 * coupled, _MOST_COUPLED), coupled)
+    fully_coupled = (outcome == DIVERGED) & (coupled >= np.minimum(harmonics, _MAX_COUPLED))
+    coupled = np.where(outcome == DIVERGED, np.minimum(4 * coupled, _MAX_COUPLED), coupled)
     harmonics = np.where((outcome == NEEDS_HARMONICS) | fully_coupled, 2 * harmonics, harmonics)
     samples = np.where((outcome == NEEDS_SAMPLES) | fully_coupled, 2 * samples, samples)
-    possible = (harmonics <= MOST_HARMONICS) & (samples <= _MOST_SAMPLES)
+    possible = (harmonics <= MAX_HARMONICS) & (samples <= _MAX_SAMPLES)
     truncation.harmonics[pending[possible]] = harmonics[possible]
     truncation.coupled[pending[possible]] = np.minimum(coupled, harmonics)[possible]
     truncation.samples[pending[possible]] = np.maximum(samples, 4 * harmonics)[possible]
@@ -171,7 +162,7 @@ def _refine_truncation(truncation: Truncation, pending: Integers, outcome: Integ
 
 
 def _with_capacity(iterates: Iterates, harmonics: int) -> Iterates:
-    """Return iterates with capacity for a number of harmonics."""
+    """Iterates with capacity for a number of harmonics."""
     missing = 2 * harmonics - iterates.harmonics.shape[1]
     if missing <= 0:
         return iterates
@@ -205,7 +196,7 @@ def _continue_in_voltage(
 def _measured(
     problem: BatchProblem, iterates: Iterates, truncation: Truncation, solved: NDArray[np.bool_]
 ) -> BatchSolution:
-    """Return the solution of a batch: measures of its motions, stability, and the charge on the stack."""
+    """Solution of a batch: measures of its motions, stability, and the charge on the stack."""
     model, omega, load = problem.model, problem.omega, problem.load
     if problem.stability:
         solved &= ~stability_undetermined(model, omega)

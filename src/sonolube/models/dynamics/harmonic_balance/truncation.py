@@ -8,7 +8,7 @@ from sonolube.checks import Floats, Integers
 from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import Truncation
 from sonolube.models.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, PoleResidueModel
 
-_MOST_HARMONICS = 64
+_MAX_HARMONICS = 64
 _FREQUENCY_STEP = 0.02  # ratio of neighbouring frequencies, less one, at which receptances are bounded
 _COUPLING = 0.02  # receptance times contact stiffness above which a harmonic belongs into Newton's matrix
 
@@ -22,42 +22,24 @@ def sinusoidal_truncation(
     tolerance: float,
     follows_force: bool,
 ) -> Truncation:
-    r"""Return the truncation of points with a sinusoidal drive and a smooth, nearly exponential contact force.
+    r"""Truncation of points with a sinusoidal drive and a smooth, nearly exponential contact force.
 
-    Parameters
-    ----------
-    model : PoleResidueModel
-    omega, load, decay_lengths, amplitude : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, decay length of the contact force, and amplitude, in m.
-    tolerance : float
-        Largest harmonic to truncate, relative to the amplitude.
-    follows_force : bool
-        Whether the stiffness is proportional to the force, whose harmonics then decay ever faster with the order.
-
-    Returns
-    -------
-    Truncation
-
-    Notes
-    -----
     Under a sinusoidal displacement of :math:`\beta` decay lengths the force harmonics are
 
     .. math::
         \Phi_k = 2 F_N \frac{I_k(\beta)}{I_0(\beta)}, \qquad
         \frac{I_k}{I_{k-1}} \lesssim \frac{\beta}{k - \frac12 + \sqrt{(k + \frac12)^2 + \beta^2}}
 
-    with an upper bound of the ratio [1]_. The receptance at a frequency is bounded by its largest value at any higher
+    with an upper bound of the ratio The receptance at a frequency is bounded by its largest value at any higher
     frequency, so that each criterion decreases with the order and orders can be counted.
 
-    References
-    ----------
-    .. [1] D. E. Amos, Math. Comp. 28, 239 (1974). doi:10.1090/S0025-5718-1974-0333287-7
+    Source: D. E. Amos, Math. Comp. 28, 239 (1974). doi:10.1090/S0025-5718-1974-0333287-7
     """
     beta = amplitude / decay_lengths
     force_order = np.searchsorted(_order_thresholds(tolerance), beta)
     place = np.log(omega) / np.log1p(_FREQUENCY_STEP)
     first = int(np.floor(place.min()))
-    bound = _receptance_bound(model, first, _MOST_HARMONICS * omega.max())
+    bound = _receptance_bound(model, first, _MAX_HARMONICS * omega.max())
     place -= first
     truncated, coupling = 0.25 * tolerance * amplitude / load, 0.5 * _COUPLING * decay_lengths / load
     share, least = np.ones_like(beta), np.minimum(truncated, coupling)
@@ -77,29 +59,19 @@ def sinusoidal_truncation(
 
 @lru_cache(maxsize=64)
 def _order_thresholds(tolerance: float) -> Floats:
-    """Return the amplitudes over the decay length at which force harmonics 1, 2, ... exceed a tolerance."""
+    """Amplitudes over the decay length at which force harmonics 1, 2, ... exceed a tolerance."""
     beta = np.geomspace(1e-7, 1e4, 2000)
-    shares = np.cumprod([_bessel_ratio_bound(beta, k) for k in range(1, _MOST_HARMONICS)], axis=0)
+    shares = np.cumprod([_bessel_ratio_bound(beta, k) for k in range(1, _MAX_HARMONICS)], axis=0)
     return np.asarray(beta[np.argmax(shares >= tolerance, axis=1)])
 
 
 def _bessel_ratio_bound(beta: Floats, order: int) -> Floats:
-    """Return the upper bound of I_k/I_(k-1) by Amos."""
+    """Upper bound of I_k/I_(k-1) by Amos."""
     return np.asarray(beta / (order - 0.5 + np.sqrt((order + 0.5) ** 2 + np.square(beta))))
 
 
 def default_truncation(points: int, drive_harmonics: int) -> Truncation:
-    """Return the truncation to start with where no estimate exists: non-smooth forces and periodic drives.
-
-    Parameters
-    ----------
-    points, drive_harmonics : int
-        Numbers of points and of harmonics of their drive.
-
-    Returns
-    -------
-    Truncation
-    """
+    """Truncation to start with where no estimate exists: non-smooth forces and periodic drives."""
     harmonics = max(8, drive_harmonics)
 
     def uniform(value: int) -> Integers:
@@ -109,7 +81,7 @@ def default_truncation(points: int, drive_harmonics: int) -> Truncation:
 
 
 def _receptance_bound(model: PoleResidueModel, first: int, highest: float) -> Floats:
-    """Return upper bounds of the contact receptance at and above each of a geometric series of frequencies, in m/N.
+    """Upper bounds of the contact receptance at and above each of a geometric series of frequencies, in m/N.
 
     The series are the powers, from the first on, of one ratio, and end beyond the highest natural frequency, so that
     the bound at a frequency does not depend on the other points of a batch.

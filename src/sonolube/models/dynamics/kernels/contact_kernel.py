@@ -40,7 +40,7 @@ class KernelVariant(NamedTuple):
 
 @kernel(**INNER)
 def stiffness_follows_force(kind: CompileTimeInt, damped: CompileTimeInt) -> bool:
-    """Return whether the stiffness is proportional to the force, so that one Fourier transform serves both."""
+    """Whether the stiffness is proportional to the force, so that one Fourier transform serves both."""
     return len(kind) == EXPONENTIAL and len(damped) == 0
 
 
@@ -67,20 +67,8 @@ def contact_force_rows(
 ) -> None:
     r"""Write the contact force, the stiffness -dF/dx and the damping -dF/dv.
 
-    Parameters
-    ----------
-    kind, damped : tuple
-        See `KernelVariant`.
-    law : LawParameters
-    load, equilibrium : ndarray, shape (lanes,)
-        Dead load, in N, and `GapLaw.equilibrium_coordinate`.
-    x, v : ndarray, shape (lanes,)
-        Displacement, in m, and velocity, in m/s; the velocity is not read without damping.
-    results : ndarray, shape (3, lanes)
-        Written, in N, N/m and N s/m; the last row is scratch without damping.
+    `results` has shape (3, lanes).
 
-    Notes
-    -----
     .. math:: F_n = F(x)\,\max(1 - \tau v,\, 0), \qquad -\partial F_n/\partial x, \qquad -\partial F_n/\partial v
     """
     force, slope, drag = results[0], results[1], results[2]
@@ -134,7 +122,7 @@ def contact_force(
     x: float,
     v: float,
 ) -> float:
-    """Return the contact force of a single point, in N; arguments as of `contact_force_rows`."""
+    """Contact force of a single point, in N; arguments as of `contact_force_rows`."""
     if len(kind) == EXPONENTIAL:
         force = load * np.exp(min(-x / law.parameter, LARGEST_LOG_FORCE))
     elif len(kind) == HERTZ:

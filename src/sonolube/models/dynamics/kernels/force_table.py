@@ -16,22 +16,10 @@ _NEWTON_STEPS = 60
 
 
 def table_cells(log_force: Floats, log_slope: Floats) -> Floats:
-    r"""Return the coefficients of the cubic Hermite interpolant of ln F.
+    r"""Coefficients of the cubic Hermite interpolant of ln F.
 
-    Parameters
-    ----------
-    log_force : ndarray, shape (n,)
-        Logarithm of the force, in N, at evenly spaced points.
-    log_slope : ndarray, shape (n,)
-        Derivative of the logarithm per cell at these points.
+    Shape (n + 1, 4). One piece per row, as described in the module's docstring.
 
-    Returns
-    -------
-    ndarray, shape (n + 1, 4)
-        One piece per row, as described in the module's docstring.
-
-    Notes
-    -----
     With the values :math:`y_i` and slopes :math:`m_i` at the ends of a cell and :math:`\Delta = y_{i+1} - y_i`,
 
     .. math:: \ln F = y_i + m_i u + (3\Delta - 2 m_i - m_{i+1})\,u^2 + (m_i + m_{i+1} - 2\Delta)\,u^3 .
@@ -46,7 +34,7 @@ def table_cells(log_force: Floats, log_slope: Floats) -> Floats:
 
 @kernel(**INNER)
 def log_force_at(cells: Floats, position: float) -> tuple[float, float]:
-    """Return the logarithm of the force, in N, and its derivative per cell at one position."""
+    """Logarithm of the force, in N, and its derivative per cell at one position."""
     row, last = np.floor(position) + 1.0, cells.shape[0] - 1.0
     row = row if row > 0.0 else 0.0  # NaN goes here too
     row = row if row < last else last
@@ -58,7 +46,7 @@ def log_force_at(cells: Floats, position: float) -> tuple[float, float]:
 
 @kernel(**INNER)
 def position_of(cells: Floats, log_force: float) -> float:
-    """Return the position at which the logarithm of the force has a value, by bisection over cells, then Newton."""
+    """Position at which the logarithm of the force has a value, by bisection over cells, then Newton."""
     row, beyond = 0, cells.shape[0]
     while beyond - row > 1:
         middle = (row + beyond) // 2
@@ -90,14 +78,7 @@ def position_of(cells: Floats, log_force: float) -> float:
 def log_forces(cells: Floats, positions: Floats, values: Floats, slopes: Floats) -> None:
     """Write the logarithm of the force, in N, and its derivative per cell at many positions.
 
-    Parameters
-    ----------
-    cells : ndarray, shape (n + 1, 4)
-        Coefficients from `table_cells`.
-    positions : ndarray, shape (m,)
-        Positions in cells.
-    values, slopes : ndarray, shape (m,)
-        Written, see `log_force_at`.
+    `cells` has shape (n + 1, 4).
     """
     for i in range(positions.size):
         values[i], slopes[i] = log_force_at(cells, positions[i])
@@ -107,14 +88,7 @@ def log_forces(cells: Floats, positions: Floats, values: Floats, slopes: Floats)
 def positions_of(cells: Floats, log_forces: Floats, positions: Floats) -> None:
     """Write the positions at which the logarithm of the force has many values.
 
-    Parameters
-    ----------
-    cells : ndarray, shape (n + 1, 4)
-        Coefficients from `table_cells`.
-    log_forces : ndarray, shape (m,)
-        Logarithms of forces in N.
-    positions : ndarray, shape (m,)
-        Written, in cells, see `position_of`.
+    `cells` has shape (n + 1, 4).
     """
     for i in range(log_forces.size):
         positions[i] = position_of(cells, log_forces[i])

@@ -14,17 +14,8 @@ _SAMPLES_PER_HARMONIC = 32  # for every other motion
 def peak_velocities(omega: Floats, harmonics: Complexes, peak: Floats) -> None:
     r"""Write the largest magnitude of the velocity of each motion.
 
-    Parameters
-    ----------
-    omega : ndarray, shape (p,)
-        Angular frequency, in rad/s.
-    harmonics : ndarray of complex, shape (p, H)
-        Displacement harmonics :math:`X_k`, in m; NaN for a point without solution.
-    peak : ndarray, shape (p,)
-        Written, in m/s; NaN where the harmonics are NaN.
+    `harmonics` has shape (p, H).
 
-    Notes
-    -----
     The velocity is :math:`v = \omega\,\mathrm{Re}\sum_k i k X_k e^{ik\theta}`. Where
     :math:`\sum_{k>1} k^3 |X_k| \le |X_1|/2` it has a single maximum and a single minimum, which Newton's method finds
     from those of the first harmonic. Any other motion is sampled.
@@ -51,7 +42,7 @@ def peak_velocities(omega: Floats, harmonics: Complexes, peak: Floats) -> None:
 
 @kernel(**INNER)
 def _extremum(own: Complexes, phase: float) -> float:
-    """Return the magnitude of dx/dtheta at its extremum near a phase, by Newton's method on the second derivative."""
+    """Magnitude of dx/dtheta at its extremum near a phase, by Newton's method on the second derivative."""
     first = 0.0
     for _ in range(8):
         first, second, third = _phase_derivatives(own, phase)
@@ -63,7 +54,7 @@ def _extremum(own: Complexes, phase: float) -> float:
 
 @kernel(**INNER)
 def _phase_derivatives(own: Complexes, phase: float) -> tuple[float, float, float]:
-    """Return the first three derivatives of the displacement with respect to the phase."""
+    """First three derivatives of the displacement with respect to the phase."""
     cosine, sine = np.cos(phase), np.sin(phase)
     c, s, first, second, third = 1.0, 0.0, 0.0, 0.0, 0.0
     for k in range(1, own.size + 1):

@@ -47,21 +47,10 @@ _LARGEST_EXPONENT = 700.0
 
 
 def uniform_blocks(chosen: Integers, *keys: Integers, lanes: int = LANES) -> Integers:
-    """Return points in blocks of `LANES`, those of a block with equal keys, so that no result depends on other points.
+    """Points in blocks of `LANES`, those of a block with equal keys, so that no result depends on other points.
 
-    Parameters
-    ----------
-    chosen : ndarray of int, shape (c,)
-        Points of a batch.
-    keys : ndarrays of int, shape (p,)
-        Of all points of the batch; the last one sorts first.
-    lanes : int
-        Points per block.
-
-    Returns
-    -------
-    ndarray of int, shape (c + padding,)
-        The points, sorted by their keys; the last point of each key is repeated until its block is full.
+    Shape (c + padding,). The points, sorted by their keys; the last point of each key is repeated until its block is
+    full.
     """
     own = [key[chosen] for key in keys]
     order = np.lexsort(own)
@@ -74,7 +63,7 @@ def uniform_blocks(chosen: Integers, *keys: Integers, lanes: int = LANES) -> Int
 
 @kernel(**INNER)
 def block_maximum(values: Integers, block: Integers) -> int:
-    """Return the largest of the values at the points of a block."""
+    """Largest of the values at the points of a block."""
     largest = np.int64(0)
     for point in block:
         largest = max(largest, values[point])
@@ -97,8 +86,6 @@ def gather(table: Floats, block: Integers, rows: Floats) -> None:
 def exponentials(argument: Floats, result: Floats) -> None:
     r"""Write exp(argument), the argument clipped to -700 ... 700, with relative error below 4e-13 for arguments < 100.
 
-    Notes
-    -----
     Scaling and squaring of the Taylor series of degree 9:
 
     .. math:: e^x = \left(e^{x/2^{10}}\right)^{2^{10}}

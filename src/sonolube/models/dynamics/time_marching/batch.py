@@ -112,7 +112,7 @@ class MarchingProblem:
     start: Floats
 
     def law_rows(self) -> Floats:
-        """Return the rows by which kernels evaluate the contact law, shape (5, points): load, three numbers, damping.
+        """Rows by which kernels evaluate the contact law, shape (5, points): load, three numbers, damping.
 
         The numbers are the parameter of the law (the inverse decay length of an exponential one), its equilibrium
         coordinate, and the logarithm of the load.
@@ -150,23 +150,7 @@ class MarchingSolution:
 
 
 def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
-    """Return the trajectories of a batch by threads of the CPU.
-
-    Parameters
-    ----------
-    problem : MarchingProblem
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    MarchingSolution
-
-    Raises
-    ------
-    InvalidInput
-        If there is not at least one worker, or a step is too long for the structure's fastest mode.
-    """
+    """Trajectories of a batch by threads of the CPU."""
     if workers < 1:
         raise InvalidInput(f"workers must be at least 1, got {workers!r}")
     schedule, gap_law = problem.schedule, problem.gap_law
@@ -233,18 +217,9 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
 def with_force_extremes(statistics: Floats, gap_law: GapLaw, load: Floats) -> Floats:
     """Write the extremes of an undamped contact force into the statistics: those at the extremes of displacement.
 
-    Parameters
-    ----------
-    statistics : ndarray, shape (windows, 8, points)
-        As in `MarchingSolution`; changed in place.
-    gap_law : GapLaw
-    load : ndarray, shape (points,)
-        Dead load, in N.
+    `statistics` has shape (windows, 8, points).
 
-    Returns
-    -------
-    ndarray
-        The same statistics.
+    The same statistics.
     """
     if gap_law.force_damping == 0:
         statistics[:, 6] = gap_law.force(statistics[:, 1], load)
@@ -253,22 +228,22 @@ def with_force_extremes(statistics: Floats, gap_law: GapLaw, load: Floats) -> Fl
 
 
 def _within_steps(jumps: Floats, steps: int) -> bool:
-    """Return whether a jump, at a fraction of the period, falls within a step."""
+    """Whether a jump, at a fraction of the period, falls within a step."""
     return bool(np.any(np.abs(jumps * steps - np.round(jumps * steps)) > 1e-9))
 
 
 def _blocks(count: int) -> Iterator[slice]:
-    """Return blocks of points."""
+    """Blocks of points."""
     return (slice(first, min(first + _BLOCK, count)) for first in range(0, count, _BLOCK))
 
 
 def _lanes(count: int) -> Iterator[tuple[int, NDArray[np.intp]]]:
-    """Return the points of each set of SIMD lanes; surplus lanes repeat the last point."""
+    """Points of each set of SIMD lanes; surplus lanes repeat the last point."""
     return ((first, np.minimum(np.arange(first, first + LANES), count - 1)) for first in range(0, count, LANES))
 
 
 def _points_last(chunks: Floats, count: int) -> Floats:
-    """Return results of chunks as one array with the points as last axis."""
+    """Results of chunks as one array with the points as last axis."""
     moved = np.moveaxis(chunks, 0, -2)
     return moved.reshape(*moved.shape[:-2], -1)[..., :count]
 
@@ -276,7 +251,7 @@ def _points_last(chunks: Floats, count: int) -> Floats:
 def _drive_rows(
     problem: MarchingProblem, integrator: ExponentialIntegrator, which: NDArray[np.intp], points: NDArray[np.intp]
 ) -> Floats:
-    """Return the drive of each lane, flattened from shape (3, steps, states, lanes)."""
+    """Drive of each lane, flattened from shape (3, steps, states, lanes)."""
     swing, offset = problem.voltage_peak_to_peak[points], problem.voltage_offset[points]
     drive = np.einsum("l,lknma->knmal", swing, integrator.wave[which])
     drive += np.einsum("l,lkma->kmal", offset, integrator.offset[which])[:, np.newaxis]
@@ -290,7 +265,7 @@ def _lane_rows(
     which: NDArray[np.intp],
     points: NDArray[np.intp],
 ) -> Floats:
-    """Return the rows of the kernel, flattened, in the order of `row_layout`."""
+    """Rows of the kernel, flattened, in the order of `row_layout`."""
     output, start = problem.contact_output, problem.start
     same = np.broadcast_to(output[..., np.newaxis], (*output.shape, LANES))
     at = row_layout((0,) * output.shape[1])
@@ -313,7 +288,7 @@ def _lane_rows(
 
 
 def _aligned(values: Floats) -> Floats:
-    """Return a flat copy aligned to a cache line, for vector loads."""
+    """Flat copy aligned to a cache line, for vector loads."""
     padded = np.empty(values.size + 8)
     first = -(padded.ctypes.data // 8) % 8
     flat = padded[first : first + values.size]

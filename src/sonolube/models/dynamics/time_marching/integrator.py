@@ -82,19 +82,7 @@ class ForceWeights(NamedTuple):
 
 
 def force_weights(nodes: Floats, weights: Floats, steps: int) -> ForceWeights:
-    """Return the weights of force samples at the nodes of a step.
-
-    Parameters
-    ----------
-    nodes, weights : ndarray, shape (nodes,)
-        Quadrature from 0 to 1, the start and the end of the step.
-    steps : int
-        Steps per period.
-
-    Returns
-    -------
-    ForceWeights
-    """
+    """Weights of force samples at the nodes of a step."""
     theta = 2 * np.pi / steps
 
     def weighted(sampled_at: Floats, first: int = 0) -> Floats:
@@ -106,41 +94,18 @@ def force_weights(nodes: Floats, weights: Floats, steps: int) -> ForceWeights:
 
 
 def start_history(steps: int) -> Floats:
-    """Return the extrapolation to the past of the forces now and at the next four steps.
+    """Extrapolation to the past of the forces now and at the next four steps.
 
-    Parameters
-    ----------
-    steps : int
-        Steps per period.
-
-    Returns
-    -------
-    ndarray, shape (5, 5)
-        Row j for the force j steps ago.
+    Shape (5, 5). Row j for the force j steps ago.
     """
     ahead = np.arange(PAST, dtype=np.float64)
     return _interpolation(-ahead, ahead, 2 * np.pi / steps)
 
 
 def step_quadrature(modes: FirstOrderModes, *, steps: int, slowest: float) -> tuple[Floats, Floats]:
-    """Return Gauss-Legendre nodes and weights from 0 to 1 that resolve the free motion over a step.
+    """Gauss-Legendre nodes and weights from 0 to 1 that resolve the free motion over a step.
 
-    Parameters
-    ----------
-    modes : FirstOrderModes
-    steps : int
-        Steps per period.
-    slowest : float
-        Lowest frequency of the drive, in Hz.
-
-    Returns
-    -------
-    nodes, weights : ndarray, shape (nodes,)
-
-    Raises
-    ------
-    InvalidInput
-        If a step holds too many cycles of the structure's fastest mode.
+    Shape (nodes,).
     """
     phase = _fastest(modes) / (steps * slowest)
     if phase > _LARGEST_PHASE:
@@ -154,39 +119,17 @@ def step_quadrature(modes: FirstOrderModes, *, steps: int, slowest: float) -> tu
 def exponential_integrator(
     modes: FirstOrderModes, contact_output: Floats, *, frequency: Floats, steps: int, waveform: Waveform
 ) -> ExponentialIntegrator:
-    """Return the coefficients of a time step at each drive frequency.
+    """Coefficients of a time step at each drive frequency.
 
-    Parameters
-    ----------
-    modes : FirstOrderModes
-    contact_output : ndarray, shape (2, n, 2)
-        Displacement and velocity of the contact per state.
-    frequency : ndarray, shape (frequencies,)
-        Frequency of the drive. [Hz]
-    steps : int
-        Steps per period.
-    waveform : Waveform
+    `contact_output` has shape (2, n, 2).
 
-    Returns
-    -------
-    ExponentialIntegrator
-
-    Raises
-    ------
-    InvalidInput
-        If a step holds too many cycles of the structure's fastest mode.
-
-    Notes
-    -----
     Between its samples the force is the combination of a constant, the first two harmonics of the drive and, where six
     samples are available, a straight line that passes through them: for many steps a polynomial, for few steps exact
     for what a steady contact force mostly consists of. The displacement is predicted from five past forces (exponential
     Adams-Bashforth); the new force at that displacement corrects the state (exponential Adams-Moulton). The order is
-    five [1]_.
+    five
 
-    References
-    ----------
-    .. [1] M. Hochbruck and A. Ostermann, Acta Numerica 19, 209 (2010). doi:10.1017/S0962492910000048
+    Source: M. Hochbruck and A. Ostermann, Acta Numerica 19, 209 (2010). doi:10.1017/S0962492910000048
     """
     h = 1 / (frequency * steps)
     nodes, weights = step_quadrature(modes, steps=steps, slowest=float(frequency.min()))
@@ -195,7 +138,7 @@ def exponential_integrator(
     moved *= h[:, np.newaxis, np.newaxis, np.newaxis]
 
     def added(sample_weights: Floats) -> Floats:
-        """Return the state that each sample of the force adds over a step."""
+        """State that each sample of the force adds over a step."""
         return np.asarray(np.einsum("fmqa,qj->fjma", moved, sample_weights))
 
     units = [np.broadcast_to(row, modes.contact_input.shape) for row in np.eye(2)]
@@ -228,38 +171,27 @@ def exponential_integrator(
 
 
 def minimum_steps(modes: FirstOrderModes, *, frequency: float) -> int:
-    """Return the fewest steps per period, a multiple of 4, that resolve the structure's fastest mode.
-
-    Parameters
-    ----------
-    modes : FirstOrderModes
-    frequency : float
-        Frequency of the drive. [Hz]
-
-    Returns
-    -------
-    int
-    """
+    """Fewest steps per period, a multiple of 4, that resolve the structure's fastest mode."""
     return 4 * max(math.ceil(_fastest(modes) / (4 * _LARGEST_PHASE * frequency)), 2)
 
 
 def _fastest(modes: FirstOrderModes) -> float:
-    """Return the largest modulus of all poles, in 1/s."""
+    """Largest modulus of all poles, in 1/s."""
     return float(np.abs(np.linalg.eigvals(modes.state_matrix)).max(initial=0.0))
 
 
 def _apply(propagator: Floats, states: Floats) -> Floats:
-    """Return states one step later without forces."""
+    """States one step later without forces."""
     return np.asarray(np.einsum("fmab,fmb->fma", propagator, states))
 
 
 def _at_contact(contact_output: Floats, states: Floats) -> Floats:
-    """Return displacement and velocity of the contact, shape (frequencies, 2, samples)."""
+    """Displacement and velocity of the contact, shape (frequencies, 2, samples)."""
     return np.asarray(np.einsum("kma,fjma->fkj", contact_output, states))
 
 
 def _propagated(state_matrix: Floats, start: Floats, time: Floats) -> Floats:
-    r"""Return exp(A t) applied to one start per pair of states, shape (frequencies, n, times, 2).
+    r"""exp(A t) applied to one start per pair of states, shape (frequencies, n, times, 2).
 
     Notes
     -----
@@ -282,7 +214,7 @@ def _propagated(state_matrix: Floats, start: Floats, time: Floats) -> Floats:
 
 
 def _interpolation(time: Floats, sampled_at: Floats, theta: float) -> Floats:
-    """Return the interpolation weights of samples at times in steps, theta the phase of a step.
+    """Interpolation weights of samples at times in steps, theta the phase of a step.
 
     The interpolant combines a constant, the first two harmonics of the drive and powers of time, all solutions of one
     linear differential equation, whose fundamental matrix is a matrix exponential.
@@ -300,7 +232,7 @@ def _interpolation(time: Floats, sampled_at: Floats, theta: float) -> Floats:
 def _drive_contributions(
     modes: FirstOrderModes, h: Floats, steps: int, waveform: Waveform, nodes: Floats, weights: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the contributions of the drive to each step, per volt peak to peak and per volt of offset."""
+    """Contributions of the drive to each step, per volt peak to peak and per volt of offset."""
     powers, scale = np.arange(3)[:, np.newaxis], h[:, np.newaxis, np.newaxis, np.newaxis]
     steady = scale * _propagated(modes.state_matrix, modes.drive_input, np.multiply.outer(h, 1 - nodes))
     offset = np.einsum("fmqa,kq->fkma", steady, weights * nodes**powers)
@@ -315,24 +247,13 @@ def _drive_contributions(
 
 
 def corners_within_steps(waveform: Waveform, steps: int) -> Floats:
-    """Return the corners of a waveform that fall within steps, in steps from the start of the period.
-
-    Parameters
-    ----------
-    waveform : Waveform
-    steps : int
-        Steps per period.
-
-    Returns
-    -------
-    ndarray
-    """
+    """Corners of a waveform that fall within steps, in steps from the start of the period."""
     corners = np.empty(0) if isinstance(waveform, Sine) else waveform.starts_at * steps / (2 * np.pi)
     return np.asarray(corners[np.abs(corners - np.round(corners)) > 1e-9])
 
 
 def _split_at_corners(waveform: Waveform, steps: int, nodes: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Return quadrature nodes and weights of each step, one row for all where no corner falls within a step."""
+    """Quadrature nodes and weights of each step, one row for all where no corner falls within a step."""
     inside = corners_within_steps(waveform, steps)
     if not inside.size:
         return nodes[np.newaxis], weights[np.newaxis]
@@ -349,6 +270,6 @@ def _split_at_corners(waveform: Waveform, steps: int, nodes: Floats, weights: Fl
 
 @cache
 def _gauss_legendre(count: int) -> tuple[Floats, Floats]:
-    """Return nodes and weights of Gauss-Legendre quadrature from 0 to 1."""
+    """Nodes and weights of Gauss-Legendre quadrature from 0 to 1."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return (1 + nodes) / 2, weights / 2

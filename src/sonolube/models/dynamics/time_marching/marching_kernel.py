@@ -25,7 +25,7 @@ SWEEPS = 8
 
 @kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def exponential(argument: float) -> float:
-    """Return exp(argument) with a relative error of 1e-13, the argument clipped to -32 ... 32."""
+    """exp(argument) with a relative error of 1e-13, the argument clipped to -32 ... 32."""
     u = min(max(argument, -_LARGEST_EXPONENT), _LARGEST_EXPONENT) / 256
     uu = u * u
     power = (1 / 720 + u * (1 / 5040)) + uu * (1 / 40320 + u * (1 / 362880))
@@ -45,7 +45,7 @@ def exponential(argument: float) -> float:
 def _contact_force(
     kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, x: float, v: float, lanes: Floats, law: int
 ) -> Any:
-    """Return the contact force of one lane, in N; the rows of the law are those of `MarchingProblem.law_rows`."""
+    """Contact force of one lane, in N; the rows of the law are those of `MarchingProblem.law_rows`."""
     load, first, second = lanes[law], lanes[law + LANES], lanes[law + 2 * LANES]
     if len(kind) == EXPONENTIAL:
         force = load * exponential(-x * first)
@@ -299,32 +299,8 @@ def march_lanes(
 ) -> None:
     """March all lanes; write the statistics of each window, and the states of the last steps and of the last periods.
 
-    Parameters
-    ----------
-    pairs, kind, damped : tuple of int
-        Compile-time integers: number of pairs of states; contact law; whether it is damped.
-    cells : ndarray, shape (n, 4)
-        Coefficients of a tabulated law, empty for any other.
-    lanes : ndarray
-        Flat array of rows as `row_layout` describes; on return the rows of the state hold the final one.
-    drive : ndarray
-        Drive of each step of a period under ramps of 1, s and s^2.
-    table : ndarray
-        Workspace for the drive of one period and four steps.
-    ramp_steps : ndarray
-        Duration of the ramp of each lane, in steps.
-    cosine_shaped : bool
-        Shape of the ramp.
-    backward : ndarray
-        `ExponentialIntegrator.backward`.
-    jumps : ndarray of int
-        Steps of a period before which the voltage jumps.
-    steps, periods, window : int
-        Steps per period, periods to march, periods per window of the statistics.
-    statistics : ndarray, shape (windows, 8, lanes in use)
-    recorded : ndarray, shape (steps to record, 2 n + 1, lanes in use)
-        States, then the contact force less the load.
-    strobed : ndarray, shape (periods to record, 2 n, lanes in use)
+    `cells` has shape (n, 4). `statistics` has shape (windows, 8, lanes in use). `recorded` has shape (steps to record,
+    2 n + 1, lanes in use). `strobed` has shape (periods to record, 2 n, lanes in use).
     """
     at = row_layout(pairs)
     first_ramp_end, last_ramp_end = ramp_steps.min(), ramp_steps.max()

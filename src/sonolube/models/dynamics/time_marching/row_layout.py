@@ -36,7 +36,7 @@ class RowLayout(NamedTuple):
 
 @kernel(cache=True)
 def row_layout(pairs: tuple[int, ...]) -> RowLayout:
-    """Return the index at which each group of rows starts, in the order of the groups."""
+    """Index at which each group of rows starts, in the order of the groups."""
     pair, fixed = 2 * len(pairs) * LANES, 12 * 2 * len(pairs) * LANES
     return RowLayout(
         0,  # propagator: state transition matrices, row by row of each pair

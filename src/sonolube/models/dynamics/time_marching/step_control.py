@@ -37,17 +37,6 @@ class StepAssessment:
 def assess_steps(problem: MarchingProblem, solution: MarchingSolution) -> StepAssessment:
     """Assess the steps by two errors of the force in the last period and by the feedback of the force on itself.
 
-    Parameters
-    ----------
-    problem : MarchingProblem
-    solution : MarchingSolution
-
-    Returns
-    -------
-    StepAssessment
-
-    Notes
-    -----
     One error is the difference of the predicted force and the force of the corrected state; the other is the effect on
     the mean of aliased harmonics beyond half the steps per period, if these decay like those of a pulse. The feedback
     is the relative change of the force through its own effect over a step, at the stiffest instant of the whole march:
@@ -83,7 +72,7 @@ def assess_steps(problem: MarchingProblem, solution: MarchingSolution) -> StepAs
 
 
 def _advice(diverged: bool, unstable: bool, coarse: bool, corner: bool, finer: float, steps: int) -> str:
-    """Return the advice for one point: the foremost failure with its remedy, and the order at corners of the force."""
+    """Advice for one point: the foremost failure with its remedy, and the order at corners of the force."""
     remedy = f"take {finer:.0f} steps a period, or less voltage" if np.isfinite(finer) else "take less voltage"
     reasons = {
         f"the solution grew without bound; {remedy}": diverged,

@@ -20,17 +20,7 @@ _REDIRECTION = RLock()  # file descriptors belong to the process, not to a threa
 
 
 def cad_kernel() -> Any:
-    """Module `netgen.occ`, the CAD kernel.
-
-    Returns
-    -------
-    module
-
-    Raises
-    ------
-    MissingPackage
-        If netgen-mesher is not installed.
-    """
+    """Module `netgen.occ`, the CAD kernel."""
     try:
         return import_module("netgen.occ")
     except ImportError:
@@ -41,10 +31,7 @@ def cad_kernel() -> Any:
 def captured_output() -> Iterator[list[str]]:
     """Context in which text printed by the CAD kernel is captured instead of reaching standard output and error.
 
-    Yields
-    ------
-    list of str
-        The distinct lines printed, filled on leaving the context.
+    The distinct lines printed, filled on leaving the context.
     """
     lines: list[str] = []
     with _REDIRECTION, TemporaryFile() as file:

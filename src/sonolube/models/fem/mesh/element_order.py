@@ -10,9 +10,9 @@ from sonolube.models.fem.mesh.mapping import determinant, jacobian_matrices
 from sonolube.models.fem.mesh.mesh import HIGHEST_ORDER, Mesh
 from sonolube.models.fem.mesh.simplex import lagrange_nodes, shape_functions, simplex_quadrature
 
-_LEAST_JACOBIAN = 1e-3  # smallest over mean Jacobian determinant in an element, below which it counts as tangled
+_MIN_JACOBIAN = 1e-3  # smallest over mean Jacobian determinant in an element, below which it counts as tangled
 _CURVATURE_KEPT = 0.8  # of the offset of curved nodes from the straight element, in each step of untangling
-_MOST_STEPS = 400  # straightening one element can tangle its neighbour, but offsets only ever shrink
+_MAX_STEPS = 400  # straightening one element can tangle its neighbour, but offsets only ever shrink
 
 
 def change_order(mesh: Mesh, *, order: int) -> Mesh:
@@ -61,22 +61,7 @@ def mesh_from_elements(
 ) -> Mesh:
     """Mesh from the corner labels and node coordinates of each element, with nodes numbered and elements untangled.
 
-    Parameters
-    ----------
-    corners : ndarray of int, shape (m, 4)
-        Labels of the corners, non-negative and the same where elements share a corner.
-    coordinates : ndarray, shape (m, a, 3)
-        Coordinates of the nodes of each element in m.
-    faces : mapping of str to ndarray of int, shape (k, 3)
-        Corner labels of the triangles of each face.
-    order : int
-        Polynomial degree of the elements.
-    region_of_element, regions, curved_nodes
-        As in `Mesh`.
-
-    Returns
-    -------
-    Mesh
+    `corners` has shape (m, 4). `coordinates` has shape (m, a, 3). `faces` has shape (k, 3).
     """
     # A node is identified by its corners and its barycentric coordinates: their products with a random number of each
     # corner sum to a key, modulo 2^64, which two nodes share with negligible probability.
@@ -133,21 +118,10 @@ def transfer_field(field: Floats, *, source: Mesh, target: Mesh) -> Floats:
 def untangle_nodes(nodes: Floats, elements: Integers, *, order: int) -> Floats:
     r"""Node coordinates with tangled elements straightened step by step until no Jacobian determinant is negative.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (n, 3)
-        Coordinates of the nodes in m.
-    elements : ndarray of int, shape (m, a)
-    order : int
-        Polynomial degree of the elements.
+    `nodes` has shape (n, 3). `elements` has shape (m, a).
 
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        Corners stay where they are.
+    Shape (n, 3). Corners stay where they are.
 
-    Notes
-    -----
     An element counts as tangled where :math:`\min_q \det J` over its quadrature points is below a thousandth of their
     mean. Its nodes then move towards those of the straight element, :math:`x \leftarrow x_s + 0.8\,(x - x_s)`.
     """
@@ -155,9 +129,9 @@ def untangle_nodes(nodes: Floats, elements: Integers, *, order: int) -> Floats:
     _, gradients = shape_functions(order, points)
     barycentric = lagrange_nodes(order, corners=4) / order
     untangled = nodes.copy()
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         jacobian = determinant(jacobian_matrices(untangled[elements], gradients))
-        tangled = elements[jacobian.min(axis=1) < _LEAST_JACOBIAN * np.abs(jacobian).mean(axis=1)]
+        tangled = elements[jacobian.min(axis=1) < _MIN_JACOBIAN * np.abs(jacobian).mean(axis=1)]
         if not len(tangled):
             break
         straight = np.einsum("ac,ecx->eax", barycentric, untangled[tangled[:, :4]])

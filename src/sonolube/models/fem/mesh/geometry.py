@@ -18,7 +18,7 @@ from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel, captured_output
 from sonolube.models.fem.mesh.step_trial import try_step_file
 
 _AXES = "xyz"
-_LEAST_VOLUME = 1e-9  # of the bounding box, below which a body counts as having no thickness
+_MIN_VOLUME = 1e-9  # of the bounding box, below which a body counts as having no thickness
 _TIME_OF_WRITING = re.compile(r"(?<=')\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?=')")
 _NUMBER_OF_WRITING = re.compile(r"(?<= STEP translator )([\d.]+) \d+(?=')")
 
@@ -162,30 +162,13 @@ def bond(parts: Mapping[str, Geometry]) -> Geometry:
 
 
 def single_body(shape: Any, name: str) -> Geometry:
-    """Geometry of one closed body, with its end faces named.
-
-    Parameters
-    ----------
-    shape : netgen.occ.TopoDS_Shape
-        The body, with lengths in mm.
-    name : str
-        Name of its region.
-
-    Returns
-    -------
-    Geometry
-
-    Raises
-    ------
-    InvalidInput
-        If the shape is open, empty or in several pieces.
-    """
+    """Geometry of one closed body, with its end faces named."""
     solids = list(shape.solids)
     if len(solids) != 1:
         raise InvalidInput(f"{name} must be one closed body with a volume, got {len(solids)} solids")
     solid = solids[0]
     low, high = (np.array([corner.x, corner.y, corner.z]) for corner in solid.bounding_box)
-    if not solid.mass > _LEAST_VOLUME * np.prod(high - low):
+    if not solid.mass > _MIN_VOLUME * np.prod(high - low):
         raise InvalidInput(f"{name} must be one closed body with a volume: it has no thickness, or its faces cut it")
     for face in solid.faces:
         centre = np.array([face.center.x, face.center.y, face.center.z])

@@ -14,16 +14,7 @@ _CYCLES = ((1, 2), (2, 0), (0, 1))  # the two indices that follow each index
 def jacobian_matrices(nodes: Floats, gradient: Floats) -> Floats:
     r"""Jacobian matrices :math:`\partial x_k/\partial \xi_d` of elements at points.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (e, a, 3)
-        Coordinates of the nodes of each element, in m.
-    gradient : ndarray, shape (a, d, q)
-        Derivatives of the shape functions by `shape_functions`.
-
-    Returns
-    -------
-    ndarray, shape (d, 3, e, q)
+    `nodes` has shape (e, a, 3). `gradient` has shape (a, d, q). Shape (d, 3, e, q).
     """
     by_direction = np.ascontiguousarray(np.moveaxis(nodes, -1, 0)) @ gradient.reshape(len(gradient), -1)
     return by_direction.reshape(3, len(nodes), *gradient.shape[1:]).transpose(2, 0, 1, 3)
@@ -32,13 +23,7 @@ def jacobian_matrices(nodes: Floats, gradient: Floats) -> Floats:
 def determinant(matrix: Floats) -> Floats:
     """Determinants of matrices of three rows and columns.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, 3, ...)
-
-    Returns
-    -------
-    ndarray, shape (...)
+    `matrix` has shape (3, 3, ...). Shape (...).
     """
     return np.asarray(sum(matrix[0, k] * _cofactor(matrix, 0, k) for k in range(3)))
 
@@ -46,13 +31,7 @@ def determinant(matrix: Floats) -> Floats:
 def adjugate(matrix: Floats) -> Floats:
     """Adjugates of matrices of three rows and columns: their inverses times their determinants.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, 3, ...)
-
-    Returns
-    -------
-    ndarray, shape (3, 3, ...)
+    `matrix` has shape (3, 3, ...).
     """
     return np.array([[_cofactor(matrix, column, row) for column in range(3)] for row in range(3)])
 

@@ -17,7 +17,7 @@ from sonolube.models.fem.mesh.simplex import lagrange_nodes
 _TETRAHEDRON = [0, 2, 1, 3, 5, 7, 4, 6, 9, 8]
 _TRIANGLE = [0, 1, 2, 5, 3, 4]
 _ELEMENTS_PER_RADIUS = 1.5  # of curvature; with fewer, curved elements become tangled
-_MOST_LINES = 2  # of the output quoted when meshing fails; later lines repeat
+_MAX_LINES = 2  # of the output quoted when meshing fails; later lines repeat
 
 
 def generate_mesh(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
@@ -66,7 +66,7 @@ def generate_mesh(geometry: Geometry, *, element_size: float, order: int = 2) ->
             straight = raw.Copy()
             raw.SecondOrder()
     except Exception as failure:  # netgen raises no narrower class
-        reason = "; ".join([str(failure), *printed[:_MOST_LINES]])
+        reason = "; ".join([str(failure), *printed[:_MAX_LINES]])
         raise InvalidInput(f"the body could not be meshed; is it open, or does it cut itself? ({reason})") from None
     cells = raw.Elements3D().NumPy()
     if not len(cells):

@@ -20,16 +20,7 @@ EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 def lagrange_nodes(order: int, *, corners: int) -> Integers:
     """Nodes of a Lagrange element on a simplex: barycentric coordinates times the order.
 
-    Parameters
-    ----------
-    order : int
-        Polynomial degree, at least one.
-    corners : int
-        Three for a triangle, four for a tetrahedron.
-
-    Returns
-    -------
-    ndarray of int, shape (a, corners)
+    Shape (a, corners).
     """
     rows = [row for row in product(range(order + 1), repeat=corners) if sum(row) == order]
 
@@ -44,31 +35,18 @@ def lagrange_nodes(order: int, *, corners: int) -> Integers:
 def shape_functions(order: int, points: Floats) -> tuple[Floats, Floats]:
     r"""Lagrange shape functions of a simplex and their gradients, as products of Silvester's polynomials.
 
-    Parameters
-    ----------
-    order : int
-        Polynomial degree.
-    points : ndarray, shape (q, corners)
-        Barycentric coordinates.
+    `points` has shape (q, corners).
 
-    Returns
-    -------
-    values : ndarray, shape (a, q)
-    gradients : ndarray, shape (a, corners - 1, q)
-        Derivatives with respect to the barycentric coordinates of all corners but the first, which are the Cartesian
-        coordinates of the reference simplex.
+    `values` has shape (a, q). `gradients`: Derivatives with respect to the barycentric coordinates of all corners but
+    the first, which are the Cartesian coordinates of the reference simplex.
 
-    Notes
-    -----
     The function of the node with barycentric coordinates :math:`m_k/p` is
 
     .. math::
 
         N(\xi) = \prod_k R_{m_k}(\xi_k), \qquad R_m(\xi) = \prod_{n=0}^{m-1} \frac{p\,\xi - n}{n + 1}
 
-    References
-    ----------
-    .. [1] P. Silvester, Int. J. Eng. Sci. 7, 849 (1969). doi:10.1016/0020-7225(69)90065-2
+    Source: P. Silvester, Int. J. Eng. Sci. 7, 849 (1969). doi:10.1016/0020-7225(69)90065-2
     """
     polynomials, derivatives = [np.ones_like(points)], [np.zeros_like(points)]
     for n in range(order):
@@ -87,22 +65,8 @@ def shape_functions(order: int, points: Floats) -> tuple[Floats, Floats]:
 def simplex_quadrature(degree: int, *, corners: int) -> tuple[Floats, Floats]:
     r"""Quadrature rule of a simplex, exact for polynomials up to a degree: conical product of Gauss-Jacobi rules.
 
-    Parameters
-    ----------
-    degree : int
-        Highest polynomial degree integrated exactly.
-    corners : int
-        Three for a triangle, four for a tetrahedron.
+    `points`: Barycentric coordinates. `weights`: Positive; they sum to 1/2 for a triangle and 1/6 for a tetrahedron.
 
-    Returns
-    -------
-    points : ndarray, shape (q, corners)
-        Barycentric coordinates.
-    weights : ndarray, shape (q,)
-        Positive; they sum to 1/2 for a triangle and 1/6 for a tetrahedron.
-
-    Notes
-    -----
     The product rule of the square or cube, collapsed onto the simplex by Duffy's transformation. For the tetrahedron
 
     .. math::
@@ -112,9 +76,7 @@ def simplex_quadrature(degree: int, *, corners: int) -> tuple[Floats, Floats]:
 
     whose factors are the weight functions of the Gauss-Jacobi rules.
 
-    References
-    ----------
-    .. [1] A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall (1971).
+    Source: A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall (1971).
     """
     rules = [roots_jacobi(degree // 2 + 1, power, 0.0) for power in reversed(range(corners - 1))]
     axes = np.meshgrid(*((1 + points) / 2 for points, _ in rules), indexing="ij")

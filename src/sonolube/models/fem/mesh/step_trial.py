@@ -20,17 +20,7 @@ _TRIAL: Final = (
 
 
 def try_step_file(path: Path) -> None:
-    """Raise where reading a STEP file refuses it, ends the program, or needs too much time or memory.
-
-    Parameters
-    ----------
-    path : Path
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and what happened.
-    """
+    """Raise where reading a STEP file refuses it, ends the program, or needs too much time or memory."""
     command = [sys.executable, "-c", _TRIAL, str(path)]
     try:
         ended = subprocess.run(command, capture_output=True, check=False, timeout=_WAIT)

@@ -293,19 +293,7 @@ PARTS: Mapping[str, Callable[..., Geometry]] = {
 
 
 def extruded_polygon(corners: Iterable[tuple[float, float]], *, foot: float, top: float) -> Any:
-    """Prism along z in the CAD kernel.
-
-    Parameters
-    ----------
-    corners : iterable of pairs of float
-        Corners of its outline, in mm.
-    foot, top : float
-        Positions of its ends along z, in mm.
-
-    Returns
-    -------
-    solid of the kernel
-    """
+    """Prism along z in the CAD kernel."""
     occ = cad_kernel()
     first, *others = ((float(x), float(y)) for x, y in corners)
     outline = occ.WorkPlane(occ.Axes((0, 0, foot), n=occ.Z, h=occ.X)).MoveTo(*first)
@@ -315,21 +303,7 @@ def extruded_polygon(corners: Iterable[tuple[float, float]], *, foot: float, top
 
 
 def body_of_revolution(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int] = (0, 0)) -> Geometry:
-    """Solid of revolution about z of an outline of straight segments and one spline.
-
-    Parameters
-    ----------
-    outline : list of tuple of two float
-        Coordinate z and radius of each vertex, in m.
-    name : str
-        Name of the region.
-    smooth : tuple of two int
-        Range of the vertices on a spline, counted from 1, the end excluded; no spline for equal ends.
-
-    Returns
-    -------
-    Geometry
-    """
+    """Solid of revolution about z of an outline of straight segments and one spline."""
     occ = cad_kernel()
     points = [occ.Pnt(float(r) / MILLIMETRE, 0.0, float(z) / MILLIMETRE) for z, r in outline]
     corners = [occ.Pnt(0, 0, points[0].z), *points, occ.Pnt(0, 0, points[-1].z)]

@@ -58,16 +58,7 @@ def adjust_length(geometry: Geometry, *, axis: str, length: float) -> Geometry:
 def extent_along(geometry: Geometry, *, axis: str) -> tuple[float, float]:
     """Least and greatest coordinate of a body along an axis, in m.
 
-    Parameters
-    ----------
-    geometry : Geometry
-    axis : str
-        "x", "y" or "z".
-
-    Returns
-    -------
-    tuple of two float
-        From its flat end faces where it has them, else from its bounding box.
+    From its flat end faces where it has them, else from its bounding box.
     """
     direction = DIRECTIONS.index(axis)
     ends = {

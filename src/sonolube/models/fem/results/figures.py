@@ -30,7 +30,7 @@ _SLENDER = 1.5  # upward over the other sides, above which a body is laid down
 _LIGHT = (-0.3, 0.5, 0.81)  # direction to the light: right, up and to the viewer
 _DARKEST = 0.8
 _DIRECTIONS_AT, _DIRECTION_LENGTH = (0.28, -0.6), 0.26  # inches from the lower left corner of the scale
-_MOST_TRIANGLES = 12_000  # in a picture
+_MAX_TRIANGLES = 12_000  # in a picture
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -55,16 +55,9 @@ class ShapedSurface:
 def shaped_surface(mesh: Mesh, shapes: Floats) -> ShapedSurface:
     """Outer surface of a mesh, fine enough to look smooth, with fields of displacement on it.
 
-    Parameters
-    ----------
-    mesh : Mesh
-    shapes : ndarray, shape (nodes, 3) or (modes, nodes, 3)
-        Displacements of the nodes, of any scale.
+    `shapes` has shape (nodes, 3).
 
-    Returns
-    -------
-    ShapedSurface
-        Its displacements have the leading shape of `shapes`.
+    Its displacements have the leading shape of `shapes`.
     """
     finer = change_order(mesh, order=_drawn_order(mesh))
     fields = [transfer_field(shape, source=mesh, target=finer) for shape in shapes.reshape(-1, *shapes.shape[-2:])]
@@ -80,19 +73,8 @@ def shaped_surface(mesh: Mesh, shapes: Floats) -> ShapedSurface:
 def mode_figure(surface: ShapedSurface, *, title: str, amplitude: float = 1.0) -> "Figure":
     """Deformed surface of a body in one of its modes, coloured by the magnitude of the displacement.
 
-    Parameters
-    ----------
-    surface : ShapedSurface
-        With one field of displacement.
-    title : str
-    amplitude : float
-        Displacement drawn over the largest one, -1 to 1.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Seen in parallel projection with the longest side of the body from left to right, which fills the width or the
-        height beside the scale of colours.
+    Seen in parallel projection with the longest side of the body from left to right, which fills the width or the
+    height beside the scale of colours.
     """
     from matplotlib.cm import ScalarMappable
     from matplotlib.collections import PolyCollection
@@ -186,20 +168,7 @@ def _draw_directions(axes: "Axes", view: Floats) -> None:
 def impedance_chart(
     spectra: Mapping[str, SupportedSpectrum], *, title: str, measured: tuple[Floats, Complexes] | None = None
 ) -> Chart:
-    """Magnitude and phase of the impedance, and motion of the tip per volt, over frequency.
-
-    Parameters
-    ----------
-    spectra : mapping of str to SupportedSpectrum
-        By the name of the support, such as "free" and "clamped".
-    title : str
-    measured : tuple of two ndarray, optional
-        Frequency [Hz] and complex impedance [ohm] of a measured spectrum.
-
-    Returns
-    -------
-    Chart
-    """
+    """Magnitude and phase of the impedance, and motion of the tip per volt, over frequency."""
     magnitude: list[Part] = []
     phase: list[Part] = []
     motion: list[Part] = []
@@ -237,4 +206,4 @@ def _within(frequency: Floats, spectra: Mapping[str, SupportedSpectrum]) -> NDAr
 def _drawn_order(mesh: Mesh) -> int:
     """Order of elements that looks smooth in a picture."""
     triangles = sum(len(faces) for name, faces in mesh.faces.items() if "|" not in name)
-    return int(np.clip(np.sqrt(_MOST_TRIANGLES / triangles), 2, HIGHEST_ORDER))
+    return int(np.clip(np.sqrt(_MAX_TRIANGLES / triangles), 2, HIGHEST_ORDER))

@@ -23,7 +23,7 @@ from sonolube.models.fem.results.vtk_export import vtu_text
 from sonolube.models.fem.solver.harmonic_analysis import HarmonicResponse, harmonic_response
 from sonolube.models.fem.solver.model import FixedSupport, Model
 
-_LEAST_COUPLING = 0.05  # effective coupling factor from which a mode counts as driven by the voltage
+_MIN_COUPLING = 0.05  # effective coupling factor from which a mode counts as driven by the voltage
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -48,7 +48,7 @@ class SupportedSpectrum:
     @property
     def coupled_modes(self) -> tuple[ElectromechanicalMode, ...]:
         """Modes with an effective coupling factor above 0.05."""
-        return tuple(mode for mode in self.port.modes if mode.coupling_factor > _LEAST_COUPLING)
+        return tuple(mode for mode in self.port.modes if mode.coupling_factor > _MIN_COUPLING)
 
     @property
     def low_frequency_capacitance(self) -> float:
@@ -73,26 +73,7 @@ def supported_spectra(
 ) -> dict[str, SupportedSpectrum]:
     """Impedance spectra of a transducer, free and, where faces are given, clamped at them.
 
-    Parameters
-    ----------
-    transducer : Transducer
-    frequency : ndarray, shape (n,)
-        Frequencies of the spectrum, rising. [Hz]
-    clamped_faces : sequence of str
-        Faces held still in a second spectrum; none where empty.
-    axis_of : callable
-        From a mesh to the axis after which modes are named.
-    element_size : float
-        Largest edge of an element in the first mesh. [m]
-    relative_tolerance : float
-        Largest change of a coupled resonance from mesh to mesh.
-    advance : callable, optional
-        Called with what is being done, how many meshes are done, and their expected number.
-
-    Returns
-    -------
-    dict of str to SupportedSpectrum
-        "free", and "clamped" where faces are given.
+    "free", and "clamped" where faces are given.
 
     See Also
     --------
@@ -140,14 +121,7 @@ def supported_spectra(
 def spectrum_table(spectrum: SupportedSpectrum) -> str:
     """Spectrum as CSV that `sonolube measure impedance` reads.
 
-    Parameters
-    ----------
-    spectrum : SupportedSpectrum
-
-    Returns
-    -------
-    str
-        Frequency, resistance, reactance, magnitude, phase, and the displacement per volt of every output.
+    Frequency, resistance, reactance, magnitude, phase, and the displacement per volt of every output.
     """
     z, displacement = spectrum.impedance, np.abs(spectrum.response.displacement_per_volt)
     columns = [spectrum.response.frequency, z.real, z.imag, np.abs(z), np.degrees(np.angle(z)), *displacement]
@@ -159,20 +133,11 @@ def spectrum_table(spectrum: SupportedSpectrum) -> str:
 
 
 def coupled_modes_grid(spectrum: SupportedSpectrum) -> str:
-    """Mesh with the shapes of the coupled modes as a VTK grid (.vtu).
-
-    Parameters
-    ----------
-    spectrum : SupportedSpectrum
-
-    Returns
-    -------
-    str
-    """
+    """Mesh with the shapes of the coupled modes as a VTK grid (.vtu)."""
     port = spectrum.port
     fields = {
         f"{mode.name}, {mode.series_frequency:.0f} Hz": shape
         for mode, shape in zip(port.modes, port.shapes, strict=True)
-        if mode.coupling_factor > _LEAST_COUPLING
+        if mode.coupling_factor > _MIN_COUPLING
     }
     return vtu_text(port.model.mesh, fields=fields)

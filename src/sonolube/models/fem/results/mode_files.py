@@ -37,19 +37,7 @@ def mode_title(found: ConvergedModes, names: Sequence[str], row: int) -> str:
 
 
 def frequency_text(*, frequency: float, relative_error: float) -> str:
-    """Natural frequency with its error and the digits that this leaves a meaning, such as "20.01 kHz ± 6 Hz".
-
-    Parameters
-    ----------
-    frequency : float
-        Natural frequency. [Hz]
-    relative_error : float
-        Its estimated relative error. []
-
-    Returns
-    -------
-    str
-    """
+    """Natural frequency with its error and the digits that this leaves a meaning, such as "20.01 kHz ± 6 Hz"."""
     error = frequency * relative_error
     place = math.floor(math.log10(max(2 * error, 1e-9 * frequency, 1e-3)))  # power of ten of the last digit
     unit, power = ("kHz", 3) if frequency >= 1e3 else ("Hz", 0)
@@ -59,18 +47,7 @@ def frequency_text(*, frequency: float, relative_error: float) -> str:
 
 
 def modes_grid(found: ConvergedModes, names: Sequence[str]) -> str:
-    """Mesh with the shapes of all elastic modes as a VTK grid (.vtu).
-
-    Parameters
-    ----------
-    found : ConvergedModes
-    names : sequence of str
-        Of all modes.
-
-    Returns
-    -------
-    str
-    """
+    """Mesh with the shapes of all elastic modes as a VTK grid (.vtu)."""
     fields = {mode_title(found, names, row): found.modes.shapes[row] for row in elastic_rows(found)}
     return vtu_text(found.model.mesh, fields=fields)
 
@@ -78,25 +55,9 @@ def modes_grid(found: ConvergedModes, names: Sequence[str]) -> str:
 def shapes_table(found: ConvergedModes, names: Sequence[str], points: Floats, *, direction: str) -> str:
     """One component of the elastic mode shapes at given points as CSV, one mode a column, each scaled to 1.
 
-    Parameters
-    ----------
-    found : ConvergedModes
-    names : sequence of str
-        Of all modes.
-    points : ndarray, shape (p, 3)
-        Coordinates of the points, in m.
-    direction : str
-        Component: "x", "y" or "z".
+    `points` has shape (p, 3).
 
-    Returns
-    -------
-    str
-        As `sonolube measure vibration --modes` reads it.
-
-    Raises
-    ------
-    InvalidInput
-        If the direction is none of the axes.
+    As `sonolube measure vibration --modes` reads it.
     """
     if direction not in DIRECTIONS or len(direction) != 1:
         raise InvalidInput(f"direction must be x, y or z, got {direction!r}")
@@ -156,27 +117,7 @@ def structure_modes(
 ) -> str:
     """Modes of a transducer with static correction, as TOML for the table `structure` of a rig file.
 
-    Parameters
-    ----------
-    found : ConvergedModes
-        Natural modes of the transducer.
-    transducer : Transducer
-    contact : str
-        Output at the contact.
-    body : SupportedBody or None
-        Rigid body that rests on the contact; held where None.
-    command : str
-        What computes them again.
-
-    Returns
-    -------
-    str
-        As `sonolube.rig` reads it.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such output.
+    As `sonolube.rig` reads it.
     """
     if contact not in transducer.outputs:
         raise UnknownName.among(transducer.outputs, kind="output", name=contact)
@@ -219,18 +160,7 @@ def structure_modes(
 
 
 def mode_animation(surface: ShapedSurface, *, title: str) -> bytes:
-    """One period of a mode as an animated GIF.
-
-    Parameters
-    ----------
-    surface : ShapedSurface
-        With one field of displacement.
-    title : str
-
-    Returns
-    -------
-    bytes
-    """
+    """One period of a mode as an animated GIF."""
     from PIL import Image
 
     palette = Image.new("P", (1, 1))

@@ -62,7 +62,7 @@ class SupportedPart:
         return {size.name: size.source for size in known if not size.printed}
 
     def model_at(self, element_size: float) -> Model:
-        """Return the model on a mesh of a largest element edge in m."""
+        """Model on a mesh of a largest element edge in m."""
         mesh = generate_mesh(self.geometry, element_size=element_size)
         electrodes = Electrodes() if self.transducer is None else self.transducer.electrodes
         return Model(mesh=mesh, media=self.media, fixed=self.fixed, electrodes=electrodes)
@@ -89,31 +89,7 @@ class PartModes:
 
 
 def part_modes(part: SupportedPart, *, count: int, axis: str | None, tolerance: float, advance: Advance) -> PartModes:
-    """Natural modes of a part to a tolerance.
-
-    Parameters
-    ----------
-    part : SupportedPart
-    count : int
-        Number of elastic modes.
-    axis : str or None
-        About which they are named: "x", "y" or "z"; the longest where None.
-    tolerance : float
-        Largest relative error of a frequency.
-    advance : callable
-        As of `sonolube.models.fem.converged_modes`.
-
-    Returns
-    -------
-    PartModes
-
-    Raises
-    ------
-    InvalidInput
-        If a number is out of its range.
-    NotConverged
-        If the tolerance is not reached within the largest admissible mesh.
-    """
+    """Natural modes of a part to a tolerance."""
     found = converged_modes(
         part.model_at,
         count=count,
@@ -128,15 +104,8 @@ def part_modes(part: SupportedPart, *, count: int, axis: str | None, tolerance: 
 def modes_dataset(solved: PartModes) -> "xr.Dataset":
     """Natural modes of a part with their shapes.
 
-    Parameters
-    ----------
-    solved : PartModes
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `mode`, by its name such as "axial 1": natural frequency and its relative error, and the shape at the
-        points of the surface, of modal mass 1 kg; the points and triangles of that surface.
+    Over `mode`, by its name such as "axial 1": natural frequency and its relative error, and the shape at the points of
+    the surface, of modal mass 1 kg; the points and triangles of that surface.
     """
     import xarray as xr
 

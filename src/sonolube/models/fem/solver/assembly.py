@@ -59,19 +59,6 @@ class GlobalMatrices:
 def assemble_matrices(model: Model) -> GlobalMatrices:
     """Global matrices of a model, its elastic foundations included.
 
-    Parameters
-    ----------
-    model : Model
-
-    Returns
-    -------
-    GlobalMatrices
-
-    Raises
-    ------
-    InvalidInput
-        If the Jacobian determinant of a curved element is not positive.
-
     See Also
     --------
     sonolube.models.fem.solver.system.assemble_system : The same with boundary conditions applied.
@@ -115,13 +102,7 @@ def assemble_matrices(model: Model) -> GlobalMatrices:
 def scalar_mass_matrix(model: Model) -> sparse.csc_array:
     """Mass matrix of one displacement component, the same for all three.
 
-    Parameters
-    ----------
-    model : Model
-
-    Returns
-    -------
-    sparse matrix, shape (n, n)
+    Shape (n, n).
     """
     mesh = model.mesh
     points, weights = simplex_quadrature(2 * mesh.order, corners=4)
@@ -137,24 +118,8 @@ def scalar_mass_matrix(model: Model) -> sparse.csc_array:
 def tributary_areas(mesh: Mesh, face: str) -> Floats:
     r"""Tributary area of each node on a face: integrals of the shape functions over the face.
 
-    Parameters
-    ----------
-    mesh : Mesh
-    face : str
-        Name of the face.
+    In m2, zero off the face; they sum to the area of the face.
 
-    Returns
-    -------
-    ndarray, shape (n,)
-        In m2, zero off the face; they sum to the area of the face.
-
-    Raises
-    ------
-    UnknownName
-        If no face has this name.
-
-    Notes
-    -----
     .. math:: A_a = \int N_a\, dA
 
     Divided by their sum they are the weights of the mean of a nodal field over the face, and the nodal forces of a unit

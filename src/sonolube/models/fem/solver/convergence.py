@@ -14,11 +14,11 @@ from sonolube.models.fem.solver.modes import NaturalModes, NotConverged, natural
 
 _ORDERS = range(2, 7)  # of the elements on one mesh, before it is refined
 _REFINEMENT = 0.62  # ratio of the element sizes of successive meshes: some four times the unknowns
-_LEAST_TOLERANCE = 1e-8  # below it, changes are rounding and the residual of the eigenvalue iteration
+_MIN_TOLERANCE = 1e-8  # below it, changes are rounding and the residual of the eigenvalue iteration
 _NEEDED_ORDERS = 3  # on a mesh, before its error can be estimated
 _RATIOS = (0.25, 0.6)  # least and greatest factor between successive changes assumed in the error estimate
 _SINGULAR_RATIO = 1 / 3  # least such factor on bodies with re-entrant edges
-_LEAST_CHANGE = 0.1  # of the change before, as which an accidentally small last change counts
+_MIN_CHANGE = 0.1  # of the change before, as which an accidentally small last change counts
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -106,9 +106,9 @@ def converged_modes(
     .. [1] I. Babuška and M. Suri, SIAM Rev. 36, 578 (1994). doi:10.1137/1036141
     """
     require_positive(element_size=element_size, relative_tolerance=relative_tolerance)
-    if not relative_tolerance >= _LEAST_TOLERANCE:
+    if not relative_tolerance >= _MIN_TOLERANCE:
         raise InvalidInput(
-            f"relative_tolerance must be at least {_LEAST_TOLERANCE:g}, got {relative_tolerance:g}: smaller errors are "
+            f"relative_tolerance must be at least {_MIN_TOLERANCE:g}, got {relative_tolerance:g}: smaller errors are "
             "hidden by rounding; no material's constants are known to better than 1e-6"
         )
     history: list[Floats] = []
@@ -190,5 +190,5 @@ def extrapolate_frequencies(history: Floats, *, singular: bool = False) -> tuple
     least, conservative_least = (_SINGULAR_RATIO, _SINGULAR_RATIO) if singular else (0.0, _RATIOS[0])
     expected, conservative = np.clip(ratio, least, _RATIOS[1]), np.clip(ratio, conservative_least, _RATIOS[1])
     frequency = history[-1] - (history[-2] - history[-1]) * expected / (1 - expected)
-    error = np.maximum(last, _LEAST_CHANGE * before) * conservative / (1 - conservative)
+    error = np.maximum(last, _MIN_CHANGE * before) * conservative / (1 - conservative)
     return frequency, np.divide(error, frequency, out=np.zeros_like(error), where=frequency > 0)

@@ -17,7 +17,7 @@ from sonolube.models.fem.solver.system import assemble_system, nodal_displacemen
 
 _RESIDUAL = 1e-2  # norm of a residual over its eigenvalue; the relative error of a frequency is of its square
 _UNCOUPLED = 2e-3  # squared coupling factor up to which a mode need not converge
-_FEWEST_STEPS, _MOST_STEPS = 3, 60  # solutions with a block of vectors
+_MIN_STEPS, _MAX_STEPS = 3, 60  # solutions with a block of vectors
 _DEPENDENT = 1e-20  # squared length of a unit vector's new component, below which it counts as rounding
 
 
@@ -74,7 +74,7 @@ def krylov_reduction(
     basis = np.zeros((len(forces), 0))
     images = mass_basis = basis
     block = _orthonormal_beside(inverse(forces), basis, mass_basis, equations.mass)
-    for step in range(_MOST_STEPS):
+    for step in range(_MAX_STEPS):
         basis, mass_basis = np.hstack([basis, block]), np.hstack([mass_basis, equations.mass @ block])
         added = block.shape[1]
         image = inverse(mass_basis[:, -added:])
@@ -88,7 +88,7 @@ def krylov_reduction(
         drive = (forces[:, 0] @ basis @ vectors) ** 2
         wanted = (squares < highest) & (drive > _UNCOUPLED * capacitance * squares)
         block = _orthonormal_beside(remainder, basis, mass_basis, equations.mass)
-        converged = step >= _FEWEST_STEPS and np.all(residual[wanted] < (_RESIDUAL * values[wanted]) ** 2)
+        converged = step >= _MIN_STEPS and np.all(residual[wanted] < (_RESIDUAL * values[wanted]) ** 2)
         if not block.shape[1] or converged:
             reduction = project_system(model, equations, basis=basis, outputs=outputs)
             return reduction, nodal_displacements(model, equations, basis)

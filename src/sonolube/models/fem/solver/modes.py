@@ -19,7 +19,7 @@ from sonolube.models.fem.solver.system import (
 
 _BLOCK_SIZE = 8  # vectors in a block: highest multiplicity of an eigenvalue that is certain to be resolved
 _RESIDUAL = 1e-5  # norm of a residual over the eigenvalue; the relative error of a frequency is of its square
-_MOST_STEPS = 60
+_MAX_STEPS = 60
 _RANK_TOLERANCE = 1e-14  # square of the smallest over the largest length of independent vectors in a block
 _ROUNDING = 1e-26  # square of the length of a unit vector that remains as rounding of zero
 _Basis = tuple[Floats, Floats]  # mass-orthonormal vectors, and their products with the mass matrix
@@ -102,28 +102,7 @@ def natural_modes(model: Model, *, count: int) -> NaturalModes:
 
 
 def lanczos_modes(model: Model, equations: SystemMatrices, *, inverse: LinearSolver, count: int) -> NaturalModes:
-    """Natural modes from system matrices already assembled and factorised; see `natural_modes`.
-
-    Parameters
-    ----------
-    model : Model
-    equations : SystemMatrices
-    inverse : callable
-        Result of `shift_invert_solver` for the shift of `spectral_shift`.
-    count : int
-        Number of elastic modes.
-
-    Returns
-    -------
-    NaturalModes
-
-    Raises
-    ------
-    InvalidInput
-        If the number is not positive, or above that of the degrees of freedom.
-    NotConverged
-        If the eigenvalue iteration does not converge.
-    """
+    """Natural modes from system matrices already assembled and factorised; see `natural_modes`."""
     rigid = _rigid_body_modes(model).reshape(-1, 3 * model.mesh.node_count)[:, equations.free_dofs].T
     most = len(equations.free_dofs) - rigid.shape[1] - 2
     if not 1 <= count <= most:
@@ -148,7 +127,7 @@ def _block_lanczos(
     random = np.random.default_rng(1)
     basis, projection = deflated, np.zeros((0, 0))  # the latter of the inverse times the mass matrix
     block = mass_block = np.zeros((size, 0))
-    for _ in range(_MOST_STEPS + count):
+    for _ in range(_MAX_STEPS + count):
         if not block.shape[1]:  # at the start, or after an invariant subspace
             start = inverse(mass @ random.standard_normal((size, _BLOCK_SIZE)))
             block, mass_block = _orthonormal_beside(basis, start, mass)
@@ -184,17 +163,8 @@ def _mass_orthonormal(block: Floats, mass_block: Floats, *, rounding: float = 0.
 def spectral_shift(model: Model) -> float:
     r"""Negative spectral shift of the magnitude of the lowest squared angular frequencies.
 
-    Parameters
-    ----------
-    model : Model
+    In rad2/s2.
 
-    Returns
-    -------
-    float
-        In rad2/s2.
-
-    Notes
-    -----
     With the diagonal d of the bounding box and the lowest shear-wave speed :math:`c_s` of the media
 
     .. math:: \sigma = -\left(\frac{\pi c_s}{d}\right)^2

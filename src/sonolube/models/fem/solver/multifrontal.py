@@ -19,7 +19,7 @@ from sonolube.errors import InvalidInput
 from sonolube.models.fem.mesh.mesh import Mesh
 
 _LEAF = 320  # nodes of the elements, counted in each, of a part that is not bisected further
-_LEAST_PART = 0.2  # of the elements, in the smaller part of a bisection
+_MIN_PART = 0.2  # of the elements, in the smaller part of a bisection
 _IMBALANCE_PENALTY = 1.0  # relative increase of the weight of a separator from equal parts to an empty one
 _NORMALS = np.array(
     [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]]
@@ -33,24 +33,13 @@ _Update = tuple[Integers, Floats]
 def nested_dissection(mesh: Mesh) -> list[Integers]:
     """Nested-dissection ordering of the nodes of a mesh: separators of recursive geometric bisection.
 
-    Parameters
-    ----------
-    mesh : Mesh
+    Groups of nodes in the order of elimination: the interiors of the smallest parts, and each separator after both
+    parts that it separates. Every node is in one group.
 
-    Returns
-    -------
-    list of ndarray of int
-        Groups of nodes in the order of elimination: the interiors of the smallest parts, and each separator after both
-        parts that it separates. Every node is in one group.
-
-    Notes
-    -----
     Elements are sorted by their centroids along nine directions. Of all cuts that leave a fifth of them or more on
     either side the one with the fewest nodes in its separator is taken, with a penalty on unequal parts.
 
-    References
-    ----------
-    .. [1] A. George, SIAM J. Numer. Anal. 10, 345 (1973). doi:10.1137/0710032
+    Source: A. George, SIAM J. Numer. Anal. 10, 345 (1973). doi:10.1137/0710032
     """
     normals = _NORMALS / np.linalg.norm(_NORMALS, axis=1, keepdims=True)
     projections = mesh.nodes[mesh.elements[:, :4]].mean(axis=1) @ normals.T
@@ -89,7 +78,7 @@ def _bisection(projections: Floats, local: Integers, free: NDArray[np.bool_]) ->
         for ends in (first, last)
     )
     cut = np.cumsum((begun - ended).reshape(len(directions), -1), axis=1)  # nodes on both sides, by elements before
-    least = max(1, round(_LEAST_PART * elements))
+    least = max(1, round(_MIN_PART * elements))
     counts = np.arange(least, elements - least + 1)
     weights = cut[:, counts] * (1 + _IMBALANCE_PENALTY * (2 * counts / elements - 1) ** 2)
     best, position = np.unravel_index(np.argmin(weights), weights.shape)
@@ -102,27 +91,10 @@ def multifrontal_factor(
 ) -> Callable[[Floats], Floats]:
     r"""Multifrontal factorisation of a real symmetric matrix in a given elimination order, without pivoting.
 
-    Parameters
-    ----------
-    matrix : sparse matrix, shape (n, n)
-    groups : sequence of ndarray of int
-        Unknowns in the order of elimination, each in one group.
-    signs : sequence of int
-        Sign of the pivots of each group: 1 where its Schur complement after elimination of the groups before is
-        positive definite, -1 where it is negative definite.
+    `matrix` has shape (n, n).
 
-    Returns
-    -------
-    callable
-        Solver, from the right-hand side, shape (n,) or (n, k), to the solution.
+    Solver, from the right-hand side, shape (n,) or (n, k), to the solution.
 
-    Raises
-    ------
-    InvalidInput
-        If the matrix is singular.
-
-    Notes
-    -----
     With the permutation Q of the elimination order and the diagonal matrix S of the signs
 
     .. math:: Q A Q^\mathsf{T} = L S L^\mathsf{T}

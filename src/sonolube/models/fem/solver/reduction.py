@@ -126,22 +126,7 @@ def reduce_model(model: Model, *, count: int, outputs: Mapping[str, Output]) -> 
 def input_vectors(model: Model, equations: SystemMatrices, outputs: Mapping[str, Output]) -> tuple[Floats, float]:
     """Nodal forces per volt of the drive and per newton on each output, and the clamped capacitance, without losses.
 
-    Parameters
-    ----------
-    model : Model
-    equations : SystemMatrices
-    outputs : mapping of str to Output
-
-    Returns
-    -------
-    forces : ndarray, shape (m, 1 + o)
-    capacitance : float
-        Charge per volt with all displacements held. [F]
-
-    Raises
-    ------
-    InvalidInput
-        If no piezoelectric region has a driven electrode.
+    `forces` has shape (m, 1 + o). `capacitance`: Charge per volt with all displacements held. [F]
     """
     if not model.is_piezoelectric or not model.electrodes.driven:
         raise InvalidInput("nothing is driven: a piezoelectric region with a driven electrode is needed")
@@ -154,20 +139,8 @@ def project_system(
 ) -> ReducedModel:
     r"""Galerkin projection of the lossy system onto a mass-orthonormal basis.
 
-    Parameters
-    ----------
-    model : Model
-    equations : SystemMatrices
-    basis : ndarray, shape (m, k)
-        Shapes :math:`\Phi`, orthonormal with respect to the mass matrix.
-    outputs : mapping of str to Output
+    `basis` has shape (m, k).
 
-    Returns
-    -------
-    ReducedModel
-
-    Notes
-    -----
     With the complex stiffness K and permittivity matrix P of `sonolube.models.fem.solver.system`, potentials being
     condensed,
 
@@ -194,16 +167,7 @@ def project_system(
 def output_matrix(model: Model, equations: SystemMatrices, outputs: Mapping[str, Output]) -> Floats:
     """Matrix of the outputs per displacement unknown: area-weighted means over faces.
 
-    Parameters
-    ----------
-    model : Model
-    equations : SystemMatrices
-    outputs : mapping of str to Output
-
-    Returns
-    -------
-    ndarray, shape (o, m)
-        Its transpose has the nodal forces of a unit force on each output.
+    Shape (o, m). Its transpose has the nodal forces of a unit force on each output.
     """
     rows = np.zeros((len(outputs), model.mesh.node_count, 3))
     for row, output in zip(rows, outputs.values(), strict=True):
@@ -215,13 +179,7 @@ def output_matrix(model: Model, equations: SystemMatrices, outputs: Mapping[str,
 def lossy_dielectric(equations: SystemMatrices) -> sparse.csc_array:
     """Complex permittivity matrix P of the unknown potentials, losses included.
 
-    Parameters
-    ----------
-    equations : SystemMatrices
-
-    Returns
-    -------
-    sparse matrix of complex, shape (p, p)
+    Shape (p, p).
     """
     return sparse.csc_array(equations.dielectric - 1.0j * equations.dielectric_loss)
 
@@ -229,15 +187,7 @@ def lossy_dielectric(equations: SystemMatrices) -> sparse.csc_array:
 def drive_charge(equations: SystemMatrices, *, lossless: bool = False) -> Complexes:
     """Charge p_V at the nodes of unknown potential per volt of the drive.
 
-    Parameters
-    ----------
-    equations : SystemMatrices
-    lossless : bool
-        Without dielectric losses.
-
-    Returns
-    -------
-    ndarray of complex, shape (p,)
+    Shape (p,).
     """
     loss = 0.0 if lossless else equations.drive_dielectric_loss
     return np.asarray(equations.drive_dielectric - 1j * loss, dtype=np.complex128)

@@ -74,21 +74,7 @@ class SystemMatrices:
 
 
 def assemble_system(model: Model) -> SystemMatrices:
-    """System matrices of a model: global matrices with supports and electrodes applied.
-
-    Parameters
-    ----------
-    model : Model
-
-    Returns
-    -------
-    SystemMatrices
-
-    Raises
-    ------
-    InvalidInput
-        If no degree of freedom is free.
-    """
+    """System matrices of a model: global matrices with supports and electrodes applied."""
     matrices = assemble_matrices(model)
     free = _free_dofs(model)
     potential, drive, potential_nodes = _electrical_constraints(model)
@@ -112,29 +98,16 @@ def assemble_system(model: Model) -> SystemMatrices:
 def superlu_factor(matrix: sparse.csc_array) -> LinearSolver:
     """Direct solver of a symmetric sparse matrix by SuperLU with minimum-degree ordering and diagonal pivots.
 
-    Parameters
-    ----------
-    matrix : sparse matrix, shape (n, n)
-        Real or complex; definite, or quasi-definite with two definite diagonal blocks of opposite sign.
+    `matrix` has shape (n, n).
 
-    Returns
-    -------
-    callable
-        From the right-hand side to the solution.
-
-    Raises
-    ------
-    InvalidInput
-        If the matrix is singular: the body is under-constrained.
+    From the right-hand side to the solution.
 
     See Also
     --------
     sonolube.models.fem.solver.multifrontal.multifrontal_factor : Faster on large meshes, for real matrices.
 
-    References
-    ----------
-    .. [1] J. W. Demmel, S. C. Eisenstat, J. R. Gilbert, X. S. Li and J. W. H. Liu, SIAM J. Matrix Anal. Appl. 20, 720
-       (1999). doi:10.1137/S0895479895291765
+    Source: J. W. Demmel, S. C. Eisenstat, J. R. Gilbert, X. S. Li and J. W. H. Liu, SIAM J. Matrix Anal. Appl. 20, 720
+    (1999). doi:10.1137/S0895479895291765
     """
     try:
         factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -149,26 +122,8 @@ def superlu_factor(matrix: sparse.csc_array) -> LinearSolver:
 def shift_invert_solver(model: Model, equations: SystemMatrices, *, shift: float) -> LinearSolver:
     r"""Solver of the shifted elastic problem with the drive short-circuited, by multifrontal factorisation.
 
-    Parameters
-    ----------
-    model : Model
-    equations : SystemMatrices
-        Those of the model.
-    shift : float
-        Square of the angular frequency in rad2/s2; negative, so that the matrix is definite.
+    From real forces to displacements, both of shape (m,) or (m, k).
 
-    Returns
-    -------
-    callable
-        From real forces to displacements, both of shape (m,) or (m, k).
-
-    Raises
-    ------
-    InvalidInput
-        If the matrix is singular.
-
-    Notes
-    -----
     Solves, for the shift :math:`\sigma` and the forces f,
 
     .. math:: \left(K + C P^{-1} C^\mathsf{T} - \sigma M\right) u = f
@@ -177,9 +132,7 @@ def shift_invert_solver(model: Model, equations: SystemMatrices, *, shift: float
 
     .. math:: \begin{pmatrix} K - \sigma M & C \\ C^\mathsf{T} & -P \end{pmatrix}
 
-    References
-    ----------
-    .. [1] R. J. Vanderbei, SIAM J. Optim. 5, 100 (1995). doi:10.1137/0805005
+    Source: R. J. Vanderbei, SIAM J. Optim. 5, 100 (1995). doi:10.1137/0805005
     """
     elastic = sparse.csc_array(equations.stiffness - shift * equations.mass)
     groups, signs = _elimination_order(model, equations)
@@ -223,17 +176,9 @@ def _elimination_order(model: Model, equations: SystemMatrices) -> tuple[list[In
 def nodal_displacements(model: Model, equations: SystemMatrices, unknowns: NDArray[Any]) -> NDArray[Any]:
     """Displacements of all nodes from those of the free degrees of freedom.
 
-    Parameters
-    ----------
-    model : Model
-    equations : SystemMatrices
-    unknowns : ndarray, shape (m, k)
-        Values of the free degrees of freedom.
+    `unknowns` has shape (m, k).
 
-    Returns
-    -------
-    ndarray, shape (k, n, 3)
-        Zero at supports.
+    Shape (k, n, 3). Zero at supports.
     """
     full = np.zeros((3 * model.mesh.node_count, unknowns.shape[1]), dtype=unknowns.dtype)
     full[equations.free_dofs] = unknowns

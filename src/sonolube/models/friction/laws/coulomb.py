@@ -30,7 +30,7 @@ class CoulombFriction:
 
 
 def coulomb_friction(law: CoulombFriction, *, normal_load: ArrayLike, relative_velocity: ArrayLike) -> Floats:
-    r"""Return the friction force by Coulomb's law. [N]
+    r"""Friction force by Coulomb's law. [N]
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def coulomb_friction(law: CoulombFriction, *, normal_load: ArrayLike, relative_v
 
 
 def friction_coefficient(*, friction_force: ArrayLike, normal_load: ArrayLike) -> Floats:
-    """Return the coefficient of friction, friction force over normal load. []
+    """Coefficient of friction, friction force over normal load. []
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ _FEW = 20_000  # points for which plain Python takes less than compiling
 
 
 def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
-    r"""Return the mean friction ratio under vibration along the sliding direction by Coulomb's law. []
+    r"""Mean friction ratio under vibration along the sliding direction by Coulomb's law. []
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: Ar
 
 
 def transverse_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
-    r"""Return the mean friction ratio under vibration across the sliding direction by Coulomb's law. []
+    r"""Mean friction ratio under vibration across the sliding direction by Coulomb's law. []
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def transverse_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: 
 def oblique_vibration_ratio(
     *, sliding_speed: ArrayLike, vibration_velocity: ArrayLike, vibration_direction: ArrayLike
 ) -> Floats:
-    r"""Return the mean friction ratio under vibration at any angle to the sliding direction by Coulomb's law. []
+    r"""Mean friction ratio under vibration at any angle to the sliding direction by Coulomb's law. []
 
     Parameters
     ----------
@@ -154,13 +154,13 @@ def oblique_vibration_ratio(
 
 
 def _speeds(sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> tuple[Floats, Floats]:
-    """Return the checked sliding speed and peak vibration velocity. [m/s]"""
+    """Checked sliding speed and peak vibration velocity. [m/s]"""
     return (require_positive(sliding_speed=sliding_speed), require_non_negative(vibration_velocity=vibration_velocity))
 
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
-    """Return the mean cosine of the angle between relative velocity and sliding direction over a period."""
+    """Mean cosine of the angle between relative velocity and sliding direction over a period."""
     ratios = np.ones(v_r.size)
     for i in range(v_r.size):
         if v_1[i] <= 1e-9 * v_r[i]:
@@ -189,7 +189,7 @@ def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
 
 @kernel(**INNER)
 def _complete_integral(k_c: float, p: float, a: float, b: float) -> float:
-    """Return Bulirsch's integral cel(k_c, p, a, b) for p > 0 by his arithmetic-geometric mean.
+    """Bulirsch's integral cel(k_c, p, a, b) for p > 0 by his arithmetic-geometric mean.
 
     The integral of (a cos^2 + b sin^2)/(cos^2 + p sin^2)/sqrt(cos^2 + k_c^2 sin^2) from 0 to pi/2.
     """

@@ -56,7 +56,7 @@ class DahlFriction:
 
 
 def dahl_friction(law: DahlFriction, *, displacement: ArrayLike, deformation: ArrayLike = 0.0) -> Floats:
-    r"""Return the friction force after a monotonic slide by Dahl's law. [N]
+    r"""Friction force after a monotonic slide by Dahl's law. [N]
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def dahl_friction(law: DahlFriction, *, displacement: ArrayLike, deformation: Ar
 def dahl_friction_history(
     law: DahlFriction, *, time: ArrayLike, relative_velocity: ArrayLike, deformation: ArrayLike = 0.0
 ) -> Floats:
-    """Return the friction force along sampled motions by Dahl's law. [N]
+    """Friction force along sampled motions by Dahl's law. [N]
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def dahl_friction_history(
 
 @kernel(cache=True)
 def _deformation_history(times: Floats, velocities: Floats, start: float, rate: float) -> Floats:
-    """Return the deformation along one sampled motion; `rate` is K/F_c."""
+    """Deformation along one sampled motion; `rate` is K/F_c."""
     deformation = np.empty_like(velocities)
     deformation[0] = delta = start
     for k in range(times.size - 1):
@@ -157,6 +157,6 @@ def _deformation_history(times: Floats, velocities: Floats, start: float, rate: 
 
 @kernel(cache=True)
 def _deformation_after_slide(delta: float, distance: float, rate: float) -> float:
-    """Return the deformation after a slide in one direction."""
+    """Deformation after a slide in one direction."""
     decay = -rate * abs(distance)
     return delta * math.exp(decay) + math.copysign(math.expm1(decay) / rate, distance)

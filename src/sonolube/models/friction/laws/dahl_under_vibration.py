@@ -25,7 +25,7 @@ def dahl_under_vibration(
     phase: ArrayLike = np.pi / 2,
     steps: int = 512,
 ) -> Floats:
-    r"""Return the mean friction force over the steady period of a vibration by Dahl's law. [N]
+    r"""Mean friction force over the steady period of a vibration by Dahl's law. [N]
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def _require_open_gap(d: Floats, a: Floats) -> None:
 
 
 def _mean_over_period(contact: RoughContact, columns: list[Floats], steps: int) -> Floats:
-    """Return the mean force of each row of arguments, columns of shape (n, 1). [N]"""
+    """Mean force of each row of arguments, columns of shape (n, 1). [N]"""
     d, a, mu, v_r, v_1, omega, phase = columns
     edges = _step_edges(v_r, v_1, steps)
     gap = d + a * np.sin((edges[:, 1:] + edges[:, :-1]) / 2 - phase)
@@ -128,7 +128,7 @@ def _mean_over_period(contact: RoughContact, columns: list[Floats], steps: int) 
 
 
 def _step_edges(v_r: Floats, v_1: Floats, steps: int) -> Floats:
-    """Return the phases between the steps of one period, graded towards the reversals of the relative velocity."""
+    """Phases between the steps of one period, graded towards the reversals of the relative velocity."""
     graded = (1 - np.cos(np.linspace(0, np.pi, steps + 1))) / 2
     reversal = np.where(v_1 > v_r, np.arccos(-v_r / np.maximum(v_1, v_r)), np.pi / 2)
     forward = reversal * (2 * graded - 1)

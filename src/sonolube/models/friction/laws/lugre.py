@@ -95,7 +95,7 @@ class LuGreHistory:
 
 
 def lugre_steady_friction(law: LuGreFriction, *, relative_velocity: ArrayLike) -> Floats:
-    r"""Return the friction force of steady sliding by the LuGre law. [N]
+    r"""Friction force of steady sliding by the LuGre law. [N]
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def lugre_steady_friction(law: LuGreFriction, *, relative_velocity: ArrayLike) -
 def lugre_friction_history(
     law: LuGreFriction, *, time: ArrayLike, relative_velocity: ArrayLike, bristle_deflection: ArrayLike = 0.0
 ) -> LuGreHistory:
-    """Return the bristle deflection and the friction force along sampled motions by the LuGre law.
+    """Bristle deflection and the friction force along sampled motions by the LuGre law.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def lugre_friction_history(
 
 
 def _steady_deflection(law: LuGreFriction, v: Floats) -> Floats:
-    """Return the deflection g(v) of steady sliding. [m]"""
+    """Deflection g(v) of steady sliding. [m]"""
     F_c, F_s = law.coulomb_friction_force, law.static_friction_force
     return (F_c + (F_s - F_c) * np.exp(-((v / law.stribeck_velocity) ** 2))) / law.bristle_stiffness
 
@@ -198,7 +198,7 @@ def _deflection_history(
     sticking_limit: float,
     stribeck_velocity: float,
 ) -> Floats:
-    """Return the deflection along one sampled motion; the limits are the forces F_c and F_s over the stiffness."""
+    """Deflection along one sampled motion; the limits are the forces F_c and F_s over the stiffness."""
     deflection = np.empty_like(velocities)
     deflection[0] = z = start
     for k in range(times.size - 1):

@@ -85,7 +85,7 @@ class StickSlipHistory:
 def lugre_stick_slip(
     law: LuGreFriction, drive: Holder, *, sliding_speed: float, duration: float, samples: int = _SAMPLES
 ) -> StickSlipHistory:
-    r"""Return the motion of a mass that a spring pulls from rest over a surface with LuGre friction.
+    r"""Motion of a mass that a spring pulls from rest over a surface with LuGre friction.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def lugre_stick_slip(
     s_0, s_1, s_2 = law.bristle_stiffness, law.bristle_damping, law.viscous_coefficient
 
     def forces(state: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the forces of spring and friction, and the rate of the bristles."""
+        """Forces of spring and friction, and the rate of the bristles."""
         e, w, z = state
         rate = w - np.abs(w) * s_0 * z / (F_c + (F_s - F_c) * np.exp(-((w / v_s) ** 2)))
         return K * e + c * (v - w), s_0 * z + s_1 * rate + s_2 * w, rate
@@ -204,7 +204,7 @@ def lugre_stick_slip(
 def _kind(
     time: Floats, velocity: Floats, spring: Floats, slips: Floats, *, speed: float, coulomb: float
 ) -> tuple[SlidingKind, str]:
-    """Return the kind of the motion at the end, and its meaning."""
+    """Kind of the motion at the end, and its meaning."""
     late = time >= _LATE * time[-1]
     if np.ptp(spring[late]) < _STEADY * coulomb and velocity[late].min() > 0.5 * speed:
         return SlidingKind.STEADY_SLIDING, "steady_sliding: the mass follows the pulled end at its speed"

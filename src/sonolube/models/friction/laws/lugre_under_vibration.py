@@ -23,7 +23,7 @@ def lugre_under_vibration(
     in_plane_fraction: ArrayLike = 0.0,
     in_plane_phase: ArrayLike = 0.0,
 ) -> Floats:
-    r"""Return the mean friction ratio over the steady period of a vibration by the LuGre law. []
+    r"""Mean friction ratio over the steady period of a vibration by the LuGre law. []
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def lugre_ratios(
     in_plane_fraction: float = 0.0,
     in_plane_phase: float = 0.0,
 ) -> Floats:
-    """Return the friction ratios of `lugre_under_vibration` for many pairs of law and motion at once. []
+    """Friction ratios of `lugre_under_vibration` for many pairs of law and motion at once. []
 
     Parameters
     ----------
@@ -148,31 +148,31 @@ class _Columns(NamedTuple):
 
     @classmethod
     def of(cls, laws: Sequence[LuGreFriction]) -> "_Columns":
-        """Return the columns of some laws."""
+        """Columns of some laws."""
         return cls(*(np.array([[getattr(law, name)] for law in laws]) for name in cls._fields))
 
     def rows(self, rows: Integers) -> "_Columns":
-        """Return some rows."""
+        """Some rows."""
         return _Columns(*(column[rows] for column in self))
 
     def limit(self, v: Floats) -> Floats:
-        """Return the limit of the bristle force under the dead load at relative velocities. [N]"""
+        """Limit of the bristle force under the dead load at relative velocities. [N]"""
         F_c, F_s = self.coulomb_friction_force, self.static_friction_force
         return np.asarray(F_c + (F_s - F_c) * np.exp(-((v / self.stribeck_velocity) ** 2)))
 
 
 def _in_plane(displacement: Floats, fraction: float, lag: float) -> Floats:
-    """Return the motion along the sliding that goes with samples of that along the normal. [m]"""
+    """Motion along the sliding that goes with samples of that along the normal. [m]"""
     return fraction * delayed_oscillation(displacement, phase=lag) if fraction else np.zeros(displacement.shape)
 
 
 def _mid_load(normal_force: Floats, normal_load: float | Floats) -> Floats:
-    """Return the normal force amid successive samples over the dead load. []"""
+    """Normal force amid successive samples over the dead load. []"""
     return (normal_force + np.roll(normal_force, -1, axis=-1)) / (2 * normal_load)
 
 
 def _mean_force(law: _Columns, load: Floats, oscillation: Floats, speeds: Floats, frequency: float | Floats) -> Floats:
-    """Return the mean bristle force of each row of samples. [N]"""
+    """Mean bristle force of each row of samples. [N]"""
     n = oscillation.shape[-1]
     slides = np.roll(oscillation, -1, axis=-1) - oscillation + speeds / (frequency * n)
     # where contact is lost the limit is the least number

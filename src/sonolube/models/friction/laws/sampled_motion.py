@@ -10,21 +10,9 @@ from sonolube.errors import InvalidInput
 
 
 def require_increasing(*, time: ArrayLike) -> Floats:
-    """Return sample times as an array; refuse times that do not increase.
+    """Sample times as an array; refuse times that do not increase.
 
-    Parameters
-    ----------
-    time : array_like, shape (n,)
-        Times of the samples. [s]
-
-    Returns
-    -------
-    ndarray, shape (n,)
-
-    Raises
-    ------
-    InvalidInput
-        If there are fewer than two times, or one is not later than the one before.
+    Shape (n,).
     """
     times = require_finite(time=time)
     if times.ndim != 1 or times.size < 2:
@@ -39,27 +27,9 @@ def require_increasing(*, time: ArrayLike) -> Floats:
 def integrate_rows(
     integrate: Callable[..., Floats], times: Floats, velocities: Floats, start: Floats, *constants: float
 ) -> Floats:
-    """Return the state of a friction law along each row of sampled velocities.
+    """State of a friction law along each row of sampled velocities.
 
-    Parameters
-    ----------
-    integrate : callable
-        Returns the n values of the state along one motion, from times, velocities, first value and constants.
-    times : ndarray, shape (n,)
-    velocities : ndarray, shape (..., n)
-    start : ndarray, shape (...)
-        First value of the state of each motion.
-    *constants : float
-        Constants of the law.
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-
-    Raises
-    ------
-    InvalidInput
-        If the rows and the times differ in length, or the first values do not broadcast against the rows.
+    `velocities` has shape (..., n).
     """
     if velocities.ndim == 0 or velocities.shape[-1] != times.size:
         raise InvalidInput(

@@ -41,7 +41,7 @@ def spring_driven_slider_force(
     settling_time: float,
     duration: float,
 ) -> DriveForce:
-    r"""Return the force of a spring drive that pulls a slider at constant speed over a vibrating surface.
+    r"""Force of a spring drive that pulls a slider at constant speed over a vibrating surface.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ _Constants = tuple[float, float, float, float, float, float]
 
 
 def _constants(law: DahlFriction | LuGreFriction) -> _Constants:
-    """Return F_c, F_s, v_s, stiffness, damping and viscous coefficient of a law."""
+    """F_c, F_s, v_s, stiffness, damping and viscous coefficient of a law."""
     if isinstance(law, DahlFriction):
         return law.coulomb_friction_force, law.coulomb_friction_force, 1.0, law.contact_stiffness, 0.0, 0.0
     return (
@@ -147,7 +147,7 @@ def _constants(law: DahlFriction | LuGreFriction) -> _Constants:
 def _highest_rate(
     constants: _Constants, spring: tuple[float, float, float], speed: float, omega: float, least_load: float
 ) -> float:
-    """Return the highest rate of vibration, slider on its bristles, damping, and slip. [1/s]"""
+    """Highest rate of vibration, slider on its bristles, damping, and slip. [1/s]"""
     F_c, _, _, stiffness, damping, viscous = constants
     K, c, m = spring
     slip = speed * stiffness / (F_c * least_load)
@@ -191,7 +191,7 @@ def _drive_force(
     settling_periods: int,
     averaged_periods: int,
 ) -> tuple[float, float]:
-    """Return the mean force of the drive and the range of its spring force, by the Runge-Kutta method. [N]"""
+    """Mean force of the drive and the range of its spring force, by the Runge-Kutta method. [N]"""
     state = np.zeros(4)
     state[1] = speed
     k1, k2, k3, k4 = np.empty(4), np.empty(4), np.empty(4), np.empty(4)

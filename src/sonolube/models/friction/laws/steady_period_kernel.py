@@ -10,23 +10,10 @@ __all__: list[str] = []  # kernel of this room
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def steady_period_mean_force(stiffness: Floats, limit: Floats, slides: Floats, durations: Floats) -> Floats:
-    """Return the mean force of each row of steps over its steady period.
+    """Mean force of each row of steps over its steady period.
 
-    Parameters
-    ----------
-    stiffness, limit : ndarray, shape (m, n)
-        Tangential stiffness [N/m] and friction limit [N], constant within each of n steps.
-    slides : ndarray, shape (m, n)
-        Relative displacement within each step [m].
-    durations : ndarray, shape (m, n)
-        Duration of each step over the period; each row sums to 1.
+    `stiffness, limit` has shape (m, n). `slides` has shape (m, n). `durations` has shape (m, n). Shape (m,).
 
-    Returns
-    -------
-    ndarray, shape (m,)
-
-    Notes
-    -----
     After every step the deformation is a linear function of that at the start of the period, and so is the time
     integral of the force. The steady period is the fixed point of the map of one period.
     """

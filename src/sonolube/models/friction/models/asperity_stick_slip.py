@@ -93,7 +93,7 @@ class AsperityStickSlip(FrictionModel):
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
     ) -> Floats:
-        """Return mean friction under a motion of the gap over friction without vibration. []
+        """Mean friction under a motion of the gap over friction without vibration. []
 
         Parameters
         ----------
@@ -148,7 +148,7 @@ class AsperityStickSlip(FrictionModel):
         friction_coefficient: float,
         tolerance: float = 1e-7,
     ) -> Floats:
-        """Return the friction ratios of many pairs of motion and speed at once; NaN where `ratio` must be used. []
+        """Friction ratios of many pairs of motion and speed at once; NaN where `ratio` must be used. []
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class AsperityStickSlip(FrictionModel):
 
 @lru_cache(maxsize=64)
 def _from_widest_gap(motion: ContactMotion) -> tuple[Floats, Complexes]:
-    """Return the displacement from its widest on, and the harmonics of its steps; kept for fits."""
+    """Displacement from its widest on, and the harmonics of its steps; kept for fits."""
     gap = np.roll(motion.displacement, -int(np.argmax(motion.displacement)))
     harmonics = np.fft.rfft(gap)
     harmonics[0] = 0.0
@@ -191,7 +191,7 @@ def _from_widest_gap(motion: ContactMotion) -> tuple[Floats, Complexes]:
 
 
 def _sampled_ratio(x: Floats, slides: Floats, steady: Floats) -> Floats:
-    """Return the mean friction over the mean limit, for gaps, vibration slides and steady slides in decay lengths."""
+    """Mean friction over the mean limit, for gaps, vibration slides and steady slides in decay lengths."""
     lowest, highest = float(x.min()), float(x.max())
     mean_limit = np.exp(lowest - x).mean()
     permanent = np.array([highest + 2 * (highest - lowest) + 2 * np.abs(slides).sum()])
@@ -215,7 +215,7 @@ def _sampled_ratio(x: Floats, slides: Floats, steady: Floats) -> Floats:
 
 
 def _element_forces(x: Floats, slides: Floats, steady: float, heights: Floats) -> Floats:
-    """Return of elements in contact below some gaps the mean force, and the least force less the gap, a row each."""
+    """Of elements in contact below some gaps the mean force, and the least force less the gap, a row each."""
     forces = np.empty((2, heights.size))
     _write_element_forces(x, slides, steady, heights, np.empty((2, heights.size)), forces)
     return forces

@@ -35,7 +35,7 @@ def batched_stick_slip_ratio(
     memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
     tolerance: float = SINE_TOLERANCE,
 ) -> Floats:
-    r"""Return friction ratios by asperity stick-slip for very many points. []
+    r"""Friction ratios by asperity stick-slip for very many points. []
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def _write_ratios(
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _interpolated(table: Floats, beta: float, s: float) -> float:
-    """Return the ratio under a sine by bicubic interpolation in the table, infinity outside of it."""
+    """Ratio under a sine by bicubic interpolation in the table, infinity outside of it."""
     if s >= beta:
         return 1.0
     if table.size == 0 or log(beta) > _HIGHEST:
@@ -181,7 +181,7 @@ def _interpolated(table: Floats, beta: float, s: float) -> float:
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights: Floats) -> float:
-    """Return what friction lacks by sticking elements, over the load, for a motion that closes once in a period."""
+    """What friction lacks by sticking elements, over the load, for a motion that closes once in a period."""
     count = harmonics.size
     while count > 1 and abs(harmonics[count - 1]) < _NEGLIGIBLE_HARMONIC:
         count -= 1
@@ -207,7 +207,7 @@ def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _closing_phase(harmonics: Complexes, count: int, s: float, fastest: float, side: float) -> float:
-    """Return the phase before (-1) or after (1) that of fastest closing at which the gap closes at the rate s."""
+    """Phase before (-1) or after (1) that of fastest closing at which the gap closes at the rate s."""
     inside, outside = fastest, fastest + side * pi
     phase = fastest + side * pi / 3
     for _ in range(60):
@@ -227,7 +227,7 @@ def _closing_phase(harmonics: Complexes, count: int, s: float, fastest: float, s
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _opening_phase(harmonics: Complexes, count: int, s: float, level: float, low: float, high: float) -> float:
-    """Return the phase between two at which the height of the gap above the slide has risen to a level."""
+    """Phase between two at which the height of the gap above the slide has risen to a level."""
     phase: float = low
     x, rate, second, _ = _displacement_derivatives(harmonics, count, phase)
     missing = level - x - s * phase
@@ -254,7 +254,7 @@ def _opening_phase(harmonics: Complexes, count: int, s: float, level: float, low
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _displacement_derivatives(harmonics: Complexes, count: int, phase: float) -> tuple[float, float, float, float]:
-    """Return the displacement about the mean and its first three derivatives with respect to the phase."""
+    """Displacement about the mean and its first three derivatives with respect to the phase."""
     cosine, sine = cos(phase), sin(phase)
     c, s, x, rate, second, third = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(1, count + 1):

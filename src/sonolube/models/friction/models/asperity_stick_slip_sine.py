@@ -26,7 +26,7 @@ _NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
 
 def mindlin_memory_length(contact: RoughContact, *, friction_coefficient: ArrayLike, normal_load: ArrayLike) -> Floats:
-    r"""Return the memory length of an asperity by Mindlin's tangential stiffness. [m]
+    r"""Memory length of an asperity by Mindlin's tangential stiffness. [m]
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def sine_stick_slip_ratio(
     sliding_speed: ArrayLike,
     memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
 ) -> Floats:
-    r"""Return the friction ratio under a load-balanced sine by asperity stick-slip. []
+    r"""Friction ratio under a load-balanced sine by asperity stick-slip. []
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def sine_stick_slip_ratio(
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def _harmonic_ratio(beta: Floats, v: Floats, i0e_beta: Floats, nodes: Floats, weights: Floats) -> Floats:
-    """Return the friction ratio for each amplitude over decay length and each reduced speed."""
+    """Friction ratio for each amplitude over decay length and each reduced speed."""
     ratio = np.ones(beta.size)
     for i in range(beta.size):
         b, speed = beta[i], v[i]

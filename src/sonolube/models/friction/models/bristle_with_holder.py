@@ -106,7 +106,7 @@ class BristleWithHolder(FrictionModel):
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
     ) -> Floats:
-        """Return mean friction under a motion of the gap over friction without vibration. []
+        """Mean friction under a motion of the gap over friction without vibration. []
 
         Parameters
         ----------
@@ -166,7 +166,7 @@ class BristleWithHolder(FrictionModel):
         return self.in_plane_fraction * delayed_oscillation(motion.displacement, phase=self.in_plane_phase)
 
     def _mean_force(self, k: Floats, limit: Floats, slides: tuple[Floats, Floats], step: float) -> tuple[Floats, bool]:
-        """Return the mean force at each sliding speed, in N, and whether a steady period was reached."""
+        """Mean force at each sliding speed, in N, and whether a steady period was reached."""
         exponent, stiffness = float(self.dahl_exponent), self.holder_stiffness
         if self.holder_mass == 0:
             return mean_force_massless_holder(k / (1 + k / stiffness), limit, *slides, exponent), True

@@ -28,7 +28,7 @@ class _CubeModel(FrictionModel):
     )
 
     def ratio_bounds(self, *, mean_force_ratio: Floats) -> tuple[Floats, Floats]:
-        """Return the lowest and the highest friction ratio that the model can mean: 0 and 1, no more than mu F_N. []
+        """Lowest and the highest friction ratio that the model can mean: 0 and 1, no more than mu F_N. []
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class Dong2015FullPeriod(_CubeModel):
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
     ) -> Floats:
-        """Return mean friction under a motion of the gap over friction without vibration. []
+        """Mean friction under a motion of the gap over friction without vibration. []
 
         Parameters
         ----------
@@ -137,7 +137,7 @@ class Dong2015HalfPeriod(_CubeModel):
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
     ) -> Floats:
-        """Return mean friction under a motion of the gap over friction without vibration. []
+        """Mean friction under a motion of the gap over friction without vibration. []
 
         Parameters
         ----------
@@ -200,7 +200,7 @@ class Dong2015LoadBalanced(_CubeModel):
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
     ) -> Floats:
-        """Return mean friction under a motion of the gap over friction without vibration. []
+        """Mean friction under a motion of the gap over friction without vibration. []
 
         Parameters
         ----------
@@ -226,12 +226,12 @@ class Dong2015LoadBalanced(_CubeModel):
 
 
 def _full_period(contact: RoughContact, motion: ContactMotion, sliding_speed: ArrayLike) -> Floats:
-    """Return the mean of the stiffness ratio of the cube times the kinematic factor over the full period. []"""
+    """Mean of the stiffness ratio of the cube times the kinematic factor over the full period. []"""
     k_ratio = _stiffness_ratio(contact, require_open_gap(contact, motion))
     return kinematic_mean(k_ratio, motion, sliding_speed=sliding_speed)
 
 
 def _stiffness_ratio(contact: RoughContact, d: Floats) -> Callable[[Floats], Floats]:
-    """Return the tangential stiffness over that at a separation, as a function of the displacement from it."""
+    """Tangential stiffness over that at a separation, as a function of the displacement from it."""
     at_rest = cube_tangential_stiffness(contact, separation=d)
     return lambda x: cube_tangential_stiffness(contact, separation=d + x) / at_rest

@@ -16,7 +16,7 @@ from sonolube.models.contact.separating_half_period import (
 def dong_2015_half_period_ratio(
     contact: RoughContact, *, normal_load: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
-    r"""Return the friction ratio under sinusoidal normal vibration by the cube over the separating half period. []
+    r"""Friction ratio under sinusoidal normal vibration by the cube over the separating half period. []
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def dong_2015_half_period_ratio(
 
 
 def steady_deformation(contact: RoughContact, *, normal_load: ArrayLike, friction_force: ArrayLike) -> Floats:
-    r"""Return the tangential deformation of the cube in steady sliding. [m]
+    r"""Tangential deformation of the cube in steady sliding. [m]
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def dong_2015_deformation_ratio(
     deformation: ArrayLike,
     phase: ArrayLike = np.pi / 2,
 ) -> Floats:
-    r"""Return the friction ratio by the cube with the in-plane motion added to the deformation, as D prints it. []
+    r"""Friction ratio by the cube with the in-plane motion added to the deformation, as D prints it. []
 
     Parameters
     ----------

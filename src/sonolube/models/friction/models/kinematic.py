@@ -63,7 +63,7 @@ class Kinematic(FrictionModel):
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
     ) -> Floats:
-        """Return mean friction under a motion of the gap over friction without vibration. []
+        """Mean friction under a motion of the gap over friction without vibration. []
 
         Parameters
         ----------
@@ -96,29 +96,8 @@ def kinematic_mean(
     sliding_speed: ArrayLike,
     amplitude_fraction: float = 1.0,
 ) -> Floats:
-    r"""Return the period average of a weight times the kinematic factor. []
+    r"""Period average of a weight times the kinematic factor. []
 
-    Parameters
-    ----------
-    weight : callable
-        Returns the weight for an array of displacements.
-    motion : ContactMotion
-    sliding_speed : array_like, any shape
-        Mean sliding speed. [m/s]
-    amplitude_fraction : float
-        Fraction of the vibration velocity that enters. []
-
-    Returns
-    -------
-    ndarray, shape of `sliding_speed`
-
-    Raises
-    ------
-    InvalidInput
-        If a speed is not positive.
-
-    Notes
-    -----
     .. math:: \langle w(x) \cos\theta \rangle, \qquad \cos\theta = \frac{v_r}{\sqrt{v_r^2 + v_1^2}}
     """
     v_r = require_positive(sliding_speed=sliding_speed)
@@ -131,7 +110,7 @@ def kinematic_mean(
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def _weighted_cosine(weights: Floats, velocity: Floats, speeds: Floats) -> Floats:
-    """Return the mean of weight times v_r/sqrt(v_r^2 + v^2), both linear between samples, exactly for any v_r."""
+    """Mean of weight times v_r/sqrt(v_r^2 + v^2), both linear between samples, exactly for any v_r."""
     n = weights.size
     means = np.empty(speeds.size)
     for i in range(speeds.size):

@@ -137,7 +137,7 @@ class FrictionModel(ABC):
 
     @classmethod
     def parameters(cls) -> tuple[ModelParameter, ...]:
-        """Return the parameters that rig files and commands can set, in the order of the record's fields.
+        """Parameters that rig files and commands can set, in the order of the record's fields.
 
         Returns
         -------
@@ -172,7 +172,7 @@ class FrictionModel(ABC):
         sliding_speed: ArrayLike,
         friction_coefficient: ArrayLike | None = None,
     ) -> Floats:
-        """Return mean friction under a motion of the gap over friction without vibration. []
+        """Mean friction under a motion of the gap over friction without vibration. []
 
         Parameters
         ----------
@@ -197,7 +197,7 @@ class FrictionModel(ABC):
         """
 
     def ratio_bounds(self, *, mean_force_ratio: Floats) -> tuple[Floats, Floats]:
-        r"""Return the lowest and the highest friction ratio that the model can mean. []
+        r"""Lowest and the highest friction ratio that the model can mean. []
 
         Parameters
         ----------
@@ -232,7 +232,7 @@ class FrictionModel(ABC):
         friction_coefficient: float,
         tolerance: float = 1e-7,
     ) -> Floats:
-        """Return the friction ratio of many pairs of motion and speed at once; NaN where `ratio` must be used. []
+        """Friction ratio of many pairs of motion and speed at once; NaN where `ratio` must be used. []
 
         Parameters
         ----------

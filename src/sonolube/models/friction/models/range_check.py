@@ -37,7 +37,7 @@ class CheckedRatio:
     reason: NDArray[np.str_]
 
     def require_within_range(self) -> Floats:
-        """Return the friction ratios, and refuse any outside the range of the model. []
+        """Friction ratios; refuses any outside the range of the model. []
 
         Returns
         -------
@@ -53,7 +53,7 @@ class CheckedRatio:
         return self.friction_ratio
 
     def require_braking(self) -> Floats:
-        """Return the friction ratios where all brake the sliding, for heat and lubrication. []
+        """Friction ratios where all brake the sliding, for heat and lubrication. []
 
         Returns
         -------
@@ -76,7 +76,7 @@ class CheckedRatio:
 def checked_ratio(
     model: FrictionModel, raw: ArrayLike, *, mean_force_ratio: ArrayLike, gap_closed: ArrayLike
 ) -> CheckedRatio:
-    """Return friction ratios of a model with its range of validity applied.
+    """Friction ratios of a model with its range of validity applied.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def checked_ratio(
 
 
 def ratio_caveats(*, friction_ratio: ArrayLike) -> tuple[str, ...]:
-    """Return the meaning of friction ratios below 0 and above 1, one line each; empty where there is none.
+    """Meaning of friction ratios below 0 and above 1, one line each; empty where there is none.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def model_friction(
     sliding_speed: ArrayLike,
     friction_coefficient: ArrayLike | None = None,
 ) -> CheckedRatio:
-    """Return the friction ratio of a model under a motion of the gap, its range of validity applied.
+    """Friction ratio of a model under a motion of the gap, its range of validity applied.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def _require_direction(model: FrictionModel, motion: ContactMotion) -> None:
 def _raw_ratios(
     model: FrictionModel, contact: RoughContact, motion: ContactMotion, speeds: Floats, coefficient: ArrayLike | None
 ) -> tuple[Floats, NDArray[np.str_]]:
-    """Return the ratio by the formula at each speed, NaN where it has none, and the reason why; else empty text."""
+    """Ratio by the formula at each speed, NaN where it has none, and the reason why; else empty text."""
     try:
         ratio = model.ratio(contact, motion, sliding_speed=speeds, friction_coefficient=coefficient)
         return np.asarray(ratio, dtype=np.float64), np.full(speeds.shape, "")

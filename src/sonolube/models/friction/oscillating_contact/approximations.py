@@ -28,7 +28,7 @@ _MAXIMUM_NATURAL_FREQUENCY = 0.5  # of slider on guide and contact, over the fre
 def approximate_normal_ratio(
     contact: SpringContact, *, approach: ArrayLike, normal_amplitude: ArrayLike, velocity_ratio: ArrayLike
 ) -> Floats:
-    r"""Return the approximate friction ratio under an oscillation along the normal on a rigid guide. []
+    r"""Approximate friction ratio under an oscillation along the normal on a rigid guide. []
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def approximate_guided_ratio(
     frequency: ArrayLike,
     sliding_speed: ArrayLike,
 ) -> Floats:
-    """Return the approximate friction ratio under an oscillation along the normal on a compliant guide. []
+    """Approximate friction ratio under an oscillation along the normal on a compliant guide. []
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def approximate_longitudinal_ratio(
     frequency: ArrayLike,
     sliding_speed: ArrayLike,
 ) -> Floats:
-    r"""Return the approximate friction ratio under a short oscillation along the sliding direction. []
+    r"""Approximate friction ratio under a short oscillation along the sliding direction. []
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def approximate_transverse_ratio(
     frequency: ArrayLike,
     sliding_speed: ArrayLike,
 ) -> Floats:
-    r"""Return the approximate friction ratio under an oscillation across the sliding direction. []
+    r"""Approximate friction ratio under an oscillation across the sliding direction. []
 
     Parameters
     ----------
@@ -279,7 +279,7 @@ def approximate_transverse_ratio(
 
 
 def _deficit(velocity_ratio: Floats) -> Floats:
-    """Return the function P of the published approximation, for speeds over the critical one."""
+    """Function P of the published approximation, for speeds over the critical one."""
     margin = 1 - np.minimum(velocity_ratio, 1.0)
     return 0.75 * margin**2 + 0.25 * margin**4
 
@@ -287,7 +287,7 @@ def _deficit(velocity_ratio: Floats) -> Floats:
 def _normal_ratio(
     contact: SpringContact, approach: ArrayLike, normal_amplitude: ArrayLike, velocity_ratio: Floats
 ) -> Floats:
-    """Return the ratio between that of static friction and one; warn the caller's caller where contact is lost."""
+    """Ratio between that of static friction and one; warn the caller's caller where contact is lost."""
     static = normal_static_ratio(contact, approach=approach, normal_amplitude=normal_amplitude)
     if np.any(require_finite(normal_amplitude=normal_amplitude) > require_finite(approach=approach)):
         reason = "normal_amplitude exceeds the approach: contact is lost for part of the period"

@@ -27,7 +27,7 @@ def combined_oscillation_ratio(
     transverse_phase: ArrayLike = 0.0,
     steps: int = 1024,
 ) -> Floats:
-    r"""Return the friction ratio along the sliding direction under oscillations in all directions. []
+    r"""Friction ratio along the sliding direction under oscillations in all directions. []
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def _mean_ratios(
     weights: Floats,
     n: int,
 ) -> tuple[Floats, bool]:
-    """Return the friction ratio of each point over the springs of its profile, and whether all became periodic."""
+    """Friction ratio of each point over the springs of its profile, and whether all became periodic."""
     ratio = np.empty(u.size)
     limit, x, y = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
     settled = True
@@ -156,7 +156,7 @@ def _mean_ratios(
 
 @kernel(**INNER)
 def _steady_period(limit: Floats, offset: float, x: Floats, y: Floats) -> tuple[float, float, bool]:
-    """Return the mean force along x and the mean limit of one spring over its steady period, as deformations."""
+    """Mean force along x and the mean limit of one spring over its steady period, as deformations."""
     n = limit.size - 1
     p, q = max(limit[0] - offset, 0.0), 0.0
     friction = mean_limit = 0.0
@@ -176,7 +176,7 @@ def _steady_period(limit: Floats, offset: float, x: Floats, y: Floats) -> tuple[
 
 @kernel(**INNER)
 def _after_slide(p: float, q: float, before: float, after: float, dx: float, dy: float) -> tuple[float, float]:
-    """Return the deformation of a spring after a straight slide while its limit changes from `before` to `after`."""
+    """Deformation of a spring after a straight slide while its limit changes from `before` to `after`."""
     if after <= 0.0:
         return 0.0, 0.0
     if before < 0.0:  # comes into contact within the step

@@ -22,7 +22,7 @@ def guided_oscillation_ratio(
     frequency: ArrayLike,
     sliding_speed: ArrayLike,
 ) -> Floats:
-    r"""Return the friction ratio under an oscillation along the normal on a compliant guide. []
+    r"""Friction ratio under an oscillation along the normal on a compliant guide. []
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def guided_critical_speed(
     normal_amplitude: ArrayLike,
     frequency: ArrayLike,
 ) -> Floats:
-    r"""Return the critical speed of an oscillation along the normal on a compliant guide. [m/s]
+    r"""Critical speed of an oscillation along the normal on a compliant guide. [m/s]
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ def normal_oscillation_ratio(
     frequency: ArrayLike,
     sliding_speed: ArrayLike,
 ) -> Floats:
-    r"""Return the friction ratio under an oscillation along the normal on a rigid guide. []
+    r"""Friction ratio under an oscillation along the normal on a rigid guide. []
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def longitudinal_oscillation_ratio(
     frequency: ArrayLike,
     sliding_speed: ArrayLike,
 ) -> Floats:
-    r"""Return the friction ratio under an oscillation along the sliding direction on a rigid guide. []
+    r"""Friction ratio under an oscillation along the sliding direction on a rigid guide. []
 
     Parameters
     ----------

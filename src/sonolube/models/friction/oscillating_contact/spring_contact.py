@@ -81,7 +81,7 @@ class SpringContact:
 
 
 def critical_speed(contact: SpringContact, *, frequency: ArrayLike, normal_amplitude: ArrayLike) -> Floats:
-    r"""Return the critical speed, from which an oscillation along the normal does not reduce friction. [m/s]
+    r"""Critical speed, from which an oscillation along the normal does not reduce friction. [m/s]
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def critical_speed(contact: SpringContact, *, frequency: ArrayLike, normal_ampli
 
 
 def load_balanced_approach(contact: SpringContact, *, approach: ArrayLike, normal_amplitude: ArrayLike) -> Floats:
-    r"""Return the mean approach at which the mean normal force of an oscillating contact is that at rest. [m]
+    r"""Mean approach at which the mean normal force of an oscillating contact is that at rest. [m]
 
     Parameters
     ----------
@@ -167,26 +167,9 @@ def load_balanced_approach(contact: SpringContact, *, approach: ArrayLike, norma
 
 
 def require_contact(*, approach: ArrayLike, normal_amplitude: ArrayLike) -> tuple[Floats, Floats]:
-    """Return mean approach and amplitude, broadcast; refuse values with which contact is lost throughout the period.
+    """Mean approach and amplitude, broadcast; refuse values with which contact is lost throughout the period.
 
-    Parameters
-    ----------
-    approach : array_like
-        Mean approach. [m]
-    normal_amplitude : array_like, broadcast against `approach`
-        Amplitude along the surface normal. [m]
-
-    Returns
-    -------
-    approach, normal_amplitude : ndarray, shape of the broadcast arguments
-        The arguments. [m]
-
-    Raises
-    ------
-    InvalidInput
-        If a value is not finite, or the amplitude negative.
-    OutsideRange
-        If contact is lost throughout the period.
+    The arguments. [m]
     """
     a = require_non_negative(normal_amplitude=normal_amplitude)
     u, a = np.broadcast_arrays(require_finite(approach=approach), a)
@@ -200,7 +183,7 @@ def require_contact(*, approach: ArrayLike, normal_amplitude: ArrayLike) -> tupl
 
 
 def mean_normal_forces(contact: SpringContact, u: Floats, a: Floats) -> Floats:
-    """Return the mean normal force in units of one spring (flat), or of the springs per length (parabolic)."""
+    """Mean normal force in units of one spring (flat), or of the springs per length (parabolic)."""
     flat = contact.profile == "flat"
     power, factor = (1.0, 1.0) if flat else (1.5, 2 / 3)
     moves = a > 0

@@ -17,7 +17,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
 
 
 def normal_static_ratio(contact: SpringContact, *, approach: ArrayLike, normal_amplitude: ArrayLike) -> Floats:
-    r"""Return the static friction ratio under an oscillation along the normal, the limit of slow sliding. []
+    r"""Static friction ratio under an oscillation along the normal, the limit of slow sliding. []
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def normal_static_ratio(contact: SpringContact, *, approach: ArrayLike, normal_a
 
 
 def longitudinal_static_ratio(contact: SpringContact, *, approach: ArrayLike, in_plane_amplitude: ArrayLike) -> Floats:
-    r"""Return the static friction ratio under an oscillation along the pulling force. []
+    r"""Static friction ratio under an oscillation along the pulling force. []
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def longitudinal_static_ratio(contact: SpringContact, *, approach: ArrayLike, in
 
 
 def transverse_static_ratio(contact: SpringContact, *, approach: ArrayLike, transverse_amplitude: ArrayLike) -> Floats:
-    r"""Return the static friction ratio under an oscillation across the pulling force. []
+    r"""Static friction ratio under an oscillation across the pulling force. []
 
     Parameters
     ----------
@@ -153,22 +153,8 @@ def transverse_static_ratio(contact: SpringContact, *, approach: ArrayLike, tran
 
 
 def slip_length_fraction(contact: SpringContact, *, approach: ArrayLike, amplitude: Floats) -> Floats:
-    r"""Return an amplitude within the plane over the slip length of the deepest spring. []
+    r"""Amplitude within the plane over the slip length of the deepest spring. []
 
-    Parameters
-    ----------
-    contact : SpringContact
-    approach : array_like
-        Approach. [m]
-    amplitude : ndarray, broadcast against `approach`
-        Amplitude, in m.
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    Notes
-    -----
     .. math:: s = \frac{k_x a}{\mu k_z u}
     """
     return amplitude / (contact.slip_per_approach * require_positive(approach=approach))

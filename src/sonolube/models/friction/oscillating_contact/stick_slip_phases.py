@@ -31,23 +31,9 @@ __all__: list[str] = []  # kernels of this room
 def stick_crossing_phase(
     v: float, level: float, first: float, last: float, from_first: float, from_last: float
 ) -> float:
-    """Return the phase between two successive extrema at which v x - sin x equals `level`, by Halley's method.
+    """Phase between two successive extrema at which v x - sin x equals `level`, by Halley's method.
 
-    Parameters
-    ----------
-    v : float
-        Sliding speed over peak velocity.
-    level : float
-        Value to be speed.
-    first, last : float
-        Phases of the extrema.
-    from_first, from_last : float
-        Values of v x - sin x at them.
-
-    Returns
-    -------
-    float
-        Phase to 1e-9; the deficit, whose integrand vanishes there, is insensitive to the error.
+    Phase to 1e-9; the deficit, whose integrand vanishes there, is insensitive to the error.
     """
     fraction = (level - from_first) / (from_last - from_first)
     x = first + (last - first) * acos(1 - 2 * min(max(fraction, 0.0), 1.0)) / pi
@@ -69,19 +55,9 @@ def stick_crossing_phase(
 
 @kernel(**INNER)
 def half_stick_phase(v: float, contact: float) -> float:
-    """Return half the phase of sticking h of an element that comes into contact at the phase m - h, sin m = v h/sin h.
+    """Half the phase of sticking h of an element that comes into contact at the phase m - h, sin m = v h/sin h.
 
-    Parameters
-    ----------
-    v : float
-        Sliding speed over peak velocity.
-    contact : float
-        Phase at the onset of contact, from the widest gap.
-
-    Returns
-    -------
-    float
-        Zero for an element that does not stick.
+    Zero for an element that does not stick.
     """
     start, extremum = contact - pi / 2, acos(v)
     if start >= extremum:
@@ -93,7 +69,7 @@ def half_stick_phase(v: float, contact: float) -> float:
 
 @kernel(**INNER)
 def normalized_deficit(v: float) -> float:
-    """Return the mean friction deficit S(v) of an element that is always in contact, in amplitudes of its limit.
+    """Mean friction deficit S(v) of an element that is always in contact, in amplitudes of its limit.
 
     From 1 for slow sliding to 0 at v = 1. Half the phase of sticking is found by two steps of Newton's method from a
     fit that is exact at both ends and within 0.5 % in between.
@@ -117,7 +93,7 @@ def normalized_deficit(v: float) -> float:
 
 @kernel(**INNER)
 def mean_friction_limit(c: float) -> float:
-    """Return the mean of the limit max(c - cos x, 0) over a period."""
+    """Mean of the limit max(c - cos x, 0) over a period."""
     if c >= 1.0:
         return c
     if c <= -1.0:
@@ -127,7 +103,7 @@ def mean_friction_limit(c: float) -> float:
 
 @kernel(**INNER)
 def mean_deficit_normal(c: float, v: float) -> float:
-    """Return the mean friction deficit of an element with the limit max(c - cos x, 0)."""
+    """Mean friction deficit of an element with the limit max(c - cos x, 0)."""
     if v >= 1.0 or c <= -sqrt(1 - v * v):
         return 0.0
     if c >= sqrt(1 - v * v):
@@ -141,7 +117,7 @@ def mean_deficit_normal(c: float, v: float) -> float:
 
 @kernel(**INNER)
 def mean_force_longitudinal(stroke: float, v: float) -> float:
-    """Return the mean force over the limit of an element whose end oscillates by `stroke`, in slip lengths."""
+    """Mean force over the limit of an element whose end oscillates by `stroke`, in slip lengths."""
     if v >= 1.0 or stroke <= 0.0:
         return 1.0
     extremum = acos(v)
@@ -160,7 +136,7 @@ def mean_force_longitudinal(stroke: float, v: float) -> float:
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def flat_normal_ratio(c: Floats, v: Floats) -> Floats:
-    """Return the friction ratio of a flat profile under normal oscillation, for mean approaches c and speeds v."""
+    """Friction ratio of a flat profile under normal oscillation, for mean approaches c and speeds v."""
     ratio = np.empty(c.size)
     for i in range(c.size):
         ratio[i] = 1 - mean_deficit_normal(c[i], v[i]) / mean_friction_limit(c[i])
@@ -169,7 +145,7 @@ def flat_normal_ratio(c: Floats, v: Floats) -> Floats:
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def parabolic_normal_ratio(c: Floats, v: Floats, nodes: Floats, weights: Floats) -> Floats:
-    """Return the friction ratio of a parabolic profile under normal oscillation, with mean limits c - q^2."""
+    """Friction ratio of a parabolic profile under normal oscillation, with mean limits c - q^2."""
     ratio = np.empty(c.size)
     for i in range(c.size):
         last = sqrt(1 - v[i] * v[i]) if v[i] < 1 else 0.0
@@ -185,7 +161,7 @@ def parabolic_normal_ratio(c: Floats, v: Floats, nodes: Floats, weights: Floats)
 
 @kernel(**INNER)
 def parabolic_mean_limit(c: float, nodes: Floats, weights: Floats) -> float:
-    """Return the integral of the mean limits over the springs of a parabolic profile."""
+    """Integral of the mean limits over the springs of a parabolic profile."""
     inner, outer = sqrt(max(c - 1, 0.0)), sqrt(max(c + 1, 0.0))
     total = c * inner - inner**3 / 3
     half = (outer - inner) / 2
@@ -197,7 +173,7 @@ def parabolic_mean_limit(c: float, nodes: Floats, weights: Floats) -> float:
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def flat_longitudinal_ratio(stroke: Floats, v: Floats) -> Floats:
-    """Return the friction ratio of a flat profile under longitudinal oscillation, for strokes and speeds."""
+    """Friction ratio of a flat profile under longitudinal oscillation, for strokes and speeds."""
     ratio = np.empty(stroke.size)
     for i in range(stroke.size):
         ratio[i] = mean_force_longitudinal(stroke[i], v[i])
@@ -206,7 +182,7 @@ def flat_longitudinal_ratio(stroke: Floats, v: Floats) -> Floats:
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def parabolic_longitudinal_ratio(stroke: Floats, v: Floats, nodes: Floats, weights: Floats) -> Floats:
-    """Return the friction ratio of a parabolic profile under longitudinal oscillation, for strokes at its centre."""
+    """Friction ratio of a parabolic profile under longitudinal oscillation, for strokes at its centre."""
     ratio = np.ones(stroke.size)
     for i in range(stroke.size):
         if v[i] >= 1.0:
@@ -225,7 +201,7 @@ def parabolic_longitudinal_ratio(stroke: Floats, v: Floats, nodes: Floats, weigh
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def profile_mean_limits(c: Floats, flat: bool, nodes: Floats, weights: Floats) -> Floats:
-    """Return the mean limit of a flat profile, or its integral over a parabolic one, for each mean approach c."""
+    """Mean limit of a flat profile, or its integral over a parabolic one, for each mean approach c."""
     means = np.empty(c.size)
     for i in range(c.size):
         means[i] = mean_friction_limit(c[i]) if flat else parabolic_mean_limit(c[i], nodes, weights)
@@ -234,7 +210,7 @@ def profile_mean_limits(c: Floats, flat: bool, nodes: Floats, weights: Floats) -
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def balanced_approaches(c: Floats, flat: bool, nodes: Floats, weights: Floats) -> Floats:
-    """Return the mean approach, in amplitudes, at which the mean limit of a profile is that at rest at approach c."""
+    """Mean approach, in amplitudes, at which the mean limit of a profile is that at rest at approach c."""
     balanced = np.empty(c.size)
     for i in range(c.size):
         at, target = c[i], c[i] if flat else c[i] ** 1.5 / 1.5
@@ -251,13 +227,13 @@ def balanced_approaches(c: Floats, flat: bool, nodes: Floats, weights: Floats) -
 
 @kernel(**INNER)
 def contact_fraction(c: float) -> float:
-    """Return the fraction of a period in which the limit c - cos x is positive."""
+    """Fraction of a period in which the limit c - cos x is positive."""
     return 1 - acos(min(max(c, -1.0), 1.0)) / pi
 
 
 @kernel(**INNER)
 def _parabolic_slope(c: float, nodes: Floats, weights: Floats) -> float:
-    """Return the derivative of `parabolic_mean_limit` by the approach."""
+    """Derivative of `parabolic_mean_limit` by the approach."""
     inner, outer = sqrt(max(c - 1, 0.0)), sqrt(max(c + 1, 0.0))
     total, half = inner, (outer - inner) / 2
     for j in range(nodes.size):

@@ -15,10 +15,10 @@ from sonolube.models.surfaces.grooves.plane_coordinates import centred_coordinat
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 
 _POINTS = 4000  # of a map, to which a sphere is fitted
-_MOST_ITERATIONS = 20
+_MAX_ITERATIONS = 20
 _WINDOW = 5  # pixels, of the smoothing and the median filter
 _WORN = 6.0  # depth over the noise of the smoothed map
-_LEAST_SCAR = 50  # pixels
+_MIN_SCAR = 50  # pixels
 _LEVELS = 16  # of depth, at which the scar's area is counted
 _LEVELS_REACH = 3.0  # deepest level over the detection limit
 _LEVELS_FRACTION = 0.2  # deepest level over the depth of the scar, where that is deeper
@@ -184,7 +184,7 @@ def wear_scar(surface: HeightMap, *, tip_radius: float | None = None) -> WearSca
     worn = np.zeros(surface.height.shape, dtype=np.bool_)
     sphere = _initial_sphere(surface, start, tip_radius)
     covariance = np.zeros((3, 3))
-    for _ in range(_MOST_ITERATIONS):
+    for _ in range(_MAX_ITERATIONS):
         scar = _scar(levelled, worn)
         sphere, covariance = _fitted_sphere(surface, ~_with_rim(scar), sphere, tip_radius)
         levelled = surface.with_height(surface.height - _sphere_height(surface, sphere))
@@ -290,7 +290,7 @@ def _scar(levelled: HeightMap, worn: Mask) -> Mask:
     unworn = ~worn if not worn.all() else worn
     patches, count = label(smooth < -max(_WORN * _robust_deviation(smooth[unworn]), _HEIGHT_RESOLUTION))
     sizes = np.bincount(patches.ravel())[1:]
-    if not count or sizes.max() < _LEAST_SCAR:
+    if not count or sizes.max() < _MIN_SCAR:
         return np.zeros_like(worn)
     return np.asarray(patches == 1 + int(np.argmax(sizes)))
 

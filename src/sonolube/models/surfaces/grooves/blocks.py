@@ -25,8 +25,8 @@ _PERIOD = 1.5  # of the Fourier modes over the field, so that a wave of any leng
 _BLOCKS = 48  # along the longer side
 _KNOT = 50e-6 / 2.4e-3  # distance of the knots of the section, over the longer side
 _SLOPE_WINDOW = 7  # pixels
-_LEAST_UNWORN = 12  # blocks
-_MODULATIONS, _MOST_MODULATIONS = 12, 8.0  # harmonics of the groove's depth along it; most waves in the longer side
+_MIN_UNWORN = 12  # blocks
+_MODULATIONS, _MAX_MODULATIONS = 12, 8.0  # harmonics of the groove's depth along it; most waves in the longer side
 _OUTLIER = 5.0  # deviation of a worn block from the mean section, over the standard deviation: debris or torn-out chips
 _DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
 
@@ -142,27 +142,7 @@ class BlockAverages:
 def block_averages(
     surface: HeightMap, *, track: GrooveTrack, worn_band: tuple[float, float], excluded: Mask | None = None
 ) -> BlockAverages:
-    """Block averages of a scan with a groove, worn blocks less its mean cross-section.
-
-    Parameters
-    ----------
-    surface : HeightMap
-        Heights above the plane through the unworn pixels.
-    track : GrooveTrack
-    worn_band : tuple of float
-        Distances from the track in m between which the surface is worn.
-    excluded : bool array, shape of the heights, optional
-        Pixels to leave out.
-
-    Returns
-    -------
-    BlockAverages
-
-    Raises
-    ------
-    InvalidInput
-        If fewer than 12 blocks are unworn.
-    """
+    """Block averages of a scan with a groove, worn blocks less its mean cross-section."""
     rows, columns = surface.height.shape
     field = (columns * surface.spacing_x, rows * surface.spacing_y)
     longer = max(field)
@@ -181,7 +161,7 @@ def block_averages(
     fields = (x, y, surface.height - section, section, transverse, rotated, bent, arc_length)
     edges = block_edges(surface, longer / _BLOCKS)
     unworn, groove = block_means(fields[:4], counted & ~inside, edges), block_means(fields, worn, edges)
-    if unworn.shape[1] < _LEAST_UNWORN:
+    if unworn.shape[1] < _MIN_UNWORN:
         raise InvalidInput(f"only {unworn.shape[1]} blocks of {longer / _BLOCKS:.2g} m are unworn; scan a wider field")
     kept = np.abs(groove[2]) < _OUTLIER * _block_deviation(unworn[2], groove[2])
     groove = groove[:, kept]
@@ -245,6 +225,6 @@ def _transverse_means(transverse: Floats, values: Floats, surface: HeightMap) ->
 
 def _modulations(section: Floats, arc_length: Floats) -> Floats:
     """Section times harmonics of the arc length, normalised by the depth, shape (n, functions)."""
-    phase = 2 * math.pi * np.outer(arc_length, np.arange(1, _MODULATIONS + 1) / _MODULATIONS * _MOST_MODULATIONS)
+    phase = 2 * math.pi * np.outer(arc_length, np.arange(1, _MODULATIONS + 1) / _MODULATIONS * _MAX_MODULATIONS)
     depth = section[:, None] / max(float(np.max(np.abs(section))), np.finfo(float).tiny)
     return np.concatenate([depth * np.cos(phase), depth * np.sin(phase)], axis=1)

@@ -22,16 +22,16 @@ from sonolube.models.surfaces.height_map import HeightMap, Mask
 __all__ = ["DetectedGroove", "detect_groove"]  # `height_range` serves this room only
 
 _SCREENED, _COARSE, _FINE = 36, 72, 160  # blocks along the longer side
-_LEAST_POINTS = 100  # measured blocks
+_MIN_POINTS = 100  # measured blocks
 _KEPT = 0.25  # residual of a start above the least one over that of the median, up to which it is not screened out
 _DIRECTIONS = 60
 _TURNS = (-1.0, -0.4, -0.15, 0.0, 0.15, 0.4, 1.0)  # change of direction of the track over the longer side, in rad
-_MOST_BENT = 4.0  # of a refined track, in rad
-_LEAST_BLOCKS = 0.1  # of a bin of the section, over those of the fullest
+_MAX_BENT = 4.0  # of a refined track, in rad
+_MIN_BLOCKS = 0.1  # of a bin of the section, over those of the fullest
 _EXTREME = 1e-3  # fraction of the blocks, less than those of the narrowest track
-_LEAST_UNWORN = 0.06  # fraction of the section
-_LEAST_WORN = 3  # bins
-_LEAST_CONTRAST = 5.0  # depth over the standard deviation beside the groove
+_MIN_UNWORN = 0.06  # fraction of the section
+_MIN_WORN = 3  # bins
+_MIN_CONTRAST = 5.0  # depth over the standard deviation beside the groove
 _LARGEST_SHOULDER = 0.4  # slope of the unworn ends over the mean slope of the flanks
 _MARGIN = 0.05  # of the worn width, on either side of it
 _REGULARIZATION = 1e-9
@@ -103,7 +103,7 @@ def detect_groove(surface: HeightMap) -> DetectedGroove:
     residual = section.height - line[0] - line[1] * section.transverse
     deviation = math.sqrt(float(np.mean(residual[outer] ** 2)) + section.noise**2)
     depth = -float(np.min(_moving_average(residual[first:last])))
-    if depth < _LEAST_CONTRAST * deviation:
+    if depth < _MIN_CONTRAST * deviation:
         raise NoGroove(
             f"no groove found: the deepest trough is {depth:.2g} m deep; heights beside it vary by {deviation:.2g} m"
         )
@@ -160,10 +160,10 @@ def _block_means(surface: HeightMap, blocks: int) -> _Blocks:
 def _track(surface: HeightMap) -> GrooveTrack:
     """Track through the centre of the field of least residual, by grid search and simplex refinement."""
     points = _block_means(surface, _COARSE)
-    if points.height.size < _LEAST_POINTS:
+    if points.height.size < _MIN_POINTS:
         side = points.reach / _COARSE
         raise InvalidInput(
-            f"detection of a groove requires at least {_LEAST_POINTS} measured blocks of {side:.2g} m, got"
+            f"detection of a groove requires at least {_MIN_POINTS} measured blocks of {side:.2g} m, got"
             f" {points.height.size}; scan a larger field or more finely"
         )
     residuals = _residuals_of_starts(_block_means(surface, _SCREENED), np.ones((len(_TURNS), _DIRECTIONS), np.bool_))
@@ -193,7 +193,7 @@ def _refined_track(points: _Blocks, direction: float, curvature: float) -> tuple
 
     def at(offset: Floats) -> float:
         bent = curvature + offset[1] / points.reach
-        if abs(bent) * points.reach > _MOST_BENT:
+        if abs(bent) * points.reach > _MAX_BENT:
             return math.inf
         return float(_residual_sums(points, np.array([direction + offset[0]]), bent)[0])
 
@@ -258,7 +258,7 @@ def _section(points: _Blocks, track: GrooveTrack) -> _Section:
     z, t = points.height - mean(points.height)[bins], arc_length - mean(arc_length)[bins]
     slope = float(z @ t) / max(float(t @ t), np.finfo(float).tiny)
     residual = z - slope * t
-    used &= count >= _LEAST_BLOCKS * np.quantile(count[used], 0.9)
+    used &= count >= _MIN_BLOCKS * np.quantile(count[used], 0.9)
     noise = float(np.std(residual)) / math.sqrt(float(np.median(count[used])))
     return _Section(mean(transverse)[used], mean(points.height - slope * arc_length)[used], noise, points.side)
 
@@ -271,10 +271,10 @@ def _worn_interval(section: _Section) -> tuple[int, int, tuple[float, float]]:
     sums = np.concatenate([np.zeros((6, 1)), np.cumsum(powers, axis=1)], axis=1)
     if not np.ptp(z):
         raise NoGroove("no groove found: the surface is flat")
-    first, last = (index.ravel() for index in np.triu_indices(count + 1, k=_LEAST_WORN))
+    first, last = (index.ravel() for index in np.triu_indices(count + 1, k=_MIN_WORN))
     inner = sums[:, last] - sums[:, first]
     outer = sums[:, -1:] - inner
-    wide = outer[0] >= max(_LEAST_UNWORN * count, 4)
+    wide = outer[0] >= max(_MIN_UNWORN * count, 4)
     first, last, inner, outer = first[wide], last[wide], inner[:, wide], outer[:, wide]
     if not first.size:
         raise NoGroove("no groove found: too few measured heights across any track")

@@ -14,17 +14,17 @@ from sonolube.models.surfaces.form_removal import fit_form
 from sonolube.models.surfaces.grooves.detection import DetectedGroove, detect_groove, height_range
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 
-_MOST_TRACKS = 8
-_LEAST_CONTRAST = 5.0  # depth of a trough over the deviation of the section
-_LEAST_DEPTH = 0.08  # over that of the deepest track
+_MAX_TRACKS = 8
+_MIN_CONTRAST = 5.0  # depth of a trough over the deviation of the section
+_MIN_DEPTH = 0.08  # over that of the deepest track
 _UNWORN = 3.0  # deviations, within which the section between two troughs is unworn
-_LEAST_GAP, _LEAST_GAP_BINS = 0.15, 4  # between two tracks, over the narrower one, and in bins
+_MIN_GAP, _MIN_GAP_BINS = 0.15, 4  # between two tracks, over the narrower one, and in bins
 _MARGIN = 0.15  # of the width of a track, on either side of it
 _SEGMENTS = 12  # along a track
 _PRESENT = 0.25  # depth of a segment over the upper quartile of all
-_LEAST_PRESENT = 0.8  # fraction of the segments of a track
+_MIN_PRESENT = 0.8  # fraction of the segments of a track
 _NARROWEST = 0.03  # width of a track over the longer side of the field
-_LEAST_LENGTH = 0.5  # of a further track over the shorter side of the field: a corner shows too little of one
+_MIN_LENGTH = 0.5  # of a further track over the shorter side of the field: a corner shows too little of one
 _MASKED = 0.25  # of the width, left out on either side of a feature
 
 
@@ -97,8 +97,8 @@ def field_tracks(surface: HeightMap) -> FieldTracks:
     found: list[FieldTrack] = []
     others: list[str] = []
     rest, masked = surface, surface
-    for _ in range(_MOST_TRACKS):
-        if found and height_range(rest) < _LEAST_DEPTH * max(track.groove_depth for track in found):
+    for _ in range(_MAX_TRACKS):
+        if found and height_range(rest) < _MIN_DEPTH * max(track.groove_depth for track in found):
             break
         try:
             detected = detect_groove(rest)
@@ -160,11 +160,11 @@ def _troughs(detected: DetectedGroove) -> list[_Trough]:
         if merged:
             before = merged[-1]
             narrower = min(last - first + 1, before[1] - before[0] + 1)
-            if first - before[1] - 1 < max(_LEAST_GAP_BINS, _LEAST_GAP * narrower):
+            if first - before[1] - 1 < max(_MIN_GAP_BINS, _MIN_GAP * narrower):
                 before[1] = last
                 continue
         merged.append([first, last])
-    deep = [run for run in merged if -float(z[run[0] : run[1] + 1].min()) > _LEAST_CONTRAST * deviation]
+    deep = [run for run in merged if -float(z[run[0] : run[1] + 1].min()) > _MIN_CONTRAST * deviation]
     if len(deep) <= 1:
         first, last = (deep or [[int(low[0]), int(low[-1])]])[0] if low.size else (0, s.size - 1)
         return [_Trough(float(s[first]) - step / 2, float(s[last]) + step / 2, depth, detected.worn_band)]
@@ -233,7 +233,7 @@ def _other_feature(surface: HeightMap, transverse: Floats, arc_length: Floats, t
         return ""
     least = _PRESENT * float(np.quantile(depths[known], 0.75))
     present = np.count_nonzero(depths[known] > least)
-    if present >= _LEAST_PRESENT * np.count_nonzero(known):
+    if present >= _MIN_PRESENT * np.count_nonzero(known):
         return ""
     length = present / _SEGMENTS * (stop - start)
     return f"{size} is only {1e3 * length:.2g} mm long, where a track crosses the field: a scratch or a pit"
@@ -243,8 +243,8 @@ def _counts(
     surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough, deepest: float, *, first: bool
 ) -> bool:
     """Whether a trough is deep enough beside the deepest and, after the first, long enough in the field."""
-    long = first or _length(surface, transverse, arc_length, trough) >= _LEAST_LENGTH
-    return long and trough.depth >= _LEAST_DEPTH * deepest
+    long = first or _length(surface, transverse, arc_length, trough) >= _MIN_LENGTH
+    return long and trough.depth >= _MIN_DEPTH * deepest
 
 
 def _length(surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough) -> float:

@@ -24,7 +24,7 @@ from sonolube.models.surfaces.grooves.track import GrooveTrack
 from sonolube.models.surfaces.grooves.unworn_reference import UnwornReference, unworn_reference
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 
-_MOST_ITERATIONS = 3
+_MAX_ITERATIONS = 3
 _SHOULDER = 0.25  # of the width, left out of the reference on either side
 _MARGIN = 0.04  # of the width, beyond ridges
 _SPIKE = 8.0  # height of debris and dust over the standard deviation of the unworn surface
@@ -165,7 +165,7 @@ def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Gr
     transverse, _ = track.curvilinear_coordinates(surface)
     band = _worn_band(_detected_extent(detected, transverse), transverse)
     excluded = np.zeros(surface.height.shape, dtype=np.bool_)
-    for iteration in range(_MOST_ITERATIONS):
+    for iteration in range(_MAX_ITERATIONS):
         reference = unworn_reference(surface, track=track, worn_band=band, excluded=excluded)
         levelled = surface.with_height(surface.height - reference.surface.height)
         track = reference.refined_track(track)

@@ -22,9 +22,9 @@ from sonolube.models.surfaces.height_map import HeightMap, Mask
 
 __all__: list[str] = []  # used in this room only
 
-_LEAST_SCALE, _LARGEST_SCALE = 0.1, 4.0  # of the floor's roughness over that of the surface
-_LEAST_EIGENVALUE = 1e-3  # of a covariance over the mean of them
-_LEAST_PIXELS = 0.15  # of a bin, over those of the fullest, to count in the section
+_MIN_SCALE, _LARGEST_SCALE = 0.1, 4.0  # of the floor's roughness over that of the surface
+_MIN_EIGENVALUE = 1e-3  # of a covariance over the mean of them
+_MIN_PIXELS = 0.15  # of a bin, over those of the fullest, to count in the section
 
 
 class Estimate(NamedTuple):
@@ -86,19 +86,11 @@ class GrooveErrors:
         residual = np.where(counted, levelled.height - section.at(transverse), 0.0)
         floor, outer = (_mean_square(cells, residual, counted & part) for part in (worn, beside))
         scale = math.sqrt(floor / outer) if outer > 0 and floor > 0 else 1.0
-        scale = min(max(scale, _LEAST_SCALE), _LARGEST_SCALE)
+        scale = min(max(scale, _MIN_SCALE), _LARGEST_SCALE)
         return cls(levelled, reference, transverse, arc_length, section, cells, covariance, scale)
 
     def half_width(self, direct: Floats, *further: float) -> tuple[float, float]:
-        """Standard uncertainty and 95 % half-width of a sum of heights over the groove, above the reference.
-
-        Parameters
-        ----------
-        direct : ndarray, shape of the heights
-            Weights of the heights over the groove, which also weigh the reference.
-        further : float
-            Independent standard uncertainties to add.
-        """
+        """Standard uncertainty and 95 % half-width of a sum of heights over the groove, above the reference."""
         weights = self.floor_scale * direct - self.reference.pixel_weights(direct)
         return self._combined(weights, self.reference.deviation_between_models(direct), *further)
 
@@ -152,7 +144,7 @@ class GrooveErrors:
         matrix = toeplitz(row_of_lag) * np.outer(inner, inner)
         matrix[np.diag_indices(size)] += self.covariance.noise_of_pixel / np.maximum(count[chosen], 1.0)
         values, vectors = np.linalg.eigh(matrix)  # lags beyond the field leave it slightly indefinite
-        values = np.maximum(values, _LEAST_EIGENVALUE * values.mean())
+        values = np.maximum(values, _MIN_EIGENVALUE * values.mean())
         return np.asarray(self.floor_scale**2 * (vectors * values) @ vectors.T)
 
     @property
@@ -166,7 +158,7 @@ class GrooveErrors:
 def section_estimates(errors: GrooveErrors, edges: GrooveExtent) -> tuple[GrooveExtent, Estimate, Estimate] | None:
     """Edges, width and depth of the mean section with their uncertainty; None where too few points lie within."""
     section = errors.section
-    chosen = (section.pixels >= _LEAST_PIXELS * section.pixels.max()) & np.isfinite(section.height)
+    chosen = (section.pixels >= _MIN_PIXELS * section.pixels.max()) & np.isfinite(section.height)
     margin = 3 * section.step
     chosen &= (section.transverse > edges.left - margin) & (section.transverse < edges.right + margin)
     if np.count_nonzero(chosen) < 8:

@@ -14,16 +14,7 @@ _DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute devia
 
 
 def without_outliers(surface: HeightMap) -> HeightMap:
-    """Scan with outliers of one or two pixels as missing ones.
-
-    Parameters
-    ----------
-    surface : HeightMap
-
-    Returns
-    -------
-    HeightMap
-    """
+    """Scan with outliers of one or two pixels as missing ones."""
     measured = surface.measured
     share = uniform_filter(measured.astype(np.float64), 5)
     mean = uniform_filter(np.where(measured, surface.height, 0.0), 5) / np.maximum(share, 0.01)

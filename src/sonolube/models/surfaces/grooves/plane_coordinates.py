@@ -10,16 +10,7 @@ from sonolube.models.surfaces.height_map import HeightMap, Mask
 def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
     """Positions of columns and rows relative to the centre of the field.
 
-    Parameters
-    ----------
-    surface : HeightMap
-
-    Returns
-    -------
-    x : ndarray, shape (1, columns)
-        Positions of the columns, in m.
-    y : ndarray, shape (rows, 1)
-        Positions of the rows, in m.
+    `x`: Positions of the columns, in m. `y`: Positions of the rows, in m.
     """
     rows, columns = surface.height.shape
     x = surface.x - surface.spacing_x * (columns - 1) / 2
@@ -30,24 +21,9 @@ def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
 def arc_coordinates(x: Floats, y: Floats, direction: float | Floats, curvature: float) -> tuple[Floats, Floats]:
     r"""Curvilinear coordinates of points with respect to a circle through the origin.
 
-    Parameters
-    ----------
-    x, y : ndarray
-        Cartesian coordinates that broadcast against each other, in m.
-    direction : float or ndarray
-        Direction of the circle at the origin, in rad; an array broadcasts against the coordinates.
-    curvature : float
-        Curvature of the circle in 1/m, positive for a centre to the left; zero for a line.
+    `transverse`: Distance from the circle in m, positive to the left of its direction. `arc_length`: Length along the
+    circle from the origin to the foot of the point, in m.
 
-    Returns
-    -------
-    transverse : ndarray, shape of the broadcast points
-        Distance from the circle in m, positive to the left of its direction.
-    arc_length : ndarray, shape of the broadcast points
-        Length along the circle from the origin to the foot of the point, in m.
-
-    Notes
-    -----
     With the coordinates :math:`a` ahead and :math:`l` to the left of the origin and the curvature :math:`\kappa`
 
     .. math:: s = \frac{2 l - \kappa (l^2 + a^2)}{1 + \sqrt{(1 - \kappa l)^2 + (\kappa a)^2}}, \qquad
@@ -65,19 +41,7 @@ def arc_coordinates(x: Floats, y: Floats, direction: float | Floats, curvature: 
 
 
 def monomials(u: Floats, v: Floats, terms: int) -> list[Floats]:
-    """First monomials 1, u, v, u^2, u v and v^2 of two coordinates.
-
-    Parameters
-    ----------
-    u, v : ndarray
-        Coordinates that broadcast against each other.
-    terms : int
-        Number of monomials, 6 at most.
-
-    Returns
-    -------
-    list of ndarray
-    """
+    """First monomials 1, u, v, u^2, u v and v^2 of two coordinates."""
     return [np.ones_like(u + v), u + 0 * v, v + 0 * u, u**2 + 0 * v, u * v, v**2 + 0 * u][:terms]
 
 

@@ -12,12 +12,12 @@ from sonolube.models.surfaces.grooves.blocks import SHORTEST_RELATIVE_WAVELENGTH
 from sonolube.models.surfaces.grooves.waviness_model import WavinessModel
 from sonolube.models.surfaces.height_map import Mask
 
-_MOST_WAVES = 4
+_MAX_WAVES = 4
 _LONGEST = 3.0  # wavelength over the longer side: longer ones are form
 _HIGHEST = 5.0  # amplitude over the standard deviation of the unworn blocks: higher waves cancel each other
 _NEWTON_STEPS = 15
 _CONVERGED = 1e-4  # change of the misfit, in variances of the noise
-_LEAST_NOISE = 1e-6  # over the standard deviation of the unworn blocks
+_MIN_NOISE = 1e-6  # over the standard deviation of the unworn blocks
 _ROUNDING = 1e-12
 _IMPROBABLE = 12.0  # cost above the least: a likelihood ratio of 1/400
 _DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
@@ -29,7 +29,7 @@ def _noise_of_neighbours(blocks: BlockAverages) -> tuple[float, ...]:
     scale = (_DEVIATION_OVER_MEDIAN**2) / 20  # variance of the third difference of noise is 20 times its own
     differences = (np.diff(blocks.mean_height[part], 3) for part in blocks.parts)
     return tuple(
-        max(scale * float(np.median(np.abs(part))) ** 2 if part.size else 0.0, (_LEAST_NOISE * blocks.deviation) ** 2)
+        max(scale * float(np.median(np.abs(part))) ** 2 if part.size else 0.0, (_MIN_NOISE * blocks.deviation) ** 2)
         for part in differences
     )
 
@@ -100,17 +100,6 @@ class PlaneWaveSearch:
     def stepwise(self, starts: int = _STARTS) -> PlaneWaves:
         """Up to four plane waves of any direction and length, with the number chosen by evidence.
 
-        Parameters
-        ----------
-        starts : int
-            Local maxima of the explained misfit from which each further wave is refined.
-
-        Returns
-        -------
-        PlaneWaves
-
-        Notes
-        -----
         Waves are added one by one. Each starts from the Fourier modes that reduce the misfit most, and all wavenumbers
         and amplitudes are refined together by Gauss-Newton steps. A wave is kept if it lowers the Bayesian information
         criterion, in which it counts four parameters.
@@ -118,11 +107,11 @@ class PlaneWaveSearch:
         (best,) = self._refined([np.empty((0, 2))])
         fits = [best]
         sufficient = False
-        for _ in range(_MOST_WAVES + 1):
+        for _ in range(_MAX_WAVES + 1):
             gain = self._misfit_reduction(best.residual) / float(np.mean(best.residual**2))
             # half of what a wave costs, for the best one may lie between two modes
             sufficient = bool(gain.max() < 2 * math.log(best.residual.size))
-            if sufficient or len(best.modes) == _MOST_WAVES:
+            if sufficient or len(best.modes) == _MAX_WAVES:
                 break
             modes = _local_maxima(self._candidates, gain)[:starts]
             extended = self._refined([np.vstack([best.modes, mode]) for mode in modes])
@@ -135,16 +124,7 @@ class PlaneWaveSearch:
         return PlaneWaves([distinct[cost] for cost in sorted(distinct)], sufficient)
 
     def models(self, waves: PlaneWaves) -> list[WavinessModel]:
-        """Waviness models of fits, with form, section and response.
-
-        Parameters
-        ----------
-        waves : PlaneWaves
-
-        Returns
-        -------
-        list of WavinessModel
-        """
+        """Waviness models of fits, with form, section and response."""
         return [self._model(fit) for fit in waves.fits]
 
     @cached_property

@@ -11,9 +11,9 @@ from sonolube.models.surfaces.grooves.blocks import HEIGHT_RESOLUTION, BlockAver
 from sonolube.models.surfaces.grooves.waviness_model import WavinessModel
 
 _RINGS = 6  # of wavenumber, each with a spectral density of its own
-_MOST_ITERATIONS = 40
+_MAX_ITERATIONS = 40
 _CONVERGED = 0.02  # change of the logarithm of a spectral density
-_LEAST_VARIANCE = 1e-10  # of a mode over that of the noise
+_MIN_VARIANCE = 1e-10  # of a mode over that of the noise
 _NEGLIGIBLE = 1e-6  # variance of a mode over that of the noise, below which it need not converge
 _VAGUE = 100.0  # variance of the square terms of the form over that of the blocks: a curvature is not shrunk
 _ROUNDING = 1e-12
@@ -22,22 +22,10 @@ _ROUNDING = 1e-12
 def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     """Waviness model as the posterior mean of a Gaussian random field, with spectrum and noise of greatest evidence.
 
-    Parameters
-    ----------
-    blocks : BlockAverages
-
-    Returns
-    -------
-    WavinessModel
-
-    Notes
-    -----
     The spectral density is constant over rings of wavenumber and estimated with the noise by MacKay's fixed-point
-    iteration of the evidence [1]_.
+    iteration of the evidence
 
-    References
-    ----------
-    .. [1] D. J. C. MacKay, Neural Comput. 4, 415 (1992). doi:10.1162/neco.1992.4.3.415
+    Source: D. J. C. MacKay, Neural Comput. 4, 415 (1992). doi:10.1162/neco.1992.4.3.415
     """
     modes = blocks.modes()
     count, free = len(modes), 3 + blocks.section.shape[1]
@@ -53,7 +41,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     noise = np.array([part.square / part.blocks for part in parts])  # worn blocks may vary more: unworn ones dominate
     noise[0] = scale**2 / 10
     bound = np.arange(free, design.shape[1])
-    for _ in range(_MOST_ITERATIONS):
+    for _ in range(_MAX_ITERATIONS):
         prior, pairs = 1 / density[rings], list(zip(parts, noise, strict=True))
         precision = sum(part.gram / variance for part, variance in pairs)
         precision[np.diag_indices(free)] *= 1 + _ROUNDING
@@ -63,7 +51,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         used_noise, previous = noise, density
         freedom = np.bincount(rings, 1 - prior * np.diag(covariance)[free:], minlength=_RINGS)
         power = np.bincount(rings, mean[free:] ** 2, minlength=_RINGS)
-        density = np.maximum(power / np.maximum(freedom, 1e-9), _LEAST_VARIANCE * noise[0])
+        density = np.maximum(power / np.maximum(freedom, 1e-9), _MIN_VARIANCE * noise[0])
         density[_RINGS] = _VAGUE * scale**2
         effective = [float(np.sum(covariance * part.gram)) / variance for part, variance in pairs]
         noise = np.array([part.variance(mean, used, scale) for part, used in zip(parts, effective, strict=True)])

@@ -15,7 +15,7 @@ from sonolube.models.surfaces.height_map import HeightMap, Mask
 __all__: list[str] = []  # used in this room only
 
 _CELLS = 110  # along the longer side
-_LEAST_FILLED = 0.5  # fraction of a cell's pixels
+_MIN_FILLED = 0.5  # fraction of a cell's pixels
 _LOWEST = 1.01  # periods in the field, of the waves that the removal of the form takes away
 _HIGHEST = 0.75  # of the cells' Nyquist wavenumber: aliases distort shorter waves
 _ITERATIONS, _CONVERGED = 25, 1e-3  # of Fisher's scoring; change of the parameters
@@ -23,7 +23,7 @@ _STEP = 1e-3  # of a parameter, for derivatives
 _LARGEST_STEP = 0.7
 _PRIOR = np.array([0.0, 0.0, 0.0, 0.0, 4.0, 0.02])  # precision about the starting values, for what the map leaves free
 _EXPONENT = 0.8  # expected, of Hurst
-_LEAST_NOISE = 1e-6  # variance of the cells' noise over that of the cells
+_MIN_NOISE = 1e-6  # variance of the cells' noise over that of the cells
 _HIGHEST_EXPONENT = 6.0
 
 
@@ -57,16 +57,10 @@ class RoughnessCovariance:
     def products(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
         """Covariance of two weighted sums of heights, and its derivatives with respect to the parameters.
 
-        Parameters
-        ----------
-        first, second : ndarray, shape (n, cell rows, cell columns)
-            Weights of the sums over the cells.
+        `first, second` has shape (n, cell rows, cell columns).
 
-        Returns
-        -------
-        covariance : ndarray, shape (n,)
-            Of the first with the second sums, in m2 times the square of the weights' unit, without the noise.
-        derivatives : ndarray, shape (n, 5)
+        `covariance`: Of the first with the second sums, in m2 times the square of the weights' unit, without the noise.
+        `derivatives` has shape (n, 5).
         """
         shape = _padded(first.shape[1:])
         cross = fft.rfft2(first, shape) * np.conj(fft.rfft2(second, shape))
@@ -131,7 +125,7 @@ class Cells:
     def means(self, height: Floats, counted: Mask) -> tuple[Floats, Mask]:
         """Means of the counted pixels of each cell, zero where too few are, and mask of the cells with enough."""
         count = self.sums(counted.astype(np.float64))
-        filled = count >= _LEAST_FILLED * self.pixels_per_cell
+        filled = count >= _MIN_FILLED * self.pixels_per_cell
         total = self.sums(np.where(counted, height, 0.0))
         return np.where(filled, total / np.maximum(count, 1.0), 0.0), filled
 
@@ -139,27 +133,13 @@ class Cells:
 def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> RoughnessCovariance:
     """Covariance of the roughness from the unworn pixels of a map, by maximum likelihood.
 
-    Parameters
-    ----------
-    cells : Cells
-    random_part : ndarray, shape (rows, columns)
-        Heights above form and waves, in m.
-    counted : bool array, shape of the heights
-        Unworn pixels.
+    `random_part` has shape (rows, columns).
 
-    Returns
-    -------
-    RoughnessCovariance
-
-    Notes
-    -----
     The periodogram of the masked map is compared with its expectation, the transform of the covariance times the
-    autocorrelation of the mask, so that neither mask nor border biases the spectrum [1]_. Waves of one period in the
+    autocorrelation of the mask, so that neither mask nor border biases the spectrum Waves of one period in the
     field and longer, which the removal of the form takes away, do not count.
 
-    References
-    ----------
-    .. [1] A. P. Guillaumin et al., J. R. Stat. Soc. B 84, 1526 (2022). doi:10.1111/rssb.12539
+    Source: A. P. Guillaumin et al., J. R. Stat. Soc. B 84, 1526 (2022). doi:10.1111/rssb.12539
     """
     mean, mask = cells.means(random_part, counted)
     mean = np.where(mask, mean - mean[mask].mean(), 0.0)
@@ -194,7 +174,7 @@ def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> Ro
                 math.log(0.05 * variance),
             ]
         )
-        found = _scored(start, without_noise, periodogram, weight, floor, math.log(_LEAST_NOISE * variance))
+        found = _scored(start, without_noise, periodogram, weight, floor, math.log(_MIN_NOISE * variance))
         if best is None or found[0] < best[0]:
             best = found
     assert best is not None

@@ -14,13 +14,13 @@ __all__: list[str] = []  # used in this room only
 
 _FLANK = 0.06  # of the depth, above which points near the edges are left out of the fit
 _PASSES = 3
-_LEAST_POINTS = 5
+_MIN_POINTS = 5
 _DRAWS, _SEED = 300, 20_250_101
-_LEAST_SLOPE, _LARGEST_SLOPE = 0.6, 2.5  # of a flank at its edge, over its mean
+_MIN_SLOPE, _LARGEST_SLOPE = 0.6, 2.5  # of a flank at its edge, over its mean
 _FINE = 161  # points of the curve
 _FLANK_END = 0.75  # of the depth, down to which points belong to the flank
 _FLOOR = 0.7  # of the depth, from which points belong to the floor
-_LEAST_FLANK = 8  # points, of flank or floor
+_MIN_FLANK = 8  # points, of flank or floor
 _CORRECTIONS = 2  # of the depth for the excess of the deepest of noisy points, by the draws; one leaves half of it
 _JITTER = 1e-6  # of the variance
 
@@ -46,39 +46,23 @@ def section_curve(
 ) -> SectionCurve | None:
     """Edges and depth of the smooth section through mean heights with correlated errors.
 
-    Parameters
-    ----------
-    s, z : ndarray, shape (n,)
-        Distances and mean heights, in m.
-    covariance : ndarray, shape (n, n)
-        Of the errors of the mean heights, in m2.
-    edges : tuple of float
-        First estimates of the edges, in m.
-    cut : tuple of bool
-        Whether the groove extends beyond the field at the left and at the right; its end is taken as it is there.
+    `covariance` has shape (n, n).
 
-    Returns
-    -------
-    SectionCurve or None
-        None where fewer than five points lie between the edges.
+    None where fewer than five points lie between the edges.
 
-    Notes
-    -----
-    The section is a smoothing spline, whose smoothness is that of greatest restricted likelihood [1]_ under the given
+    The section is a smoothing spline, whose smoothness is that of greatest restricted likelihood under the given
     covariance: quintic over the whole and over each flank, cubic over the floor. Its edges are zeros extrapolated from
     the flanks, so that neither noise nor a ridge beyond the edge shifts them. Standard deviations are those of draws
     from the posterior distribution; that of the depth includes the difference between floor and whole.
 
-    References
-    ----------
-    .. [1] G. Wahba, Ann. Stat. 13, 1378 (1985). doi:10.1214/aos/1176349743
+    Source: G. Wahba, Ann. Stat. 13, 1378 (1985). doi:10.1214/aos/1176349743
     """
     noise = math.sqrt(float(np.median(np.diag(covariance))))
     left, right = edges
     fitted: tuple[tuple[Floats, Floats, Floats], Floats, list[_Edge | None]] | None = None
     for _ in range(_PASSES):
         inside = (s > left) & (s < right)
-        if np.count_nonzero(inside) < _LEAST_POINTS:
+        if np.count_nonzero(inside) < _MIN_POINTS:
             break
         points = s[inside], z[inside], covariance[np.ix_(inside, inside)]
         mirrored = -points[0][::-1], points[1][::-1], points[2][::-1, ::-1]
@@ -113,10 +97,10 @@ class _Edge(NamedTuple):
     def of(cls, s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: float) -> "_Edge":
         """Edge before the first of the points, by a spline through those of its flank."""
         deep = np.flatnonzero(heights < -_FLANK_END * depth)
-        count = max(min(_LEAST_FLANK, s.size), int(deep[0]) + 1 if deep.size else s.size)
+        count = max(min(_MIN_FLANK, s.size), int(deep[0]) + 1 if deep.size else s.size)
         flank = _Spline.of(s[:count], z[:count], covariance[:count, :count], _integrated_thrice)
         secant = float(heights[0] - heights[count - 1]) / float(s[count - 1] - s[0])
-        outermost = float(s[0] + heights[0] / (_LEAST_SLOPE * secant))
+        outermost = float(s[0] + heights[0] / (_MIN_SLOPE * secant))
         return cls(flank, outermost, float(s[0]), float(s[count - 1]), secant)
 
     @property
@@ -131,7 +115,7 @@ class _Edge(NamedTuple):
     def slope(self, step: float) -> float:
         """Slope of the flank over two steps in m from its zero, per metre."""
         slope = abs(float(np.diff(self.flank.at(self.place + np.array([0.0, 2 * step])))[0])) / (2 * step)
-        return min(max(slope, _LEAST_SLOPE * self.secant), _LARGEST_SLOPE * self.secant)
+        return min(max(slope, _MIN_SLOPE * self.secant), _LARGEST_SLOPE * self.secant)
 
     @property
     def _outwards(self) -> Floats:
@@ -151,8 +135,8 @@ def _floor(s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: flo
     """Spline of the floor, which may be less smooth than the flanks, and positions along it."""
     deep = np.flatnonzero(heights < -_FLOOR * depth)
     middle = (int(deep[0]) + int(deep[-1])) // 2
-    first = max(0, min(int(deep[0]), middle - _LEAST_FLANK // 2))
-    last = min(s.size, max(int(deep[-1]) + 1, middle + _LEAST_FLANK // 2))
+    first = max(0, min(int(deep[0]), middle - _MIN_FLANK // 2))
+    last = min(s.size, max(int(deep[-1]) + 1, middle + _MIN_FLANK // 2))
     part = slice(first, last)
     spline = _Spline.of(s[part], z[part], covariance[part, part], _integrated_twice)
     return spline, np.linspace(s[first], s[last - 1], _FINE)

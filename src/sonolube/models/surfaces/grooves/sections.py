@@ -13,9 +13,9 @@ from sonolube.errors import NoGroove
 from sonolube.models.surfaces.grooves.track import GrooveTrack
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 
-_LEAST_PIXELS = 0.02  # of a bin, over those of the fullest
+_MIN_PIXELS = 0.02  # of a bin, over those of the fullest
 _SIGNIFICANT = 4.0  # height over the standard deviation of the mean section beside the groove
-_LEAST_FRACTION = 0.005  # of the depth, from which a height counts as worn or piled up
+_MIN_FRACTION = 0.005  # of the depth, from which a height counts as worn or piled up
 _ROUNDING = 1e-4  # of the depth
 _GAP = 5  # pixels, largest between edge and ridge
 
@@ -84,21 +84,7 @@ class GrooveExtent(NamedTuple):
 
 
 def mean_cross_section(levelled: HeightMap, transverse: Floats, counted: Mask) -> MeanCrossSection:
-    """Mean cross-section: means of the heights over pixels of equal distance from the track.
-
-    Parameters
-    ----------
-    levelled : HeightMap
-        Heights above the unworn surface.
-    transverse : ndarray, shape of the heights
-        Distance of each pixel from the track, in m.
-    counted : bool array, shape of the heights
-        Pixels to average.
-
-    Returns
-    -------
-    MeanCrossSection
-    """
+    """Mean cross-section: means of the heights over pixels of equal distance from the track."""
     step = max(levelled.spacing_x, levelled.spacing_y)
     first = math.floor(float(transverse.min()) / step)
     bins = np.floor(transverse / step).astype(np.intp) - first
@@ -114,29 +100,13 @@ def mean_cross_section(levelled: HeightMap, transverse: Floats, counted: Mask) -
 
 
 def groove_extent(section: MeanCrossSection, worn_band: tuple[float, float]) -> GrooveExtent:
-    """Edges of the groove and outer ends of its ridges, from the mean cross-section.
-
-    Parameters
-    ----------
-    section : MeanCrossSection
-    worn_band : tuple of float
-        Distances in m between which the surface may be worn; outside, the scatter of the mean heights is estimated.
-
-    Returns
-    -------
-    GrooveExtent
-
-    Raises
-    ------
-    NoGroove
-        If the mean section is nowhere significantly below the unworn surface.
-    """
-    populated = section.pixels >= _LEAST_PIXELS * section.pixels.max()
+    """Edges of the groove and outer ends of its ridges, from the mean cross-section."""
+    populated = section.pixels >= _MIN_PIXELS * section.pixels.max()
     s, z = section.transverse[populated], section.height[populated]
     band = (s > worn_band[0]) & (s < worn_band[1])
     deviation = math.sqrt(float(np.mean(z[~band] ** 2))) if np.any(~band) else 0.0
     depth = -float(np.min(z[band], initial=0.0))
-    least = max(_SIGNIFICANT * deviation, _LEAST_FRACTION * depth)
+    least = max(_SIGNIFICANT * deviation, _MIN_FRACTION * depth)
     low = np.flatnonzero(band & (z < -least))
     if not low.size:
         raise NoGroove(
@@ -159,22 +129,7 @@ def groove_extent(section: MeanCrossSection, worn_band: tuple[float, float]) -> 
 def cross_sections(
     levelled: HeightMap, track: GrooveTrack, *, reach: tuple[float, float], sections: int | None = None
 ) -> CrossSections:
-    """Cross-sections perpendicular to the track, at every arc length at which one crosses the field.
-
-    Parameters
-    ----------
-    levelled : HeightMap
-        Heights above the unworn surface.
-    track : GrooveTrack
-    reach : tuple of float
-        Distances from the track in m between which they extend.
-    sections : int, optional
-        Number of sections; one per pixel by default.
-
-    Returns
-    -------
-    CrossSections
-    """
+    """Cross-sections perpendicular to the track, at every arc length at which one crosses the field."""
     transverse, arc_length = track.curvilinear_coordinates(levelled)
     near = (transverse >= reach[0]) & (transverse <= reach[1])
     step = max(levelled.spacing_x, levelled.spacing_y)

@@ -13,15 +13,15 @@ from sonolube.models.surfaces.grooves.groove import Groove
 from sonolube.models.surfaces.grooves.sections import cross_sections
 
 _PADDING = 8  # zero padding of the profiles
-_LEAST_PERIODS = 2.0  # in the track
+_MIN_PERIODS = 2.0  # in the track
 _POINTS_PER_PERIOD = 2.5
-_LEAST_MEASURED = 0.5  # fraction of the profiles at a point
+_MIN_MEASURED = 0.5  # fraction of the profiles at a point
 _CANDIDATES = 8  # local maxima of the spectrum that are compared
 _LOBE = 2.0  # width of a peak of the spectrum over the resolution
 _FALSE_ALARMS = 0.01  # probability of a spacing where there are no marks
 _TRIALS_PER_RESOLUTION = 2.0  # independent heights of a spectrum of tapered profiles, per resolution
 _ROLL_OFFS = 24  # lengths of the background's roll-off that are tried
-_NEIGHBOURS, _LEAST_NEIGHBOURS = 12, 6  # resolutions beside a peak that give the freedom of the spectrum
+_NEIGHBOURS, _MIN_NEIGHBOURS = 12, 6  # resolutions beside a peak that give the freedom of the spectrum
 _RESOLUTIONS_PER_HEIGHT = 1.5  # of a spectrum of tapered profiles
 
 
@@ -108,7 +108,7 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     spectra = fft.rfft(profiles * window, size, axis=1) * math.sqrt(step / float(np.sum(window**2)))
     power = np.mean(np.abs(spectra) ** 2, axis=0)
     k = fft.rfftfreq(size, step)
-    resolved = (k >= _LEAST_PERIODS / length) & (k <= 1 / (_POINTS_PER_PERIOD * step))
+    resolved = (k >= _MIN_PERIODS / length) & (k <= 1 / (_POINTS_PER_PERIOD * step))
     k, power, spectra = k[resolved], power[resolved], spectra[:, resolved]
     if k.size < 3 * _PADDING or not np.any(power > 0):
         track = f"a track of {length:.2g} m with points every {step:.2g} m"
@@ -154,7 +154,7 @@ def _longitudinal_profiles(groove: Groove, width_fraction: float, averaged_point
     shape = (-1, min(averaged_points, len(height)), height.shape[1])
     count = measured.reshape(shape).sum(axis=1)
     profiles = np.where(measured, height, 0.0).reshape(shape).sum(axis=1) / np.maximum(count, 1)
-    whole = np.flatnonzero(np.mean(count > 0, axis=0) > _LEAST_MEASURED)
+    whole = np.flatnonzero(np.mean(count > 0, axis=0) > _MIN_MEASURED)
     if whole.size < 2:
         raise InvalidInput("too little of the groove's floor was measured for a spectrum along it")
     profiles, count = profiles[:, whole[0] : whole[-1] + 1], count[:, whole[0] : whole[-1] + 1]
@@ -188,7 +188,7 @@ def _false_alarm(k: Floats, ratio: Floats, spectra: Floats, top: int, length: fl
     away = np.abs(k - k[top]) * length
     beside = np.flatnonzero(away > _LOBE)
     near = np.sort(beside[np.argsort(np.abs(np.log(k[beside] / k[top])))][: _NEIGHBOURS * _PADDING])
-    if near.size < _LEAST_NEIGHBOURS * _PADDING:
+    if near.size < _MIN_NEIGHBOURS * _PADDING:
         return 1.0
     count = near.size / _PADDING / _RESOLUTIONS_PER_HEIGHT  # independent ones
     normal = spectra[:, near]

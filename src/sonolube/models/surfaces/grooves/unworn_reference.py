@@ -45,17 +45,7 @@ class UnwornReference:
         return float(np.std(self.models[0].heights(x, y) - self.models[0].form_alone(x, y)))
 
     def refined_track(self, track: GrooveTrack) -> GrooveTrack:
-        """Track with direction and curvature corrected by the fit, so that one section fits along all of it.
-
-        Parameters
-        ----------
-        track : GrooveTrack
-            Track to which the reference was fitted.
-
-        Returns
-        -------
-        GrooveTrack
-        """
+        """Track with direction and curvature corrected by the fit, so that one section fits along all of it."""
         section = self.models[0].section
         if not section.size:
             return track
@@ -70,16 +60,7 @@ class UnwornReference:
         return bool(self.models[0].cost + free_section < wavy.cost)
 
     def pixel_weights(self, weights: Floats) -> Floats:
-        """Derivatives of a weighted sum of the reference's heights with respect to the heights of the scan.
-
-        Parameters
-        ----------
-        weights : ndarray, shape of the heights
-
-        Returns
-        -------
-        ndarray, shape of the heights
-        """
+        """Derivatives of a weighted sum of the reference's heights with respect to the heights of the scan."""
         x, y = centred_coordinates(self.surface)
         probable = model_probabilities(self.models)
         of_blocks = sum(
@@ -90,17 +71,7 @@ class UnwornReference:
         return self.blocks.pixel_weights(np.asarray(of_blocks))
 
     def track_pixel_weights(self, lever: tuple[float, float]) -> Floats:
-        """Derivatives of a distance from the track with respect to the heights of the scan.
-
-        Parameters
-        ----------
-        lever : tuple of float
-            Derivatives of that distance with respect to the rotation of the track, in m, and its curvature, in m2.
-
-        Returns
-        -------
-        ndarray, shape of the heights
-        """
+        """Derivatives of a distance from the track with respect to the heights of the scan."""
         response = self.models[0].section_response[-2:]
         longer = self.blocks.longer_side
         return self.blocks.pixel_weights(np.array([lever[0] / longer, lever[1] / longer**2]) @ response)
@@ -125,36 +96,13 @@ def unworn_reference(
 ) -> UnwornReference:
     """Unworn reference surface of a scan with a groove, by Bayesian averaging of waviness models.
 
-    Parameters
-    ----------
-    surface : HeightMap
-    track : GrooveTrack
-        Centre line of the groove.
-    worn_band : tuple of float
-        Distances from the track in m between which the surface is worn or piled up.
-    excluded : bool array, shape of the heights, optional
-        Pixels to leave out, such as debris.
-
-    Returns
-    -------
-    UnwornReference
-
-    Raises
-    ------
-    InvalidInput
-        If too little of the surface is unworn to determine a plane.
-
-    Notes
-    -----
     Two kinds of waviness models are averaged with weights proportional to their evidence: up to four plane waves of any
     length above a sixth of the field, which extend coherently below the groove (`PlaneWaveSearch`), and a Gaussian
     random field (`fit_random_field`), whose part that the unworn pixels do not determine contributes to the
     uncertainty. Both are also fitted to the worn pixels: a groove of constant section hides only waves across it, so
     that variations along it are used, weighted by how constant the section is.
 
-    References
-    ----------
-    .. [1] D. J. C. MacKay, Neural Comput. 4, 415 (1992). doi:10.1162/neco.1992.4.3.415
+    Source: D. J. C. MacKay, Neural Comput. 4, 415 (1992). doi:10.1162/neco.1992.4.3.415
     """
     transverse, _ = track.curvilinear_coordinates(surface)
     unworn = (transverse <= worn_band[0]) | (transverse >= worn_band[1])

@@ -21,7 +21,7 @@ from sonolube.rig import AMPLITUDE, Rig, operating_caveats
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
-_LEAST_GAIN_MARGIN = 1.7  # lower limit of textbooks
+_MIN_GAIN_MARGIN = 1.7  # lower limit of textbooks
 _NO_VOLTAGE = (
     "the rig has no voltage: resonance, its tracking and warming, and electrical energy are those of the generator that"
     " holds the amplitude, and are not computed"
@@ -111,7 +111,7 @@ def caveats(rig: Rig, study: ControlDesign) -> list[str]:
     found = list(operating_caveats(rig))
     if study.plant.quantity is AMPLITUDE:
         found.append(_NO_VOLTAGE)
-    if study.margins.gain_margin < _LEAST_GAIN_MARGIN:
+    if study.margins.gain_margin < _MIN_GAIN_MARGIN:
         verdict = "is unstable" if study.margins.gain_margin < 1 else "is near instability"
         cause = f"real friction changes {study.plant_gain:.3g} times as the controller expects"
         found.append(f"the loop {verdict} at the target, where {cause}: ask for a slower closed loop")

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from sonolube.design import map_layout
-from sonolube.design.gaussian_process import FEWEST_RUNS
+from sonolube.design.gaussian_process import MIN_RUNS
 from sonolube.design.map_layouts import panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.report.blocks import Block, Rows
@@ -89,7 +89,7 @@ def _run_facts(runs: "xr.Dataset | None", interpolated: "xr.Dataset | None") -> 
         return []
     count = f"{runs.sizes['run']}"
     if interpolated is None:
-        return [("measured runs", f"{count}; {FEWEST_RUNS} make a map of their own")]
+        return [("measured runs", f"{count}; {MIN_RUNS} make a map of their own")]
     scatter, error = (100 * float(interpolated.attrs[name]) for name in ("scatter", "leave_one_out_error"))
     text = f"scatter {scatter:.2g} % about a smooth map, leave-one-out error {error:.2g} %"
     return [("measured runs", f"{count}; {text}")]

@@ -11,19 +11,7 @@ if TYPE_CHECKING:
 
 
 def status_tables(points: "xr.Dataset", failures: Mapping[str, int]) -> list[PageTable]:
-    """Number of points of each status, and of those without a result by reason, where there are any.
-
-    Parameters
-    ----------
-    points : xarray.Dataset
-        With `status`.
-    failures : mapping of str to int
-        Number of points without a result, by the reason.
-
-    Returns
-    -------
-    list of PageTable
-    """
+    """Number of points of each status, and of those without a result by reason, where there are any."""
     tables = [count_table("Points by status", "points", status_counts(points))]
     if failures:
         rows = tuple((reason, f"{count}") for reason, count in failures.items())
@@ -37,21 +25,7 @@ def failure_objects(failures: Mapping[str, int]) -> list[dict[str, Any]]:
 
 
 def count_table(title: str, counted: str, counts: Mapping[str, int], *, total: int | None = None) -> PageTable:
-    """Counts by status with their fractions.
-
-    Parameters
-    ----------
-    title : str
-    counted : str
-        Plural of what is counted, such as "points".
-    counts : mapping of str to int
-    total : int, optional
-        Of which the fractions are; the sum of the counts where absent.
-
-    Returns
-    -------
-    PageTable
-    """
+    """Counts by status with their fractions."""
     whole = sum(counts.values()) if total is None else total
     rows = tuple((name, f"{count}", f"{count / whole:.1%}") for name, count in counts.items())
     return PageTable(title=title, heads=("status", counted, "share"), rows=rows)

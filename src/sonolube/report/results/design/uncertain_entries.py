@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-_LEAST_TRUNCATION = 1e-4  # fraction of a distribution that is cut off, from which on it is printed
-_LEAST_EXPONENT = 0.1  # of a parameter in a free direction, from which on it is printed
+_MIN_TRUNCATION = 1e-4  # fraction of a distribution that is cut off, from which on it is printed
+_MIN_EXPONENT = 0.1  # of a parameter in a free direction, from which on it is printed
 
 
 def distributions(rig: Rig, result: "xr.Dataset", structure: IdentifiedStructure | None) -> dict[str, Distribution]:
@@ -30,7 +30,7 @@ def entry_rows(rig: Rig, result: "xr.Dataset", structure: IdentifiedStructure | 
     rows = []
     for key, law in distributions(rig, result, structure).items():
         cut = law.truncated_fraction
-        remark = f"; {cut:.1%} of it is impossible and cut off" if cut > _LEAST_TRUNCATION else ""
+        remark = f"; {cut:.1%} of it is impossible and cut off" if cut > _MIN_TRUNCATION else ""
         rows.append((key, f"{law.text}{remark}"))
     if structure is None:
         return rows
@@ -48,9 +48,7 @@ def free_lines(structure: IdentifiedStructure | None) -> list[str]:
         return []
     lines = []
     for direction in structure.unidentifiable_directions:
-        exponents = {
-            name: exponent for name, exponent in direction.exponents.items() if abs(exponent) > _LEAST_EXPONENT
-        }
+        exponents = {name: exponent for name, exponent in direction.exponents.items() if abs(exponent) > _MIN_EXPONENT}
         product = " ".join(f"{name}^{exponent:+.2f}" for name, exponent in exponents.items())
         lines.append(f"  left free by the facts, to a factor of e and more: {product}")
     return [*lines, f"  {agreement(structure)}"]

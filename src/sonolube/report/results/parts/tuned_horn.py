@@ -17,21 +17,7 @@ _QUANTITIES = ("displacement_gain", "node_position", "face_uniformity", "face_as
 def horn_blocks(
     design: HornDesign, material: Material, *, tool_mass: float, vibration_amplitude: float | None
 ) -> list[Block]:
-    """Tuned size, frequency and what follows from the mode.
-
-    Parameters
-    ----------
-    design : HornDesign
-    material : Material
-    tool_mass : float
-        Of a tool on the working face. [kg]
-    vibration_amplitude : float or None
-        Of the working face, zero to peak, for the peak stress at it. [m]
-
-    Returns
-    -------
-    list of Block
-    """
+    """Tuned size, frequency and what follows from the mode."""
     mode, thin, limits = design.tuned.mode, design.body.thin, amplitude_limits(design, material=material)
     sizes = ", ".join(f"{name} {format_si(value, 'm')}" for name, value in design.body.sizes.items())
     near = [f"{name} {at / mode.frequency - 1:+.1%}" for name, at in design.neighbours[:_NEAREST]]
@@ -62,21 +48,7 @@ def horn_blocks(
 def horn_object(
     design: HornDesign, material: Material, *, tool_mass: float, vibration_amplitude: float | None
 ) -> dict[str, Any]:
-    """Sizes, frequency, quantities of the mode, amplitudes allowed and neighbouring modes, for JSON.
-
-    Parameters
-    ----------
-    design : HornDesign
-    material : Material
-    tool_mass : float
-        Of a tool on the working face. [kg]
-    vibration_amplitude : float or None
-        Of the working face, zero to peak, for the peak stress at it. [m]
-
-    Returns
-    -------
-    dict
-    """
+    """Sizes, frequency, quantities of the mode, amplitudes allowed and neighbouring modes, for JSON."""
     tuned, thin = design.tuned, design.body.thin
     frequency, at = tuned.mode.frequency, vibration_amplitude
     peak = {} if at is None else {"vibration_amplitude": at, "peak_stress": design.stress_per_displacement * at}

@@ -10,7 +10,7 @@ import {change, decode, encode, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
 const MOVING_DRAWS = 1000;
-const MOST_KEPT = 3;
+const MAX_KEPT = 3;
 const INTERVAL = '80 %';
 const AMPLITUDE_PANEL = 0;
 const SPEED_PANEL = 1;
@@ -154,7 +154,7 @@ function useKept(state, content) {
   const keep = () => {
     const fragment = encode(alone(state));
     keptAnswers.set(fragment, {label: labelOf(state), answer: content});
-    enter([...fragments.filter((each) => each !== fragment), fragment].slice(-MOST_KEPT));
+    enter([...fragments.filter((each) => each !== fragment), fragment].slice(-MAX_KEPT));
   };
   const kept = fragments.filter((each) => keptAnswers.has(each)).map((each) => ({id: each, ...keptAnswers.get(each)}));
   return {kept, keep, remove: (fragment) => enter(fragments.filter((each) => each !== fragment))};
