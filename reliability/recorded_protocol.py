@@ -8,6 +8,7 @@ import numpy as np
 
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory import Block, Channel, run_protocol
+from sonolube.laboratory.devices import Recorder
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.rig import Rig
 
@@ -21,7 +22,7 @@ _SAME_SPEED = 1e-3  # of a speed
 _DIAMETER = 0.028  # m
 
 
-class MemoryRecord:
+class MemoryRecord(Recorder):
     """Blocks and set points of the parts of a recording, in memory."""
 
     def __init__(self) -> None:

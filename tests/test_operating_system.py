@@ -12,11 +12,12 @@ from typing import Any
 
 from pytest import MonkeyPatch, fixture, mark, raises
 
-from sonolube import files, interruption, operating_system
+from sonolube import operating_system
 from sonolube.cli.console.questions import Operator
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Prompt
 from sonolube.laboratory import RunControl
+from sonolube.storage import files, interruption
 from sonolube.storage.files import locked_folder, write_atomically
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 

@@ -108,6 +108,6 @@ def warn_of_range(message: str, *, stacklevel: int = 2) -> None:
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """ "did you mean ...?" with the closest known name, or an empty text if none is close."""
+    """Question "did you mean ...?" with the closest known name, or an empty text if none is close."""
     close = get_close_matches(name.lower(), list(known), n=1, cutoff=0.6)
     return f"did you mean {close[0]}?" if close else ""

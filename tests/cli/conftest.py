@@ -16,7 +16,8 @@ from sonolube.cli import main
 from sonolube.cli.console import delivery, progress
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.execution.compilation import Kernel
-from sonolube.models.fem import electromechanical_model, mode_files, tuning
+from sonolube.models.fem import electromechanical_model, tuning
+from sonolube.models.fem.results import mode_files
 from sonolube.models.fem.solver import convergence
 from sonolube.models.fem.solver.model import Model
 from sonolube.storage.targets import expect_target

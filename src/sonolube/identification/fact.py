@@ -20,7 +20,7 @@ Relation = Literal["=", ">=", "<="]
 
 
 def parameter_unit(name: str) -> str:
-    """SI unit of a free parameter: of the last word of its name in the vocabulary, kilograms for an entry of `masses`."""
+    """SI unit of a free parameter: of the last word of its name in the vocabulary, kg for an entry of `masses`."""
     table, _, key = name.rpartition(".")
     return "kg" if table == "masses" else unit_of(key)
 

@@ -1,6 +1,7 @@
 """Range of validity of friction models: no contact transmits more than mu F_N; a formula beyond that is withheld."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -139,9 +140,10 @@ def test_a_motion_along_the_sliding_acts_as_the_same_fraction_of_the_normal_one(
     normal = moving(CONTACT, load=3.0, amplitude=1e-6)
     phase = 2 * np.pi * np.arange(normal.displacement.size) / normal.displacement.size
     along = replace(normal, along=fraction * 1e-6 * np.cos(phase - lag))
-    arguments = {"sliding_speed": [5e-3, 0.05], "friction_coefficient": 0.3}
+    arguments: dict[str, Any] = {"sliding_speed": [5e-3, 0.05], "friction_coefficient": 0.3}
     by_motion = model_friction(FRICTION_MODELS[name](), CONTACT, along, **arguments)
-    own = FRICTION_MODELS[name](in_plane_fraction=fraction, in_plane_phase=lag)
+    parameters: dict[str, Any] = {"in_plane_fraction": fraction, "in_plane_phase": lag}
+    own = FRICTION_MODELS[name](**parameters)
     by_fraction = model_friction(own, CONTACT, normal, **arguments)
     assert by_motion.raw_friction_ratio == approx(by_fraction.raw_friction_ratio, rel=1e-6)
     assert (by_motion.reason == by_fraction.reason).all()
@@ -155,6 +157,7 @@ def test_a_motion_along_the_sliding_acts_as_the_same_fraction_of_the_normal_one(
 )
 def test_a_motion_that_a_model_has_no_law_for_is_refused(name: str, direction: str) -> None:
     normal = moving(CONTACT, load=3.0, amplitude=1e-6)
-    motion = replace(normal, **{direction: np.zeros_like(normal.displacement)})
+    within: dict[str, Any] = {direction: np.zeros_like(normal.displacement)}
+    motion = replace(normal, **within)
     with raises(InvalidInput, match=f"friction model {name} has no law for a motion {direction} the sliding"):
         model_friction(FRICTION_MODELS[name](), CONTACT, motion, sliding_speed=0.05, friction_coefficient=0.3)
