@@ -8,7 +8,6 @@ import numpy as np
 
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory import Block, Channel, run_protocol
-from sonolube.laboratory.devices import Recorder
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.rig import Rig
 
@@ -22,7 +21,7 @@ _SAME_SPEED = 1e-3  # of a speed
 _DIAMETER = 0.028  # m
 
 
-class MemoryRecord(Recorder):
+class MemoryRecord:
     """Blocks and set points of the parts of a recording, in memory."""
 
     def __init__(self) -> None:
@@ -41,6 +40,17 @@ class MemoryRecord(Recorder):
 
     def end(self) -> None:
         """End a part."""
+
+    def begin_beside(
+        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+    ) -> None:
+        """Leave out other clocks."""
+
+    def append_beside(self, clock: str, block: Block) -> None:
+        """Leave out other clocks."""
+
+    def end_beside(self, clock: str) -> None:
+        """Leave out other clocks."""
 
     def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
         """Keep the set points."""

@@ -142,7 +142,7 @@ def _fault(name: str, watched: str, locks: Sequence[Interlock], drive: DriveSamp
 
 
 def set_point_trip(setting: DriveSetting, limits: Limits) -> str:
-    """Why the peak of a drive setting, its offset included, is beyond the limit of the voltage; empty where it is not."""
+    """Why the peak of a drive setting, offset included, is beyond the limit of the voltage; empty where it is not."""
     most, reached = limits.voltage_maximum, setting.voltage_maximum
     if reached <= most * _ROUNDING:
         return ""

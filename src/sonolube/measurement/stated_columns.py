@@ -24,7 +24,7 @@ Meaning = RunHeading | str
 
 
 def stated_columns(table: TextTable, statements: Mapping[str, str], path: Path) -> dict[str, Meaning | None]:
-    """Meaning of each column by its label: as stated, else by its heading; None where neither tells it with its unit."""
+    """Meaning of each column by its label: as stated, else by its heading; None without meaning or unit."""
     labels = numbered_labels(table.labels)
     if "" in labels:
         place = labels.index("") + 1

@@ -115,7 +115,7 @@ def unseen_chart() -> Chart:
 
 
 def runs_figure() -> "Figure":
-    """Draw the width of the interval of a test, and the coverage, against the number of other tests known of its rig."""
+    """Figure of the width of the interval of a test, and of the coverage, over the number of other tests of its rig."""
     counts, widths, shares = zip(*_widths_by_runs(), strict=True)
     figure, (left, right) = subplots(1, 2, figsize=(6.85, 2.9))
     left.plot(counts, widths, MARKERS[0] + "-", color=COLOURS[0])

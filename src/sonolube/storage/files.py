@@ -111,7 +111,7 @@ def expect_file(path: Path) -> None:
 
 
 def expect_files(folder: Path, patterns: Sequence[str]) -> None:
-    """Raise, before anything is computed, if files in a folder cannot be written; remove what killed runs left there."""
+    """Refuse, before anything is computed, a folder that cannot be written; remove what killed runs left there."""
     for place in dict.fromkeys((folder, *(folder / Path(pattern).parent for pattern in patterns))):
         _require_writable(place, place)
     for pattern in map(folder.joinpath, patterns):

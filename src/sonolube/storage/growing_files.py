@@ -1,4 +1,4 @@
-"""Files that grow: appended to by whole pieces, or held by a database; `sonolube.storage.files` writes everything else."""
+"""Files that grow: appended to by whole pieces, or held by a database; `files` writes everything else."""
 
 import os
 import time
@@ -34,7 +34,7 @@ class AppendedFile:
     Raises
     ------
     InvalidInput
-        If the file cannot be made or continued, as by `sonolube.storage.files.write_atomically`, or a new one exists already.
+        If the file cannot be made or continued, as by `write_atomically`, or a new one exists already.
 
     Notes
     -----

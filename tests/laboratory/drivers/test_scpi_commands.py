@@ -51,21 +51,25 @@ def bench(request: pytest.FixtureRequest, monkeypatch: MonkeyPatch) -> Iterator[
         generator.hangs.set()
 
 
+def is_on(bench: Bench) -> bool:
+    return bench.generator.is_on
+
+
 def test_a_generator_is_off_before_anything_else_and_on_after_all_was_set(bench: Bench) -> None:
     generator = bench.generator
     assert generator.peak > 8.0  # as the last user left it
     bench.drive.connect()
-    assert not generator.is_on
+    assert not is_on(bench)
     assert generator.heard[0] == bench.drive._commands.off
     bench.drive.drive(SETTING)
-    assert generator.is_on
+    assert is_on(bench)
     assert float(generator.values["amplitude"]) * GAIN == approx(28.0)
     assert [float(generator.values[name]) for name in ("frequency", "offset")] == [22e3, 0.0]
     assert generator.values["waveform"].startswith("SIN")
     bench.drive.drive(DriveSetting(voltage_peak_to_peak=20.0, frequency=23e3, waveform="square"))
     assert generator.values["waveform"].startswith("SQU")
     bench.drive.off()
-    assert not generator.is_on
+    assert not is_on(bench)
     bench.drive.close()
     assert generator.unsafe == []
 
@@ -133,9 +137,9 @@ def test_a_value_that_the_generator_clips_is_found_by_reading_back_and_ends_with
     bench.generator.clipped_to = 1.5
     with raises(DeviceError, match=r"has the amplitude 1\.5 V where 2 V was set"):
         bench.drive.drive(DriveSetting(voltage_peak_to_peak=40.0, frequency=22e3))
-    assert not bench.generator.is_on
+    assert not is_on(bench)
     bench.drive.drive(SETTING)  # set up anew
-    assert bench.generator.is_on
+    assert is_on(bench)
     assert bench.generator.unsafe == []
 
 
@@ -152,14 +156,14 @@ def test_an_error_of_the_queue_is_told_in_its_words_and_ends_with_the_output_off
     generator.errors.append('-222,"Data out of range"')
     with raises(DeviceError, match=r'refuses .*FREQ 23000.: -222,"Data out of range"'):
         drive.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=23e3))
-    assert not generator.is_on
+    assert not is_on(bench)
 
 
 def test_another_instrument_is_refused_before_it_is_set(bench: Bench) -> None:
     bench.generator.identity = "RIGOL TECHNOLOGIES,DP832,DP8C000001,00.01.16"
     with raises(DeviceError, match="answers 'RIGOL TECHNOLOGIES,DP832"):
         bench.drive.connect()
-    assert not bench.generator.is_on
+    assert not is_on(bench)
     assert len(bench.generator.heard) == 2
 
 
@@ -192,14 +196,14 @@ def test_the_output_is_off_although_a_call_hangs_and_the_call_sends_nothing_late
     while generator.hangs_at:
         pass
     bench.drive.halt()
-    assert not generator.is_on
+    assert not is_on(bench)
     release.set()
     thread.join()
     assert "was switched off while a call hung" in str(failures[0])
-    assert not generator.is_on
+    assert not is_on(bench)
     bench.drive.off()
     bench.drive.close()
-    assert not generator.is_on
+    assert not is_on(bench)
 
 
 def test_a_lost_generator_is_switched_off_over_a_new_connection_when_it_is_back(bench: Bench) -> None:
@@ -212,7 +216,7 @@ def test_a_lost_generator_is_switched_off_over_a_new_connection_when_it_is_back(
         bench.drive.off()
     bench.generator.is_unplugged = False
     bench.drive.off()
-    assert not bench.generator.is_on
+    assert not is_on(bench)
 
 
 def test_an_answer_to_an_earlier_command_does_not_confirm_that_the_output_is_off(bench: Bench) -> None:
@@ -220,7 +224,7 @@ def test_an_answer_to_an_earlier_command_does_not_confirm_that_the_output_is_off
     bench.drive.drive(SETTING)
     bench.drive._line._line._answers[:] = ["0", "OFF", "C1:OUTP OFF", '0,"No error"']
     bench.drive.off()
-    assert not bench.generator.is_on
+    assert not is_on(bench)
     assert bench.drive._line._line._answers == []
 
 

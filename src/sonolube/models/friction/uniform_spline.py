@@ -54,7 +54,7 @@ def spline_values(coefficients: Floats, *places: Floats) -> Floats:
 
 
 def in_chunks(function: Callable[[Floats, Floats], Floats], one: Floats, other: Floats) -> Floats:
-    """Values of a function of two arrays, which broadcast, by so many points at a time as stay in the cache of a core."""
+    """Values of a function of two arrays, which broadcast, in chunks of points that stay in the cache of a core."""
     shape = np.broadcast_shapes(one.shape, other.shape)
     first, second = (np.broadcast_to(each, shape).ravel() for each in (one, other))
     values = np.empty(first.size)

@@ -70,7 +70,7 @@ def reader(unit: str, *, name: str) -> Callable[[str], float]:
 
 
 def pin_shape(text: str, *, name: str = "--shape") -> PinShape:
-    """Shape of the end of a pin, such as "flat 3mm" by its diameter, "ball 5mm" by its radius or "ball diameter 6mm"."""
+    """Shape of the end of a pin, such as "flat 3mm" (its diameter), "ball 5mm" (its radius) or "ball diameter 6mm"."""
     found = _SHAPE.fullmatch(" ".join(text.split()))
     if found is None:
         raise InvalidInput(f"{name} {text!r} must be {SHAPE_FORMS}")
