@@ -156,7 +156,7 @@ def test_an_error_of_the_queue_is_told_in_its_words_and_ends_with_the_output_off
     generator.errors.append('-222,"Data out of range"')
     with raises(DeviceError, match=r'refuses .*FREQ 23000.: -222,"Data out of range"'):
         drive.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=23e3))
-    assert not is_on(bench)
+    assert not generator.is_on
 
 
 def test_another_instrument_is_refused_before_it_is_set(bench: Bench) -> None:
