@@ -46,7 +46,7 @@ class SeveralFaults(InvalidInput):
 
     @property
     def heading(self) -> str:
-        """What has how many faults."""
+        """Heading of the list: the subject and the number of its faults."""
         return f"{self.where}: {len(self.faults) + self.rest} faults".removeprefix(": ")
 
     @property
@@ -55,7 +55,7 @@ class SeveralFaults(InvalidInput):
         return [*self.faults, *([f"... and {self.rest} more"] if self.rest else [])]
 
     def at(self, place: str) -> "SeveralFaults":
-        """Same faults with a place before what has them."""
+        """Same faults with a place before each key."""
         where = f"{place}: {self.where}".removesuffix(": ")
         return SeveralFaults(self.faults, rest=self.rest, where=where, keys=self.keys)
 

@@ -173,7 +173,7 @@ def shown_in_notebooks(figure: "Figure") -> "Figure":
 
 
 def fit_to_style(figure: "Figure") -> None:
-    """Give a figure the width of a column or of the page of the style in use, and no text below its least size."""
+    """Fit a figure to the width of a column or of the page of the style in use, with no text below its least size."""
     from matplotlib.text import Text
 
     style = FIGURE_STYLES[_in_use]
@@ -226,7 +226,7 @@ def _lay_out(figure: "Figure", resolution: float | None) -> None:
 
 
 def _keep_layout(figure: "Figure") -> None:
-    """Have a figure drawn as it is laid out: under any engine, also that named "none", `savefig` draws it twice."""
+    """Draw a figure while it is laid out: under any engine, also that named "none", `savefig` draws it twice."""
     import matplotlib as mpl
 
     with mpl.rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
@@ -263,7 +263,7 @@ def _embedded_outlines(file_format: str) -> Iterator[None]:
 
 
 def _take_as_text(figure: "Figure") -> None:
-    """Have titles, labels and legends drawn as they are written, without reading formulas between dollar signs.
+    """Draw titles, labels and legends as they are written, without reading formulas between dollar signs.
 
     They hold names of users and of their files. Numbers at ticks are left to matplotlib, which writes them as formulas
     on logarithmic axes; names at ticks are text too.

@@ -163,7 +163,7 @@ def _windows_process_start(process: int) -> str:
 
 
 def _patiently(act: Callable[[], object]) -> None:
-    """Do something with a file, on Windows again for a second where access to it is denied."""
+    """Call a function of a file, on Windows repeatedly for a second where access to it is denied."""
     for wait in _WAITS if ON_WINDOWS else ():
         try:
             act()

@@ -165,7 +165,7 @@ class Jobs:
         shutil.rmtree(self.folder / name, ignore_errors=True)
 
     def tend(self) -> None:
-        """Take note of processes that have ended, and start those that wait."""
+        """Record processes that have ended, and start waiting jobs."""
         for name, process in list(self._running.items()):
             if process.poll() is not None:
                 del self._running[name]

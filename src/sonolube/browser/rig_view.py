@@ -185,7 +185,7 @@ def _rounded(number: float) -> float:
 
 
 def _drawing(rig: Rig) -> dict[str, Any]:
-    """What the schematic of a rig shows: its parts, and the keys of the values beside them."""
+    """Parts of the schematic of a rig, and the keys of the values beside them."""
     return {
         "has_drive": rig.drive is not None,
         "has_structure": rig.structure is not None,

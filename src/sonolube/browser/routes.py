@@ -26,7 +26,7 @@ Endpoint = Callable[[Request], Awaitable[Response]]
 
 
 class Workbench:
-    """What answers the requests of pages.
+    """Endpoints of the pages, with pool, jobs and uploads behind them.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ async def _content(request: Request) -> dict[str, Any]:
 
 
 def _refuse_constant(name: str) -> None:
-    """Refuse what JSON lacks."""
+    """Refuse constants that JSON lacks."""
     raise ValueError(name)
 
 

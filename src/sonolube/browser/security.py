@@ -37,7 +37,7 @@ _OPEN: Final = frozenset({"/static/link.css", "/static/link.js", "/static/icon.s
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Access:
-    """What lets a request in.
+    """Conditions under which a request is admitted.
 
     Parameters
     ----------

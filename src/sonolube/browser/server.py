@@ -23,7 +23,7 @@ from sonolube.errors import InvalidInput
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Options:
-    """How the workbench is served.
+    """Settings of the server.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def run(options: Options) -> None:
 
 
 def _leave(number: int, frame: object) -> None:
-    """End this process by way of what ends its workers and jobs."""
+    """End this process after its workers and jobs."""
     del frame
     sys.exit(128 + number)
 

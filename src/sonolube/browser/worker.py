@@ -85,7 +85,7 @@ def encoded(content: Any) -> bytes:
 
 
 def _finite(content: Any) -> Any:
-    """Content with None for what is not finite."""
+    """Content with None in place of values that are not finite."""
     if isinstance(content, float):
         return content if content - content == 0.0 else None
     if isinstance(content, Mapping):

@@ -286,7 +286,7 @@ def _size(chart: Chart, place: int) -> tuple[float, float]:
 
 
 def _set_axis(axes: "Axes", name: str, axis: Axis, *, text: str) -> None:
-    """Give an axis of a panel its label, scale, ends and ticks; an empty label where it shares that of another."""
+    """Set label, scale, ends and ticks of an axis of a panel; an empty label where it shares that of another."""
     one = getattr(axes, f"{name}axis")
     if axis.logarithmic:
         getattr(axes, f"set_{name}scale")("log")
@@ -314,7 +314,7 @@ def _set_axis(axes: "Axes", name: str, axis: Axis, *, text: str) -> None:
 
 
 def _add_second_axis(axes: "Axes", name: str, label: str, functions: tuple[Any, Any]) -> None:
-    """Give a panel an axis on the other side, by the function of its value and the inverse."""
+    """Add an axis on the other side of a panel, by the function of its value and the inverse."""
     other = getattr(axes, f"secondary_{name}axis")("top" if name == "x" else "right", functions=functions)
     getattr(other, f"set_{name}label")(label)
     if getattr(axes, f"get_{name}scale")() == "log":
@@ -323,7 +323,7 @@ def _add_second_axis(axes: "Axes", name: str, label: str, functions: tuple[Any, 
 
 
 def _room(axes: "Axes", name: str) -> float:
-    """How many numbers an axis has room for."""
+    """Number of labels that an axis has room for."""
     place, (width, height) = axes.get_position(), axes.get_figure().get_size_inches()  # type: ignore[union-attr]
     return float(place.width * width / _NUMBER_WIDTH if name == "x" else place.height * height / _NUMBER_HEIGHT)
 

@@ -94,7 +94,7 @@ def run(arguments: Sequence[str] | None = None) -> None:
 
 
 def _print_everything() -> None:
-    """Have characters that a terminal cannot show, such as bytes of a file name, printed as escapes."""
+    """Print characters that a terminal cannot show, such as bytes of a file name, as escapes."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

@@ -187,7 +187,7 @@ def _description(mark: Parameter, flag: str, default: Any, kind: Any) -> Any:
 
 
 def _metavar(mark: Parameter) -> str | None:
-    """What stands for a value in the help; the kind of quantity where nothing is given, such as FORCE."""
+    """Placeholder of a value in the help; the kind of quantity where nothing is given, such as FORCE."""
     if mark.kind or not mark.unit:
         return mark.kind or ("KEY=VALUE" if mark.is_mapping else None)
     return unit_description(mark.unit).partition(",")[0].partition(" ")[2].upper()

@@ -202,7 +202,7 @@ def _is_accepted(spectrum: _Spectrum, fit: LogParameterFit, simpler: LogParamete
 
 
 def _reason_without_resonance(spectrum: _Spectrum) -> str:
-    """What a spectrum holds in which no resonance of a capacitive part is found."""
+    """Content of a spectrum in which no resonance of a capacitive part is found."""
     f, inductive = spectrum.frequency, float(np.mean(spectrum.admittance.imag < 0))
     found = f"no resonance of a transducer found among {f.size} points from {f[0]:.6g} to {f[-1]:.6g} Hz:"
     if inductive > _MOSTLY:

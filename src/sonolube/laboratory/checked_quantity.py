@@ -1,4 +1,4 @@
-"""Checks of a protocol: the value of a quantity, by what it is told, and whether it lies within its bounds."""
+"""Checks of a protocol: the value of a quantity, its source, and whether it lies within its bounds."""
 
 from dataclasses import dataclass
 from math import pi
@@ -15,7 +15,7 @@ SETTLING: Final = 5.0
 """Time that a measured speed has to come within its bounds. [s]"""
 
 SPEEDS: Final = ("rotation_speed", "sliding_speed")
-"""Quantities that the speed of the disc tells."""
+"""Quantities that follow from the speed of the disc."""
 
 _AS_SET: Final = f"as it is set: no channel {SPEED_CHANNEL} measures it"
 
@@ -45,7 +45,7 @@ class CheckedValue:
 
     @property
     def facts(self) -> dict[str, str | float]:
-        """What a record keeps of a check that holds."""
+        """Facts that a record keeps of a check that holds."""
         assert self.value is not None
         return {"quantity": self.check.quantity, "value": self.value, **({"basis": _AS_SET} if self.is_set else {})}
 

@@ -17,7 +17,7 @@ SILENT: Final = "clock silent"
 
 
 class DeviceError(SonolubeError):
-    """A device that does not do what it was told; the text names the device and the remedy."""
+    """Device that did not follow a command; the text names the device and the remedy."""
 
 
 class DeviceLost(DeviceError):
@@ -155,7 +155,7 @@ class OutputGuard(Protocol):
         """Begin to wait anew."""
 
     def disable(self) -> None:
-        """Take the outputs off; safe to call at any time, from any thread."""
+        """Switch the outputs off; safe to call at any time, from any thread."""
 
     def close(self) -> None:
         """Release the hardware with the outputs disabled; harmless where that was done before."""

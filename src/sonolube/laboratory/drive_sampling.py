@@ -51,14 +51,14 @@ class DriveSampling:
         return replace(self, sample_rate=channel.sample_rate, frequency=highest)
 
     def caveat_of(self, names: Iterable[str], channels: Mapping[str, Channel]) -> str:
-        """What channels do not show, as `caveat`, each at its own rate."""
+        """Caveat of channels that do not show the drive, each at its own rate."""
         by_rate: dict[DriveSampling, list[str]] = {}
         for name in names:
             by_rate.setdefault(self.of(channels.get(name)), []).append(name)
         return "; ".join(filter(None, (sampling.caveat(them) for sampling, them in by_rate.items())))
 
     def caveat(self, channels: Iterable[str]) -> str:
-        """What the channels voltage and current among others do not show, in one line; empty where they show it."""
+        """Caveat of channels of voltage and current that do not show the drive, in one line; empty where they do."""
         blind = [name for name in _WAVES if name in set(channels)]
         if self.is_resolved or not blind:
             return ""

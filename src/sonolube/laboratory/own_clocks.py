@@ -114,7 +114,7 @@ class OwnClocks:
 
     @contextmanager
     def watched(self, control: RunControl) -> Iterator[None]:
-        """Let what is wrong end the run while an operator works at the rig, motor and drive off, in a `with` block.
+        """Watch over the clocks in a `with` block, while an operator works at the rig with motor and drive off.
 
         Parameters
         ----------
@@ -177,7 +177,7 @@ class _Reader:
         self._thread.start()
 
     def look(self) -> None:
-        """Raise what has failed, or where a block is late."""
+        """Raise the failure of the thread, or one for a late block."""
         with self._held:
             failure, is_late = self._failure, self._rate > 0 and time.monotonic() > self._due
         if failure is not None:
@@ -186,7 +186,7 @@ class _Reader:
             raise DeviceError(f"{self.device.name}: a block is late by more than {format_si(supervision.LATE, 's')}")
 
     def stands(self, alarm: Callable[[str], None] | None) -> None:
-        """Tell an alarm while motor and drive are off; None when they may be on again."""
+        """Set the function that takes alarms while motor and drive are off; None when they may be on again."""
         with self._held:
             self._alarm, self._stands_since = alarm, time.monotonic()
             failure = self._failure
@@ -268,7 +268,7 @@ class _Reader:
                     release()
 
     def _fails(self, failure: SonolubeError) -> None:
-        """Keep what is wrong, and tell the alarm."""
+        """Keep a failure, and raise the alarm."""
         with self._held:
             self._failure, alarm = failure, self._alarm
         if alarm is not None:

@@ -26,7 +26,7 @@ class RunControl:
         self._pause.set()
 
     def resume(self) -> None:
-        """Go on after a pause."""
+        """Resume after a pause."""
         self._pause.clear()
 
     @property

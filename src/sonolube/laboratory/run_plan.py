@@ -48,7 +48,7 @@ class RunPlan:
     facts: Mapping[str, str | float] = field(default_factory=dict)
 
     def unresolved(self, devices: Devices) -> str:
-        """What record and limits do not show of the drive, in one line; empty where they show it."""
+        """Quantities of the drive that record and limits do not show, in one line; empty where they show all."""
         drive = self.drive or drive_sampling(self.protocol)
         if drive is None:
             return ""
@@ -77,7 +77,7 @@ def _files(plan: RunPlan) -> dict[str, str]:
 
 
 def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | bool]:
-    """What is known of the run, for its record and the catalogue."""
+    """Facts of the run, for its record and the catalogue."""
     rig, metadata = plan.rig, plan.protocol.metadata
     facts: dict[str, str | float | int | bool] = {
         "protocol": plan.name,

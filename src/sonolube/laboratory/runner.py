@@ -45,7 +45,7 @@ Advance = Callable[[str, int, int], None]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RunResult:
-    """How a run ended.
+    """Outcome of a run.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ class _Run:
             self._supervisor.halt()
 
     def _prepare(self, advance: Advance | None) -> None:
-        """Let the devices work out the set points that take them time, before anything is on."""
+        """Prepare the set points that take the devices time, before anything is on."""
         prepare = self._devices.prepare
         if prepare is None:
             return
@@ -179,7 +179,7 @@ class _Run:
             prepare(setting, turns)
 
     def _happens(self, event: Event, reason: str = "") -> None:
-        """Take an event into the state of the run, and note it."""
+        """Change the state of the run by an event, and note it."""
         self._present, _ = after(self._present, event, reason=reason)
         if event is not Event.START:
             self._note(event.value, reason=reason, state=self._present.state.value)
@@ -195,7 +195,7 @@ class _Run:
                 raise
 
     def _reach(self, point: SetPoint) -> None:
-        """Do what a step begins with."""
+        """Set the set points with which a step begins, or begin its recording."""
         self._point = point
         step = step_at(self._protocol, point.step)
         if isinstance(step, Prompt):
@@ -360,7 +360,7 @@ class _Run:
         return CheckedValue(check=check, value=value)
 
     def _doing(self) -> str:
-        """What happens now, with friction and temperature where they are measured."""
+        """Line of progress, with friction and temperature where they are measured."""
         now = [f"step {self._point.step}", self._point.kind.replace("_", " ")]
         for name, unit in (("friction_force", "N"), ("temperature", "K")):
             value = self._sampling.mean(name)

@@ -29,7 +29,7 @@ class State(Enum):
 
 
 class Event(Enum):
-    """What happens to a run."""
+    """Event of a run."""
 
     START = "start"
     PREPARED = "prepared"
@@ -46,7 +46,7 @@ class Event(Enum):
 
 
 class Action(Enum):
-    """What the program must do after an event."""
+    """Action that follows an event."""
 
     NOTHING = "nothing"
     CONNECT = "connect the devices, outputs off"

@@ -136,13 +136,13 @@ class Supervisor:
             raise DeviceError("; ".join(failures))
 
     def turns_on(self, output: object) -> None:
-        """Take a device for on, and let the guard enable the outputs."""
+        """Record that a device is on, and enable the outputs by the guard."""
         if self._guard is not None and not self._on:
             self.call(f"{self._guard.name}: enable", self._guard.enable, limit=self.pace + LATE)
         self._on.add(output)
 
     def is_off(self, output: object) -> None:
-        """Take a device for off; where all are, nothing is expected and the guard disables the outputs."""
+        """Record that a device is off; where all are, no block is expected and the guard disables the outputs."""
         was_on = bool(self._on)
         self._on.discard(output)
         if self._on or self.reason:
@@ -153,7 +153,7 @@ class Supervisor:
             self.release(f"{self._guard.name}: disable", self._guard.disable)
 
     def renew(self) -> None:
-        """Tell the guard that the run is alive."""
+        """Renew the watchdog of the guard."""
         if self._guard is not None and self._on:
             self.call(f"{self._guard.name}: renew", self._guard.renew, limit=self.pace + LATE)
 

@@ -27,7 +27,7 @@ MAX_POINTS = 500_000
 
 
 def most_values(path: Path) -> int:
-    """How many numbers a file may hold: `MAX_VALUES`, or `MAX_VALUES_PER_BYTE` where that is more."""
+    """Largest number of values of a file: `MAX_VALUES`, or `MAX_VALUES_PER_BYTE` where that is more."""
     return max(MAX_VALUES, MAX_VALUES_PER_BYTE * path.stat().st_size)
 
 

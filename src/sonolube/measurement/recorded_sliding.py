@@ -31,7 +31,7 @@ def recorded_voltage(recording: "xr.Dataset") -> Floats | None:
 
 
 def speed_channel(recording: "xr.Dataset") -> str | None:
-    """Name of the channel that tells the speed: one that was measured, else one that was set; None without any."""
+    """Name of the channel of the speed: one that was measured, else one that was set; None without any."""
     names = (name for name in (*_MEASURED, *_SET) if name in recording)
     return next((name for name in names if np.isfinite(_values(recording, name)).any()), None)
 
@@ -51,7 +51,7 @@ def recorded_speed(recording: "xr.Dataset") -> Floats | None:
 
 
 def speed_of_one_direction(recording: "xr.Dataset") -> Floats | None:
-    """Speed of a recording by which its steps are told apart; None for one that reciprocates, or where it is unknown.
+    """Speed of a recording by which its steps are separated; None for one that reciprocates, or where it is unknown.
 
     As `recorded_speed`.
     """

@@ -1,4 +1,4 @@
-"""Measured runs as estimates need them: within what vibration does, settings of the rig filled in, copies said."""
+"""Measured runs as estimates need them: possible ratios, settings of the rig filled in, copies reported."""
 
 from typing import TYPE_CHECKING, Final
 

@@ -252,7 +252,7 @@ def _number(path: Path, line: int, cells: Sequence[str], column: _Column, sign: 
 
 
 def _sign_hint(cell: str, sign: str) -> str:
-    """What else a cell may be: a number of the other decimal sign."""
+    """Other reading of a cell: a number of the other decimal sign."""
     other = {".": ",", ",": "."}[sign]
     return f" with the decimal sign {sign!r}; give text.decimal_sign in a mapping" if other in cell else ""
 

@@ -29,7 +29,7 @@ _MARGIN: Final = 1.05  # beyond the ends of a range
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Applicability:
-    """What a prediction may say of a rig.
+    """Range of application of a prediction to a rig.
 
     Parameters
     ----------

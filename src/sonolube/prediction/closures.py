@@ -76,7 +76,7 @@ class UncertainConditions:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Closure:
-    """Friction model with one positive free parameter and what was known of it before any test.
+    """Friction model with one positive free parameter and its prior distribution.
 
     Parameters
     ----------

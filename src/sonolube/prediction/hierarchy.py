@@ -107,7 +107,7 @@ def log_hyperprior(closure: Closure, hyperparameters: Floats, prior: Prior = POP
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OwnParameters:
-    """What one rig has of its own, for rows of hyperparameters and deviates.
+    """Parameters of one rig, for rows of hyperparameters and deviates.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def squared_distances(one: Conditions, other: Conditions) -> Floats:
 
 @dataclass(frozen=True, slots=True)
 class RigLikelihood:
-    """Likelihood of the tests of one rig under one friction model, integrated over what the rig has of its own.
+    """Likelihood of the tests of one rig under one friction model, marginalised over the parameters of the rig.
 
     Parameters
     ----------

@@ -268,7 +268,7 @@ def predict(
 
 
 def _told_probes(rig: Rig, inputs: RigInputs) -> tuple[Probe, ...]:
-    """Resonances that may tell the contact stiffness, at decay lengths of the population."""
+    """Resonances that may show the contact stiffness, at decay lengths of the population."""
     found = () if rig.structure is None else _probes(rig.structure, rig.normal_load)
     return told_probes(found, frequency=inputs.frequency)
 

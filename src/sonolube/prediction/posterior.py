@@ -48,7 +48,7 @@ class Posterior:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Learned:
-    """What was learned from the published tests.
+    """Posterior distribution given the published tests.
 
     Parameters
     ----------

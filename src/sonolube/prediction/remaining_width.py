@@ -133,7 +133,7 @@ def measures(
 
 
 def _stiffness_measures(ratio: Floats, length: Floats, probes: Sequence[Probe]) -> list[Measure]:
-    """What each resonance that tells the contact stiffness would leave; two uncertainties where none is known to."""
+    """Share of the width that a stiffness by each resonance would leave; two uncertainties where none shows it."""
     made = []
     for probe in probes:
         if not probe.resolvable.any():

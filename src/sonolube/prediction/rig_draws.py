@@ -1,4 +1,4 @@
-"""Draws of what a rig has of its own under one friction model, from the population and conditioned on its own tests.
+"""Draws of the parameters of a rig under one friction model, from the population and conditioned on its own tests.
 
 Tests of a rig weigh the draws. Where few of them would be left, sequential Monte Carlo conditions them: the likelihood
 is raised step by step to its full power, and after each step the draws are resampled and moved by Metropolis steps.

@@ -1,4 +1,4 @@
-"""Resonances of a rig whose shift between free and pressed would tell the stiffness of its contact."""
+"""Resonances of a rig whose shift between free and pressed shows the stiffness of its contact."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -71,7 +71,7 @@ def stiffness_probes(
     resolution: float = 1 / 50,
     modal_mass_deviation: float = 0.1,
 ) -> tuple[Probe, ...]:
-    r"""Resonances of a structure whose shift between free and pressed tells the stiffness of its contact.
+    r"""Resonances of a structure whose shift between free and pressed shows the stiffness of its contact.
 
     One a mode that moves the contact, in order of frequency.
 
@@ -147,7 +147,7 @@ def told_probes(probes: Sequence[Probe], *, frequency: float) -> tuple[Probe, ..
 
 
 def probe_sentences(probes: Sequence[Probe]) -> tuple[str, ...]:
-    """Which resonances of a rig can tell the stiffness of its contact, one sentence each.
+    """Sentences on the resonances of a rig that show the stiffness of its contact.
 
     The probe of least uncertainty first; one sentence where no probe is known.
     """
@@ -157,12 +157,12 @@ def probe_sentences(probes: Sequence[Probe]) -> tuple[str, ...]:
 
 
 def _ranked(probes: Sequence[Probe]) -> list[Probe]:
-    """Probes by the share of contacts that they cannot tell, then by their least uncertainty."""
+    """Probes by the share of contacts that they do not resolve, then by their least uncertainty."""
     return sorted(probes, key=lambda one: (float(np.mean(~one.resolvable)), float(one.log_stiffness_deviation.min())))
 
 
 def _sentence(probe: Probe) -> str:
-    """Frequencies of a probe at its decay lengths, and whether their shift can be told."""
+    """Frequencies of a probe at its decay lengths, and whether their shift is resolved."""
     places = " and ".join(
         f"{format_si(float(f), 'Hz', digits=4 if probe.free_frequency < 1e4 else 6)} at"
         f" l = {format_si(float(length), 'm', digits=2)}"

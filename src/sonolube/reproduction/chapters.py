@@ -70,7 +70,7 @@ def _comparison_figures() -> Iterator[ReportFigure]:
 
 
 def _drawn(chart: "Callable[[], Chart]") -> "Figure":
-    """Draw what a function returns as data."""
+    """Draw the data that a function returns."""
     return draw_chart(chart())
 
 

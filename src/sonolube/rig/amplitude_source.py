@@ -25,7 +25,7 @@ _SAME_FREQUENCY = 1e-6  # relative
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ResolvedVibration:
-    """Source of a rig's vibration, with what gives its motion: the structure, or a sine of an amplitude.
+    """Source of a rig's vibration, with the origin of its motion: the structure, or a sine of an amplitude.
 
     Parameters
     ----------

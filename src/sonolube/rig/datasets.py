@@ -148,7 +148,7 @@ def dataset(values: Mapping[str, Floats], *, along: str, title: str) -> "xr.Data
 
 
 def labelled(values: Mapping[str, Floats], *, along: str, title: str) -> LabelledArrays:
-    """What `dataset` does, without xarray."""
+    """Variables, attributes and coordinates of `dataset`, without xarray."""
     others = {name: array for name, array in values.items() if name != along}
     return _labelled_grid(others, axes={along: values[along]}, title=title, about=_NOTHING)
 

@@ -100,7 +100,7 @@ def actuator_capacitance(rig: Rig) -> float | None:
 
 
 def energy_balance(*, actuator_power: float | None, dissipated_power: float | None) -> str | None:
-    """How the power of the amplifier and the dissipated power compare, and why, in one line.
+    """Comparison of the power of the amplifier with the dissipated power, and its reason, in one line.
 
     Parameters
     ----------

@@ -77,7 +77,7 @@ class AppendedFile:
         self.length += len(content)
 
     def close(self) -> None:
-        """Have the disk keep everything, and close the file; harmless where that was done before."""
+        """Flush the file to the disk and close it; harmless where that was done before."""
         if self._handle < 0:
             return
         handle, self._handle = self._handle, -1
@@ -140,7 +140,7 @@ def database(path: Path | None) -> "Iterator[Connection]":
 
 
 def set_database_aside(path: Path) -> None:
-    """Give a damaged database another name, and remove its log."""
+    """Rename a damaged database, and remove its log."""
     try:
         replace_file(path, path.with_name(f"{path.name}.damaged"))
         for ending in ("-wal", "-shm"):

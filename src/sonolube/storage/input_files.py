@@ -61,7 +61,7 @@ def _is_pipe(path: Path) -> bool:
 
 
 def _pipe_bytes(path: Path, most: int) -> bytes:
-    """What a pipe gives until its writer closes it, or gave when it was read."""
+    """Bytes of a pipe until its writer closes it, kept from its first reading."""
     if ON_WINDOWS:
         raise OSError(errno.ESPIPE, "is a pipe, which cannot be read on Windows; save it to a file", str(path))
     found = path.stat()
@@ -76,7 +76,7 @@ def _pipe_bytes(path: Path, most: int) -> bytes:
 
 
 def _until_closed(handle: int, path: Path, most: int) -> bytes:
-    """What a pipe gives, saying so where it lets wait."""
+    """Bytes of a pipe, with a line on the terminal where it lets wait."""
     from select import select
 
     content, silent = bytearray(), 0

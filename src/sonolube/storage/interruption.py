@@ -34,7 +34,7 @@ def undone_at_signal(undo: Callable[[], object]) -> Iterator[None]:
 
 @contextmanager
 def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
-    """Let the first signal inside a `with` block ask for an orderly end; a second acts as outside.
+    """Turn the first signal inside a `with` block into a request for an orderly end; a second acts as outside.
 
     The signals are SIGINT, SIGTERM, SIGHUP and, on Windows, SIGBREAK. Those that are ignored stay ignored; outside the
     main thread of a process they change nothing. Where Windows closes the console, the block has two seconds to end;
@@ -72,7 +72,7 @@ def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
 
 
 def end_program_at_signals() -> None:
-    """Let SIGINT, SIGTERM, SIGHUP and SIGBREAK end this process: one line, exit status 128 + number of the signal.
+    """End this process at SIGINT, SIGTERM, SIGHUP and SIGBREAK: one line, exit status 128 + number of the signal.
 
     Notes
     -----

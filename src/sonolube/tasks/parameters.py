@@ -73,7 +73,7 @@ class RigParameter:
 
 @dataclass(frozen=True, slots=True)
 class DoorParameter:
-    """Marks what the way in gives, and no user types: progress, cancellation, what is kept, a person.
+    """Marks arguments that a door sets and no user types: progress, cancellation, folder of kept parts, operator.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from contextvars import ContextVar
 from sonolube.errors import SonolubeError
 
 Advance = Callable[[str, int, int], None]
-"""Called with what is done now, the number done and their total, zero where it is unknown."""
+"""Called with the stage, the number done and their total, zero where it is unknown."""
 
 Progress = Callable[[str, int, int], None]
 """Called with the stage and what is done in it, the number done and their total."""

@@ -113,7 +113,7 @@ class ModelVariant:
         return None if isinstance(result, str) else result
 
     def predict_all(self, conditions: Sequence[Conditions], *values: float) -> list[float | None]:
-        """What `predict` returns for each of several conditions, computed at once where the model can."""
+        """Predictions for each of several conditions, computed at once where the model can."""
         return self._together(conditions, values) or [self.predict(one, *values) for one in conditions]
 
     def range_violation(self, conditions: Conditions, *values: float) -> str | None:

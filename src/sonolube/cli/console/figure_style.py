@@ -35,7 +35,7 @@ def with_figure_style(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def prepare_matplotlib() -> None:
-    """Spare the first figure of a command what matplotlib does at its import and no command needs.
+    """Skip work of matplotlib at the first figure that no command needs.
 
     Where the user's folders cannot be written, matplotlib would search for all fonts in each run, and say so; it keeps
     their list among temporary files instead. It leaves out of docstrings the lists of properties, whose collection is a

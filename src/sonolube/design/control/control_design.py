@@ -228,7 +228,7 @@ def design_control(
 
 
 def _require_no_voltage(settings: ControlSettings) -> None:
-    """Raise where a commanded amplitude is asked for what only a voltage has."""
+    """Refuse options of a voltage where an amplitude is commanded."""
     if settings.feed_forward == "efficiency":
         raise InvalidInput(
             "feed-forward by efficiency is over power, which a commanded amplitude has none of; take model"

@@ -1,1 +1,1 @@
-"""Plans of friction tests: points that tell closures apart, replicates, order of the runs, protocols and tables."""
+"""Plans of friction tests: points that separate friction models, replicates, order of runs, protocols and tables."""

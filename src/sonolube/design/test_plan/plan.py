@@ -35,7 +35,7 @@ _DRAWS: Final = 4000
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Question:
-    """What the tests shall show, and how surely.
+    """Difference that the tests shall show, with significance and power.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Question:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Procedure:
-    """How each run is made.
+    """Durations and rates of each run.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ class TestPlan:
 
     @property
     def entropy(self) -> float:
-        """Entropy of the weights of the closures, in bits: what there is to be learned."""
+        """Entropy of the weights of the friction models: the most information that tests can give. [bit]"""
         weights = np.array(list(self.weights.values()))
         weights = weights[weights > 0]
         return float(-np.sum(weights * np.log2(weights)))

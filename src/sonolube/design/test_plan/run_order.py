@@ -15,7 +15,7 @@ import numpy as np
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Blocking:
-    """What the runs of a block share.
+    """Conditions that the runs of a block share.
 
     Parameters
     ----------

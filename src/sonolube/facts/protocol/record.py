@@ -1,4 +1,4 @@
-"""Test protocol: its steps, the limits of the rig, and what is tested."""
+"""Test protocol: its steps, the limits of the rig, and the specimens."""
 
 from typing import Annotated
 
@@ -35,7 +35,7 @@ class Limits(Table):
 
 
 class Metadata(Table):
-    """What is tested.
+    """Specimens and pair of materials of a test.
 
     Parameters
     ----------

@@ -181,7 +181,7 @@ class Sweep(Table):
 
 
 class Check(Table):
-    """Go on only while a quantity lies within bounds, each text with its unit.
+    """Check that a quantity lies within bounds, each text with its unit; the run ends where it does not.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ class Repeat(Table):
 Step = Annotated[
     Wait | MotorSpeed | Drive | Acquire | VoltageSteps | Sweep | Repeat | Check | Prompt, Field(discriminator="kind")
 ]
-"""Step of any kind, told apart by its key `kind`."""
+"""Step of any kind, by its key `kind`."""
 
 Repeat.model_rebuild()
 

@@ -66,7 +66,7 @@ class Combination:
 
     @property
     def key(self) -> tuple[bool, bool, bool, bool]:
-        """What of it the readings beside the zero depend on."""
+        """Parameters on which the readings beside the zero depend."""
         return self.grows, self.falls, self.drifts, self.follows
 
 

@@ -13,7 +13,7 @@ from sonolube.text.printable_text import printable
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CatalogueEntry:
-    """What a run is searched by.
+    """Facts by which a run is found.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from sonolube.operating_system import remove_file
 
 
 def take_in(parent: Path, source: Path, *, facts: Facts | None = None, title: str = "") -> Path:
-    """Take a recording, or the recordings in a folder, into a folder of runs as one run without protocol.
+    """Add a recording, or the recordings in a folder, to a folder of runs as one run without protocol.
 
     Parameters
     ----------

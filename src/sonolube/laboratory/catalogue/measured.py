@@ -226,7 +226,7 @@ def _levels_of_protocol(run: Run, recording: "xr.Dataset") -> Iterator[_Level]:
 
 
 def _separate_levels(recording: "xr.Dataset") -> Iterator[Sequence[float | None]]:
-    """Levels of a recording whose steps do not tell a reduction, as without a part at 0 V: the mean of each voltage."""
+    """Levels of a recording whose steps give no reduction, as without a part at 0 V: the mean of each voltage."""
     if "voltage_peak_to_peak" not in recording:
         raise InvalidInput("its voltage has no levels")
     time, force = channel_values(recording, "time"), channel_values(recording, "friction_force")

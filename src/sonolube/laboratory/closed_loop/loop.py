@@ -124,7 +124,7 @@ class _Loop:
             self._supervisor.halt()
 
     def _happens(self, event: Event, reason: str = "") -> None:
-        """Take an event into the state of the loop, and note it."""
+        """Change the state of the loop by an event, and note it."""
         self._present, _ = after(self._present, event, reason=reason)
         if event is not Event.START:
             self._note(event.value, reason=reason, state=self._present.state.value)
@@ -252,7 +252,7 @@ class _Loop:
             self._recorder.finish(self._present.outcome, reason=self._present.reason)
 
     def _result(self) -> HeldFriction:
-        """What was measured and set."""
+        """Measured and set values."""
         rows = np.array(self._rows, dtype=np.float64).reshape(-1, 4)
         run_in = self._run_in_means
         return HeldFriction(

@@ -14,7 +14,7 @@ _FINAL_FRACTION = 2  # the last half of a phase is its steady part
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HoldMetrics:
-    """How well friction was held at one sliding speed.
+    """Figures of merit of friction held at one sliding speed.
 
     Parameters
     ----------

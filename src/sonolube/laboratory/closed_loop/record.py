@@ -1,4 +1,4 @@
-"""Records of friction held in closed loop: what is wanted, and what came of it."""
+"""Records of friction held in closed loop: reference, steps of the speed, and result."""
 
 from dataclasses import dataclass
 from itertools import pairwise

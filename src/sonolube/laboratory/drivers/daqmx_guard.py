@@ -56,7 +56,7 @@ class DaqmxGuard:
         self._set_line(is_high=True)
 
     def renew(self) -> None:
-        """Let the watchdog wait anew."""
+        """Restart the time of the watchdog."""
         watchdog = self._watchdog
         if watchdog is None:
             return

@@ -69,7 +69,7 @@ class DaqmxOutput:
             raise
 
     def hold(self, voltage: float) -> None:
-        """Give a steady voltage. [V]"""
+        """Set a steady voltage. [V]"""
         self._release()
         with daqmx_errors(self.name), self._library.Task() as task:
             self._task = task
@@ -81,7 +81,7 @@ class DaqmxOutput:
                     self._task = None
 
     def halt(self) -> None:
-        """Give 0 V from another thread: a call that hangs is aborted first, and starts nothing where it goes on."""
+        """Set 0 V from another thread: a call that hangs is aborted first, and starts nothing where it goes on."""
         task, self._task, self._is_halted = self._task, None, True
         if self._library is None:
             return
@@ -92,7 +92,7 @@ class DaqmxOutput:
         self.hold(0.0)
 
     def repeat(self, setting: DriveSetting, *, amplitude: float, offset: float, sample_rate: float) -> None:
-        """Give a waveform over and over; amplitude peak to peak and offset in V, rate of the output in Hz."""
+        """Generate a waveform continuously; amplitude peak to peak and offset in V, rate of the output in Hz."""
         self._release()
         continuous = self._library.constants.AcquisitionType.CONTINUOUS
         with daqmx_errors(self.name):

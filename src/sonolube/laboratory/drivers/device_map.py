@@ -1,4 +1,4 @@
-"""Device maps: which hardware a rig has, how it is wired, and what it stands; TOML with all faults told at once."""
+"""Device maps: hardware of a rig, its wiring and its limits, in TOML; all faults are reported at once."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -65,7 +65,7 @@ class DriverEntry(Table, ABC):
 
 
 class ChannelEntry(Table):
-    """Channel of an acquisition: its name, and quantity and unit where the name tells none.
+    """Channel of an acquisition: its name, and quantity and unit where the name implies none.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ class AcquisitionEntry(DriverEntry):
 
     @property
     def own_rate(self) -> float | None:
-        """Sample rate that no protocol tells; None where protocols do. [Hz]"""
+        """Sample rate of an acquisition with a clock of its own; None where protocols state it. [Hz]"""
         return self.sample_rate
 
     @property
@@ -229,7 +229,7 @@ class DriveEntry(DriverEntry):
 
     @property
     def limits(self) -> DriveLimits:
-        """What amplifier, output and actuator stand."""
+        """Limits of amplifier, output and actuator."""
         return DriveLimits(
             amplifier_gain=self.amplifier_gain,
             actuator_voltage=self.voltage_maximum,
@@ -280,7 +280,7 @@ class GuardEntry(DriverEntry):
     @property
     @abstractmethod
     def described(self) -> str:
-        """What it does, in words."""
+        """Description of the guard."""
 
     def outputs(self, guarded: Sequence[str]) -> tuple[str, ...]:
         """Those of the analogue outputs of drive and motor that it takes off itself."""

@@ -29,7 +29,7 @@ class Exchange:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LineProtocol:
-    """How a controller is spoken to.
+    """Lines of text by which a controller is commanded.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class LineMotor:
         self._switch.connect()
 
     def turn(self, rotation_speed: float) -> None:
-        """Set the speed of the disc, 0 to stop; where the controller refuses, it is told to stop. [1/s]"""
+        """Set the speed of the disc, 0 to stop; where the controller refuses, it is sent the stop command. [1/s]"""
         require_speed(rotation_speed=rotation_speed, highest=self.rotation_speed_maximum, device=self.name)
         number = self._protocol.number(rotation_speed)
         if rotation_speed > 0 and float(number) == 0:
@@ -124,7 +124,7 @@ class LineMotor:
             raise DeviceError(f"{self.name}: answers {answer[:80]!r} to {command!r}; expected {expected!r}")
 
     def _require_set(self, number: str) -> None:
-        """Ask for the set speed, where the controller can tell it, and raise where it is another."""
+        """Read the set speed back, where the controller has a query for it, and raise where it differs."""
         query = self._protocol.query
         if query is None:
             return

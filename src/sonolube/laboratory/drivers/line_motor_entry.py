@@ -108,7 +108,7 @@ class LineMotorEntry(MotorEntry):
 
     @property
     def _line_protocol(self) -> LineProtocol:
-        """How the controller is spoken to."""
+        """Lines of text by which the controller is commanded."""
         query = None
         if self.query is not None and self.query_answer is not None:
             query = Exchange(command=self.query, answer=self.query_answer)

@@ -43,7 +43,7 @@ def missing_parts(device_map: DeviceMap) -> tuple[str, ...]:
 
 
 def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
-    """What a protocol asks for and the devices of a map cannot give.
+    """Demands of a protocol that the devices of a map cannot meet.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Sections of a device map that tell the commands of an instrument by SCPI: a source of the drive, slow channels."""
+"""Sections of a device map with the SCPI commands of an instrument: a source of the drive, slow channels."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -114,7 +114,7 @@ class ReadbackEntry(Table):
 
     @property
     def replies(self) -> dict[str, Reply]:
-        """Those that are told, by what they read back."""
+        """Queries that are stated, by the quantity that they read back."""
         named = {"frequency": self.frequency, "amplitude": self.amplitude, "offset": self.offset}
         return {name: entry.reply for name, entry in named.items() if entry is not None}
 
@@ -134,7 +134,7 @@ class WaveformEntry(Table):
 
 
 class _LineEntry(Table):
-    """What every instrument on a line of VISA has."""
+    """Keys of every instrument on a line of VISA."""
 
     extras: ClassVar[tuple[str, ...]] = ("visa",)
 
@@ -254,7 +254,7 @@ class ScpiSourceEntry(_LineEntry, DriveEntry):
 
 
 class QueriedChannelEntry(ChannelEntry):
-    """Channel that a query tells.
+    """Channel read by a query.
 
     Parameters
     ----------

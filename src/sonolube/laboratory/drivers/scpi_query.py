@@ -20,7 +20,7 @@ _LATE_PERIODS: Final = 1.0  # by which a query may begin late
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class QueriedChannel:
-    """Channel that a query tells.
+    """Channel read by a query.
 
     Parameters
     ----------

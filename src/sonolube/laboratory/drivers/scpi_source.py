@@ -1,4 +1,4 @@
-"""Function generators by SCPI whose commands a device map tells, with an amplifier behind their output."""
+"""Function generators by SCPI commands stated in a device map, with an amplifier behind their output."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Dry run of a protocol: what it will do, how long, how much it records, and what drive and heat stand against it."""
+"""Dry run of a protocol: its course, duration and amount of data, and the limits of drive and heat."""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
-"""Findings of a dry run: what an amplifier or a limit of the protocol does not allow, and what else to know."""
+"""Findings of a dry run: set points beyond an amplifier or a limit of the protocol, and remarks."""
 
 from collections.abc import Callable, Iterator
 from math import inf
@@ -29,7 +29,7 @@ def refusals_of(found: DryRun, amplifier: Amplifier | None) -> tuple[str, ...]:
 
 
 def caveats_of(found: DryRun) -> tuple[str, ...]:
-    """What else to know before a test, each in one line."""
+    """Findings before a test, each in one line."""
     return tuple(_caveats(found))
 
 
@@ -95,7 +95,7 @@ def _beyond(found: DryRun, quantity: Callable[[PlannedPoint], float], most: floa
 
 
 def _caveats(found: DryRun) -> Iterator[str]:
-    """What else to know, without what the rig said."""
+    """Findings without those of the rig."""
     yield SAFETY
     limits = found.protocol.limits
     if limits.friction_force_maximum is not None:

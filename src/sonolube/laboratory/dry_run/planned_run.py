@@ -38,7 +38,7 @@ def dry_run(
     heating: HeatingAssumptions | None = None,
     prompt_durations: Mapping[str, float] = PROMPT_DURATIONS,
 ) -> DryRun:
-    """What a protocol will do, how long, how much it records, and what drive and heat stand against it.
+    """Planned course of a protocol: its duration, its amount of data, and the limits of drive and heat.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class _Notes:
 
 
 def _content(protocol: Protocol, point: SetPoint) -> str:
-    """What a step says in words."""
+    """Description of a step."""
     if not point.step:
         return "motor and drive off"
     match step_at(protocol, point.step):
@@ -268,7 +268,7 @@ def _material(known: str | None, of_protocol: str, role: str) -> str:
 def _assumptions(
     assumed: HeatingAssumptions, rig: Rig | None, prompts: Sequence[Prompt], times: Mapping[str, float]
 ) -> dict[str, str]:
-    """What is assumed, by what it concerns."""
+    """Assumptions, by their subject."""
     late = format_si(LATE, "s")
     found = {"supervisor": f"on devices, motor and drive are switched off where a block is late by more than {late}"}
     if prompts:

@@ -1,4 +1,4 @@
-"""Records of a dry run: set points with what they mean for a rig, recordings, time, and what stands against it."""
+"""Records of a dry run: set points with their amplitudes and loads, recordings, durations and findings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ SAMPLE_SIZE: Final = 8
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlannedPoint:
-    """Set point of a protocol with what it means for a rig; None where nothing is known.
+    """Set point of a protocol with amplitude, friction and current of a rig; None where unknown.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class PlannedRecording:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class DryRun:
-    """What a protocol will do.
+    """Planned course of a protocol.
 
     Parameters
     ----------

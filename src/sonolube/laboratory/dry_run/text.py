@@ -51,7 +51,7 @@ def clock(seconds: float) -> str:
 
 
 def _facts(point: PlannedPoint) -> Iterator[str]:
-    """What a set point sets, and what comes of it."""
+    """Set point in words, with the amplitude, current and heat that follow from it."""
     at = point.setting
     if at.rotation_speed:
         yield f"{60 * at.rotation_speed:.3g} rpm"

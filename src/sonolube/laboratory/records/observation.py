@@ -20,7 +20,7 @@ from sonolube.laboratory.records.run_folder import DOCUMENTS, PROTOCOL, RUN, Run
 from sonolube.storage.files import is_locked
 
 MEAN_DURATION: Final = 1.0
-"""Time of the samples whose mean is told. [s]"""
+"""Time of the samples whose mean is shown. [s]"""
 
 _YOUNG: Final = 10.0  # s, within which a run writes its first document
 _SETTING: Final = ("motor_speed", "drive", "voltage_steps", "sweep", "acquire", "end")
@@ -89,7 +89,7 @@ class Observation:
 
 @dataclass(slots=True)
 class _Progress:
-    """What the notes of a run tell up to now; time and sample are those of the last note with a time."""
+    """State of a run by its notes up to now; time and sample are those of the last note with a time."""
 
     state: str = "preparing"
     reason: str = ""
@@ -102,7 +102,7 @@ class _Progress:
     gaps: int = 0
 
     def take(self, note: Note) -> None:
-        """Take a further note."""
+        """Update the state by a further note."""
         facts = note.facts
         at = _number(facts, "protocol_time")
         if at is not None:
@@ -186,7 +186,7 @@ class RunObserver:
         )
 
     def _take_notes(self, documents: ReadDocuments) -> None:
-        """Take the notes that were added."""
+        """Update the state by the notes that were added."""
         events = documents.of("event")
         for event in events[self._events :]:
             self._progress.take(note_of(event))

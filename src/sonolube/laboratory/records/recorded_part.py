@@ -112,7 +112,7 @@ class RecordedPart:
 
     @property
     def caveats(self) -> list[str]:
-        """What speaks against the recording."""
+        """Caveats of the recording."""
         found, rate = [], self.raw.sample_rate
         if self.raw.gaps:
             first = self.raw.gaps[0]
@@ -151,7 +151,7 @@ class RecordedPart:
 
 
 def clock_caveat(clock: PartClock) -> str:
-    """What a clock of its own means for the times of a part, in one line."""
+    """Offset of the times of a part with a clock of its own, and its uncertainty, in one line."""
     offset, within = f"{clock.offset:.4g}", format_si(clock.uncertainty, "s", digits=2)
     return (
         f"clock {clock.name}: time 0 is {offset} s after that of part {clock.part} of the recording, within {within};"

@@ -206,7 +206,7 @@ class RunRecorder:
         self._watch_clock(sample)
 
     def store_truth(self, dataset: "xr.Dataset") -> Path:
-        """Keep what a virtual rig was made of, apart from what was measured.
+        """Write the truth of a virtual rig, apart from the measured record.
 
         Parameters
         ----------
@@ -327,6 +327,6 @@ class RunRecorder:
         self._failure = self._failure or str(failure)
 
     def _require_running(self) -> None:
-        """Refuse what comes after the end."""
+        """Refuse blocks and notes after the end."""
         if self._summary is not None:
             raise InvalidInput(f"{self.folder}: the run has ended; begin another with new_run")

@@ -65,7 +65,7 @@ class PartOfRecording(Interface):
 
     @property
     def caveats(self) -> list[str]:
-        """What speaks against the recording."""
+        """Caveats of the recording."""
 
     def pieces(self) -> Iterator[tuple[Floats, list[Floats]]]:
         """Yield the time since the first sample, in s, and the columns in the order of `variables`."""

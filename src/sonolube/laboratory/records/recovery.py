@@ -37,7 +37,7 @@ _POLL: Final = 0.02  # s
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Recovery:
-    """What the recovery of a run has done.
+    """Changes made by the recovery of a run.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def recover_run(folder: Path) -> Recovery:
 
 
 def _known(folder: Path, done: list[str]) -> RunFacts:
-    """Facts of a run, put together from what else tells them where run.json is missing or damaged."""
+    """Facts of a run, by its other files where run.json is missing or damaged."""
     try:
         return read_run_facts(folder)
     except InvalidInput:

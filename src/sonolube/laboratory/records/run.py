@@ -45,7 +45,7 @@ UNFINISHED: Final = "unfinished"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Note:
-    """What happened in a run.
+    """Event of a run, with its time.
 
     Parameters
     ----------
@@ -352,7 +352,7 @@ def note_of(event: Mapping[str, Any]) -> Note:
 
 
 def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: RunSummary) -> list[str]:
-    """What speaks against the record of a run."""
+    """Caveats of the record of a run."""
     clocks = part_clocks(documents)
     found = [f"{name} is missing or was changed since the run began" for name in changed_files(folder, known)]
     found += [f"{name} was changed after the run wrote it" for name in changed_recordings(folder, known)]

@@ -47,7 +47,7 @@ _LARGEST_TEXT: Final = 1 << 24  # bytes of run.json
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RunFacts:
-    """What was known when a run began.
+    """Facts known when a run began.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def read_run_facts(folder: Path) -> RunFacts:
 
 
 def rebuilt_run_facts(folder: Path, start: Mapping[str, Any] | None) -> RunFacts:
-    """What is known of a run whose run.json is missing or damaged, by its first document, else by its folder.
+    """Facts of a run whose run.json is missing or damaged, by its first document, else by its folder.
 
     With the SHA-256 of the files as they are now where no document tells them.
     """
@@ -251,7 +251,7 @@ def _plain(name: str, value: object) -> Fact:
 
 
 def _versions() -> dict[str, str]:
-    """Versions of what computes."""
+    """Versions of Python, sonolube and the libraries that compute."""
     import platform
 
     import numpy as np

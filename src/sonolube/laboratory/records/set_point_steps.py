@@ -103,7 +103,7 @@ class _Steps:
         self._samples, self._rows = [self._first], [dict(self._state)]
 
     def take(self, data: Mapping[str, Any]) -> None:
-        """Take a note."""
+        """Update the set points by a note of the run."""
         changes = self._changes(str(data["kind"]), data)
         self._state |= changes
         sample = data.get("sample")

@@ -1,4 +1,4 @@
-"""Faults that a virtual tribometer has at a given sample, to try what a runner does."""
+"""Faults that a virtual tribometer has at a given sample, to test a runner."""
 
 from dataclasses import dataclass, field
 from math import inf

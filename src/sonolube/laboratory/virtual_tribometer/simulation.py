@@ -118,7 +118,7 @@ class VirtualRig:
         self._settings: list[TruthSetting] = []
 
     def truth(self) -> "xr.Dataset":
-        """What the recording was made of, as `VirtualTribometer.truth`."""
+        """Truth of the recording, as `VirtualTribometer.truth`."""
         actuator, pin = self._temperatures.rises(self._time)
         single = {
             "friction_coefficient": (self._friction.friction_coefficient, "1"),
@@ -213,7 +213,7 @@ class VirtualRig:
         self._friction.at(setting, speed, normal_load=self._load)
 
     def attend(self, prompt: Prompt) -> None:
-        """Let the time of a prompt pass: the rig cools, the gauge is set to zero, load and pull change as it says."""
+        """Pass the time of a prompt: the rig cools, the gauge is set to zero, load and pull change as it says."""
         self._volume_until_now()
         since = self._settings[-1].start_time if self._settings else self._time  # switched off then, and watched
         self._time = max(self._time, since + PROMPT_DURATIONS[prompt.task])
@@ -224,7 +224,7 @@ class VirtualRig:
         self._settle()
 
     def _hang(self, load: float) -> None:
-        """Take another load; while it is 0 the track does not run in."""
+        """Set another load; while it is 0 the track does not run in."""
         turned = float(self._distance(np.asarray(self._time)))
         if self._load == 0:
             self._untouched += turned - self._lifted_at
@@ -238,7 +238,7 @@ class VirtualRig:
         self._settle()
 
     def _settle(self) -> None:
-        """Take the friction of the present setting."""
+        """Set the friction of the present setting."""
         speed = self._turning.target * pi * self._diameter
         self._volume_until_now()
         self._level = self._friction.at(self._setting, speed, normal_load=self._load)

@@ -65,7 +65,7 @@ class Temperatures:
         )
 
     def set(self, time: float, *, setting: DriveSetting | None, friction_force: float, sliding_speed: float) -> float:
-        """Take the heat of a setting from a time on, and return its steady flash rise, NaN where it is unknown. [K]"""
+        """Steady flash rise of a setting, whose heat counts from a time on; NaN where it is unknown. [K]"""
         assumed, heat = self._assumed, friction_force * sliding_speed
         loss = assumed.loss_factor * capacitive_power(setting, capacitance=self._capacitance)
         partition, flash = self._contact(heat, sliding_speed)

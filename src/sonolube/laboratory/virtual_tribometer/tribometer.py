@@ -96,7 +96,7 @@ class VirtualTribometer:
         )
 
     def truth(self) -> "xr.Dataset":
-        """What the recording was made of: friction of each setting, worn in, and every size that was drawn.
+        """Truth of the recording: friction of each setting, worn in, and every size that was drawn.
 
         Returns
         -------
@@ -122,7 +122,7 @@ class _Connected:
         self.off()
 
     def off(self) -> None:
-        """Switch off what the device has."""
+        """Switch off motor or drive of the device."""
 
     def close(self) -> None:
         """Switch off and disconnect."""

@@ -319,7 +319,7 @@ class _Problem:
 
 
 def _overlap(pairs: Floats) -> bool:
-    """Whether two modes lie within an eighth of a full width of each other, which no sweep tells apart."""
+    """Whether two modes lie within an eighth of a full width of each other, which no sweep resolves."""
     ordered = pairs[np.argsort(pairs[:, 0])]
     widths = ordered[:, 0] / ordered[:, 1]
     return bool(np.any(np.diff(ordered[:, 0]) < np.minimum(widths[1:], widths[:-1]) / 8))

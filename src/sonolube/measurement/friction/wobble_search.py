@@ -151,7 +151,7 @@ def scaled_waves(waves: Sequence[Floats], forces: Sequence[Floats]) -> list[Floa
 
 
 def _residuals(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> list[Floats]:
-    """What levels and harmonics leave of each part, with one amplitude or one in proportion to the level.
+    """Residual of each part after levels and harmonics, with one amplitude or one in proportion to the level.
 
     The one that leaves less is taken: a tilted gauge adds the same wobble at every level, a load that varies with the
     turn wobbles the force in proportion, and of one amplitude would be worse than none where vibration takes most of

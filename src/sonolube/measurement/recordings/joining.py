@@ -25,7 +25,7 @@ def begun_at(text: str) -> datetime | None:
 
 
 def time_shifts(times: Sequence[Floats], starts: Sequence[datetime | None]) -> tuple[list[float], bool]:
-    """What is added to the times of consecutive parts to place them on the axis of the first.
+    """Shifts of the times of consecutive parts that place them on the axis of the first.
 
     `shifts`: Zero where the times of every part continue those of the one before; the difference of the starts where
     the times restart and the parts then follow each other; else what places each part one sample interval after the one

@@ -133,7 +133,7 @@ def _arrays(content: _Bytes, order: str, path: Path) -> Iterator[MatlabArray]:
 
 
 def _variable(content: _Bytes, order: str) -> _Variable:
-    """What stands before the values of a variable."""
+    """Header of a variable, before its values."""
     _, flags, at = _element(content, 0, order)
     _, dimensions, at = _element(content, at, order)
     _, name, at = _element(content, at, order)

@@ -118,7 +118,7 @@ def _collected_log() -> Iterator[list[str]]:
 
 
 def _checked(messages: list[str], path: Path, *, incomplete: bool) -> tuple[str, ...]:
-    """What npTDMS logged as caveats; refuse what makes values wrong.
+    """Caveats by the log of npTDMS; refuses messages that make values wrong.
 
     That is data in another amount than the index announces, but for an incomplete last segment, and unknown scaling.
     """

@@ -10,7 +10,7 @@ _SMALLEST_FIELD = 1e-6  # m, below which only force microscopes scan
 
 
 def size_caveats(*, height: Floats, spacing_x: float, spacing_y: float, unit: str) -> tuple[str, ...]:
-    """What is implausible about the size of a field and its range of heights, one line each.
+    """Caveats of an implausible size of a field or range of its heights, one line each.
 
     `height` has shape (rows, columns).
 

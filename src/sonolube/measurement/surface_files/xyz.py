@@ -105,7 +105,7 @@ def _refuse_remote(positions: Floats, *, axis: str) -> None:
 
 
 def _numbers_on(line: bytes) -> int:
-    """How many numbers a line of text has as a point, the last of which may be a missing value; 0 for others."""
+    """Number of values of a line of text that is a point, the last of which may be missing; 0 for other lines."""
     try:
         return len(_point(line) or ())
     except ValueError:

@@ -177,7 +177,7 @@ def _mean_sheet(recording: "xr.Dataset", channel: str, name: str, label: str) ->
 
 
 def _rest_caveat(recording: "xr.Dataset", rest: Mask) -> list[sheet.Sheet]:
-    """What was left out because the surfaces rest, and how that is known."""
+    """Samples left out because the surfaces rest, and the evidence for the rest."""
     time = channel_values(recording, "time")
     spans = [(float(time[a]), float(time[b - 1])) for a, b in stretches(rest) if time[b - 1] - time[a] > _LONG_REST]
     if not spans:

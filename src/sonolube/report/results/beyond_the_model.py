@@ -49,7 +49,7 @@ class BeyondTheModel:
 
 
 def beyond_the_model(rig: "Rig | ResolvedRig", model: "FrictionModel", *, interval: bool) -> BeyondTheModel:
-    """What the friction ratio of a rig by a friction model leaves out."""
+    """Model error and prediction interval that the friction ratio of a rig by a friction model leaves out."""
     if not interval:
         return BeyondTheModel(error=None, interval=None)
     from sonolube.prediction.friction_interval import friction_interval

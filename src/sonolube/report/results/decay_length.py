@@ -49,7 +49,7 @@ def decision_object(found: DecayLengthDecision, table: SwitchTable) -> dict[str,
 
 
 def decision_caveats(table: SwitchTable, conditions: SwitchConditions, found: DecayLengthDecision) -> list[str]:
-    """What a run lacks, and what the analysis takes for granted."""
+    """Data that a run lacks, and assumptions of the analysis."""
     caveats = [*table.caveats]
     caveats += [f"{name} is read at fewer than eight switches and does not enter" for name in table.missing]
     if {"small_drive_shift", "large_drive_shift"} - set(table.missing) and conditions.natural_frequency is None:

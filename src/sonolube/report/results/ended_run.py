@@ -55,7 +55,7 @@ def run_object(result: RunResult, run: Run, *, simulated: bool) -> dict[str, Any
 
 
 def run_caveats(run: Run, rig: Rig | None) -> list[str]:
-    """What speaks against the record of a virtual run, and in what the protocol overrules the rig file."""
+    """Caveats of the record of a virtual run, and settings in which the protocol overrules the rig file."""
     found = [*run.caveats]
     load, own = run.facts.get("normal_load"), None if rig is None else rig.normal_load
     if isinstance(load, float) and own is not None and abs(load - own) > _SAME_LOAD * own:

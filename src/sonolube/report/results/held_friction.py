@@ -95,7 +95,7 @@ def _margins_text(design: ControlDesign) -> str:
 
 
 def _phase_text(one: HoldMetrics) -> str:
-    """How friction was held at one speed."""
+    """Figures of merit of friction held at one speed."""
     settled = "not settled" if one.settling_time is None else f"settled after {format_si(one.settling_time, 's')}"
     error = format_si(one.tracking_error, "N", scale=one.friction_force)
     return (

@@ -27,7 +27,7 @@ def error_row(one: ComparedFit) -> tuple[str, ...]:
 
 
 def parameter_lines(one: ComparedFit) -> Iterator[str]:
-    """Fitted parameters of a model, and what its default has seen."""
+    """Fitted parameters of a model, and the tests that its default was fitted to."""
     yield from map(parameter_text, one.parameters)
     if one.model.seen is not None:
         yield f"rms and AICc in sample: a default has seen sets {', '.join(one.model.seen.sets)}; unseen by refits"

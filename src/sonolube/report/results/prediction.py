@@ -45,7 +45,7 @@ def input_rows(prediction: LabelledArrays) -> list[list[str]]:
 
 
 def measurement_shares(prediction: LabelledArrays) -> dict[str, float]:
-    """What each further measurement would leave of the interval."""
+    """Share of the interval that each further measurement would leave."""
     return dict(zip(column(prediction, "measure_label"), column(prediction, "measure_share_left"), strict=True))
 
 

@@ -182,7 +182,7 @@ class ContactSection(Section):
         return (self.normal_load if self.stiffness_load is None else self.stiffness_load) / self.normal_stiffness
 
     def origin_of_decay_length(self) -> DecayLengthOrigin | None:
-        """How the decay length is known; None where the file gives none."""
+        """Origin of the decay length; None where the file gives none."""
         if self.normal_stiffness is not None:
             return "normal_stiffness"
         return None if self.decay_length is None else self.decay_length_origin or "stated"
@@ -195,7 +195,7 @@ class ContactSection(Section):
         return None
 
     def _require_one_decay_length(self) -> None:
-        """Refuse two decay lengths, those that no contact has, and what belongs to one that is not there."""
+        """Refuse two decay lengths, implausible ones, and entries about one that is absent."""
         for name in ("decay_length", "normal_stiffness", "stiffness_load"):
             if (value := getattr(self, name)) is not None:
                 require_positive(**{name: value})

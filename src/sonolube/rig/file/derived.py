@@ -45,7 +45,7 @@ DERIVED_SUMMITS: Final = (f"{ROUGHNESS}.summit_radius", f"{ROUGHNESS}.summit_den
 
 
 def with_derived(content: Mapping[str, Any], file: RigFile) -> dict[str, Any]:
-    """Content of a rig file with the numbers that follow from what it states.
+    """Content of a rig file with the numbers that follow from its statements.
 
     Each derived number has an assumption with the relation and a distribution with its spread, unless the file gives
     one; content that states all numbers is returned as it is. A normal stiffness belongs to the load of the file, so

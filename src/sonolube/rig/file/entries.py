@@ -85,7 +85,7 @@ def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
 
 
 def _forget(content: dict[str, Any], place: dict[str, Any], number: str) -> None:
-    """Remove a number, what else it could follow from, and what was derived with it, from a file."""
+    """Remove from a file a number, the entries that it could be derived from, and those derived with it."""
     table = number.rpartition(".")[0]
     assumptions = content.get("assumptions", {})
     derived = [key for key in DERIVED_SUMMITS if str(assumptions.get(key, "")).startswith(TYPICAL)]

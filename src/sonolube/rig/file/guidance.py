@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Guidance:
-    """How a number of a rig file is obtained.
+    """Guidance on obtaining a number of a rig file.
 
     Parameters
     ----------

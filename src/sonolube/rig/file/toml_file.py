@@ -48,7 +48,7 @@ def validated(file: type[_Content], content: Mapping[str, Any]) -> _Content:
 
 
 def _complaints(file: type[Section], refusal: ValidationError, content: Mapping[str, Any]) -> list[ErrorDetails]:
-    """What is wrong, misspelt keys first; the keys of a missing table stand in its place.
+    """Faults of a file, misspelt keys first; the keys of a missing table stand in its place.
 
     A key that an unknown one of its table is like is misspelt and not missing.
     """
@@ -111,12 +111,12 @@ def _entry_of(file: type[Section], complaint: ErrorDetails) -> str:
 
 
 def _reason_of(complaint: ErrorDetails) -> str:
-    """What a complaint says."""
+    """Text of a complaint of pydantic."""
     return str(complaint["msg"]).removeprefix("Value error, ").strip()
 
 
 def _missing(key: str) -> str:
-    """What a missing key means and how to obtain it, where that is known."""
+    """Meaning of a missing key and the way to obtain it, where known."""
     if key not in guidance():
         return "missing"
     meaning = quantity(key).meaning

@@ -104,7 +104,7 @@ class Entries:
 
 
 class Vibration(Protocol):
-    """What vibrates the contact."""
+    """Source of the vibration of the contact."""
 
     def entries(self, frequency: float) -> Entries:
         """Part of a rig file at a frequency in Hz."""

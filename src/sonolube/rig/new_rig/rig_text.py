@@ -33,7 +33,7 @@ _SAME_FORCE: Final = 1e-6  # relative difference of forces below which an entry 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KnownRig:
-    """What is known of a rig before anything is measured on it.
+    """Statements about a rig before anything is measured on it.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ class ReproductionAnswer(Answer):
         return validation_object(self.result)
 
     def caveats(self) -> Sequence[str]:
-        """What the rows rest on that the dissertation speaks against."""
+        """Assumptions of the rows that contradict the dissertation."""
         return self.result.caveats
 
     def files(self) -> Mapping[str, str | bytes]:

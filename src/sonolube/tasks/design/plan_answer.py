@@ -31,7 +31,7 @@ class PlanAnswer(Answer):
     plan: TestPlan
 
     def blocks(self) -> Sequence[Block]:
-        """What is shown how surely, and the points of the plan."""
+        """Difference to be shown, its power, and the points of the plan."""
         return [
             f"{self.rig.title}: {results.size_text(self.plan)}",
             Rows(results.facts(self.plan)),

@@ -214,7 +214,7 @@ class UncertaintyAnswer(Answer):
 
     @cached_property
     def _beyond(self) -> BeyondTheModel:
-        """What the samples leave out of the friction ratio."""
+        """Uncertainty of the friction ratio that the samples leave out."""
         return beyond_the_model(self.rig, self.rig.friction_model, interval=self.interval)
 
     def _error_rows(self) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Tasks that identify what is not printed or measured: `sl.identify.rig` and `sl.identify.decay_length`."""
+"""Identification tasks: `sl.identify.rig` and `sl.identify.decay_length`."""
 
 import lazy_loader
 

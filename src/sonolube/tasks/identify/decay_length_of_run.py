@@ -132,7 +132,7 @@ class DecayLengthAnswer(Answer):
         return results.decision_object(self.decision, self.table)
 
     def caveats(self) -> Sequence[str]:
-        """What the run lacks, and what the analysis takes for granted."""
+        """Data that the run lacks, and assumptions of the analysis."""
         return results.decision_caveats(self.table, self.conditions, self.decision)
 
     def figures(self) -> Mapping[str, Drawing]:

@@ -23,7 +23,7 @@ _SAMPLE_RATE = 1000.0  # Hz, of the first look
 
 @answer
 class CheckedDevices(Answer):
-    """What a device map has, lacks and reads.
+    """Devices of a map, missing parts, and first readings.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class CheckedDevices(Answer):
         }
 
     def caveats(self) -> Sequence[str]:
-        """That no driver has met hardware, and what software cannot do."""
+        """Caveats: no driver has met hardware, and software is no safety function."""
         return (
             "the drivers were tested on stand-ins, never on hardware: keep a hand on the switch in the first run",
             SAFETY,

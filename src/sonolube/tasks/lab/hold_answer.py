@@ -54,7 +54,7 @@ class HoldAnswer(Answer):
         return results.held_object(self.rig, self.held, self.design, self.run, simulated=self.simulated)
 
     def caveats(self) -> Sequence[str]:
-        """What speaks against the record, speeds at which the reference was out of reach, and a simulation."""
+        """Caveats of the record, speeds at which the reference was out of reach, and a mark of simulated runs."""
         told = (*self.run.caveats, *results.saturation_lines(self.held))
         return (*told, SIMULATED) if self.simulated else told
 

@@ -28,7 +28,7 @@ class RecoveredRuns(Answer):
     refused: Mapping[str, str]
 
     def blocks(self) -> Sequence[Block]:
-        """What was mended, run by run."""
+        """Mended records, run by run."""
         mended = {path: each for path, each in self.recovered.items() if each.done}
         lines = [f"{len(mended)} of {len(self.recovered)} runs recovered"]
         for path, each in mended.items():

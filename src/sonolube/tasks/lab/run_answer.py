@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @answer
 class RunAnswer(Answer):
-    """How a run ended, and where its record is.
+    """Outcome of a run, and the place of its record.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class RunAnswer(Answer):
         return results.run_object(self.result, self.run, simulated=self.simulated)
 
     def caveats(self) -> Sequence[str]:
-        """What speaks against the record."""
+        """Caveats of the record."""
         return results.run_caveats(self.run, self.rig) if self.simulated else self.run.caveats
 
     def assumptions(self) -> Mapping[str, str]:
@@ -63,7 +63,7 @@ class RunAnswer(Answer):
 
 @answer
 class DryRunAnswer(Answer):
-    """What a protocol will do.
+    """Planned course of a protocol.
 
     Parameters
     ----------
@@ -87,9 +87,9 @@ class DryRunAnswer(Answer):
         return {"dry-run": Drawing(chart=lambda: dry_run_chart(self.found), forms=())}
 
     def caveats(self) -> Sequence[str]:
-        """What may not hold."""
+        """Caveats of the plan."""
         return self.found.caveats
 
     def assumptions(self) -> Mapping[str, str]:
-        """What drive and heat assume."""
+        """Assumptions about drive and heat."""
         return self.found.assumptions

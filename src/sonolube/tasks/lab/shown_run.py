@@ -41,7 +41,7 @@ class ShownRun(Answer):
         return results.run_object(self.run)
 
     def caveats(self) -> Sequence[str]:
-        """What speaks against the record."""
+        """Caveats of the record."""
         return self.run.caveats
 
     def figures(self) -> "Mapping[str, Drawing]":

@@ -108,7 +108,7 @@ def friction(
 def _motor(
     torque_constant: Number | None, idle_current: Number | None, groove_diameter: Number | None
 ) -> MotorCalibration | None:
-    """Calibration by which the current of a motor tells the friction force."""
+    """Calibration from the current of a motor to the friction force."""
     torque = in_si("torque_constant", torque_constant)
     idle, diameter = in_si("idle_current", idle_current), in_si("groove_diameter", groove_diameter)
     if torque is None:

@@ -1,1 +1,1 @@
-"""Tasks that predict what a rig or a part does."""
+"""Prediction tasks: operating points, transients, intervals of a rig."""

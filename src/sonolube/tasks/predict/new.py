@@ -214,7 +214,7 @@ def refuse_two_of_one(given: Mapping[str, object]) -> None:
 
 
 def stated_vibration(amplitude: Number | None, actuator: str | None, voltage: Number | None) -> str:
-    """What vibrates the contact as one text: an amplitude, or an actuator and its voltage."""
+    """Source of the vibration as one text: an amplitude, or an actuator and its voltage."""
     return _text(amplitude, "m") or "" if actuator is None else f"{actuator} {_text(voltage, 'V')}"
 
 

@@ -135,5 +135,5 @@ class PredictionAnswer(Answer):
         return {f"{self.rig.name}-prediction.nc": self.prediction}
 
     def _probes(self) -> list[str]:
-        """Which resonances of the rig tell the contact stiffness, a sentence each."""
+        """Sentences on the resonances of the rig that show its contact stiffness."""
         return [line for line in self.prediction.attrs["stiffness_probes"].split("\n") if line]

@@ -215,7 +215,7 @@ def _held_mean(motions: _SinusoidalMotions, floating_mean: Floats) -> tuple[Floa
 
 
 def _iterated_mean(motions: _SinusoidalMotions, amplitude: Floats) -> tuple[Floats, Floats]:
-    """What `_balanced_mean` does for any law, by Newton's method in a bracket."""
+    """Mean displacement that balances the load for any law, by Newton's method in a bracket."""
     floating = motions.static_stiffness == 0.0
     lower = np.zeros_like(amplitude) if floating else np.minimum(motions.static_displacement, 0.0)
     upper = amplitude.copy() if floating else np.maximum(motions.static_displacement, amplitude)

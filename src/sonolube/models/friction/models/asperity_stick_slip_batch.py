@@ -181,7 +181,7 @@ def _interpolated(table: Floats, beta: float, s: float) -> float:
 
 @kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights: Floats) -> float:
-    """What friction lacks by sticking elements, over the load, for a motion that closes once in a period."""
+    """Friction that sticking elements take away, over the load, for a motion that closes once in a period."""
     count = harmonics.size
     while count > 1 and abs(harmonics[count - 1]) < _NEGLIGIBLE_HARMONIC:
         count -= 1

@@ -60,7 +60,7 @@ class FieldTracks(NamedTuple):
     masked: HeightMap  # the scan without those features
 
     def listed(self) -> str:
-        """How many tracks there are, with position, width and depth of each."""
+        """Number of tracks, with position, width and depth of each."""
         rows = [
             f"{number} at {1e3 * track.track_offset:+.2f} mm from the centre of the field,"
             f" {1e3 * track.groove_width:.2g} mm wide, {1e6 * track.groove_depth:.2g} um deep"
@@ -210,7 +210,7 @@ def _track(detected: DetectedGroove, trough: _Trough, *, alone: bool) -> FieldTr
 
 
 def _other_feature(surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough) -> str:
-    """What a trough is in words, if it is too narrow or too short for a track; otherwise empty."""
+    """Description of a trough too narrow or too short for a track; empty for a track."""
     width, middle = trough.right - trough.left, (trough.left + trough.right) / 2
     rows, columns = surface.height.shape
     longer = max(rows * surface.spacing_y, columns * surface.spacing_x)

@@ -243,7 +243,7 @@ def _padded(shape: tuple[int, ...]) -> tuple[int, int]:
 
 
 def _doubled(shape: tuple[int, int]) -> Floats:
-    """How often each wave of a real transform counts in a sum over all waves."""
+    """Multiplicity of each wave of a real transform in a sum over all waves."""
     twice = np.full(shape[1] // 2 + 1, 2.0)
     twice[0] = 1.0
     if shape[1] % 2 == 0:

@@ -74,7 +74,7 @@ def _load_rows(study: "xr.Dataset") -> Named:
 
 
 def _energy_rows(study: "xr.Dataset") -> Named:
-    """How the powers of the study compare, at its point of least friction."""
+    """Comparison of the powers of the study, at its point of least friction."""
     best = extreme_point(study, outcome="friction_ratio")
     balance = None if best is None else power_balance(best)
     if balance is not None:
@@ -82,7 +82,7 @@ def _energy_rows(study: "xr.Dataset") -> Named:
 
 
 def power_balance(point: "xr.Dataset") -> str | None:
-    """How the power of the amplifier and the dissipated power of a point compare; None where it has no power."""
+    """Comparison of the amplifier's power with the dissipated power of a point; None where it has no power."""
     if "actuator_power" not in point:
         return None
     return energy_balance(
