@@ -9,7 +9,12 @@ import pytest
 TESTS = Path(__file__).parent
 CLOCKS = {"monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns", "process_time", "time_ns", "thread_time"}
 HUNG = {"cli/terminal.py", "cli/predict/test_new.py"}  # where a clock ends a hung test
-STAND_INS = {"laboratory/records/clock.py", "cli/console/test_progress.py"}  # of clocks, which are named alike
+STAND_INS = {  # of clocks, which are named alike, and of instruments, which have one
+    "cli/console/test_progress.py",
+    "laboratory/records/clock.py",
+    "laboratory/test_added_drivers.py",
+    "laboratory/test_own_clocks.py",
+}
 LEAST = 60.0  # s
 
 

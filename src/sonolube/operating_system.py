@@ -103,7 +103,7 @@ class TypedLines:
 def at_console_close(act: Callable[[str], None]) -> Callable[[], None]:
     """Call a function before Windows ends this process: its console is closed, the user logs off, it shuts down.
 
-    Ends this.
+    The function returned ends that.
 
     Windows reports neither log-off nor shutdown to a console program that has loaded user32 or gdi32.
 

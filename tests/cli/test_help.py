@@ -46,7 +46,7 @@ def test_the_help_of_a_command_shows_what_is_written_with_every_unit(command: Co
 
 def test_some_help_has_units_that_markup_would_take() -> None:
     found = {unit for command in COMMANDS for text in written(command) for unit in UNIT.findall(text)}
-    assert {"[um]", "[mm/s]", "[N]", "[gpu]"} <= found
+    assert {"[um]", "[mm/s]", "[N]"} <= found
 
 
 @pytest.mark.parametrize("group", ["", *GROUPS])

@@ -27,7 +27,7 @@ from sonolube.models.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.rig import read_rig, simulate
 from sonolube.rig.datasets import result_quantities
 
-RIGS = Path(__file__).parents[1] / "examples" / "rigs"
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 
 
 @kernel(error_model="numpy")

@@ -23,7 +23,7 @@ from sonolube.storage.input_files import input_bytes, input_text, open_input, re
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pipes among its paths")
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 RIG = EXAMPLES / "rigs" / "tribometer.toml"
 RUNS = EXAMPLES / "tribometer-runs.csv"
 READERS: dict[str, Callable[[Path], object]] = {

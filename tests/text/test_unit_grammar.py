@@ -13,7 +13,7 @@ from sonolube.text.unit_grammar import LONGEST_UNIT, canonical_unit
 from sonolube.text.units import convert, to_si
 from sonolube.vocabulary import quantities
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 # Forms that a reader of recordings, surfaces or rig files has met, with the same unit in the simplest notation.
 SAME = {

@@ -27,10 +27,7 @@ class Uploads:
         self._largest = largest
 
     async def keep(self, content: AsyncIterator[bytes], *, length: int | None) -> str:
-        """Write a file as its bytes come in.
-
-        Its name here.
-        """
+        """Name here of a file that is written as its bytes come in."""
         if length is not None and length > self._largest:
             raise InvalidInput(self._refusal(length))
         name = secrets.token_hex(16)

@@ -37,10 +37,7 @@ def scaled_axis(name: str, values: ArrayLike) -> tuple[float, Axis]:
 
 
 def contour_levels(values: Floats, *, steps: int = 18) -> Floats:
-    """Round levels of contours about all known values, ascending by equal steps.
-
-    Two at least.
-    """
+    """Round levels of contours about all known values, ascending by equal steps; two at least."""
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
     least = max(high - low, 1e-6 * max(abs(low), abs(high)), 1e-12) / steps

@@ -17,10 +17,7 @@ _COUNT = re.compile(r"\d{1,18}")
 
 
 def values_of(key: str, text: str, *, option: str = "over") -> "Values":
-    """Values of a key of a rig file: first:last:count, first:last:count:log or one,two,...
-
-    Numbers in SI, or text.
-    """
+    """Values of a key of a rig file: first:last:count, first:last:count:log or one,two,; numbers in SI, or text."""
     import numpy as np
 
     if ":" not in text:
@@ -39,10 +36,7 @@ def values_of(key: str, text: str, *, option: str = "over") -> "Values":
 
 
 def ends_of(key: str, text: str, *, option: str = "over") -> tuple[float, float]:
-    """Lowest and highest value of a key of a rig file: first:last.
-
-    In SI.
-    """
+    """Lowest and highest value of a key of a rig file: first:last; in SI."""
     parts = text.split(":")
     if len(parts) != 2:
         raise InvalidInput(f"{option} {key}={text}: points are drawn between two ends, such as {key}=first:last")

@@ -68,9 +68,6 @@ def speed_of(check: Check, *, rotation_speed: float, groove_diameter: float, is_
 
 
 def speed_checks(protocol: Protocol) -> tuple[str, ...]:
-    """Steps that check a speed.
-
-    Each place once.
-    """
+    """Steps that check a speed; each place once."""
     checks = {point.step: step_at(protocol, point.step) for point in flattened(protocol) if point.kind == "check"}
     return tuple(place for place, step in checks.items() if isinstance(step, Check) and step.quantity in SPEEDS)

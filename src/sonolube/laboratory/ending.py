@@ -33,18 +33,12 @@ def ending(failure: BaseException) -> tuple[Event, str]:
 
 
 def release_devices(devices: Devices, *before: Callable[[], object]) -> list[str]:
-    """Release all devices, each whatever becomes of the others; never raises.
-
-    What has failed.
-    """
+    """Failures while all devices are released, each whatever becomes of the others; never raises."""
     return tried(*before, devices.drive.close, devices.motor.close, devices.acquisition.close)
 
 
 def tried(*calls: Callable[[], object]) -> list[str]:
-    """Make calls, each whatever becomes of the others; never raises.
-
-    What has failed.
-    """
+    """Failures of calls, each made whatever becomes of the others; never raises."""
     failures = []
     for call in calls:
         try:

@@ -71,7 +71,7 @@ class Sampling:
         self._names = [*own, *watched] or [next(iter(self._acquisition.channels))]
         self._recorded = len(own)
         self.rate = self._acquisition.start(self._names, sample_rate=sample_rate)
-        self.sample, self._origin = 0, self.time
+        self.sample, self._origin, self._latest = 0, self.time, None
 
     def stop(self) -> None:
         """Stop to sample and to record."""

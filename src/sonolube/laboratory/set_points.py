@@ -76,10 +76,7 @@ def rotation_speed(point: SetPoint, diameter: float) -> float:
 
 
 def drive_setting(point: SetPoint) -> DriveSetting | None:
-    """Output of the drive source that a set point asks for.
-
-    None for off.
-    """
+    """Output of the drive source that a set point asks for; none for off."""
     if point.frequency is None or point.voltage_peak_to_peak == 0:
         return None
     return DriveSetting(

@@ -63,10 +63,7 @@ def speed_of_one_direction(recording: "xr.Dataset") -> Floats | None:
 
 
 def speed_changes(recording: "xr.Dataset") -> bool:
-    """Whether a recording has several sliding speeds, by over a tenth.
-
-    False where the speed is not known.
-    """
+    """Whether a recording has several sliding speeds, by over a tenth; false where the speed is not known."""
     speed = recorded_speed(recording)
     if speed is None:
         return False
@@ -76,10 +73,7 @@ def speed_changes(recording: "xr.Dataset") -> bool:
 
 
 def recorded_rest(recording: "xr.Dataset") -> Mask:
-    """Whether the surfaces rest at each sample of a recording with `friction_force`, as `at_rest`.
-
-    Shape (samples,).
-    """
+    """Whether the surfaces rest at each sample of a recording with `friction_force`, as `at_rest`; shape (samples,)."""
     return at_rest(
         time=_values(recording, "time"),
         friction_force=_values(recording, "friction_force"),

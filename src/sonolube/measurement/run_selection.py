@@ -18,10 +18,7 @@ _MAX_LINES: Final = 6  # named in a caveat
 
 
 def checked_ratios(runs: "xr.Dataset", *, title: str) -> Floats:
-    """Friction ratio of each run.
-
-    Shape (n,).
-    """
+    """Friction ratio of each run; shape (n,)."""
     ratio = 1 - np.asarray(runs["friction_reduction"].to_numpy(), float)
     outside = (ratio < _SMALLEST_RATIO) | (ratio > _LARGEST_RATIO)
     if np.any(outside):
@@ -52,10 +49,7 @@ def copies_caveat(runs: "xr.Dataset") -> tuple[str, ...]:
 
 
 def setting(runs: "xr.Dataset", name: str, otherwise: ArrayLike) -> Floats:
-    """Column of the runs, with another value where it is missing or its cell is empty.
-
-    Shape (n,).
-    """
+    """Column of the runs, with another value where it is missing or its cell is empty; shape (n,)."""
     other = np.broadcast_to(np.asarray(otherwise, float), (runs.sizes["run"],))
     if name not in runs:
         return other.copy()

@@ -35,10 +35,7 @@ class NamedBody:
 
 
 def named_bodies(rig: Rig) -> tuple[NamedBody, ...]:
-    """Bodies of a rig whose materials are named, the pin or the softer one first.
-
-    None, one or two.
-    """
+    """Bodies of a rig whose materials are named, the pin or the softer one first; none, one or two."""
     tables = _body_tables(rig)
     found = [
         _body(table["material"], strength=table.get("yield_strength"), is_measured=is_measured)

@@ -72,10 +72,7 @@ def _highest(prediction: "xr.Dataset | LabelledArrays") -> float:
 
 
 def ratio_bands(places: Floats, quantiles: Floats) -> tuple[Part, ...]:
-    """Central intervals and median along one axis.
-
-    `quantiles` has shape (7, n).
-    """
+    """Central intervals and median along one axis; `quantiles` has shape (7, n)."""
     bands = [
         Band(
             x=places, low=quantiles[row], high=quantiles[-1 - row], label=f"{100 * chance:.0f} % interval", opacity=dark

@@ -37,10 +37,7 @@ class FrictionInterval:
 
 
 def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
-    """Interval of the friction ratio of a rig at its operating point, without own runs.
-
-    Equal to that of `predict`.
-    """
+    """Interval of the friction ratio of a rig at its operating point, without own runs; equal to that of `predict`."""
     resolved = resolved_rig(rig)
     try:
         limits = applicability(resolved.rig)

@@ -256,10 +256,7 @@ def discrepancy_correlation(one: Conditions, other: Conditions, *, log_length: A
 
 
 def discrepancy_deviation(ratio: Floats, at: Conditions, *, log_discrepancy: Floats) -> Floats:
-    """Standard deviation of the discrepancy at conditions.
-
-    `ratio` has shape (..., n).
-    """
+    """Standard deviation of the discrepancy at conditions; `ratio` has shape (..., n)."""
     distance = distance_from_tests(at)
     least = np.minimum(_MIN_DISCREPANCY + _PER_DISTANCE * distance, 1.0)
     share = np.clip((1 - ratio) / _FULL_DISCREPANCY, least, 1.0) * np.sqrt(1 + distance**2)

@@ -125,9 +125,6 @@ CLAIMS: Final = (
 
 
 def findings(rows: Iterable[Row]) -> tuple[Finding, ...]:
-    """Findings on all claims whose rows were computed.
-
-    In the order of `CLAIMS`.
-    """
+    """Findings on all claims whose rows were computed; in the order of `CLAIMS`."""
     by_id = {row.id: row for row in rows}
     return tuple(finding(claim, by_id) for claim in CLAIMS if by_id.keys() >= set(claim.decisive))

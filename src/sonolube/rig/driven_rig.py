@@ -66,10 +66,7 @@ def require_drive(rig: Rig) -> Drive:
 
 
 def driven_rig(rig: Rig) -> DrivenRig:
-    """Rig as one whose motion can be computed.
-
-    The rig itself where it is one already.
-    """
+    """Rig as one whose motion can be computed; the rig itself where it is one already."""
     if isinstance(rig, DrivenRig):
         return rig
     return DrivenRig(**{field.name: getattr(rig, field.name) for field in fields(rig) if field.init})

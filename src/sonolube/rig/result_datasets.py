@@ -46,20 +46,14 @@ def simulation_arrays(rig: Rig, result: Simulation) -> LabelledArrays:
 
 
 def response_arrays(rig: Rig, result: FrequencyResponse) -> LabelledArrays:
-    """Linear response over frequency: amplitude per volt, magnitude and phase of the impedance.
-
-    Over `frequency`.
-    """
+    """Linear response over frequency: amplitude per volt, magnitude and phase of the impedance; over `frequency`."""
     names = ("frequency", "amplitude_per_volt", "impedance", "phase")
     values = {name: getattr(result, name) for name in names}
     return labelled(values, along="frequency", title=f"Linear response of {rig.title}")
 
 
 def start_up_arrays(rig: Rig, result: StartUp) -> LabelledArrays:
-    """Start-up from rest: displacement and contact force at every step of the time integration.
-
-    Over `time`.
-    """
+    """Start-up from rest: displacement and contact force at every step of the time integration; over `time`."""
     values = {
         "time": result.trajectory.time,
         "displacement": result.trajectory.contact.displacement,

@@ -80,10 +80,7 @@ class UnfinishedFile(io.FileIO):
 
 
 def write_atomically(path: Path, content: bytes | str) -> Path:
-    """Write a file atomically: readers get either the old content or the new one, never a part of it.
-
-    `path`.
-    """
+    """Write a file atomically: readers get either the old content or the new one, never a part of it."""
     with unfinished_file(path) as file:
         file.write(content.encode() if isinstance(content, str) else content)
         file.complete()

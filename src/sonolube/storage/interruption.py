@@ -8,8 +8,6 @@ from threading import Event
 from types import FrameType
 from typing import Final
 
-from sonolube.operating_system import at_console_close
-
 _MEANINGS: Final = {  # Windows has no SIGHUP, and alone SIGBREAK
     "SIGINT": "interrupted",
     "SIGTERM": "terminated",
@@ -62,6 +60,8 @@ def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
         ended.wait(_ORDERLY_END)
         _undo_all()
 
+    from sonolube.operating_system import at_console_close
+
     forget = at_console_close(close)
     try:
         yield
@@ -101,7 +101,10 @@ def end_program_at_signals() -> None:
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             with suppress(ValueError):  # only the main thread of a process handles signals
                 signal.signal(number, end)
-    at_console_close(lambda meaning: _undo_all())
+    if os.name == "nt":
+        from sonolube.operating_system import at_console_close
+
+        at_console_close(lambda meaning: _undo_all())
 
 
 def _undo_all() -> None:

@@ -45,10 +45,7 @@ def is_terminal() -> bool:
 
 
 def ask(question: Question, read: Callable[[str], Value]) -> Value:
-    """Answer to a question, asked again until it can be read.
-
-    What `read` returns.
-    """
+    """Answer to a question, asked again until it can be read; what `read` returns."""
     while True:
         typer.echo(f"{question.text} [{question.default}]: ", nl=False, err=True)
         line = sys.stdin.readline()

@@ -41,10 +41,7 @@ def final_state(run: ClosedLoopRun) -> FinalState:
 
 
 def lost_resonance(study: ControlDesign) -> bool:
-    """Whether the tracked frequency of a run ends at an end of its band.
-
-    False without tracking.
-    """
+    """Whether the tracked frequency of a run ends at an end of its band; false without tracking."""
     tracker, last = study.tracker, float(study.run.frequency[-1])
     return tracker is not None and not tracker.lowest_frequency < last < tracker.highest_frequency
 

@@ -66,10 +66,7 @@ class HornProfile:
 
 
 def horn_profile(body: TunableBody, *, length: float) -> HornProfile | None:
-    """Half profile of a horn of a named shape.
-
-    None for a body from a file.
-    """
+    """Half profile of a horn of a named shape; none for a body from a file."""
     if not body.sizes:
         return None
     return _PROFILES[body.name]({**body.sizes, body.tuned_size: length})

@@ -15,10 +15,7 @@ if TYPE_CHECKING:
 
 
 def designs_dataset(optimum: Optimum) -> "xr.Dataset":
-    """All designs of a screening with their objectives and the fraction of each limit that they use.
-
-    Over `design`.
-    """
+    """All designs of a screening with their objectives and the fraction of each limit that they use; over `design`."""
     import xarray as xr
 
     screened, space = optimum.screening, optimum.problem.space

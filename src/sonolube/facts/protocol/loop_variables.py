@@ -12,10 +12,7 @@ _NAME: Final = re.compile(r"[A-Za-z]\w{0,63}")
 
 
 def written_out(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Content of a repeat with its steps written out for the values of its variables.
-
-    Without values of variables.
-    """
+    """Content of a repeat with its steps written out for the values of its variables, which it then has no more."""
     over, steps = content.get("over"), content.get("steps")
     if not over or not isinstance(over, Mapping) or not isinstance(steps, Sequence) or isinstance(steps, str):
         return dict(content)

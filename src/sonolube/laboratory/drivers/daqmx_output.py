@@ -239,9 +239,6 @@ def whole_periods(*, frequency: float, sample_rate: float, device: str) -> tuple
 
 
 def waveform_samples(waveform: str, *, periods: int, samples: int) -> NDArray[np.float64]:
-    """Samples of whole periods of a waveform between -1 and 1.
-
-    Shape (samples,).
-    """
+    """Samples of whole periods of a waveform between -1 and 1; shape (samples,)."""
     shape = _SHAPES[waveform](np.arange(samples) * periods % samples / samples)
     return np.asarray(shape, dtype=np.float64)

@@ -12,10 +12,7 @@ _RANGE_TOLERANCE = 1e-9  # of the range
 
 
 def loading_mask(x: Floats) -> NDArray[np.bool_]:
-    """Where a displacement is on a loading branch, with hysteresis against small reversals.
-
-    Shape (samples,).
-    """
+    """Where a displacement is on a loading branch, with hysteresis against small reversals; shape (samples,)."""
     threshold = _REVERSAL * float(np.ptp(x))
     rising = np.empty(x.size, dtype=np.bool_)
     up, extreme, since = True, x[0], 0
@@ -30,10 +27,7 @@ def loading_mask(x: Floats) -> NDArray[np.bool_]:
 
 
 def require_calibrated_range(*, displacement: ArrayLike, lowest: float, highest: float) -> Floats:
-    """Displacements as a one-dimensional array; refuse any outside the calibrated range.
-
-    Shape (samples,).
-    """
+    """Displacements as a one-dimensional array; refuse any outside the calibrated range; shape (samples,)."""
     x = np.atleast_1d(require_finite(displacement=displacement))
     if x.ndim != 1:
         raise InvalidInput(f"displacement must be one-dimensional, got shape {x.shape}")
@@ -48,20 +42,14 @@ def require_calibrated_range(*, displacement: ArrayLike, lowest: float, highest:
 
 
 def require_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
-    """Displacement and force as one-dimensional arrays of equal length.
-
-    Shape (samples,).
-    """
+    """Displacement and force as one-dimensional arrays of equal length; shape (samples,)."""
     x, force = require_finite(displacement=displacement), require_finite(applied_force=applied_force)
     require_equal_length(displacement=x, applied_force=force)
     return x, force
 
 
 def require_calibration_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
-    """Displacement and force of a calibration as one-dimensional arrays of equal length.
-
-    Shape (samples,).
-    """
+    """Displacement and force of a calibration as one-dimensional arrays of equal length; shape (samples,)."""
     x, force = require_readings(displacement=displacement, applied_force=applied_force)
     if x.size < 2 or np.ptp(x) == 0:
         raise InvalidInput("displacement does not vary")

@@ -56,10 +56,7 @@ class TextTable:
 def text_tables(
     text: str, layout: TextLayout, sections: tuple[str, ...], path: Path, *, allows_short_rows: bool = False
 ) -> list[TextTable]:
-    """Tables of a text export in order: one, or one per section.
-
-    At least one, with rows.
-    """
+    """Tables of a text export in order: one, or one per section; at least one, with rows."""
     lines = list(io.StringIO(text, newline=""))
     parts = _sections(lines, layout)
     if not layout.section and sections:

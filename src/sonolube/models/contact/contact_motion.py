@@ -282,10 +282,7 @@ def require_open_gap(contact: RoughContact, motion: ContactMotion) -> Floats:
 
 
 def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
-    """Oscillating part of a sampled period, delayed by a phase.
-
-    `values` has shape (..., n).
-    """
+    """Oscillating part of a sampled period, delayed by a phase; `values` has shape (..., n)."""
     samples = values.shape[-1]
     harmonics = np.fft.rfft(values) * np.exp(-1j * phase * np.arange(samples // 2 + 1))
     harmonics[..., 0] = 0.0

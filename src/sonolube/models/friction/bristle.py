@@ -97,10 +97,7 @@ def _force_after_slide(force: float, k: float, limit: float, slide: float, expon
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady: Floats, exponent: float) -> Floats:
-    """Mean force of a bristle on a holder without mass over its steady period, for each sliding speed.
-
-    Shape (m,).
-    """
+    """Mean force of a bristle on a holder without mass over its steady period, for each sliding speed; shape (m,)."""
     n = k.size
     largest = 0.0
     for j in range(n):

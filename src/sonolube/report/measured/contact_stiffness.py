@@ -82,10 +82,7 @@ def contact_stiffness_sheet(
 
 
 def rig_lines(stiffness: LogEstimate) -> tuple[str, ...]:
-    """Lines of a rig file that state a stiffness of the contact and its uncertainty.
-
-    Two tables of a line each.
-    """
+    """Lines of a rig file that state a stiffness of the contact and its uncertainty; two tables of a line each."""
     return (
         "[contact]",
         f'normal_stiffness = "{stiffness.median:.4g} N/m"',

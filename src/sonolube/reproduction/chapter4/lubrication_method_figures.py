@@ -45,10 +45,7 @@ def load_scatter() -> float:
 
 
 def coefficients(*, sliding_speed: Floats, normal_load: float) -> dict[str, Floats]:
-    """Coefficients of friction by method, by the names of `LubricationCoefficients`. []
-
-    Shape (n,).
-    """
+    """Coefficients of friction by method, by the names of `LubricationCoefficients`; shape (n,). []"""
     pressure = normal_load / si_value("table-4.3-nominal_area-1")
     relative = lubrication.coefficients(sliding_speed=sliding_speed, nominal_pressure=pressure)._asdict()
     return {name: dry_coefficient() * coefficient for name, coefficient in relative.items()}

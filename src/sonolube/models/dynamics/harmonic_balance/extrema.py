@@ -47,10 +47,7 @@ class _Motions(NamedTuple):
 def response_measures(
     gap_law: GapLaw, omega: Floats, load: Floats, mean: Floats, harmonics: Complexes, count: Integers
 ) -> ResponseMeasures:
-    """Measures of periodic motions at the contact.
-
-    `harmonics` has shape (p, H).
-    """
+    """Measures of periodic motions at the contact; `harmonics` has shape (p, H)."""
     most = int(count.max(initial=1))
     rows = np.ascontiguousarray(harmonics[:, :most].T)
     rows[np.arange(1, most + 1)[:, np.newaxis] > count] = 0.0

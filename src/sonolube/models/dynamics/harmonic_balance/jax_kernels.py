@@ -78,10 +78,7 @@ def newton_solve(
 def monodromy_power_norms(
     gap_law: GapLaw, pairs: Floats, settings: Floats, drift: Floats, harmonics: Complexes, kicks: Integers
 ) -> tuple[Floats, Floats]:
-    """Norms of the monodromy matrices to the power 2^22, in two parts, as `floquet_kernel` writes them.
-
-    Shape (p,).
-    """
+    """Norms of the monodromy matrices to the power 2^22, in two parts, as `floquet_kernel` writes them; shape (p,)."""
     (kind, _), law = kernel_law(gap_law)
     powers, norms = np.empty((2, kicks.size))
     wide = _resized(harmonics, next(size for size in _HARMONICS if harmonics.shape[1] <= size))

@@ -97,10 +97,7 @@ def _participates(inputs: Floats) -> np.ndarray:
 
 
 def receptance(model: PoleResidueModel, response: int, omega: Floats) -> Complexes:
-    """Receptance at angular frequencies, by its pole-residue form.
-
-    In m/N, m/V (which is C/N) or C/V.
-    """
+    """Receptance at angular frequencies, by its pole-residue form; in m/N, m/V (which is C/N) or C/V."""
     real, imaginary = np.zeros((2, *omega.shape))
     square = np.square(omega)
     for constant, slope, determinant, trace in zip(

@@ -86,10 +86,7 @@ class HarmonicBalanceEquations:
         return float(unknowns[0]), unknowns[1 : self.orders + 1] + 1j * unknowns[self.orders + 1 :]
 
     def at(self, unknowns: Floats, *, omega: float, scale: float) -> "HarmonicBalanceResidual":
-        """Residual and derivatives at a vector of unknowns.
-
-        `unknowns` has shape (2H + 1,).
-        """
+        """Residual and derivatives at a vector of unknowns; `unknowns` has shape (2H + 1,)."""
         mean, harmonics = self.unstack(unknowns)
         x = mean + (self.basis @ harmonics).real
         v = (self.basis @ (1j * omega * self.multiples * harmonics)).real

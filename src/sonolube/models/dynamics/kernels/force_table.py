@@ -86,9 +86,6 @@ def log_forces(cells: Floats, positions: Floats, values: Floats, slopes: Floats)
 
 @kernel(**KERNEL)
 def positions_of(cells: Floats, log_forces: Floats, positions: Floats) -> None:
-    """Write the positions at which the logarithm of the force has many values.
-
-    `cells` has shape (n + 1, 4).
-    """
+    """Write the positions at which the logarithm of the force has many values; `cells` has shape (n + 1, 4)."""
     for i in range(log_forces.size):
         positions[i] = position_of(cells, log_forces[i])

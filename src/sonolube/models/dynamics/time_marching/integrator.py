@@ -103,10 +103,7 @@ def start_history(steps: int) -> Floats:
 
 
 def step_quadrature(modes: FirstOrderModes, *, steps: int, slowest: float) -> tuple[Floats, Floats]:
-    """Gauss-Legendre nodes and weights from 0 to 1 that resolve the free motion over a step.
-
-    Shape (nodes,).
-    """
+    """Gauss-Legendre nodes and weights from 0 to 1 that resolve the free motion over a step; shape (nodes,)."""
     phase = _fastest(modes) / (steps * slowest)
     if phase > _LARGEST_PHASE:
         raise InvalidInput(

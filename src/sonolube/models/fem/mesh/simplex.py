@@ -18,10 +18,7 @@ EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 
 @cache
 def lagrange_nodes(order: int, *, corners: int) -> Integers:
-    """Nodes of a Lagrange element on a simplex: barycentric coordinates times the order.
-
-    Shape (a, corners).
-    """
+    """Nodes of a Lagrange element on a simplex: barycentric coordinates times the order; shape (a, corners)."""
     rows = [row for row in product(range(order + 1), repeat=corners) if sum(row) == order]
 
     def sort_key(row: tuple[int, ...]) -> tuple[int, int, tuple[int, ...]]:

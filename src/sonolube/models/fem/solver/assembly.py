@@ -100,10 +100,7 @@ def assemble_matrices(model: Model) -> GlobalMatrices:
 
 
 def scalar_mass_matrix(model: Model) -> sparse.csc_array:
-    """Mass matrix of one displacement component, the same for all three.
-
-    Shape (n, n).
-    """
+    """Mass matrix of one displacement component, the same for all three; shape (n, n)."""
     mesh = model.mesh
     points, weights = simplex_quadrature(2 * mesh.order, corners=4)
     value, gradient = shape_functions(mesh.order, points)

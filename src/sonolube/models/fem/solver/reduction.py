@@ -177,18 +177,12 @@ def output_matrix(model: Model, equations: SystemMatrices, outputs: Mapping[str,
 
 
 def lossy_dielectric(equations: SystemMatrices) -> sparse.csc_array:
-    """Complex permittivity matrix P of the unknown potentials, losses included.
-
-    Shape (p, p).
-    """
+    """Complex permittivity matrix P of the unknown potentials, losses included; shape (p, p)."""
     return sparse.csc_array(equations.dielectric - 1.0j * equations.dielectric_loss)
 
 
 def drive_charge(equations: SystemMatrices, *, lossless: bool = False) -> Complexes:
-    """Charge p_V at the nodes of unknown potential per volt of the drive.
-
-    Shape (p,).
-    """
+    """Charge p_V at the nodes of unknown potential per volt of the drive; shape (p,)."""
     loss = 0.0 if lossless else equations.drive_dielectric_loss
     return np.asarray(equations.drive_dielectric - 1j * loss, dtype=np.complex128)
 

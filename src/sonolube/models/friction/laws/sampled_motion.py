@@ -10,10 +10,7 @@ from sonolube.errors import InvalidInput
 
 
 def require_increasing(*, time: ArrayLike) -> Floats:
-    """Sample times as an array; refuse times that do not increase.
-
-    Shape (n,).
-    """
+    """Sample times as an array; refuse times that do not increase; shape (n,)."""
     times = require_finite(time=time)
     if times.ndim != 1 or times.size < 2:
         raise InvalidInput(f"time must be one-dimensional with at least two samples, got shape {times.shape}")
@@ -27,10 +24,7 @@ def require_increasing(*, time: ArrayLike) -> Floats:
 def integrate_rows(
     integrate: Callable[..., Floats], times: Floats, velocities: Floats, start: Floats, *constants: float
 ) -> Floats:
-    """State of a friction law along each row of sampled velocities.
-
-    `velocities` has shape (..., n).
-    """
+    """State of a friction law along each row of sampled velocities; `velocities` has shape (..., n)."""
     if velocities.ndim == 0 or velocities.shape[-1] != times.size:
         raise InvalidInput(
             f"relative_velocity must have one value for each of {times.size} times along its last axis,"
