@@ -107,7 +107,7 @@ STUDY = Study(
     " recording, through the analysis of steps: is each level within its uncertainty of what was given?",
     sources=("laboratory/virtual_tribometer/*.py", "measurement/friction/*.py"),
     trials=50,
-    sample=3,
+    sample=1,
     trial=_trial,
     measures=_measures,
     sample_measures=_sample_measures,
