@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.laboratory.catalogue.entry import CatalogueEntry, catalogue_entry
 from sonolube.laboratory.catalogue.index import query_runs
@@ -34,6 +35,7 @@ RUNS_FOLDER: Final = Path("runs")
 
 _SETTLING: Final = 0.5  # s, left out at the begin of each level, as `analyse_voltage_steps` does
 _FEWEST: Final = 20  # samples of a level
+_SIGNIFICANT: Final = 3.0  # standard errors, from which a force counts as rising or falling
 _HEADER: Final = (
     *("run", "block", "normal_load [N]", "sliding_speed [m/s]", "voltage_peak_to_peak [V]", "frequency [Hz]"),
     *("friction_force [N]", "friction_force_uncertainty [N]", "friction_reduction", "friction_reduction_uncertainty"),
@@ -172,7 +174,11 @@ def _levels_of_stretch(run: Run, recording: "xr.Dataset", stretch: SetConditions
 
 
 def _mean_of(level: "xr.Dataset", rotation_speed: float | None) -> tuple[float, float] | None:
-    """Mean friction force of a level and its standard uncertainty, settling and wobble removed; None of too few."""
+    """Mean friction force of a level and its standard uncertainty, settling and wobble removed; None of too few.
+
+    The zero of the gauge holds at the beginning. Where the force rises or falls steadily, the gauge may have drifted,
+    and half of that change counts as uncertainty of the mean.
+    """
     time = channel_values(level, "time")
     settled = level.isel(time=slice(int(np.searchsorted(time, time[0] + _SETTLING)), None))
     if settled.sizes["time"] < _FEWEST:
@@ -181,8 +187,17 @@ def _mean_of(level: "xr.Dataset", rotation_speed: float | None) -> tuple[float, 
     span = float(time[-1] - time[0]) - _SETTLING
     if rotation_speed is not None and rotation_speed * span > 1:
         force = analyse_wobble(settled, rotation_speed=rotation_speed, harmonics=2).friction_force
-    mean = correlated_mean(force)
-    return mean.mean, mean.uncertainty
+    mean, (half, residual) = correlated_mean(force), _steady_change(force)
+    scatter = correlated_mean(residual).uncertainty
+    is_steady = half > _SIGNIFICANT * np.sqrt(3) * scatter  # the standard error of half a change, by even samples
+    return mean.mean, float(np.hypot(scatter, half)) if is_steady else mean.uncertainty
+
+
+def _steady_change(force: Floats) -> tuple[float, Floats]:
+    """Half of the change along the line of least squares, as a magnitude, and the force without that line."""
+    place = np.linspace(-1.0, 1.0, force.size)
+    half = float(place @ (force - force.mean()) / (place @ place))
+    return abs(half), force - half * place
 
 
 def _rotation_speed(run: Run, stretch: SetConditions) -> float | None:

@@ -43,7 +43,7 @@ class ScpiQueries:
     ----------
     connection : VisaConnection
     identity : str
-        Pattern of the answer to *IDN?.
+        Pattern of the answer to ``*IDN?``.
     setup : sequence of str
         Sent once after connecting.
     errors : ErrorQueue or None

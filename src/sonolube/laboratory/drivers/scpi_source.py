@@ -24,7 +24,7 @@ class SourceCommands:
     Parameters
     ----------
     identity : str
-        Pattern of the answer to *IDN?.
+        Pattern of the answer to ``*IDN?``.
     off, on : str
         Switch the output.
     state : str
