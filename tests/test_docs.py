@@ -169,3 +169,8 @@ def test_pages_load_nothing_from_elsewhere() -> None:
     assert not re.findall(
         r"(?:src|import|url)\s*[=(]\s*[\"']?https?://|\{image\} https?://|!\[[^\]]*\]\(https?://", settings
     )
+
+
+def test_the_quick_tests_are_there() -> None:
+    places = (ROOT / "tests" / "quick.txt").read_text(encoding="utf-8").split()
+    assert [place for place in places if not (ROOT / place).exists()] == []
