@@ -43,8 +43,8 @@ quick: $(VENV)/test ## check style and what a change most likely breaks, in less
 # warnings are of packages newer than the lowest, which the lowest ones call; the schema is written by the newest pydantic
 lowest: $(LOWEST)/installed ## run a part of the tests with the lowest versions that pyproject.toml allows
 	$(RUN) $(LOWEST)/bin/python -m pytest -q -n 2 --dist worksteal -W ignore::DeprecationWarning -k "not schema_in_the_docs" \
-	    tests/measurement/recordings tests/measurement/impedance tests/measurement/surface_files tests/test_units.py \
-	    tests/test_unit_grammar.py tests/rig/file tests/models/wear tests/facts/protocol tests/cli/predict
+	    tests/measurement/recordings tests/measurement/impedance tests/measurement/surface_files tests/text \
+	    tests/rig/file tests/models/wear tests/facts/protocol tests/cli/predict
 
 surfalize: $(RIVAL)/installed ## install surfalize beside sonolube, for the tests that compare with it
 
