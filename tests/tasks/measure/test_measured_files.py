@@ -160,7 +160,7 @@ def test_a_temperature_in_python_is_the_answer_of_the_program(tmp_path: Path, ca
     assert values["temperature_rise"]["value"] == approx(2 + 18 * (1 - 7 / 55), rel=5e-3)
     with raises(InvalidInput, match=r"heated\.csv: 58 s to 58.1 s holds fewer than 8 temperatures"):
         measure.temperature(path, start_time=58, end_time=58.1).object()
-    with raises(InvalidInput, match="end_time must be later than start_time"):
+    with raises(InvalidInput, match="end_time 5 s must be later than start_time 5 s"):
         measure.temperature(path, start_time=5, end_time=5)
 
 

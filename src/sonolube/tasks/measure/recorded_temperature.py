@@ -39,7 +39,7 @@ def temperature(
     """
     start, end = in_si("start_time", start_time), in_si("end_time", end_time)
     if start is not None and end is not None and end <= start:
-        raise InvalidInput(f"{shown('end_time')} must be later than {shown('start_time')}")
+        raise InvalidInput(f"{shown('end_time')} {end:g} s must be later than {shown('start_time')} {start:g} s")
     settings = TemperatureSettings(
         start_time=start,
         end_time=end,
