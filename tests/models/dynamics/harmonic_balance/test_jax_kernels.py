@@ -25,7 +25,8 @@ from sonolube.models.dynamics import (
     steady_state,
 )
 
-jax.config.update("jax_disable_most_optimizations", True)  # of the compiler, which takes longer than so few points
+UPDATE: Any = jax.config.update  # untyped in some versions of JAX
+UPDATE("jax_disable_most_optimizations", True)  # of the compiler, which takes longer than so few points
 
 ARM = np.outer([0.0, 1.0, -1.0], [0.0, 1.0, -1.0])
 ROUGH = ExponentialGap(decay_length=2e-6)
