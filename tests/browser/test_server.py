@@ -4,7 +4,10 @@ import asyncio
 import gzip
 import http.client
 import json
+import re
 import socket
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, suppress
@@ -16,7 +19,7 @@ import psutil  # type: ignore[import-untyped]
 import pytest
 from tests.browser.workbench import Served, served
 
-from sonolube.browser.server import _listening
+from sonolube.browser.server import Options, _listening, plain_options
 from sonolube.cli import main
 
 RIG = {"name": "tribometer"}
@@ -264,3 +267,42 @@ def test_other_computers_need_a_token_file_that_only_its_owner_reads(
     with pytest.raises(SystemExit):
         main(["app", "--token-file", str(path)])
     assert "32 or more printable characters" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "options"),
+    [
+        ([], Options()),
+        (["--port", "0", "--no-browser"], Options(port=0, opens_browser=False)),
+        (["--no-browser", "--port=9000"], Options(port=9000, opens_browser=False)),
+    ],
+)
+def test_few_options_need_no_parser(words: list[str], options: Options) -> None:
+    assert plain_options(words) == options
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["rig.toml"], ["--help"], ["--port"], ["--port", "70000"], ["--port", "x"], ["--host", "::1"], ["--port=1=2"]],
+)
+def test_all_else_is_left_to_the_parser(words: list[str]) -> None:
+    assert plain_options(words) is None
+
+
+def test_the_parser_of_the_terminal_is_not_imported_for_few_options() -> None:
+    code = (
+        "import sys, sonolube.cli, sonolube.browser.server as server\n"
+        "server.run = lambda options: print(options.port, 'typer' in sys.modules, 'pydantic' in sys.modules)\n"
+        "sys.argv = ['sonolube', 'app', '--port', '0']\n"
+        "sonolube.cli.main()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "0 False False\n")
+
+
+def test_a_taken_port_is_refused_in_one_line_with_few_options_too() -> None:
+    with closing(socket.create_server(("127.0.0.1", 0))) as taken:
+        words = ["app", "--no-browser", "--port", str(taken.getsockname()[1])]
+        done = subprocess.run([sys.executable, "-m", "sonolube", *words], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert re.fullmatch(r"sonolube app: --port \d+: .*; name another, or 0 for any free one\n", done.stderr)

@@ -16,6 +16,7 @@ from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError, UnknownN
 from sonolube.example_files import example_file
 from sonolube.report.blocks import Block, Rows, Table, Verbatim
 from sonolube.tasks.answer import Answer
+from sonolube.tasks.call import Mark
 from sonolube.tasks.files import NamedBytes, file_path, private_files, with_names_only
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task
@@ -92,7 +93,7 @@ def refusal_object(failure: Exception) -> dict[str, Any]:
 @contextmanager
 def given_arguments(task: Task, arguments: Mapping[str, Any], places: Places) -> "Iterator[dict[str, Any]]":
     """Arguments of a task from those of a request, with files that last as long as the `with` block."""
-    marks = {name: mark for name, mark in marks_of(task.function).items() if not isinstance(mark, DoorParameter)}
+    marks = _given_marks(task)
     unknown = next((name for name in arguments if name not in marks), None)
     if unknown is not None:
         raise InvalidInput(f"{unknown}: {task.name} has no such argument; it has {', '.join(marks)}", key=unknown)
@@ -101,6 +102,12 @@ def given_arguments(task: Task, arguments: Mapping[str, Any], places: Places) ->
         raise InvalidInput(f"{missing}: {task.name} needs it", key=missing)
     with ExitStack() as stack:
         yield {name: _given(name, value, marks[name], places, stack) for name, value in arguments.items()}
+
+
+@cache
+def _given_marks(task: Task) -> "Mapping[str, Mark]":
+    """Marks of the arguments that a request may give."""
+    return {name: mark for name, mark in marks_of(task.function).items() if not isinstance(mark, DoorParameter)}
 
 
 def given_rig(source: Any, places: Places, stack: ExitStack) -> "Rig":
@@ -223,6 +230,7 @@ def _texts(value: Any) -> "Iterator[str]":
             yield from _texts(each)
 
 
+@cache
 def positional(task: Task) -> list[str]:
     """Names of the arguments that are given by place."""
     from inspect import Parameter as Argument, signature
@@ -231,6 +239,7 @@ def positional(task: Task) -> list[str]:
     return [each.name for each in arguments if each.kind is Argument.POSITIONAL_OR_KEYWORD]
 
 
+@cache
 def _required(task: Task) -> list[str]:
     """Names of the arguments without a default."""
     from inspect import signature

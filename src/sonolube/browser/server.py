@@ -7,7 +7,7 @@ import socket
 import sys
 import webbrowser
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import uvicorn
@@ -137,6 +137,31 @@ def _listening(host: str, port: int) -> socket.socket:
             f"--port {port}: {failure.strerror or failure}; name another, or 0 for any free one"
         ) from None
     return found
+
+
+def plain_options(arguments: Sequence[str]) -> Options | None:
+    """Options where nothing but a port and `--no-browser` is given; None where there is more to read.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Words behind the command `app`.
+
+    Returns
+    -------
+    Options or None
+    """
+    options, words = Options(), [part for word in arguments for part in word.split("=", 1)]
+    while words:
+        match words:
+            case ["--no-browser", *rest]:
+                options = replace(options, opens_browser=False)
+            case ["--port", number, *rest] if number.isdecimal() and int(number) < 2**16:
+                options = replace(options, port=int(number))
+            case _:
+                return None
+        words = rest
+    return options
 
 
 def token_of_file(path: Path) -> str:

@@ -42,6 +42,25 @@ def main(arguments: Sequence[str] | None = None) -> None:
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # for which it reads the metadata of all packages
         if not _THREADS & os.environ.keys():
             os.environ["OPENBLAS_NUM_THREADS"] = "1"  # read when numpy is imported
+        if sys.argv[1:2] == ["app"]:
+            _serve_at_once(sys.argv[2:])
     from sonolube.cli.app import run
 
     run(arguments)
+
+
+def _serve_at_once(arguments: Sequence[str]) -> None:
+    """Serve the workbench and exit, where its options are so few that no parser has to be imported for them."""
+    from importlib import import_module
+
+    from sonolube.errors import SonolubeError
+
+    try:
+        server = import_module("sonolube.browser.server")
+        if options := server.plain_options(arguments):
+            server.run(options)
+            sys.exit(0)
+    except (ImportError, SonolubeError):
+        return  # the parser reads the options again, and the refusal is said as those of all commands
+    except KeyboardInterrupt:
+        sys.exit(130)

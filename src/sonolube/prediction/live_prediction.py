@@ -17,7 +17,7 @@ from sonolube.prediction.laboratory import Laboratory, laboratory
 from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, RigPrediction, rig_prediction
-from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, OwnLogarithms, measures, own_logarithms, share_left
+from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, OwnLogarithms, Target, measures, own_logarithms
 from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
 from sonolube.prediction.scores import LEVELS
 from sonolube.prediction.stiffness_probes import Probe, probe_sentences, stiffness_probes, told_probes
@@ -306,14 +306,14 @@ def _shares_left(
     """Shares of the 80 % intervals of friction ratio and force that are left if one input were known well."""
     found = {}
     for share, target in (
-        ("interval_share_left", drawn["friction_ratio"]),
-        ("force_interval_share_left", drawn["friction_coefficient"]),
+        ("interval_share_left", Target(drawn["friction_ratio"])),
+        ("force_interval_share_left", Target(drawn["friction_coefficient"])),
     ):
         found[share] = np.array(
             [
                 1.0
                 if each.spread <= KNOWN_WELL[each.name] or (each.name, share) == _NOT_IN_THE_RATIO
-                else share_left(target, observed=logs.of(each.name), noise=KNOWN_WELL[each.name])
+                else target.share_left(observed=logs.of(each.name), noise=KNOWN_WELL[each.name])
                 for each in uncertain
             ]
         )

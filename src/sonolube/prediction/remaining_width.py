@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -19,6 +20,7 @@ KNOWN_WELL: Final = {"decay_length": 0.1, "vibration_amplitude": 0.02, "friction
 """Standard deviation of the logarithm of each uncertain input after a careful measurement."""
 
 _OUTCOMES: Final = 24  # of a measurement, over which the width is averaged
+_PROBABILITIES: Final = (np.arange(_OUTCOMES) + 0.5) / _OUTCOMES
 _RUN: Final = 0.05  # standard uncertainty of the ratio of one run
 _FARTHER: Final = 2.0  # speed of the other point over that of the rig
 _STIFFNESS: Final = (0.3, 0.1)  # standard deviations of the logarithm of a measured contact stiffness
@@ -85,33 +87,39 @@ def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> Own
     )
 
 
-def expected_width(target: Floats, *, observed: Floats, noise: float) -> float:
-    """Expected width of the 80 % interval of a target after a measurement.
+class Target:
+    """Draws of a predicted quantity, sorted once for all measurements that may narrow their 80 % interval.
 
-    Draws are weighed by the normal density of each of 24 evenly probable outcomes of the measurement.
+    Parameters
+    ----------
+    draws : ndarray, shape (draws,)
     """
-    order = np.argsort(target)
-    values, known = target[order], observed[order]
-    jitter = noise * np.random.default_rng(8).standard_normal(observed.size)
-    outcomes = np.quantile(observed + jitter, (np.arange(_OUTCOMES) + 0.5) / _OUTCOMES)
-    deviations = outcomes[:, None] / noise - known / noise
-    logs = np.multiply(deviations, -0.5 * deviations, out=deviations)
-    logs -= logs.max(axis=1, keepdims=True)
-    cumulative = np.cumsum(np.exp(logs, out=logs), axis=1, out=logs)
-    ends = [each.searchsorted(each[-1] * _TAILS) for each in cumulative]
-    low, high = values[np.minimum(ends, values.size - 1)].T
-    return float(np.mean(high - low))
+
+    def __init__(self, draws: Floats) -> None:
+        self._order = np.argsort(draws)
+        self._values = draws[self._order]
+        low, high = central_interval(draws, 0.8)
+        self._width = max(float(high - low), _NARROWEST)
+
+    def share_left(self, *, observed: Floats, noise: float) -> float:
+        """Expected width of the interval after a measurement over that now, at most 1.
+
+        Draws are weighed by the normal density of each of 24 evenly probable outcomes of the measurement.
+        """
+        outcomes = np.quantile(observed + noise * _deviates(observed.size), _PROBABILITIES)
+        deviations = outcomes[:, None] / noise - observed[self._order] / noise
+        logs = np.multiply(deviations, -0.5 * deviations, out=deviations)
+        logs -= logs.max(axis=1, keepdims=True)
+        cumulative = np.cumsum(np.exp(logs, out=logs), axis=1, out=logs)
+        ends = [each.searchsorted(each[-1] * _TAILS) for each in cumulative]
+        low, high = self._values[np.minimum(ends, self._values.size - 1)].T
+        return min(float(np.mean(high - low)) / self._width, 1.0)
 
 
-def width(draws: Floats) -> float:
-    """Width of the 80 % interval, not below one part in a million."""
-    low, high = central_interval(draws, 0.8)
-    return max(float(high - low), _NARROWEST)
-
-
-def share_left(target: Floats, *, observed: Floats, noise: float) -> float:
-    """Expected width of the 80 % interval of a target after a measurement over that now, at most 1."""
-    return min(expected_width(target, observed=observed, noise=noise) / width(target), 1.0)
+@lru_cache(maxsize=4)
+def _deviates(count: int) -> Floats:
+    """Standard normal errors of a measurement, the same for all."""
+    return np.random.default_rng(8).standard_normal(count)
 
 
 def measures(
@@ -119,11 +127,12 @@ def measures(
 ) -> tuple[Measure, ...]:
     """Measurements that would narrow the prediction at the operating point: a run first, then the contact stiffness."""
     near, far = _two_points(found, inputs)
+    narrowed = Target(near)
     made = [
-        Measure(label="one run at this point", share_left=share_left(near, observed=near, noise=_RUN)),
+        Measure(label="one run at this point", share_left=narrowed.share_left(observed=near, noise=_RUN)),
         Measure(
             label=f"one run at this point, for the ratio at {_FARTHER:g} times the speed",
-            share_left=share_left(far, observed=near, noise=_RUN),
+            share_left=Target(far).share_left(observed=near, noise=_RUN),
         ),
     ]
     if not inputs.measured_length:
@@ -134,14 +143,14 @@ def measures(
 
 def _stiffness_measures(ratio: Floats, length: Floats, probes: Sequence[Probe]) -> list[Measure]:
     """Share of the width that a stiffness by each resonance would leave; two uncertainties where none shows it."""
-    made = []
+    made, target = [], Target(ratio)
     for probe in probes:
         if not probe.resolvable.any():
             continue
         deviation = float(np.mean(probe.log_stiffness_deviation[probe.resolvable]))
         low, high = (format_si(float(each), "Hz", digits=3) for each in np.sort(probe.pressed_frequency)[[0, -1]])
         told = float(np.mean(probe.resolvable))  # share of contacts of which the shift tells
-        left = told * share_left(ratio, observed=length, noise=deviation) + 1 - told
+        left = told * target.share_left(observed=length, noise=deviation) + 1 - told
         label = f"contact stiffness by the {probe.name} ({low} to {high} when pressed)"
         made.append(Measure(label=label, share_left=left))
     if made:
@@ -149,7 +158,7 @@ def _stiffness_measures(ratio: Floats, length: Floats, probes: Sequence[Probe]) 
     return [
         Measure(
             label=f"contact stiffness within {100 * noise:.0f} %",
-            share_left=share_left(ratio, observed=length, noise=noise),
+            share_left=target.share_left(observed=length, noise=noise),
         )
         for noise in _STIFFNESS
     ]
