@@ -99,25 +99,25 @@ DRIVERS: Final[Mapping[str, DriverTable]] = MappingProxyType(
             "acquisition",
             AcquisitionEntry,
             {
-                "daqmx": f"{_HERE}.daqmx_entries:DaqmxAcquisitionEntry",
-                "scpi_query": f"{_HERE}.scpi_entries:ScpiQueryEntry",
+                "daqmx": f"{_HERE}.daqmx_acquisition:DaqmxAcquisitionEntry",
+                "scpi_query": f"{_HERE}.scpi_query:ScpiQueryEntry",
             },
         ),
         "drive": DriverTable(
             "drive",
             DriveEntry,
             {
-                "scpi": f"{_HERE}.generator_entry:GeneratorEntry",
-                "daqmx": f"{_HERE}.daqmx_entries:DaqmxDriveEntry",
-                "scpi_commands": f"{_HERE}.scpi_entries:ScpiSourceEntry",
+                "scpi": f"{_HERE}.function_generator:GeneratorEntry",
+                "daqmx": f"{_HERE}.daqmx_output:DaqmxDriveEntry",
+                "scpi_commands": f"{_HERE}.scpi_source:ScpiSourceEntry",
             },
         ),
         "motor": DriverTable(
             "motor",
             MotorEntry,
-            {"line": f"{_HERE}.line_motor_entry:LineMotorEntry", "daqmx": f"{_HERE}.daqmx_entries:DaqmxMotorEntry"},
+            {"line": f"{_HERE}.line_motor:LineMotorEntry", "daqmx": f"{_HERE}.daqmx_output:DaqmxMotorEntry"},
         ),
-        "guard": DriverTable("guard", GuardEntry, {"daqmx": f"{_HERE}.daqmx_entries:DaqmxGuardEntry"}),
+        "guard": DriverTable("guard", GuardEntry, {"daqmx": f"{_HERE}.daqmx_guard:DaqmxGuardEntry"}),
     }
 )
 """Tables of drivers by the role of their devices."""
