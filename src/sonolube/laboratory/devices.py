@@ -6,14 +6,29 @@ the program never polls single samples.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Final, Protocol
 
+import numpy as np
+
+from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel
 
 SILENT: Final = "clock silent"
 """Kind of the note that an acquisition with a clock of its own gave no sample while it was to be recorded."""
+
+
+WAVEFORMS: Final[Mapping[str, Callable[[Floats], Floats]]] = MappingProxyType(
+    {
+        "sine": lambda phase: np.sin(2 * np.pi * phase),
+        "square": lambda phase: np.where(phase < 0.5, 1.0, -1.0),
+        "triangle": lambda phase: 1 - 4 * np.abs((phase + 0.25) % 1.0 - 0.5),
+        "sawtooth": lambda phase: 2 * ((phase + 0.5) % 1.0) - 1,
+    }
+)
+"""Waveforms of drive sources by name: values between -1 and 1 over the phase in periods, from 0 to 1."""
 
 
 class DeviceError(SonolubeError):
@@ -53,6 +68,10 @@ class DriveSetting:
     def voltage_maximum(self) -> float:
         """Greatest magnitude of the voltage, its offset included. [V]"""
         return abs(self.voltage_offset) + self.voltage_peak_to_peak / 2
+
+    def wave(self, periods: Floats) -> Floats:
+        """Waveform between -1 and 1 over the time in periods."""
+        return np.asarray(WAVEFORMS[self.waveform](periods % 1.0))
 
 
 class Acquisition(Protocol):

@@ -1,14 +1,11 @@
 """Analogue outputs by NI-DAQmx: a drive source from a repeated buffer, and a motor set by a steady voltage."""
 
-from collections.abc import Mapping
 from contextlib import suppress
 from fractions import Fraction
 from math import ceil
-from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, field_validator
 
 from sonolube.facts.protocol.quantity_text import SiText, Table
@@ -24,15 +21,6 @@ SAMPLES_PER_PERIOD: Final = 20
 _LONGEST_BUFFER: Final = 100_000  # samples
 _SHORTEST_BUFFER: Final = 1000  # samples, so that the driver refills it seldom
 _FREQUENCY_ERROR: Final = 1e-5  # a fifth of that of the clocks of such devices
-
-_SHAPES: Final[Mapping[str, Any]] = MappingProxyType(
-    {  # of a phase in periods, between -1 and 1
-        "sine": lambda phase: np.sin(2 * np.pi * phase),
-        "square": lambda phase: np.where(phase % 1 < 0.5, 1.0, -1.0),
-        "triangle": lambda phase: 1 - 4 * np.abs((phase + 0.25) % 1 - 0.5),
-        "sawtooth": lambda phase: 2 * ((phase + 0.5) % 1) - 1,
-    }
-)
 
 
 class DaqmxOutput:
@@ -107,7 +95,7 @@ class DaqmxOutput:
             task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=_SHORTEST_BUFFER)
             rate = float(task.timing.samp_clk_rate)
             periods, samples = whole_periods(frequency=setting.frequency, sample_rate=rate, device=self.name)
-            volts = offset + amplitude / 2 * waveform_samples(setting.waveform, periods=periods, samples=samples)
+            volts = offset + amplitude / 2 * setting.wave(np.arange(samples) * periods % samples / samples)
             task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=samples)
             task.write(volts, auto_start=False)
             if self._is_halted:
@@ -206,12 +194,6 @@ def whole_periods(*, frequency: float, sample_rate: float, device: str) -> tuple
         raise DeviceError(f"{device}: {format_si(frequency, 'Hz')} refused; its buffer takes frequencies from {least}")
     times = ceil(_SHORTEST_BUFFER / share.denominator)
     return share.numerator * times, share.denominator * times
-
-
-def waveform_samples(waveform: str, *, periods: int, samples: int) -> NDArray[np.float64]:
-    """Samples of whole periods of a waveform between -1 and 1; shape (samples,)."""
-    shape = _SHAPES[waveform](np.arange(samples) * periods % samples / samples)
-    return np.asarray(shape, dtype=np.float64)
 
 
 class DaqmxOutputEntry(Table):

@@ -304,7 +304,7 @@ class RunRecorder:
             for number in raw_parts(self.folder):
                 part = recorded_part(self.folder, number, documents, facts=self._known.facts)
                 paths.append(recording_path(self.folder, number, part.clock_name))
-                if part.raw.samples:
+                if part.samples:
                     write_netcdf_recording(part, self._known, paths[-1])
             self._known = keep_digests(self.folder, self._known, paths)
         except InvalidInput as failure:

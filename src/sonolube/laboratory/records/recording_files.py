@@ -2,18 +2,17 @@
 
 import io
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Final, Protocol as Interface, Self
+from typing import Any, Final, Self
 
 import numpy as np
 
-from sonolube.laboratory.records.part_clock import PartClock
-from sonolube.laboratory.records.recorded_part import Floats
+from sonolube.laboratory.records.recorded_part import Floats, PartOfRecording
 from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts
 from sonolube.storage.files import unfinished_file
 from sonolube.vocabulary import quantities, unit_of
@@ -22,53 +21,6 @@ _PACKED: Final[Mapping[str, Any]] = {"compression": "gzip", "compression_opts": 
 _ROWS: Final = 1 << 16  # of a chunk of set points
 _WAVES: Final = {"stack_voltage", "stack_current"}  # quantities of which samples are values of the wave itself
 _CSV_DIGITS: Final = "%.17g"  # what 64-bit floats hold
-
-
-class PartOfRecording(Interface):
-    """Part of a recording, from raw blocks or from a file into which they were converted."""
-
-    @property
-    def samples(self) -> int:
-        """Samples of each channel."""
-
-    @property
-    def missing(self) -> int:
-        """Samples that are missing in gaps."""
-
-    @property
-    def sample_rate(self) -> float:
-        """Of each channel. [Hz]"""
-
-    @property
-    def begun(self) -> float:
-        """Begin in s since 1970."""
-
-    @property
-    def variables(self) -> Mapping[str, str]:
-        """Quantity of each variable by its name."""
-
-    @property
-    def units(self) -> Mapping[str, str]:
-        """SI unit of each variable of a free quantity, by its name."""
-
-    @property
-    def clock(self) -> PartClock | None:
-        """Clock, where it is not that of the run."""
-
-    @property
-    def set_points(self) -> tuple[str, ...]:
-        """Names of those that hold set points."""
-
-    @property
-    def lubricants(self) -> tuple[str, ...]:
-        """Names of the lubricants 1, 2, ..."""
-
-    @property
-    def caveats(self) -> list[str]:
-        """Caveats of the recording."""
-
-    def pieces(self) -> Iterator[tuple[Floats, list[Floats]]]:
-        """Yield the time since the first sample, in s, and the columns in the order of `variables`."""
 
 
 def write_netcdf_recording(part: PartOfRecording, known: RunFacts, path: Path) -> Path:

@@ -81,19 +81,6 @@ class Lagged:
         return Lagged(self.source.towards(target, time=time), reading, self.time_constant)
 
 
-def waveform(*, periods: Floats, shape: str) -> Floats:
-    """Waveform between -1 and 1 over its periods."""
-    turn = periods % 1.0
-    match shape:
-        case "square":
-            return np.where(turn < 0.5, 1.0, -1.0)
-        case "triangle":
-            return np.asarray(1 - 4 * np.abs((turn + 0.25) % 1.0 - 0.5))
-        case "sawtooth":
-            return np.asarray(2 * ((turn + 0.5) % 1.0) - 1)
-    return np.asarray(np.sin(2 * np.pi * turn))
-
-
 def hall_pulses(*, revolutions: Floats, magnets: int, pulse: float = 0.06) -> Floats:
     """Signal of a Hall probe by magnets at the rim of a disc, of height 1."""
     from_centre = (revolutions * magnets) % 1.0 - 0.5

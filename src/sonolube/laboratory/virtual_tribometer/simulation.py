@@ -24,7 +24,6 @@ from sonolube.laboratory.virtual_tribometer.signals import (
     play,
     pulled,
     resonant,
-    waveform,
 )
 from sonolube.laboratory.virtual_tribometer.stick_slip import Bursts, StickSlip
 from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures, Thermocouple
@@ -358,7 +357,7 @@ class VirtualRig:
         if setting is None:
             return self._sizes.voltage_noise * noise
         half = setting.voltage_peak_to_peak / 2
-        wave = waveform(periods=self._phase(time, setting), shape=setting.waveform)
+        wave = setting.wave(self._phase(time, setting))
         return setting.voltage_offset + half * (wave + self._sizes.voltage_noise * noise)
 
     def _monitor(self, time: Floats) -> Floats:
@@ -375,11 +374,10 @@ class VirtualRig:
         admittance = self._admittance(setting.frequency)
         if admittance is not None and setting.waveform == "sine":
             lead = float(np.angle(admittance)) / (2 * pi)
-            wave = waveform(periods=self._phase(time, setting) + lead, shape="sine")
+            wave = setting.wave(self._phase(time, setting) + lead)
             return np.asarray(noise + abs(admittance) * setting.voltage_peak_to_peak / 2 * wave)
         step = 1 / (400 * setting.frequency)
-        phases = (self._phase(time + shift, setting) for shift in (-step / 2, step / 2))
-        before, after = (waveform(periods=phase, shape=setting.waveform) for phase in phases)
+        before, after = (setting.wave(self._phase(time + shift, setting)) for shift in (-step / 2, step / 2))
         return noise + capacitance * setting.voltage_peak_to_peak / 2 * (after - before) / step
 
     def _admittance(self, frequency: float) -> complex | None:

@@ -181,7 +181,7 @@ class _Drive(_Connected):
     def drive(self, setting: DriveSetting) -> None:
         """Set the output."""
         self._require_connected()
-        reached = abs(setting.voltage_offset) + setting.voltage_peak_to_peak / 2
+        reached = setting.voltage_maximum
         if not (setting.voltage_peak_to_peak >= 0 and reached <= VOLTAGE_MAXIMUM):
             wanted, most = format_si(reached, "V"), format_si(VOLTAGE_MAXIMUM, "V")
             raise DeviceError(f"{self.name}: {wanted} is refused; it gives 0 to {most}, the offset included")
