@@ -74,6 +74,12 @@ class DriveSetting:
         return np.asarray(WAVEFORMS[self.waveform](periods % 1.0))
 
 
+def require_gapless(block: Block, sample: int, *, device: str) -> None:
+    """Raise SamplesLost where a block does not begin with the sample that follows."""
+    if block.first_sample != sample:
+        raise SamplesLost(f"{device}: {block.first_sample - sample} samples are missing after sample {sample}")
+
+
 class Acquisition(Protocol):
     """Analogue inputs with one hardware clock."""
 

@@ -17,7 +17,7 @@ import numpy as np
 from sonolube.errors import SonolubeError
 from sonolube.laboratory import supervision
 from sonolube.laboratory.block import BLOCK_DURATION, Block, Channel
-from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, SamplesLost
+from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, require_gapless
 from sonolube.laboratory.ending import RunEnded
 from sonolube.laboratory.interlocks import Interlock, first_trip
 from sonolube.laboratory.run_control import RunControl
@@ -287,10 +287,7 @@ class _Reader:
                 self._rate, self._due = rate, began + (taken + count) / rate + allowed
             self.has_started.set()
             block = self.device.read(count)
-            if block.first_sample != taken:
-                raise SamplesLost(
-                    f"{self.device.name}: {block.first_sample - taken} samples are missing after sample {taken}"
-                )
+            require_gapless(block, taken, device=self.device.name)
             taken = block.next_sample
             self._take(block)
         with self._held:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sonolube.laboratory.block import BLOCK_DURATION, Block
-from sonolube.laboratory.devices import Acquisition, Recorder, SamplesLost
+from sonolube.laboratory.devices import Acquisition, Recorder, require_gapless
 from sonolube.laboratory.interlocks import Interlock, Trip, first_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 
@@ -148,9 +148,7 @@ class Sampling:
     def _take(self, count: int) -> Trip | None:
         """Read samples, hold them to the counter and to the limits, and record them."""
         block = self._acquisition.read(count)
-        if block.first_sample != self.sample:
-            lost = block.first_sample - self.sample
-            raise SamplesLost(f"{self._acquisition.name}: {lost} samples are missing after sample {self.sample}")
+        require_gapless(block, self.sample, device=self._acquisition.name)
         self.sample, self._latest = block.next_sample, block
         if self._recording:
             values = block.values[:, : self._recorded]

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -246,25 +246,6 @@ def run_folders(parent: Path) -> list[Path]:
         raise InvalidInput(f"{parent}: cannot be read: {failure.strerror}") from None
 
 
-def runs_in(parent: Path) -> list[RunSummary]:
-    """Summaries of the runs in a folder, the oldest first; a run whose facts are damaged is listed as such.
-
-    Parameters
-    ----------
-    parent : Path
-
-    Returns
-    -------
-    list of RunSummary
-
-    Raises
-    ------
-    InvalidInput
-        If the folder cannot be read.
-    """
-    return [run_summary(folder) for folder in run_folders(parent)]
-
-
 def run_summary(folder: Path) -> RunSummary:
     """Summary of a run, also of one whose facts are damaged.
 
@@ -282,11 +263,7 @@ def run_summary(folder: Path) -> RunSummary:
     except InvalidInput as failure:
         known = RunFacts(title=folder.name, begun=0.0, facts={}, versions={}, files={})
         found = _summary(folder, known, documents)
-        return RunSummary(
-            **{name: getattr(found, name) for name in RunSummary.__slots__ if name not in ("outcome", "reason")},
-            outcome="failed",
-            reason=str(failure),
-        )
+        return replace(found, outcome="failed", reason=str(failure))
     return _summary(folder, known, documents)
 
 

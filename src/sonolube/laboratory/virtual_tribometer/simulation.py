@@ -14,7 +14,6 @@ from sonolube.laboratory.devices import DeviceError, DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.arm_resonance import arm_resonance
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
-from sonolube.laboratory.virtual_tribometer.faults import Fault, FaultyReading
 from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
 from sonolube.laboratory.virtual_tribometer.signals import (
     Approach,
@@ -26,7 +25,7 @@ from sonolube.laboratory.virtual_tribometer.signals import (
     resonant,
 )
 from sonolube.laboratory.virtual_tribometer.stick_slip import Bursts, StickSlip
-from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures, Thermocouple
+from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures
 from sonolube.laboratory.virtual_tribometer.truth import TruthSetting, truth_dataset
 from sonolube.models.dynamics.structure import electrical_admittance
 from sonolube.rig import Rig
@@ -71,7 +70,6 @@ class VirtualRig:
     groove_diameter : float
         Of the circle under the pin. [m]
     real_time : bool
-    fault : Fault or None
     """
 
     def __init__(
@@ -83,10 +81,9 @@ class VirtualRig:
         streams: Sequence[np.random.SeedSequence],
         groove_diameter: float,
         real_time: bool,
-        fault: Fault | None,
     ) -> None:
         self._rig, self._friction, self._sizes = rig, friction, disturbances
-        self._diameter, self._real_time, self._reading = groove_diameter, real_time, FaultyReading(fault)
+        self._diameter, self._real_time = groove_diameter, real_time
         self._streams = streams
         phases = np.random.default_rng(streams[_PHASES])
         self._bursts = Bursts(np.random.default_rng(streams[_BURSTS]), disturbances.burst_duration)
@@ -104,8 +101,7 @@ class VirtualRig:
         self._turning = Approach(0.0, 0.0, 0.0, disturbances.motor_time)
         self._revolutions, self._began_to_slide, self._volume = 0.0, 0.0, 0.0
         self._ratio = Approach(0.0, 1.0, 1.0, disturbances.vibration_time)
-        thermocouple = Thermocouple(disturbances.contact_share, disturbances.thermocouple_time)
-        self._temperatures = Temperatures(rig, heating, thermocouple)
+        self._temperatures = Temperatures(rig, heating, disturbances)
         self._capacitance = actuator_capacitance(rig)
         self._prepared: list[tuple[DriveSetting | None, float]] = []
         self._admittances: dict[float, complex] = {}
@@ -151,26 +147,21 @@ class VirtualRig:
 
     def stop(self) -> None:
         """End to sample."""
-        self._reading.release()
         self._rate = 0.0
 
     def clock(self) -> float:
         """Time of the devices, by the samples and the prompts. [s]"""
-        return self._time + self._reading.delay
+        return self._time
 
     def read(self, samples: int) -> Block:
         """Next samples."""
         if not self._rate:
             raise DeviceError("virtual acquisition: nothing is sampled; call start first")
         first = self._sample
-        self._reading.begin(first, samples)
         time = self._epoch + (first + np.arange(samples)) / self._rate
         self._sample = first + samples
         self._time = self._epoch + self._sample / self._rate
         values = self._values(time)
-        if "friction_force" in self._names:
-            force = values[:, self._names.index("friction_force")]
-            self._reading.spoil(force, first, highest=self.channels["friction_force"].highest)
         if self._real_time:
             sleep(max(0.0, self._began_at + self._time - self._epoch - monotonic()))
         return Block(first_sample=first, sample_rate=self._rate, values=values)

@@ -1,6 +1,5 @@
 """Temperatures of actuator, pin and contact of a virtual rig, and the reading of its thermocouple."""
 
-from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
@@ -9,6 +8,7 @@ from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
 from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
+from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
 from sonolube.laboratory.virtual_tribometer.signals import Approach, Lagged
 from sonolube.models.actuator import Drive, amplifier_requirements
 from sonolube.models.thermal import EllipticSource, ThermalSolid, contact_rise
@@ -16,22 +16,6 @@ from sonolube.rig import Rig, thermal_solid
 from sonolube.rig.excitation import DriveVoltage, actuator_capacitance
 
 _AT_ONCE = 1e-6  # s, in which the flash rise follows the heat
-
-
-@dataclass(frozen=True, slots=True)
-class Thermocouple:
-    """Place and lag of the thermocouple.
-
-    Parameters
-    ----------
-    contact_share : float
-        0 on the actuator, 1 in the contact.
-    time_constant : float
-        [s]
-    """
-
-    contact_share: float
-    time_constant: float
 
 
 class Temperatures:
@@ -42,7 +26,8 @@ class Temperatures:
     rig : Rig
         Without materials of pin and disc, only the actuator warms.
     assumed : HeatingAssumptions
-    thermocouple : Thermocouple
+    sizes : Disturbances
+        Place and lag of the thermocouple.
 
     Notes
     -----
@@ -50,11 +35,11 @@ class Temperatures:
     contact follows its heat at once. Heat of friction is the mean force of the present setting times the speed.
     """
 
-    def __init__(self, rig: Rig, assumed: HeatingAssumptions, thermocouple: Thermocouple) -> None:
-        self._rig, self._assumed, self._share = rig, assumed, thermocouple.contact_share
+    def __init__(self, rig: Rig, assumed: HeatingAssumptions, sizes: Disturbances) -> None:
+        self._rig, self._assumed, self._share = rig, assumed, sizes.contact_share
         self._capacitance = actuator_capacitance(rig) or 0.0
         self._bodies = _bodies(rig, assumed)
-        lag = thermocouple.time_constant
+        lag = sizes.thermocouple_time
         times = (
             assumed.actuator_heat_capacity / assumed.actuator_conductance,
             assumed.pin_heat_capacity / assumed.pin_conductance,

@@ -9,7 +9,6 @@ from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
-from sonolube.laboratory.virtual_tribometer.faults import Fault
 from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
 from sonolube.laboratory.virtual_tribometer.simulation import (
     CHANNELS,
@@ -38,7 +37,6 @@ def virtual_tribometer(
     real_time: bool = False,
     disturbances: Disturbances | None = None,
     groove_diameter: float = GROOVE_DIAMETER,
-    fault: Fault | None = None,
     heating: HeatingAssumptions | None = None,
 ) -> "VirtualTribometer":
     """Virtual tribometer of a rig.
@@ -55,8 +53,6 @@ def virtual_tribometer(
         Of tests with the rig; those of this test scatter about them. The usual ones by default.
     groove_diameter : float
         Of the circle under the pin. [m]
-    fault : Fault, optional
-        Of the hardware.
     heating : HeatingAssumptions, optional
         Thermal properties that a rig file does not hold; as in a dry run by default.
 
@@ -73,7 +69,7 @@ def virtual_tribometer(
     drawn = (disturbances or Disturbances()).drawn(np.random.default_rng(streams[SIZES_STREAM]))
     assumed = heating or HeatingAssumptions()
     friction = FrictionDraw(rig, seed=seed)
-    virtual = VirtualRig(rig, friction, drawn, assumed, streams, groove_diameter, real_time, fault)
+    virtual = VirtualRig(rig, friction, drawn, assumed, streams, groove_diameter, real_time)
     described = {"device": "virtual tribometer", "rig": rig.title, "seed": str(seed)}
     return VirtualTribometer(virtual, described, groove_diameter)
 
