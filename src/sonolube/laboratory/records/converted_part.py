@@ -5,14 +5,14 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.records.documents import read_documents
 from sonolube.laboratory.records.part_clock import PartClock, part_clock
-from sonolube.laboratory.records.recorded_part import PartOfRecording, Pieces, recorded_part
+from sonolube.laboratory.records.recorded_part import ROWS, PartOfRecording, Pieces, recorded_part
 from sonolube.laboratory.records.run_folder import (
     PURPOSE,
     RunFacts,
@@ -26,8 +26,6 @@ from sonolube.laboratory.records.set_point_steps import SET_POINT_CHANNELS
 from sonolube.operating_system import remove_file
 from sonolube.storage.files import locked_folder
 from sonolube.vocabulary import quantities
-
-_ROWS: Final = 1 << 17
 
 
 def converted_part(path: Path) -> PartOfRecording:
@@ -59,17 +57,17 @@ def converted_part(path: Path) -> PartOfRecording:
         set_points=tuple(name for name in measured if name in SET_POINT_CHANNELS),
         lubricants=tuple(json.loads(str(attributes.get("lubricants", "[]")))),
         caveats=str(attributes.get("caveats", "")).splitlines(),
-        pieces=partial(_pieces, path, samples, list(measured)),
+        pieces=partial(_pieces_of_file, path, samples, list(measured)),
     )
 
 
-def _pieces(path: Path, samples: int, names: list[str]) -> Pieces:
+def _pieces_of_file(path: Path, samples: int, names: list[str]) -> Pieces:
     """Pieces of the netCDF file of a part."""
     import h5netcdf
 
     with h5netcdf.File(path, "r") as file:
-        for first in range(0, samples, _ROWS):
-            rows = slice(first, first + _ROWS)
+        for first in range(0, samples, ROWS):
+            rows = slice(first, first + ROWS)
             yield file["time"][rows], [file[name][rows] for name in names]
 
 

@@ -22,7 +22,9 @@ Floats = NDArray[np.float64]
 Pieces = Iterator[tuple[Floats, list[Floats]]]
 """Time since the first sample, in s, and the columns in the order of the variables, many rows each."""
 
-_ROWS: Final = 1 << 17
+ROWS: Final = 1 << 17
+"""Rows of a piece of a recording."""
+
 _VOLTAGE: Final = "voltage_peak_to_peak"
 _SET_VOLTAGE: Final = "voltage_peak_to_peak_set"
 
@@ -159,7 +161,7 @@ def _pieces(path: Path, raw: RawPart, steps: SetPointSteps, beside: list[str]) -
     for block in read_raw_blocks(path):
         blocks.append(block)
         rows += block.samples
-        if rows >= _ROWS:
+        if rows >= ROWS:
             yield _piece(blocks, raw, steps, beside)
             blocks, rows = [], 0
     if blocks:
