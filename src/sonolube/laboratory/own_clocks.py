@@ -95,10 +95,11 @@ class OwnClocks:
         for reader in self._readers:
             reader.record([name for name in channels if name in reader.device.channels])
 
-    def keep(self, recorder: Recorder) -> None:
-        """Record what was read meanwhile, and look."""
-        for reader in self._readers:
-            reader.keep(recorder)
+    def keep(self, recorder: Recorder | None) -> None:
+        """Record what was read meanwhile, where there is a record, and look."""
+        if recorder is not None:
+            for reader in self._readers:
+                reader.keep(recorder)
         self.look()
 
     def end_recording(self, recorder: Recorder) -> None:

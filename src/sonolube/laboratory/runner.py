@@ -13,7 +13,7 @@ from sonolube.laboratory.checked_quantity import SETTLING, SPEED_CHANNEL, SPEEDS
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
 from sonolube.laboratory.drive_sampling import drive_sampling, idle_rate
 from sonolube.laboratory.ending import RunEnded
-from sonolube.laboratory.interlocks import Trip, interlocks_for, set_point_trip
+from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.sampling import Sampling
@@ -130,16 +130,6 @@ class _Run(SupervisedRun):
             self._reach(point)
             self._run_until(following.time, advance)
 
-    @property
-    def _moment(self) -> tuple[int | None, float]:
-        """Sample, where samples are taken, and time of the protocol."""
-        return self._sampling.sample if self._sampling.is_running else None, self._sampling.time
-
-    @property
-    def _closing(self) -> tuple[Callable[[], object], ...]:
-        """What ends recording and sampling."""
-        return (self._sampling.stop,)
-
     def _switch_off(self) -> list[str]:
         """Switch drive and motor off where they were connected, and return what failed; never raises."""
         failures = super()._switch_off()
@@ -204,17 +194,11 @@ class _Run(SupervisedRun):
             if setting is None:
                 self._devices.drive.off()
             else:
-                self._require_within(setting)
+                self._require_within(setting, self._protocol.limits)
                 self._devices.drive.drive(setting)
             self._drive = setting
             frequency = 0.0 if setting is None else setting.frequency
             self._note("drive", step=point.step, voltage_peak_to_peak=point.voltage_peak_to_peak, frequency=frequency)
-
-    def _require_within(self, setting: DriveSetting) -> None:
-        """End the run before a setting beyond the limit of the voltage is sent."""
-        excess = set_point_trip(setting, self._protocol.limits)
-        if excess:
-            raise RunEnded(Event.TRIP, excess)
 
     def _note_conditions(self) -> None:
         """Note load and lubricant where the protocol tells others than before."""
@@ -283,11 +267,6 @@ class _Run(SupervisedRun):
         self._end_if_asked()
         if self._control.is_paused:
             self._wait_while_paused()
-
-    def _end_at(self, trip: Trip | None) -> None:
-        """End the run at a sample beyond a limit."""
-        if trip is not None:
-            raise RunEnded(Event.TRIP, trip.reason)
 
     def _check(self, check: Check) -> None:
         """Look at a quantity until it lies within its bounds, or do what the step says otherwise."""

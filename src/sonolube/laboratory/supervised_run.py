@@ -5,11 +5,14 @@ from collections.abc import Callable
 from contextlib import ExitStack
 
 from sonolube.errors import SonolubeError
-from sonolube.laboratory.devices import Devices, Recorder, connect_devices, switch_outputs_off
+from sonolube.facts.protocol import Limits
+from sonolube.laboratory.devices import Devices, DriveSetting, Recorder, connect_devices, switch_outputs_off
 from sonolube.laboratory.ending import RunEnded, ending, release_devices, tried
+from sonolube.laboratory.interlocks import Trip, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.run_control import RunControl
+from sonolube.laboratory.sampling import Sampling
 from sonolube.laboratory.states import Event, RunState, State, after
 from sonolube.laboratory.supervision import Supervisor
 
@@ -29,6 +32,7 @@ class SupervisedRun(ABC):
     """
 
     _clocks: OwnClocks
+    _sampling: Sampling
 
     def __init__(self, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
         self._supervisor = Supervisor(devices)
@@ -38,16 +42,6 @@ class SupervisedRun(ABC):
     @abstractmethod
     def _follow(self, advance: Advance | None) -> None:
         """Do what the run is for, on connected devices."""
-
-    @property
-    @abstractmethod
-    def _moment(self) -> tuple[int | None, float]:
-        """Sample of the acquisition, where it runs, and time of the run in s."""
-
-    @property
-    @abstractmethod
-    def _closing(self) -> tuple[Callable[[], object], ...]:
-        """What ends recording and sampling, each harmless where that was done before."""
 
     def _prepare(self, advance: Advance | None) -> None:  # noqa: B027  most runs prepare nothing
         """Prepare what takes the devices time, before anything is on."""
@@ -88,8 +82,8 @@ class SupervisedRun(ABC):
         if self._recorder is None:
             return
         try:
-            sample, time = self._moment
-            self._recorder.note(kind, sample=sample, protocol_time=time, **facts)
+            sample = self._sampling.sample if self._sampling.is_running else None
+            self._recorder.note(kind, sample=sample, protocol_time=self._sampling.time, **facts)
         except SonolubeError:
             if self._present.state is State.RUNNING:
                 raise
@@ -99,6 +93,17 @@ class SupervisedRun(ABC):
         if self._control.stop_reason:
             raise RunEnded(Event.STOP, self._control.stop_reason)
 
+    def _end_at(self, trip: Trip | None) -> None:
+        """End the run at a sample beyond a limit."""
+        if trip is not None:
+            raise RunEnded(Event.TRIP, trip.reason)
+
+    def _require_within(self, setting: DriveSetting, limits: Limits) -> None:
+        """End the run before a setting beyond the limit of the voltage is sent."""
+        excess = set_point_trip(setting, limits)
+        if excess:
+            raise RunEnded(Event.TRIP, excess)
+
     def _switch_off(self) -> list[str]:
         """Switch drive and motor off where they were connected, and return what failed; never raises."""
         return switch_outputs_off(self._devices) if self._is_connected else []
@@ -106,7 +111,7 @@ class SupervisedRun(ABC):
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
         failures = self._switch_off()
-        before = (*self._closing, self._clocks.end)
+        before = self._sampling.stop, self._clocks.end
         for reason in release_devices(self._devices, *before) if self._is_connected else tried(*before):
             self._note(Event.DEVICE_ERROR.value, reason=reason)
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))

@@ -1,6 +1,5 @@
 """Loop: blocks of one control interval are read, the voltage computed and set; however it ends, all is off."""
 
-from collections.abc import Callable
 from math import ceil, nan, pi
 from typing import Final
 
@@ -8,14 +7,14 @@ import numpy as np
 
 from sonolube.design.control import initial_state, next_level
 from sonolube.errors import InvalidInput
-from sonolube.laboratory.block import Block
 from sonolube.laboratory.closed_loop.plan import recorded_channels
 from sonolube.laboratory.closed_loop.record import FrictionHold, HeldFriction
-from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder, require_gapless
+from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
 from sonolube.laboratory.ending import RunEnded
-from sonolube.laboratory.interlocks import first_trip, interlocks_for, set_point_trip
+from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_control import RunControl
+from sonolube.laboratory.sampling import Sampling
 from sonolube.laboratory.states import Event, State
 from sonolube.laboratory.supervised_run import Advance, SupervisedRun
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
@@ -78,10 +77,9 @@ class _Loop(SupervisedRun):
         channels = devices.acquisition.channels
         locks = interlocks_for(hold.limits, devices.channels, hold.drive_sampling)
         self._clocks = OwnClocks(devices, locks)
-        self._locks = [lock for lock in locks if lock.channel.name in channels]
-        self._names = list(recorded_channels(hold, channels))
-        self._is_recording = False
-        self._next_sample, self._rate, self._count = 0, 0.0, 0
+        self._sampling = Sampling(self._devices.acquisition, recorder, locks, beside=self._clocks)
+        self._names = recorded_channels(hold, channels)
+        self._interval = nan  # of the controller by the clock of the acquisition, in s
         self._rows: list[tuple[float, float, float, float]] = []
         self._run_in_means: list[float] = []
 
@@ -94,29 +92,17 @@ class _Loop(SupervisedRun):
         """Run in, then control."""
         self._sample()
         self._control_friction(self._running_in(), advance)
-        self._end_recording()
-
-    @property
-    def _moment(self) -> tuple[int | None, float]:
-        """Next sample, where samples are taken, and its time."""
-        return (self._next_sample, self._next_sample / self._rate) if self._rate else (None, 0.0)
-
-    @property
-    def _closing(self) -> tuple[Callable[[], object], ...]:
-        """What ends recording and sampling."""
-        return (self._end_recording, self._devices.acquisition.stop) if self._is_connected else ()
+        self._sampling.end_recording()
 
     def _sample(self) -> None:
         """Start to sample and to record."""
-        acquisition = self._devices.acquisition
-        self._rate = acquisition.start(self._names, sample_rate=self._hold.sample_rate)
+        sampling = self._sampling
+        sampling.start(self._names, sample_rate=self._hold.sample_rate)
         try:
-            self._count = self._hold.samples_per_interval(self._rate)
+            self._interval = self._hold.samples_per_interval(sampling.rate) / sampling.rate
         except InvalidInput as refusal:
-            raise DeviceError(f"{acquisition.name}: {refusal}") from None
-        if self._recorder is not None:
-            self._recorder.begin([acquisition.channels[name] for name in self._names], sample_rate=self._rate)
-            self._is_recording = True
+            raise DeviceError(f"{self._devices.acquisition.name}: {refusal}") from None
+        sampling.record(self._names, sample_rate=sampling.rate)
 
     def _running_in(self) -> float:
         """Slide without vibration, and return the friction of the last interval. [N]"""
@@ -144,11 +130,6 @@ class _Loop(SupervisedRun):
                 doing = f"{format_si(measured, 'N', digits=3)}, {format_si(voltage, 'V', digits=3)}"
                 advance(doing, round(1e3 * now), round(1e3 * hold.duration))
 
-    @property
-    def _interval(self) -> float:
-        """Interval of the controller by the clock of the acquisition. [s]"""
-        return self._count / self._rate
-
     def _turn(self, speed: float) -> None:
         """Set the speed of the disc for a sliding speed."""
         self._devices.motor.turn(speed / (pi * self._devices.groove_diameter))
@@ -164,39 +145,19 @@ class _Loop(SupervisedRun):
             voltage_offset=self._hold.offset_ratio * voltage,
             frequency=self._hold.frequency,
         )
-        excess = set_point_trip(setting, self._hold.limits)
-        if excess:
-            raise RunEnded(Event.TRIP, excess)
+        self._require_within(setting, self._hold.limits)
         self._devices.drive.drive(setting)
 
     def _measure(self) -> tuple[float, float]:
         """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""
         self._end_if_asked()
-        block = self._devices.acquisition.read(self._count)
-        self._keep(block)
-        self._clocks.look()
-        trip = first_trip(block, self._names, self._locks)
-        if trip is not None:
-            raise RunEnded(Event.TRIP, trip.reason)
-        samples = block.values[:, self._names.index(_FRICTION)]
+        self._end_at(self._sampling.read_until(self._sampling.time + self._interval))
+        samples = self._sampling.samples(_FRICTION)
         samples = samples[-max(1, round(self._hold.averaging * samples.size)) :]
         mean = float(np.mean(samples))
         if not np.isfinite(mean):
             raise RunEnded(Event.TRIP, f"channel {_FRICTION} gives no number")
         return mean, float(np.std(samples))
-
-    def _keep(self, block: Block) -> None:
-        """Hold a block to the counter, and record it."""
-        require_gapless(block, self._next_sample, device=self._devices.acquisition.name)
-        self._next_sample = block.next_sample
-        if self._recorder is not None:
-            self._recorder.append(block)
-
-    def _end_recording(self) -> None:
-        """Record no more."""
-        if self._recorder is not None and self._is_recording:
-            self._is_recording = False
-            self._recorder.end()
 
     def _result(self) -> HeldFriction:
         """Measured and set values."""
@@ -204,7 +165,7 @@ class _Loop(SupervisedRun):
         run_in = self._run_in_means
         return HeldFriction(
             hold=self._hold,
-            time=np.arange(rows.shape[0], dtype=np.float64) * (self._interval if self._rate else nan),
+            time=np.arange(rows.shape[0], dtype=np.float64) * self._interval,
             setpoint=np.full(rows.shape[0], self._hold.friction_force),
             friction_force=rows[:, 0],
             friction_force_deviation=rows[:, 1],

@@ -43,11 +43,9 @@ CHANNELS: Final = (
     "displacement",
 )
 _NOISES: Final = (*CHANNELS[:7], "friction noise", "ringing", "displacement")
-STREAMS: Final = 13
-"""Streams of random numbers of a virtual rig."""
+_STREAMS: Final = 13  # of random numbers of a virtual rig
 _PHASES: Final = 9  # number of a stream, as those that follow; those of the noises are before them and after
-SIZES_STREAM: Final = 10
-"""Stream of the sizes of the disturbances."""
+_SIZES: Final = 10
 _BURSTS: Final = 11
 _DISPLACEMENT: Final = 12
 _GAUGE_RANGE: Final = 60.0  # N, that the gauge has at least
@@ -61,12 +59,10 @@ class VirtualRig:
     Parameters
     ----------
     rig : Rig
-    friction : FrictionDraw
+    seed : int
     disturbances : Disturbances
-        Of this test.
+        Of tests with the rig; those of this test are drawn about them.
     heating : HeatingAssumptions
-    streams : sequence of numpy.random.SeedSequence
-        `STREAMS` of them.
     groove_diameter : float
         Of the circle under the pin. [m]
     real_time : bool
@@ -75,13 +71,15 @@ class VirtualRig:
     def __init__(
         self,
         rig: Rig,
-        friction: FrictionDraw,
+        seed: int,
         disturbances: Disturbances,
         heating: HeatingAssumptions,
-        streams: Sequence[np.random.SeedSequence],
         groove_diameter: float,
         real_time: bool,
     ) -> None:
+        streams = np.random.SeedSequence(seed).spawn(_STREAMS)
+        disturbances = disturbances.drawn(np.random.default_rng(streams[_SIZES]))
+        friction = FrictionDraw(rig, seed=seed)
         self._rig, self._friction, self._sizes = rig, friction, disturbances
         self._diameter, self._real_time = groove_diameter, real_time
         self._streams = streams

@@ -3,20 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
-from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
-from sonolube.laboratory.virtual_tribometer.simulation import (
-    CHANNELS,
-    SIZES_STREAM,
-    STREAMS,
-    VOLTAGE_MAXIMUM,
-    VirtualRig,
-)
+from sonolube.laboratory.virtual_tribometer.simulation import CHANNELS, VOLTAGE_MAXIMUM, VirtualRig
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
 
@@ -65,11 +56,8 @@ def virtual_tribometer(
     InvalidInput
         If the rig does not slide, does not vibrate or has no drive.
     """
-    streams = np.random.SeedSequence(seed).spawn(STREAMS)
-    drawn = (disturbances or Disturbances()).drawn(np.random.default_rng(streams[SIZES_STREAM]))
-    assumed = heating or HeatingAssumptions()
-    friction = FrictionDraw(rig, seed=seed)
-    virtual = VirtualRig(rig, friction, drawn, assumed, streams, groove_diameter, real_time)
+    sizes, assumed = disturbances or Disturbances(), heating or HeatingAssumptions()
+    virtual = VirtualRig(rig, seed, sizes, assumed, groove_diameter, real_time)
     described = {"device": "virtual tribometer", "rig": rig.title, "seed": str(seed)}
     return VirtualTribometer(virtual, described, groove_diameter)
 
