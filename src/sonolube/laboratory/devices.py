@@ -80,17 +80,24 @@ def require_gapless(block: Block, sample: int, *, device: str) -> None:
         raise SamplesLost(f"{device}: {block.first_sample - sample} samples are missing after sample {sample}")
 
 
-class Acquisition(Protocol):
-    """Analogue inputs with one hardware clock."""
+class Device(Protocol):
+    """Hardware that is connected for a run and released after it; outputs are off after both."""
 
     name: str
+
+    def connect(self) -> None:
+        """Open the connection and reserve the hardware, outputs off; harmless where that was done before."""
+
+    def close(self) -> None:
+        """Release the hardware, outputs off; harmless where that was done before."""
+
+
+class Acquisition(Device, Protocol):
+    """Analogue inputs with one hardware clock."""
 
     @property
     def channels(self) -> Mapping[str, Channel]:
         """Channels that can be recorded, by name."""
-
-    def connect(self) -> None:
-        """Reserve the hardware; harmless where that was done before."""
 
     def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
         """Start to sample from sample 0 on, and return the sample rate that the hardware has chosen. [Hz]"""
@@ -109,11 +116,8 @@ class Acquisition(Protocol):
     def stop(self) -> None:
         """Stop to sample; harmless where nothing runs."""
 
-    def close(self) -> None:
-        """Release the hardware; harmless where that was done before."""
 
-
-class DriveSource(Protocol):
+class DriveSource(Device, Protocol):
     """Function generator with amplifier, or an amplifier with an input of its own.
 
     Notes
@@ -122,12 +126,8 @@ class DriveSource(Protocol):
     to them hangs. Without it `off` is called there.
     """
 
-    name: str
     voltage_maximum: float
     """Magnitude of the voltage at the actuator, offset included, that it can give. [V]"""
-
-    def connect(self) -> None:
-        """Open the connection with the output off."""
 
     def drive(self, setting: DriveSetting) -> None:
         """Set the output, which follows within a few periods."""
@@ -135,19 +135,12 @@ class DriveSource(Protocol):
     def off(self) -> None:
         """Switch the output off; safe to call at any time after `connect`."""
 
-    def close(self) -> None:
-        """Release the hardware with the output off; harmless where that was done before."""
 
-
-class Motor(Protocol):
+class Motor(Device, Protocol):
     """Motor of the disc."""
 
-    name: str
     rotation_speed_maximum: float
     """Speed that it can give. [1/s]"""
-
-    def connect(self) -> None:
-        """Open the connection with the motor at rest."""
 
     def turn(self, rotation_speed: float) -> None:
         """Set the speed of the disc, 0 to stop. [1/s]"""
@@ -155,11 +148,8 @@ class Motor(Protocol):
     def off(self) -> None:
         """Stop; safe to call at any time after `connect`."""
 
-    def close(self) -> None:
-        """Release the hardware with the motor at rest; harmless where that was done before."""
 
-
-class OutputGuard(Protocol):
+class OutputGuard(Device, Protocol):
     """Watchdog or enable line: hardware that takes the outputs off where the program does not answer.
 
     Notes
@@ -167,11 +157,6 @@ class OutputGuard(Protocol):
     A run enables the outputs before the first is set, renews the permission with every block, and disables them after
     the last was switched off, or where it is late.
     """
-
-    name: str
-
-    def connect(self) -> None:
-        """Open the connection with the outputs disabled."""
 
     def enable(self) -> None:
         """Allow the outputs, and begin to wait for renewals."""
@@ -181,9 +166,6 @@ class OutputGuard(Protocol):
 
     def disable(self) -> None:
         """Switch the outputs off; safe to call at any time, from any thread."""
-
-    def close(self) -> None:
-        """Release the hardware with the outputs disabled; harmless where that was done before."""
 
 
 class Recorder(Protocol):

@@ -7,7 +7,7 @@ samples or a block that is late by more than two seconds end the run with motor 
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from threading import Event as Signal, Lock, Thread
 from typing import Final
@@ -16,7 +16,7 @@ import numpy as np
 
 from sonolube.errors import SonolubeError
 from sonolube.laboratory import supervision
-from sonolube.laboratory.block import BLOCK_DURATION, Block, Channel
+from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, require_gapless
 from sonolube.laboratory.ending import RunEnded
 from sonolube.laboratory.interlocks import Interlock, first_trip
@@ -209,7 +209,7 @@ class _Reader:
                 lasts = block.samples / self._rate
                 recorder.begin_beside(
                     self.clock,
-                    [self._channels[name] for name in self._recorded],
+                    [self.device.channels[name] for name in self._recorded],
                     sample_rate=self._rate,
                     first=block.first_sample,
                     ago=time.monotonic() - arrived + lasts - 1 / self._rate,
@@ -243,11 +243,6 @@ class _Reader:
         self._thread.join(max(latest - time.monotonic(), 0.0))
         return f"{self.device.name}: did not return" if self._thread.is_alive() else ""
 
-    @property
-    def _channels(self) -> Mapping[str, Channel]:
-        """Channels of the device."""
-        return self.device.channels
-
     def _next_waiting(self) -> tuple[Block, float] | None:
         """Oldest block that was not taken, and when it came."""
         with self._held:
@@ -277,7 +272,7 @@ class _Reader:
 
     def _read(self) -> None:
         """Read block after block."""
-        wanted = next(iter(self._channels.values())).sample_rate
+        wanted = next(iter(self.device.channels.values())).sample_rate
         assert wanted is not None
         began = time.monotonic()
         rate = float(self.device.start(self._names, sample_rate=wanted))

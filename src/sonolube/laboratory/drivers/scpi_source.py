@@ -13,10 +13,8 @@ from sonolube.laboratory.drivers.switched_line import SwitchedLine
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
 from sonolube.text.units import format_si
 
-_DIFFERENCE: Final = {"frequency": (1e-4, 0.0), "amplitude": (2e-3, 1e-3), "offset": (2e-3, 1e-3)}
-"""Share, and absolute in V, by which a value that is read back may differ from the one that was set."""
-
-_UNITS: Final = {"frequency": "Hz", "amplitude": "V", "offset": "V"}
+_DIFFERENCE: Final = {"frequency": (1e-4, 0.0, "Hz"), "amplitude": (2e-3, 1e-3, "V"), "offset": (2e-3, 1e-3, "V")}
+"""Share, and absolute in a unit, by which a value that is read back may differ from the one that was set."""
 
 
 def _with_value(text: str) -> str:
@@ -238,7 +236,7 @@ class ScpiSource(SwitchedLine):
     def _require_value(self, name: str, reply: ReplyEntry) -> None:
         """Raise where the generator has another value than the one that was set."""
         wanted, found = float(self._set[name]), reply.number(self._line.ask(reply.query), device=self.name)
-        share, absolute = _DIFFERENCE[name]
+        share, absolute, unit = _DIFFERENCE[name]
         if not abs(found - wanted) <= share * abs(wanted) + absolute:
-            has, was = format_si(found, _UNITS[name]), format_si(wanted, _UNITS[name])
+            has, was = format_si(found, unit), format_si(wanted, unit)
             raise DeviceError(f"{self.name}: has the {name} {has} where {was} was set")
