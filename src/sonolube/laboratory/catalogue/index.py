@@ -123,21 +123,14 @@ def _is_current(path: Path) -> bool:
             if own == _OWN and version == _FORMAT:
                 connection.execute("SELECT folder, stamp, begun, entry FROM runs").fetchone()
                 return bool(connection.execute("PRAGMA quick_check").fetchone()[0] == "ok")
-            if own == 0 and version == 0 and not connection.execute("SELECT 1 FROM sqlite_master").fetchone():
-                return True  # just made
-            if own != _OWN:
-                raise _Foreign
-            return False
-    except _Foreign:
-        raise InvalidInput(f"{path}: is a database of another program") from None
+            is_new = own == 0 and version == 0 and not connection.execute("SELECT 1 FROM sqlite_master").fetchone()
     except InvalidInput:
         if exists and path.is_file():
             return False
         raise
-
-
-class _Foreign(Exception):
-    """A database of another program."""
+    if own != _OWN and not is_new:
+        raise InvalidInput(f"{path}: is a database of another program")
+    return is_new
 
 
 def _refresh(connection: "Connection", folders: list[Path], caveats: list[str]) -> None:

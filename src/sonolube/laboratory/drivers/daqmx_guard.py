@@ -1,6 +1,6 @@
 """Guard of the outputs by NI-DAQmx: a watchdog timer of the device, and a digital line that enables the amplifiers."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -105,12 +105,8 @@ class DaqmxGuard:
         watchdog, self._watchdog = self._watchdog, None
         if watchdog is not None:
             for act in (watchdog.clear_expiration, watchdog.stop, watchdog.close):
-                self._tried(act)
-
-    def _tried(self, act: Callable[[], object]) -> None:
-        """Call what may fail on a device that is lost."""
-        with suppress(DeviceError), daqmx_errors(self.name):
-            act()
+                with suppress(DeviceError), daqmx_errors(self.name):  # each may fail on a device that is lost
+                    act()
 
     def _set_line(self, *, is_high: bool) -> None:
         """Set the enable line, where there is one."""

@@ -65,8 +65,7 @@ class ReadbackEntry(Table):
     @property
     def replies(self) -> dict[str, ReplyEntry]:
         """Queries that are stated, by the quantity that they read back."""
-        named = {"frequency": self.frequency, "amplitude": self.amplitude, "offset": self.offset}
-        return {name: entry for name, entry in named.items() if entry is not None}
+        return {name: entry for name, entry in self if entry is not None}
 
 
 class WaveformEntry(Table):
