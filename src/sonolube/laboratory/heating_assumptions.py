@@ -59,7 +59,7 @@ class HeatingAssumptions:
 
 
 def capacitive_load(
-    capacitance: float, *, frequency: float, voltage_peak_to_peak: float, waveform: str
+    *, capacitance: float, frequency: float, voltage_peak_to_peak: float, waveform: str
 ) -> AmplifierRequirements:
     """Current, slew rate and power of a waveform on a capacitance, summed over its harmonics."""
     drive = Drive(frequency=frequency, voltage_peak_to_peak=voltage_peak_to_peak, waveform=waveform)

@@ -67,7 +67,10 @@ def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
     if point.frequency is None or point.voltage_peak_to_peak == 0:
         return OFF
     need = capacitive_load(
-        capacitance, frequency=point.frequency, voltage_peak_to_peak=point.voltage_peak_to_peak, waveform=point.waveform
+        capacitance=capacitance,
+        frequency=point.frequency,
+        voltage_peak_to_peak=point.voltage_peak_to_peak,
+        waveform=point.waveform,
     )
     power = linear_amplifier_power(
         capacitance=capacitance,

@@ -46,8 +46,8 @@ class Heating:
 
 
 def heating_over(
-    duration: Floats,
     *,
+    duration: Floats,
     friction_force: Floats,
     sliding_speed: Floats,
     actuator_heat_rate: Floats,

@@ -242,7 +242,7 @@ def _heating(
         bodies = None
     power = np.array([point.load.capacitive_power if point.load else 0.0 for point in points])
     return heating_over(
-        np.array([point.duration for point in points]),
+        duration=np.array([point.duration for point in points]),
         friction_force=np.array([point.friction_force or 0.0 for point in points]),
         sliding_speed=np.array([point.sliding_speed or 0.0 for point in points]),
         actuator_heat_rate=assumed.loss_factor * power,

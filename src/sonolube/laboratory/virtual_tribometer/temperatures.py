@@ -61,7 +61,7 @@ class Temperatures:
     def _capacitive_power(self, setting: DriveSetting) -> float:
         """Root-mean-square alternating voltage times root-mean-square current of the actuator as a capacitance. [W]"""
         return capacitive_load(
-            self._capacitance,
+            capacitance=self._capacitance,
             frequency=setting.frequency,
             voltage_peak_to_peak=setting.voltage_peak_to_peak,
             waveform=setting.waveform,
