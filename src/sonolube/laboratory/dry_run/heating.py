@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
+from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
 from sonolube.models.thermal.contact_history import contact_temperature_history
 from sonolube.models.thermal.network import network_rise

@@ -22,8 +22,9 @@ from sonolube.facts.protocol import (
 )
 from sonolube.laboratory.dry_run.amplifier_load import OFF, DriveLoad, drive_load
 from sonolube.laboratory.dry_run.findings import caveats_of, refusals_of
-from sonolube.laboratory.dry_run.heating import Heating, HeatingAssumptions, heating_over, rubbed_contact
+from sonolube.laboratory.dry_run.heating import Heating, heating_over, rubbed_contact
 from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint, PlannedRecording
+from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
 from sonolube.rig.excitation import actuator_capacitance
