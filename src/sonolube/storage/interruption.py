@@ -103,9 +103,9 @@ def end_program_at_signals() -> None:
         at_console_close(lambda meaning: _undo_all())
 
 
-def _heard_signals() -> list[signal.Signals]:
+def _heard_signals() -> list[int]:
     """Signals of this system that end a program and are not ignored."""
-    known = [signal.Signals[name] for name in _MEANINGS if hasattr(signal, name)]
+    known = [getattr(signal, name) for name in _MEANINGS if hasattr(signal, name)]
     return [each for each in known if signal.getsignal(each) is not signal.SIG_IGN]
 
 
