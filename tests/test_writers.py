@@ -29,7 +29,7 @@ EXCEPTED = {  # calls of modules that replace nothing of users: a file without a
 IN_MEMORY = {"BytesIO", "StringIO"}
 TO_FILES = {"savefig": 0, "savez": 0, "savez_compressed": 0, "savetxt": 0, "to_netcdf": 0, "to_csv": 0, "save": 0}
 OPENERS = {"h5py.File": 1, "h5netcdf.File": 1, "netcdf_file": 1, "ZipFile": 1, "io.open": 1, "open": 1}
-HANDLES = {"self._unfinished"}  # an `UnfinishedFile`
+HANDLES = {"self._unfinished", "unfinished"}  # an `UnfinishedFile`
 
 
 def dotted(node: ast.expr) -> str:

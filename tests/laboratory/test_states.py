@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from sonolube.errors import InvalidInput
-from sonolube.laboratory import OUTCOMES, TRANSITIONS, Action, Event, RunState, State, after, transition_table
+from sonolube.laboratory import OUTCOMES, TRANSITIONS, Action, Event, RunState, State, Transition, after
 
 ENDINGS = (Event.STOP, Event.TRIP, Event.DEVICE_ERROR, Event.CRASH)
 OUTPUTS_ON = (State.RUNNING,)
@@ -72,3 +72,18 @@ def test_the_first_cause_of_the_end_is_kept() -> None:
 def test_the_documented_table_is_that_of_the_code() -> None:
     page = (Path(__file__).parents[2] / "src/sonolube/laboratory/README.md").read_text(encoding="utf-8")
     assert transition_table() in page
+
+
+def transition_table() -> str:
+    """Table of the transitions as Markdown: states down, events across, a dash where an event cannot happen."""
+    head = ["state", *(event.value for event in Event)]
+    rows = [[state.value, *(_cell(TRANSITIONS[state].get(event), state) for event in Event)] for state in State]
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _cell(transition: Transition | None, state: State) -> str:
+    """Next state in the table."""
+    if transition is None:
+        return "-"
+    return "stays" if transition.state is state else transition.state.value

@@ -32,5 +32,4 @@ from .states import (
     State as State,
     Transition as Transition,
     after as after,
-    transition_table as transition_table,
 )

@@ -6,14 +6,29 @@ the program never polls single samples.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Final, Protocol
 
+import numpy as np
+
+from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel
 
 SILENT: Final = "clock silent"
 """Kind of the note that an acquisition with a clock of its own gave no sample while it was to be recorded."""
+
+
+WAVEFORMS: Final[Mapping[str, Callable[[Floats], Floats]]] = MappingProxyType(
+    {
+        "sine": lambda phase: np.sin(2 * np.pi * phase),
+        "square": lambda phase: np.where(phase < 0.5, 1.0, -1.0),
+        "triangle": lambda phase: 1 - 4 * np.abs((phase + 0.25) % 1.0 - 0.5),
+        "sawtooth": lambda phase: 2 * ((phase + 0.5) % 1.0) - 1,
+    }
+)
+"""Waveforms of drive sources by name: values between -1 and 1 over the phase in periods, from 0 to 1."""
 
 
 class DeviceError(SonolubeError):
@@ -54,18 +69,35 @@ class DriveSetting:
         """Greatest magnitude of the voltage, its offset included. [V]"""
         return abs(self.voltage_offset) + self.voltage_peak_to_peak / 2
 
+    def wave(self, periods: Floats) -> Floats:
+        """Waveform between -1 and 1 over the time in periods."""
+        return np.asarray(WAVEFORMS[self.waveform](periods % 1.0))
 
-class Acquisition(Protocol):
-    """Analogue inputs with one hardware clock."""
+
+def require_gapless(block: Block, sample: int, *, device: str) -> None:
+    """Raise SamplesLost where a block does not begin with the sample that follows."""
+    if block.first_sample != sample:
+        raise SamplesLost(f"{device}: {block.first_sample - sample} samples are missing after sample {sample}")
+
+
+class Device(Protocol):
+    """Hardware that is connected for a run and released after it; outputs are off after both."""
 
     name: str
+
+    def connect(self) -> None:
+        """Open the connection and reserve the hardware, outputs off; harmless where that was done before."""
+
+    def close(self) -> None:
+        """Release the hardware, outputs off; harmless where that was done before."""
+
+
+class Acquisition(Device, Protocol):
+    """Analogue inputs with one hardware clock."""
 
     @property
     def channels(self) -> Mapping[str, Channel]:
         """Channels that can be recorded, by name."""
-
-    def connect(self) -> None:
-        """Reserve the hardware; harmless where that was done before."""
 
     def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
         """Start to sample from sample 0 on, and return the sample rate that the hardware has chosen. [Hz]"""
@@ -84,11 +116,8 @@ class Acquisition(Protocol):
     def stop(self) -> None:
         """Stop to sample; harmless where nothing runs."""
 
-    def close(self) -> None:
-        """Release the hardware; harmless where that was done before."""
 
-
-class DriveSource(Protocol):
+class DriveSource(Device, Protocol):
     """Function generator with amplifier, or an amplifier with an input of its own.
 
     Notes
@@ -97,12 +126,8 @@ class DriveSource(Protocol):
     to them hangs. Without it `off` is called there.
     """
 
-    name: str
     voltage_maximum: float
     """Magnitude of the voltage at the actuator, offset included, that it can give. [V]"""
-
-    def connect(self) -> None:
-        """Open the connection with the output off."""
 
     def drive(self, setting: DriveSetting) -> None:
         """Set the output, which follows within a few periods."""
@@ -110,19 +135,12 @@ class DriveSource(Protocol):
     def off(self) -> None:
         """Switch the output off; safe to call at any time after `connect`."""
 
-    def close(self) -> None:
-        """Release the hardware with the output off; harmless where that was done before."""
 
-
-class Motor(Protocol):
+class Motor(Device, Protocol):
     """Motor of the disc."""
 
-    name: str
     rotation_speed_maximum: float
     """Speed that it can give. [1/s]"""
-
-    def connect(self) -> None:
-        """Open the connection with the motor at rest."""
 
     def turn(self, rotation_speed: float) -> None:
         """Set the speed of the disc, 0 to stop. [1/s]"""
@@ -130,11 +148,8 @@ class Motor(Protocol):
     def off(self) -> None:
         """Stop; safe to call at any time after `connect`."""
 
-    def close(self) -> None:
-        """Release the hardware with the motor at rest; harmless where that was done before."""
 
-
-class OutputGuard(Protocol):
+class OutputGuard(Device, Protocol):
     """Watchdog or enable line: hardware that takes the outputs off where the program does not answer.
 
     Notes
@@ -142,11 +157,6 @@ class OutputGuard(Protocol):
     A run enables the outputs before the first is set, renews the permission with every block, and disables them after
     the last was switched off, or where it is late.
     """
-
-    name: str
-
-    def connect(self) -> None:
-        """Open the connection with the outputs disabled."""
 
     def enable(self) -> None:
         """Allow the outputs, and begin to wait for renewals."""
@@ -156,9 +166,6 @@ class OutputGuard(Protocol):
 
     def disable(self) -> None:
         """Switch the outputs off; safe to call at any time, from any thread."""
-
-    def close(self) -> None:
-        """Release the hardware with the outputs disabled; harmless where that was done before."""
 
 
 class Recorder(Protocol):

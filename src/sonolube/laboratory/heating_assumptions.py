@@ -1,8 +1,13 @@
-"""Thermal properties of a rig that its file does not hold."""
+"""Thermal properties of a rig that its file does not hold, and the load of an actuator as a capacitance."""
 
 from dataclasses import dataclass
+from math import pi
+
+import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive
+from sonolube.models.actuator import AmplifierRequirements, Drive, amplifier_requirements
+from sonolube.rig.excitation import DriveVoltage
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -51,3 +56,13 @@ class HeatingAssumptions:
             ambient_temperature=self.ambient_temperature,
         )
         require_non_negative(loss_factor=self.loss_factor)
+
+
+def capacitive_load(
+    *, capacitance: float, frequency: float, voltage_peak_to_peak: float, waveform: str
+) -> AmplifierRequirements:
+    """Current, slew rate and power of a waveform on a capacitance, summed over its harmonics."""
+    drive = Drive(frequency=frequency, voltage_peak_to_peak=voltage_peak_to_peak, waveform=waveform)
+    harmonics = np.atleast_1d(DriveVoltage(drive=drive).harmonics())
+    admittance = 2j * pi * frequency * capacitance * np.arange(1, harmonics.size + 1)
+    return amplifier_requirements(admittance=admittance, voltage_amplitude=harmonics, frequency=frequency)

@@ -7,7 +7,7 @@ samples or a block that is late by more than two seconds end the run with motor 
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from threading import Event as Signal, Lock, Thread
 from typing import Final
@@ -16,8 +16,8 @@ import numpy as np
 
 from sonolube.errors import SonolubeError
 from sonolube.laboratory import supervision
-from sonolube.laboratory.block import BLOCK_DURATION, Block, Channel
-from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, SamplesLost
+from sonolube.laboratory.block import BLOCK_DURATION, Block
+from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, require_gapless
 from sonolube.laboratory.ending import RunEnded
 from sonolube.laboratory.interlocks import Interlock, first_trip
 from sonolube.laboratory.run_control import RunControl
@@ -95,10 +95,11 @@ class OwnClocks:
         for reader in self._readers:
             reader.record([name for name in channels if name in reader.device.channels])
 
-    def keep(self, recorder: Recorder) -> None:
-        """Record what was read meanwhile, and look."""
-        for reader in self._readers:
-            reader.keep(recorder)
+    def keep(self, recorder: Recorder | None) -> None:
+        """Record what was read meanwhile, where there is a record, and look."""
+        if recorder is not None:
+            for reader in self._readers:
+                reader.keep(recorder)
         self.look()
 
     def end_recording(self, recorder: Recorder) -> None:
@@ -208,7 +209,7 @@ class _Reader:
                 lasts = block.samples / self._rate
                 recorder.begin_beside(
                     self.clock,
-                    [self._channels[name] for name in self._recorded],
+                    [self.device.channels[name] for name in self._recorded],
                     sample_rate=self._rate,
                     first=block.first_sample,
                     ago=time.monotonic() - arrived + lasts - 1 / self._rate,
@@ -242,11 +243,6 @@ class _Reader:
         self._thread.join(max(latest - time.monotonic(), 0.0))
         return f"{self.device.name}: did not return" if self._thread.is_alive() else ""
 
-    @property
-    def _channels(self) -> Mapping[str, Channel]:
-        """Channels of the device."""
-        return self.device.channels
-
     def _next_waiting(self) -> tuple[Block, float] | None:
         """Oldest block that was not taken, and when it came."""
         with self._held:
@@ -276,7 +272,7 @@ class _Reader:
 
     def _read(self) -> None:
         """Read block after block."""
-        wanted = next(iter(self._channels.values())).sample_rate
+        wanted = next(iter(self.device.channels.values())).sample_rate
         assert wanted is not None
         began = time.monotonic()
         rate = float(self.device.start(self._names, sample_rate=wanted))
@@ -287,10 +283,7 @@ class _Reader:
                 self._rate, self._due = rate, began + (taken + count) / rate + allowed
             self.has_started.set()
             block = self.device.read(count)
-            if block.first_sample != taken:
-                raise SamplesLost(
-                    f"{self.device.name}: {block.first_sample - taken} samples are missing after sample {taken}"
-                )
+            require_gapless(block, taken, device=self.device.name)
             taken = block.next_sample
             self._take(block)
         with self._held:

@@ -1,36 +1,26 @@
 """Runner: a protocol on the devices of a rig, recorded block by block; however it ends, motor and drive are off."""
 
 from collections.abc import Callable
-from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
 from threading import Event as Signal
 from typing import Final
 
-from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.checked_quantity import SETTLING, SPEED_CHANNEL, SPEEDS, CheckedValue, speed_checks, speed_of
-from sonolube.laboratory.devices import (
-    DeviceError,
-    Devices,
-    DriveSetting,
-    Recorder,
-    connect_devices,
-    switch_outputs_off,
-)
+from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
 from sonolube.laboratory.drive_sampling import drive_sampling, idle_rate
-from sonolube.laboratory.ending import RunEnded, ending, release_devices, tried
-from sonolube.laboratory.interlocks import Trip, interlocks_for, set_point_trip
+from sonolube.laboratory.ending import RunEnded
+from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.laboratory.own_clocks import OwnClocks
-from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.sampling import Sampling
 from sonolube.laboratory.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
 from sonolube.laboratory.standing_rig import StandingRig, off_bounds
-from sonolube.laboratory.states import Event, RunState, State, after
-from sonolube.laboratory.supervision import Supervisor
+from sonolube.laboratory.states import Event, State
+from sonolube.laboratory.supervised_run import Advance, SupervisedRun
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 from sonolube.text.units import format_si
 
@@ -38,9 +28,6 @@ _POLL: Final = 0.1  # s, between two looks at requests while a run is paused
 
 Operator = Callable[[Prompt], bool]
 """Shows a prompt, and returns whether the operator has confirmed it; False ends the run."""
-
-Advance = Callable[[str, int, int], None]
-"""Takes what happens now, the time done and the whole time, in ms."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -110,15 +97,14 @@ def run_protocol(
         return run.complete(advance)
 
 
-class _Run:
-    """One run: the only place where states, devices and record meet."""
+class _Run(SupervisedRun):
+    """One run of a protocol."""
 
     def __init__(
         self, protocol: Protocol, devices: Devices, recorder: Recorder, operator: Operator, control: RunControl
     ) -> None:
-        self._supervisor = Supervisor(devices)
-        self._protocol, self._devices, self._recorder = protocol, self._supervisor.devices, recorder
-        self._operator, self._control = operator, control
+        super().__init__(devices, recorder, control)
+        self._protocol, self._operator = protocol, operator
         self._points = flattened(protocol)
         self._point = self._points[0]
         self._diameter = groove_diameter(protocol, devices)
@@ -128,43 +114,27 @@ class _Run:
         measured = [SPEED_CHANNEL] if speed_checks(protocol) else []
         self._clocks = OwnClocks(devices, locks, off_bounds(devices, protocol.limits))
         self._sampling = Sampling(self._devices.acquisition, recorder, locks, beside=self._clocks, also=measured)
-        self._present, self._is_connected = RunState(), False
         self._drive: DriveSetting | None = None
         self._turns = 0.0
         self._conditions: dict[str, float | str] = {"lubricant": ""}
 
     def complete(self, advance: Advance | None) -> RunResult:
         """Follow the protocol to its end, whatever that is."""
-        with self._supervisor.at_work(), ExitStack() as held:
-            try:
-                self._happens(Event.START)
-                held.enter_context(reserved(self._devices.resources))
-                self._prepare(advance)
-                self._clocks.begin(self._end_if_asked)
-                self._is_connected = True
-                connect_devices(self._devices)
-                self._happens(Event.PREPARED)
-                for point, following in pairwise(self._points):
-                    self._reach(point)
-                    self._run_until(following.time, advance)
-                self._happens(Event.COMPLETED)
-            except BaseException as failure:
-                self._happens(*ending(failure))
-                if not isinstance(failure, SonolubeError):
-                    self._close()
-                    raise
-            return self._close()
+        self._complete(advance)
+        present = self._present
+        return RunResult(state=present.state, outcome=present.outcome, reason=present.reason)
 
-    def switch_off(self) -> list[str]:
+    def _follow(self, advance: Advance | None) -> None:
+        """Reach one set point after the other."""
+        for point, following in pairwise(self._points):
+            self._reach(point)
+            self._run_until(following.time, advance)
+
+    def _switch_off(self) -> list[str]:
         """Switch drive and motor off where they were connected, and return what failed; never raises."""
-        failures = switch_outputs_off(self._devices) if self._is_connected else []
+        failures = super()._switch_off()
         self._drive, self._turns = None, 0.0
         return failures
-
-    def halt(self) -> None:
-        """Switch drive and motor off at once, whatever the run waits for; never raises."""
-        if self._is_connected:
-            self._supervisor.halt()
 
     def _prepare(self, advance: Advance | None) -> None:
         """Prepare the set points that take the devices time, before anything is on."""
@@ -177,22 +147,6 @@ class _Run:
             if advance is not None:
                 advance("preparing set points", number, len(wanted))
             prepare(setting, turns)
-
-    def _happens(self, event: Event, reason: str = "") -> None:
-        """Change the state of the run by an event, and note it."""
-        self._present, _ = after(self._present, event, reason=reason)
-        if event is not Event.START:
-            self._note(event.value, reason=reason, state=self._present.state.value)
-
-    def _note(self, kind: str, **facts: str | float) -> None:
-        """Note what happened; while a run ends, a record that cannot be written is no hindrance."""
-        sampling = self._sampling
-        try:
-            sample = sampling.sample if sampling.is_running else None
-            self._recorder.note(kind, sample=sample, protocol_time=sampling.time, **facts)
-        except SonolubeError:
-            if self._present.state is State.RUNNING:
-                raise
 
     def _reach(self, point: SetPoint) -> None:
         """Set the set points with which a step begins, or begin its recording."""
@@ -209,7 +163,7 @@ class _Run:
             assert point.sample_rate is not None
             self._sampling.record(point.channels, sample_rate=point.sample_rate)
             self._note("acquire", step=point.step, sample_rate=self._sampling.rate)
-        self._follow()
+        self._set_outputs()
 
     def _sample_again(self) -> None:
         """Start to sample what is recorded now, or next."""
@@ -227,7 +181,7 @@ class _Run:
         until = self._point.recorded_until
         return self._point.kind != "acquire" and until is not None and self._sampling.time < until
 
-    def _follow(self) -> None:
+    def _set_outputs(self) -> None:
         """Set motor and drive as the present set point says."""
         point = self._point
         turns = rotation_speed(point, self._diameter)
@@ -240,17 +194,11 @@ class _Run:
             if setting is None:
                 self._devices.drive.off()
             else:
-                self._require_within(setting)
+                self._require_within(setting, self._protocol.limits)
                 self._devices.drive.drive(setting)
             self._drive = setting
             frequency = 0.0 if setting is None else setting.frequency
             self._note("drive", step=point.step, voltage_peak_to_peak=point.voltage_peak_to_peak, frequency=frequency)
-
-    def _require_within(self, setting: DriveSetting) -> None:
-        """End the run before a setting beyond the limit of the voltage is sent."""
-        excess = set_point_trip(setting, self._protocol.limits)
-        if excess:
-            raise RunEnded(Event.TRIP, excess)
 
     def _note_conditions(self) -> None:
         """Note load and lubricant where the protocol tells others than before."""
@@ -282,7 +230,7 @@ class _Run:
     def _pause(self, reason: str) -> None:
         """Switch motor and drive off and stop to sample; what is recorded goes on in a part of its own."""
         self._happens(Event.PAUSE, reason)
-        failures = self.switch_off()
+        failures = self._switch_off()
         if failures:
             raise DeviceError("; ".join(failures))
         self._sampling.stop()
@@ -297,7 +245,7 @@ class _Run:
         self._end_if_asked()
         self._happens(Event.RESUME)
         self._sample_again()
-        self._follow()
+        self._set_outputs()
 
     def _run_until(self, time: float, advance: Advance | None) -> None:
         """Read block after block until a time of the protocol."""
@@ -319,16 +267,6 @@ class _Run:
         self._end_if_asked()
         if self._control.is_paused:
             self._wait_while_paused()
-
-    def _end_if_asked(self) -> None:
-        """End the run where that is wanted."""
-        if self._control.stop_reason:
-            raise RunEnded(Event.STOP, self._control.stop_reason)
-
-    def _end_at(self, trip: Trip | None) -> None:
-        """End the run at a sample beyond a limit."""
-        if trip is not None:
-            raise RunEnded(Event.TRIP, trip.reason)
 
     def _check(self, check: Check) -> None:
         """Look at a quantity until it lies within its bounds, or do what the step says otherwise."""
@@ -367,15 +305,3 @@ class _Run:
             if value is not None:
                 now.append(format_si(value, unit, digits=3))
         return ", ".join(now)
-
-    def _close(self) -> RunResult:
-        """Switch everything off, release the devices and close the record."""
-        failures = self.switch_off()
-        before = self._sampling.stop, self._clocks.end
-        released = release_devices(self._devices, *before) if self._is_connected else tried(*before)
-        for reason in released:
-            self._note("device error", reason=reason)
-        self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
-        present = self._present
-        self._recorder.finish(present.outcome, reason=present.reason)
-        return RunResult(state=present.state, outcome=present.outcome, reason=present.reason)

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.laboratory.block import BLOCK_DURATION, Block
-from sonolube.laboratory.devices import Acquisition, Recorder, SamplesLost
+from sonolube.laboratory.devices import Acquisition, Recorder, require_gapless
 from sonolube.laboratory.interlocks import Interlock, Trip, first_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 
@@ -16,7 +17,7 @@ class Sampling:
     Parameters
     ----------
     acquisition : Acquisition
-    recorder : Recorder
+    recorder : Recorder or None
     locks : sequence of Interlock
         Those of other acquisitions are left to `beside`.
     beside : OwnClocks
@@ -28,7 +29,7 @@ class Sampling:
     def __init__(
         self,
         acquisition: Acquisition,
-        recorder: Recorder,
+        recorder: Recorder | None,
         locks: Sequence[Interlock],
         *,
         beside: OwnClocks,
@@ -95,7 +96,8 @@ class Sampling:
             self.stop()
             self.start(channels, sample_rate=sample_rate)
         found = [self._acquisition.channels[name] for name in own]
-        self._recorder.begin(found, sample_rate=self.rate)
+        if self._recorder is not None:
+            self._recorder.begin(found, sample_rate=self.rate)
         self._recording = True
         self._beside.record(channels)
 
@@ -103,8 +105,9 @@ class Sampling:
         """Record no more."""
         if self._recording:
             self._recording = False
-            self._beside.end_recording(self._recorder)
-            self._recorder.end()
+            if self._recorder is not None:
+                self._beside.end_recording(self._recorder)
+                self._recorder.end()
 
     def read_until(self, time: float) -> Trip | None:
         """Read the samples up to a time of the protocol, and return the first one beyond a limit. [s]"""
@@ -137,9 +140,12 @@ class Sampling:
         """Mean of a channel over the latest block, in SI; None where it is not sampled."""
         if channel not in self._names:
             return self._beside.mean(channel)
-        if self._latest is None:
-            return None
-        return float(np.mean(self._latest.values[:, self._names.index(channel)]))
+        return None if self._latest is None else float(np.mean(self.samples(channel)))
+
+    def samples(self, channel: str) -> Floats:
+        """Samples of a channel of the latest block, in SI."""
+        assert self._latest is not None
+        return self._latest.values[:, self._names.index(channel)]
 
     def _own(self, channels: Sequence[str]) -> list[str]:
         """Those of channels that the acquisition has."""
@@ -148,11 +154,9 @@ class Sampling:
     def _take(self, count: int) -> Trip | None:
         """Read samples, hold them to the counter and to the limits, and record them."""
         block = self._acquisition.read(count)
-        if block.first_sample != self.sample:
-            lost = block.first_sample - self.sample
-            raise SamplesLost(f"{self._acquisition.name}: {lost} samples are missing after sample {self.sample}")
+        require_gapless(block, self.sample, device=self._acquisition.name)
         self.sample, self._latest = block.next_sample, block
-        if self._recording:
+        if self._recording and self._recorder is not None:
             values = block.values[:, : self._recorded]
             self._recorder.append(Block(first_sample=block.first_sample, sample_rate=self.rate, values=values))
         trip = first_trip(block, self._names, self._locks)

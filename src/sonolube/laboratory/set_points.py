@@ -1,6 +1,7 @@
 """Rotation speeds and drive settings of set points, held to the limits of devices."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain, pairwise
 from math import pi
 from typing import Final
 
@@ -46,21 +47,24 @@ def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
         Limits that no channel can watch; then of each step the highest voltage and speed beyond the devices, and the
         channels that are missing.
     """
-    faults: dict[tuple[str, str], tuple[float, str]] = {}
+    unwatched: tuple[str, ...] = ()
     try:
         interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))
     except InvalidInput as refusal:
         unwatched = refusal.faults if isinstance(refusal, SeveralFaults) else (str(refusal),)
-        faults |= {("", text): (0.0, text) for text in unwatched}
-    diameter = groove_diameter(protocol, devices)
-    before: SetPoint | None = None
-    for point in flattened(protocol):
-        for kind, value, text in _faults(point, before, devices, diameter):
-            known = faults.get((point.step, kind))
-            if known is None or value > known[0]:
-                faults[point.step, kind] = (value, text)
-        before = point
-    return tuple(text for _, text in faults.values())
+    diameter, points = groove_diameter(protocol, devices), flattened(protocol)
+    found = (_faults(point, before, devices, diameter) for before, point in pairwise((None, *points)) if point)
+    return (*dict.fromkeys(unwatched), *highest_of_steps(chain.from_iterable(found)))
+
+
+def highest_of_steps(found: Iterable[tuple[str, str, float, str]]) -> tuple[str, ...]:
+    """Texts of faults by step, kind and value, of each step and kind the one with the highest value."""
+    highest: dict[tuple[str, str], tuple[float, str]] = {}
+    for step, kind, value, text in found:
+        known = highest.get((step, kind))
+        if known is None or value > known[0]:
+            highest[step, kind] = (value, text)
+    return tuple(text for _, text in highest.values())
 
 
 def groove_diameter(protocol: Protocol, devices: Devices) -> float:
@@ -89,21 +93,22 @@ def drive_setting(point: SetPoint) -> DriveSetting | None:
 
 def _faults(
     point: SetPoint, before: SetPoint | None, devices: Devices, diameter: float
-) -> Iterator[tuple[str, float, str]]:
-    """Kind, value and text of what a set point changes to and devices cannot give."""
+) -> Iterator[tuple[str, str, float, str]]:
+    """Step, kind, value and text of what a set point changes to and devices cannot give."""
     place, drive, motor = f"step {point.step}", devices.drive, devices.motor
     volts = point.voltage_maximum
     if volts > drive.voltage_maximum * _ROUNDING and (before is None or volts != before.voltage_maximum):
         reached, most = format_si(volts, "V"), format_si(drive.voltage_maximum, "V")
-        yield "voltage", volts, f"{place}: the drive reaches {reached}; {drive.name} gives at most {most}"
+        yield point.step, "voltage", volts, f"{place}: the drive reaches {reached}; {drive.name} gives at most {most}"
     turns, fastest = rotation_speed(point, diameter), motor.rotation_speed_maximum
     if turns > fastest * _ROUNDING and (before is None or turns != rotation_speed(before, diameter)):
         wanted, most = format_si(turns, "1/s"), format_si(fastest, "1/s")
-        yield "speed", turns, f"{place}: needs {wanted}; {motor.name} turns at most at {most}"
-    channels = devices.channels
+        yield point.step, "speed", turns, f"{place}: needs {wanted}; {motor.name} turns at most at {most}"
+    channels, acquisition = devices.channels, devices.acquisition
     missing = [name for name in point.channels if name not in channels]
     if missing and point.kind == "acquire":
         names = f"channel {missing[0]}" if len(missing) == 1 else f"channels {', '.join(missing)}"
-        yield "channels", 0.0, f"{place}: {devices.acquisition.name} has no {names}; it has {', '.join(channels)}"
-    elif point.kind == "acquire" and all(name not in devices.acquisition.channels for name in point.channels):
-        yield ("channels", 0.0, f"{place}: records no channel of {devices.acquisition.name}; add one")
+        text = f"{place}: {acquisition.name} has no {names}; it has {', '.join(channels)}"
+        yield point.step, "channels", 0.0, text
+    elif point.kind == "acquire" and all(name not in acquisition.channels for name in point.channels):
+        yield point.step, "channels", 0.0, f"{place}: records no channel of {acquisition.name}; add one"

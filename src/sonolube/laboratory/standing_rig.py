@@ -7,6 +7,7 @@ from threading import Event as Signal, Thread
 from typing import Final
 
 from sonolube.facts.protocol import Limits
+from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drive_sampling import IDLE_RATE
 from sonolube.laboratory.ending import RunEnded, ending
@@ -15,7 +16,6 @@ from sonolube.laboratory.run_control import RunControl
 from sonolube.laboratory.states import Event
 from sonolube.text.units import format_si
 
-_BLOCK: Final = 0.05  # s
 _VIRTUAL: Final = 2.0  # s, of the time of virtual devices
 _OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
 _OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
@@ -80,7 +80,7 @@ class StandingRig:
 
     def _look(self) -> str | None:
         """Read a block, and return what is wrong."""
-        block = self._acquisition.read(max(1, round(_BLOCK * self._rate)))
+        block = self._acquisition.read(max(1, round(BLOCK_DURATION * self._rate)))
         self._time += block.samples / self._rate
         trip = first_trip(block, self._names, self._always)
         if trip is not None:

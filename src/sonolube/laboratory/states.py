@@ -164,18 +164,3 @@ def after(present: RunState, event: Event, *, reason: str = "") -> tuple[RunStat
     elif event in OUTCOMES and not present.outcome and transition.state is State.STOPPING:
         found = replace(found, outcome=OUTCOMES[event], reason=reason)
     return found, transition.action
-
-
-def transition_table() -> str:
-    """Table of the transitions as Markdown: states down, events across, a dash where an event cannot happen."""
-    head = ["state", *(event.value for event in Event)]
-    rows = [[state.value, *(_cell(TRANSITIONS[state].get(event), state) for event in Event)] for state in State]
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
-def _cell(transition: Transition | None, state: State) -> str:
-    """Next state in the table."""
-    if transition is None:
-        return "-"
-    return "stays" if transition.state is state else transition.state.value

@@ -7,7 +7,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing, contextmanager, suppress
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Final
 
 from sonolube.errors import InvalidInput
 from sonolube.operating_system import replace_file
@@ -55,12 +55,6 @@ class AppendedFile:
         self._syncing: Future[None] | None = None
         self._synced = time.monotonic()
         self._worker = ThreadPoolExecutor(1)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        self.close()
 
     def append(self, content: bytes) -> None:
         """Append a piece."""

@@ -48,11 +48,9 @@ def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
         while former:
             signal.signal(*former.popitem())
 
-    for name in _MEANINGS:
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
-            with suppress(ValueError):
-                former[number] = signal.signal(number, first)
+    for number in _heard_signals():
+        with suppress(ValueError):
+            former[number] = signal.signal(number, first)
     ended = Event()
 
     def close(meaning: str) -> None:
@@ -96,15 +94,19 @@ def end_program_at_signals() -> None:
                 os.write(terminal, (_SHOW_CURSOR if os.isatty(terminal) else b"") + line)
         os._exit(128 + number)
 
-    for name in _MEANINGS:
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
-            with suppress(ValueError):  # only the main thread of a process handles signals
-                signal.signal(number, end)
+    for number in _heard_signals():
+        with suppress(ValueError):  # only the main thread of a process handles signals
+            signal.signal(number, end)
     if os.name == "nt":
         from sonolube.operating_system import at_console_close
 
         at_console_close(lambda meaning: _undo_all())
+
+
+def _heard_signals() -> list[int]:
+    """Signals of this system that end a program and are not ignored."""
+    known = [getattr(signal, name) for name in _MEANINGS if hasattr(signal, name)]
+    return [each for each in known if signal.getsignal(each) is not signal.SIG_IGN]
 
 
 def _undo_all() -> None:

@@ -11,14 +11,8 @@ from tests.laboratory.daqmx_device import CLOCK, DaqmxDevice, install
 
 from sonolube.errors import MissingPackage
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting, SamplesLost
-from sonolube.laboratory.drivers import (
-    AnalogueInput,
-    DaqmxAcquisition,
-    DaqmxDrive,
-    DaqmxMotor,
-    DriveLimits,
-    LinearScale,
-)
+from sonolube.laboratory.drivers import DaqmxAcquisition, DaqmxDrive, DaqmxMotor, DriveLimits
+from sonolube.laboratory.drivers.daqmx_acquisition import DaqmxAcquisitionEntry
 from sonolube.laboratory.drivers.daqmx_output import whole_periods
 
 LIMITS = DriveLimits(amplifier_gain=20.0, actuator_voltage=80.0, output_voltage=5.0, frequency_maximum=100e3)
@@ -33,14 +27,13 @@ def card(monkeypatch: MonkeyPatch) -> Iterator[DaqmxDevice]:
 
 
 def acquisition(wiring: str = "default") -> DaqmxAcquisition:
-    names = ("friction_force", "voltage")
+    gains = {"friction_force": "-2 N/V", "voltage": "-2"}
     inputs = [
-        AnalogueInput(
-            name=name, terminal=f"Dev1/ai{number}", voltage_range=5.0, scale=LinearScale(gain=-2.0), wiring=wiring
-        )
-        for number, name in enumerate(names)
+        {"name": name, "input": f"ai{number}", "input_range": "5 V", "gain": gain, "wiring": wiring}
+        for number, (name, gain) in enumerate(gains.items())
     ]
-    return DaqmxAcquisition(device="Dev1", inputs=inputs, sample_rate_maximum=500e3)
+    entry = {"driver": "daqmx", "device": "Dev1", "sample_rate_maximum": "500 kHz", "channels": inputs}
+    return DaqmxAcquisition(DaqmxAcquisitionEntry.model_validate(entry), {})
 
 
 def drive(sample_rate: float = 900e3) -> DaqmxDrive:

@@ -9,15 +9,22 @@ from tests.laboratory.scpi_generator import LineServer
 from tests.laboratory.serial_motor import Controller, SerialPort
 
 from sonolube.laboratory import DeviceError, DeviceLost
-from sonolube.laboratory.drivers import Exchange, LineMotor, LineProtocol, VisaConnection
+from sonolube.laboratory.drivers import LineMotor
+from sonolube.laboratory.drivers.line_motor import LineMotorEntry
 
-PROTOCOL = LineProtocol(
-    speed=Exchange(command="V{speed}", answer="OK"),
-    stop=Exchange(command="V0", answer="OK"),
-    at_connect=(Exchange(command="EN", answer="OK"),),
-    query=Exchange(command="GV", answer="{speed}"),
-    speed_unit=0.1 / 60,
-)
+ENTRY = {
+    "driver": "line",
+    "speed_command": "V{speed}",
+    "speed_answer": "OK",
+    "stop_command": "V0",
+    "stop_answer": "OK",
+    "at_connect": [{"command": "EN", "answer": "OK"}],
+    "query": "GV",
+    "query_answer": "{speed}",
+    "speed_unit": "0.1 rpm",
+    "rotation_speed_maximum": "360 rpm",
+    "groove_diameter": "50 mm",
+}
 
 Bench = tuple[Controller, LineMotor]
 
@@ -31,8 +38,7 @@ def bench(request: pytest.FixtureRequest, monkeypatch: MonkeyPatch) -> Iterator[
     else:
         server = SerialPort(controller)
     baud_rate = 9600 if request.param == "serial port" else None
-    line = VisaConnection(name="motor", resource=server.resource, termination="\r", baud_rate=baud_rate)
-    motor = LineMotor(line, protocol=PROTOCOL, rotation_speed_maximum=6.0)
+    motor = LineMotor(LineMotorEntry.model_validate(ENTRY | {"resource": server.resource, "baud_rate": baud_rate}))
     yield controller, motor
     motor.close()
     server.close()

@@ -14,7 +14,8 @@ from tests.laboratory.strict_instruments import RIGOL, SIGLENT, TEKTRONIX, Stric
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting, SamplesLost
-from sonolube.laboratory.drivers import Reply, ScpiSource, read_device_map
+from sonolube.laboratory.drivers import ScpiSource, read_device_map
+from sonolube.laboratory.drivers.scpi_replies import ReplyEntry
 
 MAPS = Path(__file__).parents[3] / "examples" / "lab"
 GAIN = 20.0
@@ -60,7 +61,7 @@ def test_a_generator_is_off_before_anything_else_and_on_after_all_was_set(bench:
     assert generator.peak > 8.0  # as the last user left it
     bench.drive.connect()
     assert not is_on(bench)
-    assert generator.heard[0] == bench.drive._commands.off
+    assert generator.heard[0] == bench.drive._entry.off
     bench.drive.drive(SETTING)
     assert is_on(bench)
     assert float(generator.values["amplitude"]) * GAIN == approx(28.0)
@@ -260,14 +261,14 @@ def test_a_map_whose_commands_could_not_be_safe_is_refused(
 @pytest.mark.parametrize(
     ("answer", "reply", "value"),
     [
-        ("+2.34000000E+01,+1.1E+00", Reply(query="READ?", item=2), 1.1),
-        ("C1:BSWV WVTP,SINE,FRQ,100HZ,AMP,2V", Reply(query="?", after="FRQ"), 100.0),
-        ("C1:BSWV FRQ,100HZ", Reply(query="?", after="FRQ"), 100.0),
-        ("  7 ", Reply(query="?"), 7.0),
-        ("+9.90000000E+37", Reply(query="?"), None),
+        ("+2.34000000E+01,+1.1E+00", ReplyEntry(query="READ?", item=2), 1.1),
+        ("C1:BSWV WVTP,SINE,FRQ,100HZ,AMP,2V", ReplyEntry(query="?", after="FRQ"), 100.0),
+        ("C1:BSWV FRQ,100HZ", ReplyEntry(query="?", after="FRQ"), 100.0),
+        ("  7 ", ReplyEntry(query="?"), 7.0),
+        ("+9.90000000E+37", ReplyEntry(query="?"), None),
     ],
 )
-def test_numbers_of_answers(answer: str, reply: Reply, value: float | None) -> None:
+def test_numbers_of_answers(answer: str, reply: ReplyEntry, value: float | None) -> None:
     found = reply.number(answer, device="it")
     assert np.isnan(found) if value is None else found == value
 
@@ -275,7 +276,7 @@ def test_numbers_of_answers(answer: str, reply: Reply, value: float | None) -> N
 @pytest.mark.parametrize("answer", ["", "OFF", "1,2", "C1:BSWV WVTP,SINE", "1.4KHZ,0,1.4KHZ", "1e3e3,2,x"])
 def test_an_answer_without_the_number_is_refused(answer: str) -> None:
     with raises(DeviceError, match="expected a number"):
-        Reply(query="?", item=3).number(answer, device="it")
+        ReplyEntry(query="?", item=3).number(answer, device="it")
 
 
 def test_the_thermocouples_of_a_logger_are_read_by_one_query_a_period_in_si(monkeypatch: MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from tests.laboratory.records.recorded import begun, block_of
 
 from sonolube.errors import SonolubeError
 from sonolube.laboratory.catalogue import query_runs
-from sonolube.laboratory.records import export_run, read_run, recover_run, runs_in
+from sonolube.laboratory.records import export_run, read_run, recover_run, run_folders, run_summary
 
 WRONG: list[Any] = [
     None,
@@ -93,7 +93,7 @@ def test_a_damaged_record_is_read_recovered_or_refused(whole: Path, tmp_path: Pa
         (folder / "recording.nc").unlink()
     uses: list[Callable[[], object]] = [
         lambda: read_run(folder),
-        lambda: runs_in(tmp_path),
+        lambda: [run_summary(folder) for folder in run_folders(tmp_path)],
         lambda: query_runs(tmp_path),
         lambda: export_run(folder, file_format="csv", out=tmp_path / "out"),
         lambda: recover_run(folder),

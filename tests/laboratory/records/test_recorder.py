@@ -17,7 +17,7 @@ from tests.laboratory.records.recorded import CHANNELS, RATE, begun, block_of, d
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block
-from sonolube.laboratory.records import RunRecorder, new_run, read_run, recover_run, runs_in
+from sonolube.laboratory.records import RunRecorder, new_run, read_run, recover_run, run_folders, run_summary
 
 LargestFile = Callable[[int], AbstractContextManager[None]]
 
@@ -70,7 +70,7 @@ def test_a_second_run_of_the_same_second_has_a_folder_of_its_own(tmp_path: Path,
     monkeypatch.setattr(time, "time", lambda: 1795398130.0)
     names = [recorded(tmp_path).name for _ in range(3)]
     assert names == [f"20261123T014210Z-map-test{end}" for end in ("", "-2", "-3")]
-    assert [summary.outcome for summary in runs_in(tmp_path)] == ["completed"] * 3
+    assert [run_summary(folder).outcome for folder in run_folders(tmp_path)] == ["completed"] * 3
 
 
 def test_documents_are_those_of_the_event_model(tmp_path: Path) -> None:
@@ -267,6 +267,6 @@ def test_damaged_facts_of_one_run_leave_the_others_listed(tmp_path: Path) -> Non
     folder = recorded(tmp_path)
     recorded(tmp_path, sizes=(5,))
     (folder / "run.json").write_text(json.dumps([1]))
-    assert sorted(summary.outcome for summary in runs_in(tmp_path)) == ["completed", "failed"]
+    assert sorted(run_summary(folder).outcome for folder in run_folders(tmp_path)) == ["completed", "failed"]
     with pytest.raises(InvalidInput, match="is damaged"):
         read_run(folder)

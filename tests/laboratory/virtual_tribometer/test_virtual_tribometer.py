@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 from scipy.signal import welch
+from tests.laboratory.faulty_acquisition import Kind, with_fault
 from tests.laboratory.simulated_rig import MemoryRecord
 
 from sonolube.errors import InvalidInput
@@ -15,13 +16,7 @@ from sonolube.facts.protocol import protocol_by_name_or_file, protocol_from
 from sonolube.laboratory import Devices, DriveSetting, State, connect_devices, run_protocol
 from sonolube.laboratory.devices import DeviceError, DeviceLost, SamplesLost
 from sonolube.laboratory.dry_run import HeatingAssumptions, dry_run
-from sonolube.laboratory.virtual_tribometer import (
-    UNDISTURBED,
-    Disturbances,
-    Fault,
-    VirtualTribometer,
-    virtual_tribometer,
-)
+from sonolube.laboratory.virtual_tribometer import UNDISTURBED, Disturbances, VirtualTribometer, virtual_tribometer
 from sonolube.measurement.friction.rotation import hall_pulse_times
 from sonolube.measurement.friction.stick_slip import estimate_stick_slip
 from sonolube.measurement.friction.wobble_search import find_rotation_speed
@@ -35,8 +30,8 @@ DRIVE = DriveSetting(voltage_peak_to_peak=25.9, frequency=22e3, voltage_offset=1
 DIAMETER = 0.028
 
 
-def tribometer(sizes: Disturbances = UNDISTURBED, *, seed: int = 0, fault: Fault | None = None) -> VirtualTribometer:
-    return virtual_tribometer(RIG, seed=seed, disturbances=sizes, groove_diameter=DIAMETER, fault=fault)
+def tribometer(sizes: Disturbances = UNDISTURBED, *, seed: int = 0) -> VirtualTribometer:
+    return virtual_tribometer(RIG, seed=seed, disturbances=sizes, groove_diameter=DIAMETER)
 
 
 def sliding(devices: Devices, *channels: str, speed: float = 0.0655, rate: float = 1000.0) -> None:
@@ -201,8 +196,8 @@ def test_voltage_and_current_are_those_of_the_waveform_and_the_capacitance() -> 
 
 
 @pytest.mark.parametrize(("kind", "error"), [("lost", DeviceLost), ("overrun", SamplesLost)])
-def test_faults_of_the_hardware_come_at_their_sample(kind: str, error: type[DeviceError]) -> None:
-    devices = tribometer(fault=Fault(500, kind)).devices  # type: ignore[arg-type]
+def test_faults_of_the_hardware_come_at_their_sample(kind: Kind, error: type[DeviceError]) -> None:
+    devices = with_fault(tribometer().devices, 500, kind)
     sliding(devices, "friction_force")
     devices.acquisition.read(500)
     with raises(error):
@@ -210,25 +205,24 @@ def test_faults_of_the_hardware_come_at_their_sample(kind: str, error: type[Devi
 
 
 @pytest.mark.parametrize(("kind", "reason"), [("saturated", "saturated at 60 N"), ("no number", "gives no number")])
-def test_a_broken_gauge_trips_the_limit_of_the_force(kind: str, reason: str) -> None:
+def test_a_broken_gauge_trips_the_limit_of_the_force(kind: Kind, reason: str) -> None:
     protocol = protocol_by_name_or_file("map_test")
     limited = protocol.model_copy(
         update={"limits": protocol.limits.model_copy(update={"friction_force_maximum": 60.0})}
     )
-    virtual = tribometer(fault=Fault(2000, kind))  # type: ignore[arg-type]
-    result = run_protocol(limited, virtual.devices, MemoryRecord(), operator=lambda prompt: True)
+    devices = with_fault(tribometer().devices, 2000, kind)
+    result = run_protocol(limited, devices, MemoryRecord(), operator=lambda prompt: True)
     assert (result.outcome, reason in result.reason) == ("stopped", True)
 
 
 @pytest.mark.parametrize("kind", ["late", "hang"])
 def test_the_supervisor_ends_a_virtual_run_that_is_late_or_hangs_with_its_outputs_off(
-    kind: str, monkeypatch: pytest.MonkeyPatch
+    kind: Kind, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("sonolube.laboratory.supervision.LATE", 2.0)  # of the time of the virtual rig
-    virtual = tribometer(fault=Fault(2000, kind))  # type: ignore[arg-type]
-    result = run_protocol(
-        protocol_by_name_or_file("map_test"), virtual.devices, MemoryRecord(), operator=lambda prompt: True
-    )
+    virtual = tribometer()
+    devices = with_fault(virtual.devices, 2000, kind)
+    result = run_protocol(protocol_by_name_or_file("map_test"), devices, MemoryRecord(), operator=lambda prompt: True)
     assert (result.outcome, result.state) == ("failed", State.SAFE)
     assert "virtual acquisition: a block is late by more than 2 s; the supervisor has switched" in result.reason
     truth = virtual.truth()

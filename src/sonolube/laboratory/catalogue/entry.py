@@ -8,6 +8,7 @@ from pathlib import Path
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Protocol, SetPoint, flattened, protocol_from
 from sonolube.laboratory.records import Run, RunSummary, read_run
+from sonolube.laboratory.records.run_folder import number_of
 from sonolube.text.printable_text import printable
 
 
@@ -95,7 +96,8 @@ def _protocol(run: Run) -> Protocol | None:
 def _loads(run: Run, protocol: Protocol | None) -> tuple[float, ...]:
     """Loads that were set while the disc turned, those of prompts before that of the facts. [N]"""
     stated = protocol.metadata.normal_load if protocol else None
-    known = _number(run, "normal_load", stated)
+    known = number_of(run.facts, "normal_load")
+    known = stated if known is None else known
     loads = {known}
     if protocol is not None:
         points = flattened(protocol)
@@ -111,10 +113,10 @@ def _turns(point: SetPoint) -> bool:
 
 def _speeds(run: Run, protocol: Protocol | None) -> tuple[float, ...]:
     """Sliding speeds above 0 that were set; none where the groove is not known. [m/s]"""
-    stated = _number(run, "sliding_speed", None)
+    stated = number_of(run.facts, "sliding_speed")
     if stated is not None or protocol is None:
         return () if stated is None else (stated,)
-    diameter = protocol.metadata.groove_diameter or _number(run, "groove_diameter", None)
+    diameter = protocol.metadata.groove_diameter or number_of(run.facts, "groove_diameter")
     speeds = set()
     for point in flattened(protocol):
         if point.sliding_speed is not None:
@@ -127,9 +129,3 @@ def _speeds(run: Run, protocol: Protocol | None) -> tuple[float, ...]:
 def _text(run: Run, name: str) -> str:
     """Fact as text; empty where it is missing."""
     return str(run.facts.get(name, ""))
-
-
-def _number(run: Run, name: str, otherwise: float | None) -> float | None:
-    """Fact as a number."""
-    value = run.facts.get(name)
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else otherwise

@@ -123,21 +123,14 @@ def _is_current(path: Path) -> bool:
             if own == _OWN and version == _FORMAT:
                 connection.execute("SELECT folder, stamp, begun, entry FROM runs").fetchone()
                 return bool(connection.execute("PRAGMA quick_check").fetchone()[0] == "ok")
-            if own == 0 and version == 0 and not connection.execute("SELECT 1 FROM sqlite_master").fetchone():
-                return True  # just made
-            if own != _OWN:
-                raise _Foreign
-            return False
-    except _Foreign:
-        raise InvalidInput(f"{path}: is a database of another program") from None
+            is_new = own == 0 and version == 0 and not connection.execute("SELECT 1 FROM sqlite_master").fetchone()
     except InvalidInput:
         if exists and path.is_file():
             return False
         raise
-
-
-class _Foreign(Exception):
-    """A database of another program."""
+    if own != _OWN and not is_new:
+        raise InvalidInput(f"{path}: is a database of another program")
+    return is_new
 
 
 def _refresh(connection: "Connection", folders: list[Path], caveats: list[str]) -> None:
@@ -203,27 +196,16 @@ def _entry(parent: Path, text: str) -> CatalogueEntry:
 
 def _condition(query: RunQuery) -> tuple[str, list[Any]]:
     """Condition of SQL with its values."""
-    terms: list[str] = []
-    values: list[Any] = []
-    for material in query.materials:
-        terms.append("(instr(pin, ?) OR instr(disc, ?))")
-        values += [material.casefold()] * 2
-    for setting, limits in (("load", query.normal_load), ("speed", query.sliding_speed)):
-        if limits is not None:
-            within = "SELECT folder FROM settings WHERE quantity = ? AND value BETWEEN ? AND ?"
-            terms.append(f"folder IN ({within})")
-            values += [setting, *limits]
-    for comparison, moment in (("begun >= ?", query.since), ("begun < ?", query.until)):
-        if moment is not None:
-            terms.append(comparison)
-            values.append(moment)
-    for tag in query.tags:
-        terms.append("instr(tags, ?)")
-        values.append(f",{tag.strip().casefold()},")
-    for words in query.texts:
-        terms.append("instr(text, ?)")
-        values.append(words.casefold())
-    if query.outcome:
-        terms.append("outcome = ?")
-        values.append(query.outcome)
-    return (" WHERE " + " AND ".join(terms) if terms else ""), values
+    within = "folder IN (SELECT folder FROM settings WHERE quantity = ? AND value BETWEEN ? AND ?)"
+    ranges = (("load", query.normal_load), ("speed", query.sliding_speed))
+    moments = (("begun >= ?", query.since), ("begun < ?", query.until))
+    terms: list[tuple[str, tuple[Any, ...]]] = [
+        *(("(instr(pin, ?) OR instr(disc, ?))", (each.casefold(),) * 2) for each in query.materials),
+        *((within, (setting, *limits)) for setting, limits in ranges if limits is not None),
+        *((comparison, (moment,)) for comparison, moment in moments if moment is not None),
+        *(("instr(tags, ?)", (f",{tag.strip().casefold()},",)) for tag in query.tags),
+        *(("instr(text, ?)", (words.casefold(),)) for words in query.texts),
+        *([("outcome = ?", (query.outcome,))] if query.outcome else []),
+    ]
+    condition = " WHERE " + " AND ".join(term for term, _ in terms) if terms else ""
+    return condition, [value for _, values in terms for value in values]

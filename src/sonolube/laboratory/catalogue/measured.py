@@ -14,6 +14,7 @@ from sonolube.laboratory.catalogue.entry import CatalogueEntry, catalogue_entry
 from sonolube.laboratory.catalogue.index import query_runs
 from sonolube.laboratory.catalogue.query import query_from
 from sonolube.laboratory.records import Run, read_run
+from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction_analysis import (
     analyse_rotation_speed,
     analyse_voltage_steps,
@@ -161,10 +162,8 @@ def _levels_of_stretch(run: Run, recording: "xr.Dataset", stretch: SetConditions
         except InvalidInput:
             steps = ()
         for step in steps:
-            friction = step.friction_force, step.friction_force_uncertainty
-            reduction = step.friction_reduction, step.friction_reduction_uncertainty
             voltage = min(frequencies, key=lambda each: abs(each - step.voltage_peak_to_peak))
-            yield _Level(voltage=voltage, frequency=frequencies[voltage], friction=(*friction, *reduction), **known)
+            yield _Level(voltage=voltage, frequency=frequencies[voltage], friction=_friction(step), **known)
         if steps:
             return
     for samples, voltage, frequency in stretch.levels:
@@ -235,9 +234,15 @@ def _levels_of_protocol(run: Run, recording: "xr.Dataset") -> Iterator[_Level]:
             yield _Level(voltage=voltage, friction=tuple(mean_and_more), **known)
         return
     for step in steps:
-        friction = step.friction_force, step.friction_force_uncertainty
-        reduction = step.friction_reduction, step.friction_reduction_uncertainty
-        yield _Level(voltage=step.voltage_peak_to_peak, friction=(*friction, *reduction), **known)
+        yield _Level(voltage=step.voltage_peak_to_peak, friction=_friction(step), **known)
+
+
+def _friction(step: VoltageStep) -> tuple[float | None, ...]:
+    """Friction force and reduction of a step of the voltage, each with its uncertainty."""
+    return (
+        *(step.friction_force, step.friction_force_uncertainty),
+        *(step.friction_reduction, step.friction_reduction_uncertainty),
+    )
 
 
 def _separate_levels(recording: "xr.Dataset") -> Iterator[Sequence[float | None]]:

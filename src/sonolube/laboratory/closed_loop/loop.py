@@ -1,33 +1,22 @@
 """Loop: blocks of one control interval are read, the voltage computed and set; however it ends, all is off."""
 
-from contextlib import ExitStack
 from math import ceil, nan, pi
 from typing import Final
 
 import numpy as np
 
 from sonolube.design.control import initial_state, next_level
-from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.laboratory.block import Block
+from sonolube.errors import InvalidInput
 from sonolube.laboratory.closed_loop.plan import recorded_channels
 from sonolube.laboratory.closed_loop.record import FrictionHold, HeldFriction
-from sonolube.laboratory.devices import (
-    DeviceError,
-    Devices,
-    DriveSetting,
-    Recorder,
-    SamplesLost,
-    connect_devices,
-    switch_outputs_off,
-)
-from sonolube.laboratory.ending import RunEnded, ending, release_devices, tried
-from sonolube.laboratory.interlocks import first_trip, interlocks_for, set_point_trip
+from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
+from sonolube.laboratory.ending import RunEnded
+from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.laboratory.own_clocks import OwnClocks
-from sonolube.laboratory.reservation import reserved
 from sonolube.laboratory.run_control import RunControl
-from sonolube.laboratory.runner import Advance
-from sonolube.laboratory.states import Event, RunState, State, after
-from sonolube.laboratory.supervision import Supervisor
+from sonolube.laboratory.sampling import Sampling
+from sonolube.laboratory.states import Event, State
+from sonolube.laboratory.supervised_run import Advance, SupervisedRun
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 from sonolube.text.units import format_si
 
@@ -79,78 +68,41 @@ def hold_friction(
         return loop.complete(advance)
 
 
-class _Loop:
+class _Loop(SupervisedRun):
     """One loop on devices."""
 
     def __init__(self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
-        self._supervisor = Supervisor(devices)
-        self._hold, self._devices, self._recorder, self._control = hold, self._supervisor.devices, recorder, control
+        super().__init__(devices, recorder, control)
+        self._hold = hold
         channels = devices.acquisition.channels
         locks = interlocks_for(hold.limits, devices.channels, hold.drive_sampling)
         self._clocks = OwnClocks(devices, locks)
-        self._locks = [lock for lock in locks if lock.channel.name in channels]
-        self._names = list(recorded_channels(hold, channels))
-        self._present, self._is_recording = RunState(), False
-        self._is_connected = False
-        self._next_sample, self._rate, self._count = 0, 0.0, 0
+        self._sampling = Sampling(self._devices.acquisition, recorder, locks, beside=self._clocks)
+        self._names = recorded_channels(hold, channels)
+        self._interval = nan  # of the controller by the clock of the acquisition, in s
         self._rows: list[tuple[float, float, float, float]] = []
         self._run_in_means: list[float] = []
 
     def complete(self, advance: Advance | None) -> HeldFriction:
         """Run the loop to its end, whatever that is."""
-        with self._supervisor.at_work(), ExitStack() as held:
-            try:
-                self._happens(Event.START)
-                held.enter_context(reserved(self._devices.resources))
-                self._clocks.begin(self._end_if_asked)
-                self._is_connected = True
-                connect_devices(self._devices)
-                self._happens(Event.PREPARED)
-                self._sample()
-                self._control_friction(self._running_in(), advance)
-                self._end_recording()
-                self._happens(Event.COMPLETED)
-            except BaseException as failure:
-                self._happens(*ending(failure))
-                if not isinstance(failure, SonolubeError):
-                    raise
-            finally:
-                self._close()
+        self._complete(advance)
         return self._result()
 
-    def halt(self) -> None:
-        """Switch drive and motor off at once, whatever the loop waits for; never raises."""
-        if self._is_connected:
-            self._supervisor.halt()
-
-    def _happens(self, event: Event, reason: str = "") -> None:
-        """Change the state of the loop by an event, and note it."""
-        self._present, _ = after(self._present, event, reason=reason)
-        if event is not Event.START:
-            self._note(event.value, reason=reason, state=self._present.state.value)
-
-    def _note(self, kind: str, **facts: str | float) -> None:
-        """Note what happened; while the loop ends, a record that cannot be written is no hindrance."""
-        if self._recorder is None:
-            return
-        sample, time = (self._next_sample, self._next_sample / self._rate) if self._rate else (None, 0.0)
-        try:
-            self._recorder.note(kind, sample=sample, protocol_time=time, **facts)
-        except SonolubeError:
-            if self._present.state is State.RUNNING:
-                raise
+    def _follow(self, advance: Advance | None) -> None:
+        """Run in, then control."""
+        self._sample()
+        self._control_friction(self._running_in(), advance)
+        self._sampling.end_recording()
 
     def _sample(self) -> None:
         """Start to sample and to record."""
-        acquisition = self._devices.acquisition
-        self._rate = acquisition.start(self._names, sample_rate=self._hold.sample_rate)
+        sampling = self._sampling
+        sampling.start(self._names, sample_rate=self._hold.sample_rate)
         try:
-            self._count = self._hold.samples_per_interval(self._rate)
+            self._interval = self._hold.samples_per_interval(sampling.rate) / sampling.rate
         except InvalidInput as refusal:
-            raise DeviceError(f"{acquisition.name}: {refusal}") from None
-        if self._recorder is not None:
-            self._recorder.begin([acquisition.channels[name] for name in self._names], sample_rate=self._rate)
-            self._is_recording = True
+            raise DeviceError(f"{self._devices.acquisition.name}: {refusal}") from None
+        sampling.record(self._names, sample_rate=sampling.rate)
 
     def _running_in(self) -> float:
         """Slide without vibration, and return the friction of the last interval. [N]"""
@@ -178,14 +130,9 @@ class _Loop:
                 doing = f"{format_si(measured, 'N', digits=3)}, {format_si(voltage, 'V', digits=3)}"
                 advance(doing, round(1e3 * now), round(1e3 * hold.duration))
 
-    @property
-    def _interval(self) -> float:
-        """Interval of the controller by the clock of the acquisition. [s]"""
-        return self._count / self._rate
-
     def _turn(self, speed: float) -> None:
         """Set the speed of the disc for a sliding speed."""
-        self._devices.motor.turn(speed / (pi * _groove_diameter(self._hold, self._devices)))
+        self._devices.motor.turn(speed / (pi * self._devices.groove_diameter))
         self._note("motor", sliding_speed=speed)
 
     def _drive(self, voltage: float) -> None:
@@ -198,58 +145,19 @@ class _Loop:
             voltage_offset=self._hold.offset_ratio * voltage,
             frequency=self._hold.frequency,
         )
-        excess = set_point_trip(setting, self._hold.limits)
-        if excess:
-            raise RunEnded(Event.TRIP, excess)
+        self._require_within(setting, self._hold.limits)
         self._devices.drive.drive(setting)
 
     def _measure(self) -> tuple[float, float]:
         """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""
         self._end_if_asked()
-        block = self._devices.acquisition.read(self._count)
-        self._keep(block)
-        self._clocks.look()
-        trip = first_trip(block, self._names, self._locks)
-        if trip is not None:
-            raise RunEnded(Event.TRIP, trip.reason)
-        samples = block.values[:, self._names.index(_FRICTION)]
+        self._end_at(self._sampling.read_until(self._sampling.time + self._interval))
+        samples = self._sampling.samples(_FRICTION)
         samples = samples[-max(1, round(self._hold.averaging * samples.size)) :]
         mean = float(np.mean(samples))
         if not np.isfinite(mean):
             raise RunEnded(Event.TRIP, f"channel {_FRICTION} gives no number")
         return mean, float(np.std(samples))
-
-    def _end_if_asked(self) -> None:
-        """End the loop where that is wanted."""
-        if self._control.stop_reason:
-            raise RunEnded(Event.STOP, self._control.stop_reason)
-
-    def _keep(self, block: Block) -> None:
-        """Hold a block to the counter, and record it."""
-        if block.first_sample != self._next_sample:
-            lost = block.first_sample - self._next_sample
-            name = self._devices.acquisition.name
-            raise SamplesLost(f"{name}: {lost} samples are missing after sample {self._next_sample}")
-        self._next_sample = block.next_sample
-        if self._recorder is not None:
-            self._recorder.append(block)
-
-    def _end_recording(self) -> None:
-        """Record no more."""
-        if self._recorder is not None and self._is_recording:
-            self._is_recording = False
-            self._recorder.end()
-
-    def _close(self) -> None:
-        """Switch everything off, release the devices and close the record."""
-        devices = self._devices
-        failures = switch_outputs_off(devices) if self._is_connected else []
-        before = self._end_recording, devices.acquisition.stop, self._clocks.end
-        for reason in release_devices(devices, *before) if self._is_connected else tried(self._clocks.end):
-            self._happens(Event.DEVICE_ERROR, reason)
-        self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
-        if self._recorder is not None:
-            self._recorder.finish(self._present.outcome, reason=self._present.reason)
 
     def _result(self) -> HeldFriction:
         """Measured and set values."""
@@ -257,7 +165,7 @@ class _Loop:
         run_in = self._run_in_means
         return HeldFriction(
             hold=self._hold,
-            time=np.arange(rows.shape[0], dtype=np.float64) * (self._interval if self._rate else nan),
+            time=np.arange(rows.shape[0], dtype=np.float64) * self._interval,
             setpoint=np.full(rows.shape[0], self._hold.friction_force),
             friction_force=rows[:, 0],
             friction_force_deviation=rows[:, 1],
@@ -268,11 +176,6 @@ class _Loop:
             reason=self._present.reason,
             is_safe=self._present.state is State.SAFE,
         )
-
-
-def _groove_diameter(hold: FrictionHold, devices: Devices) -> float:
-    """Diameter of the circle under the pin. [m]"""
-    return hold.groove_diameter or devices.groove_diameter
 
 
 def require_holdable(hold: FrictionHold, devices: Devices) -> None:
@@ -302,7 +205,7 @@ def require_holdable(hold: FrictionHold, devices: Devices) -> None:
                 f"the controller may command {reached}, its offset included; {owner} allows {allowed}: design it with a"
                 " lower voltage"
             )
-    fastest = max(step.sliding_speed for step in hold.speeds) / (pi * _groove_diameter(hold, devices))
+    fastest = max(step.sliding_speed for step in hold.speeds) / (pi * devices.groove_diameter)
     if fastest > devices.motor.rotation_speed_maximum * (1 + 1e-9):
         most_turns = format_si(devices.motor.rotation_speed_maximum, "1/s")
         raise InvalidInput(

@@ -55,8 +55,6 @@ class FrictionHold:
         Part of each interval, at its end, whose mean is the measured friction.
     sample_rate : float
         Of the acquisition. [Hz]
-    groove_diameter : float or None
-        Of the circle under the pin; None for that of the rig. [m]
 
     Raises
     ------
@@ -74,7 +72,6 @@ class FrictionHold:
     offset_ratio: float = 0.5
     averaging: float = 1.0
     sample_rate: float = 2000.0
-    groove_diameter: float | None = None
 
     def __post_init__(self) -> None:
         require_positive(frequency=self.frequency, duration=self.duration, sample_rate=self.sample_rate)

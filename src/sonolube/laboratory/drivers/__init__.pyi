@@ -1,4 +1,4 @@
-from .daqmx_acquisition import AnalogueInput as AnalogueInput, DaqmxAcquisition as DaqmxAcquisition
+from .daqmx_acquisition import DaqmxAcquisition as DaqmxAcquisition
 from .daqmx_guard import DaqmxGuard as DaqmxGuard
 from .daqmx_output import DaqmxDrive as DaqmxDrive, DaqmxMotor as DaqmxMotor
 from .device_map import (
@@ -16,11 +16,10 @@ from .entry import (
     MotorEntry as MotorEntry,
 )
 from .function_generator import FunctionGenerator as FunctionGenerator
-from .line_motor import Exchange as Exchange, LineMotor as LineMotor, LineProtocol as LineProtocol
+from .line_motor import LineMotor as LineMotor
 from .output_limits import DriveLimits as DriveLimits
 from .readiness import first_readings as first_readings, missing_parts as missing_parts, unfulfilled as unfulfilled
-from .scpi_query import QueriedChannel as QueriedChannel, ScpiQueries as ScpiQueries
-from .scpi_replies import ErrorQueue as ErrorQueue, Reply as Reply
-from .scpi_source import ScpiSource as ScpiSource, SourceCommands as SourceCommands
+from .scpi_query import ScpiQueries as ScpiQueries
+from .scpi_source import ScpiSource as ScpiSource
 from .sensor_scale import LinearScale as LinearScale, SensorScale as SensorScale, TabulatedScale as TabulatedScale
 from .visa_connection import VisaConnection as VisaConnection

@@ -2,18 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from math import ceil
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 import numpy as np
+from pydantic import Field, model_validator
 
 from sonolube.errors import UnknownName
-from sonolube.laboratory.block import Block, Channel, quantity_of
-from sonolube.laboratory.devices import DeviceError
-from sonolube.laboratory.drivers.daqmx_library import daqmx_errors, daqmx_library, require_device
-from sonolube.laboratory.drivers.sensor_scale import SensorScale
+from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.devices import Acquisition, DeviceError
+from sonolube.laboratory.drivers.daqmx_library import daqmx_errors, daqmx_resource, library_of
+from sonolube.laboratory.drivers.entry import AcquisitionEntry, ChannelEntry, Range, Rate, si_gain
+from sonolube.laboratory.drivers.sensor_scale import LinearScale, SensorScale, tabulated_scale
 from sonolube.text.units import format_si
 
 BUFFER_DURATION: Final = 4.0
@@ -28,55 +29,139 @@ _MIN_BUFFER: Final = 1000  # samples
 _GRACE: Final = 1.0  # s, beyond twice the time of the samples
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class AnalogueInput:
-    """Input with its sensor.
+class AnalogueInputEntry(ChannelEntry):
+    """Input and its sensor, by gain and offset or by a table.
 
     Parameters
     ----------
     name : str
-        Of the channel, as protocols call it.
-    terminal : str
-        Such as Dev1/ai0.
-    voltage_range : float
-        Magnitude of the voltage that the input takes, in V.
-    scale : SensorScale
-        Voltage to quantity.
+    quantity, unit, limit : str or None
+        As those of every channel.
+    input : str
+        Such as ai0.
+    input_range : float
+        Magnitude of the voltage, in V.
     wiring : str
-        Key of `WIRINGS`.
-    quantity : str
-        That of the name by default.
-    free_unit : str
-        SI unit of a quantity that is not in the vocabulary.
-    limit : float
-        Greatest magnitude that the rig stands, in SI.
-    sample_rate : float or None
-        Of inputs with a clock of their own. [Hz]
+    gain : str or None
+        Quantity per voltage, such as 20 N/V.
+    offset : str or None
+        Value at 0 V.
+    calibration : str or None
+        File beside the map.
     """
 
-    name: str
-    terminal: str
-    voltage_range: float
-    scale: SensorScale
-    wiring: str = "default"
-    quantity: str = ""
-    free_unit: str = ""
-    limit: float = np.inf
-    sample_rate: float | None = None
+    input: Annotated[str, Field(pattern=r"^ai\d+$")]
+    input_range: Range = 10.0
+    wiring: Literal["default", "differential", "referenced", "non_referenced"] = "default"
+    gain: str | None = None
+    offset: str | None = None
+    calibration: Annotated[str, Field(min_length=1, max_length=200)] | None = None
+
+    @model_validator(mode="after")
+    def _require_scale(self) -> Self:
+        if (self.gain is None) == (self.calibration is None):
+            raise ValueError("needs either gain or calibration")
+        if self.calibration is not None and self.offset is not None:
+            raise ValueError("offset belongs to gain; a calibration has its own")
+        if self.gain is not None:
+            si_gain(self.gain, self.offset, unit=self.si_unit)
+        return self
+
+    def scale(self, files: Mapping[str, str]) -> SensorScale:
+        """Scale of the sensor, by the texts of calibrations."""
+        if self.calibration is None:
+            gain, offset = si_gain(self.gain or "", self.offset, unit=self.si_unit)
+            return LinearScale(gain=gain, offset=offset)
+        return tabulated_scale(files[self.calibration], quantity=self.kind, unit=self.si_unit)
+
+    def ranged(self, scale: SensorScale, *, sample_rate: float | None) -> Channel:
+        """Channel with the range of sensor and input."""
+        lowest, highest = scale.reach(self.input_range)
+        return self.channel(lowest=lowest, highest=highest, sample_rate=sample_rate)
+
+
+class DaqmxAcquisitionEntry(AcquisitionEntry):
+    """Analogue inputs of a device.
+
+    Parameters
+    ----------
+    driver : str
+    device : str
+        As NI-DAQmx calls it, such as Dev1.
+    description : str
+        Model and serial number.
+    sample_rate_maximum : float
+        Of all channels together, in Hz.
+    sample_rate : float or None
+        Of each channel, below `acquisitions`. [Hz]
+    channels : tuple of AnalogueInputEntry
+    """
+
+    extras: ClassVar[tuple[str, ...]] = ("daqmx",)
+
+    driver: Literal["daqmx"]
+    device: Annotated[str, Field(pattern=r"^[\w-]+$")]
+    sample_rate_maximum: Rate
+    channels: Annotated[tuple[AnalogueInputEntry, ...], Field(strict=False, min_length=1, max_length=64)]
+
+    @model_validator(mode="after")
+    def _require_different(self) -> Self:
+        told = [channel.input for channel in self.channels]
+        twice = sorted({each for each in told if told.count(each) > 1})
+        if twice:
+            raise ValueError(f"input {twice[0]} stands twice among the channels")
+        if self.sample_rate is not None and self.sample_rate * len(self.channels) > self.sample_rate_maximum:
+            most = format_si(self.sample_rate_maximum / len(self.channels), "Hz")
+            raise ValueError(f"sample_rate is at most {most} with {len(self.channels)} channels")
+        return self
 
     @property
-    def channel(self) -> Channel:
-        """Channel with the range of sensor and input."""
-        lowest, highest = self.scale.reach(self.voltage_range)
-        return Channel(
-            name=self.name,
-            quantity=self.quantity or quantity_of(self.name),
-            lowest=lowest,
-            highest=highest,
-            free_unit=self.free_unit,
-            limit=self.limit,
-            sample_rate=self.sample_rate,
+    def where(self) -> str:
+        """Device."""
+        return self.device
+
+    @property
+    def reserved_as(self) -> str:
+        """Canonical name of the device."""
+        return daqmx_resource(self.device)
+
+    @property
+    def channel_entries(self) -> Sequence[ChannelEntry]:
+        """Inputs."""
+        return self.channels
+
+    @property
+    def total_rate_maximum(self) -> float:
+        """Samples of all channels together: one converter serves them in turn. [Hz]"""
+        return self.sample_rate_maximum
+
+    @property
+    def described(self) -> str:
+        """Device, and inputs with their scales."""
+        channels = (
+            f"{each.name} {each.input} {each.calibration or each.gain} +-{format_si(each.input_range, 'V')}"
+            for each in self.channels
         )
+        return f"NI-DAQmx {self.device}: {'; '.join(channels)}"
+
+    @property
+    def files_beside(self) -> Mapping[str, str]:
+        """Calibrations by their keys; channels count from 1."""
+        return {
+            f"channels[{number}].calibration": each.calibration
+            for number, each in enumerate(self.channels, start=1)
+            if each.calibration is not None
+        }
+
+    def check_file(self, key: str, text: str) -> None:
+        """Raise InvalidInput where the text of a calibration is no table of its channel."""
+        number = int(key.partition("[")[2].partition("]")[0])
+        channel = self.channels[number - 1]
+        channel.scale({channel.calibration or "": text})
+
+    def new_device(self, files: Mapping[str, str]) -> Acquisition:
+        """Inputs, not connected."""
+        return DaqmxAcquisition(self, files)
 
 
 class DaqmxAcquisition:
@@ -84,35 +169,29 @@ class DaqmxAcquisition:
 
     Parameters
     ----------
-    device : str
-        As NI-DAQmx calls it, such as Dev1.
-    inputs : sequence of AnalogueInput
-    sample_rate_maximum : float
-        Of all channels together, since most devices have one converter for all; in Hz.
+    entry : DaqmxAcquisitionEntry
+    files : mapping of str to str
+        Texts of calibrations, by the names of their files.
     """
 
-    def __init__(self, *, device: str, inputs: Sequence[AnalogueInput], sample_rate_maximum: float) -> None:
-        self.name = f"NI-DAQmx {device}"
-        self.sample_rate_maximum = sample_rate_maximum
-        self._device = device
-        self._inputs = {each.name: each for each in inputs}
+    def __init__(self, entry: DaqmxAcquisitionEntry, files: Mapping[str, str]) -> None:
+        self.name = f"NI-DAQmx {entry.device}"
+        self._entry = entry
+        self._inputs = {each.name: each for each in entry.channels}
+        self._scale_of = {each.name: each.scale(files) for each in entry.channels}
+        self.channels: Mapping[str, Channel] = {
+            each.name: each.ranged(self._scale_of[each.name], sample_rate=entry.sample_rate) for each in entry.channels
+        }
         self._library: Any = None
         self._task: Any = None
         self._scales: tuple[SensorScale, ...] = ()
         self._sample_rate = 0.0
         self._most = 0  # samples of one call of the driver
 
-    @property
-    def channels(self) -> Mapping[str, Channel]:
-        """Channels that can be recorded, by name."""
-        return {name: each.channel for name, each in self._inputs.items()}
-
     def connect(self) -> None:
         """Find driver and device."""
         if self._library is None:
-            library = daqmx_library()
-            require_device(library, self._device, name=self.name)
-            self._library = library
+            self._library = library_of(self._entry.device, name=self.name)
 
     def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
         """Start to sample from sample 0 on, and return the sample rate of the device. [Hz]"""
@@ -129,7 +208,7 @@ class DaqmxAcquisition:
         except BaseException:
             self.stop()
             raise
-        self._scales = tuple(each.scale for each in inputs)
+        self._scales = tuple(self._scale_of[each.name] for each in inputs)
         return self._sample_rate
 
     def read(self, samples: int) -> Block:
@@ -160,7 +239,7 @@ class DaqmxAcquisition:
         self.stop()
         self._library = None
 
-    def _chosen(self, channels: Sequence[str], sample_rate: float) -> list[AnalogueInput]:
+    def _chosen(self, channels: Sequence[str], sample_rate: float) -> list[AnalogueInputEntry]:
         """Inputs of channels, which the converter can sample at a rate."""
         if not channels or len(set(channels)) < len(channels):
             raise DeviceError(
@@ -170,21 +249,22 @@ class DaqmxAcquisition:
             if name not in self._inputs:
                 unknown = UnknownName.among(self._inputs, kind="channel", name=name)
                 raise DeviceError(f"{self.name}: {unknown}")
-        if not 0 < sample_rate * len(channels) <= self.sample_rate_maximum * (1 + 1e-9):
-            most = format_si(self.sample_rate_maximum / len(channels), "Hz")
+        in_all = self._entry.sample_rate_maximum
+        if not 0 < sample_rate * len(channels) <= in_all * (1 + 1e-9):
+            most = format_si(in_all / len(channels), "Hz")
             wanted = format_si(sample_rate, "Hz")
             raise DeviceError(f"{self.name}: {wanted} refused; it samples {len(channels)} channels at up to {most}")
         return [self._inputs[name] for name in channels]
 
-    def _configured(self, inputs: Sequence[AnalogueInput], sample_rate: float) -> float:
+    def _configured(self, inputs: Sequence[AnalogueInputEntry], sample_rate: float) -> float:
         """Rate of the device after the task was given its channels, clock and buffer. [Hz]"""
         constants, task = self._library.constants, self._task
         for each in inputs:
             task.ai_channels.add_ai_voltage_chan(
-                each.terminal,
+                f"{self._entry.device}/{each.input}",
                 terminal_config=constants.TerminalConfiguration[WIRINGS[each.wiring]],
-                min_val=-each.voltage_range,
-                max_val=each.voltage_range,
+                min_val=-each.input_range,
+                max_val=each.input_range,
             )
         buffer = max(ceil(BUFFER_DURATION * sample_rate), _MIN_BUFFER)
         continuous = constants.AcquisitionType.CONTINUOUS

@@ -52,13 +52,15 @@ def daqmx_errors(device: str) -> Iterator[None]:
         raise DeviceError(f"{device}: {first_line(failure)}") from None
 
 
-def require_device(library: Any, device: str, *, name: str) -> None:
-    """Raise where the driver or a device is missing."""
+def library_of(device: str, *, name: str) -> Any:
+    """Python package of NI-DAQmx; raises where the driver or a device is missing."""
+    library = daqmx_library()
     with daqmx_errors(name):
         present = list(library.system.System.local().devices.device_names)
     if device not in present:
         known = ", ".join(present) or "none"
         raise DeviceError(f"{name}: NI-DAQmx knows no device {device!r}, but {known}: plug it in, or correct the map")
+    return library
 
 
 def first_line(failure: BaseException) -> str:
@@ -78,3 +80,8 @@ def _device_error(device: str, code: int, message: str) -> DeviceError:
         return DeviceLost(f"{device}: does not answer any more ({number}): look at its cable and power")
     line = (message.strip().splitlines() or ["no description"])[0][:200]
     return DeviceError(f"{device}: {line} ({number})")
+
+
+def daqmx_resource(terminal: str) -> str:
+    """Canonical name of a device of NI-DAQmx, by which a run reserves it."""
+    return f"NI-DAQmx {terminal.partition('/')[0]}".lower()

@@ -1,17 +1,17 @@
 """Analogue outputs by NI-DAQmx: a drive source from a repeated buffer, and a motor set by a steady voltage."""
 
-from collections.abc import Mapping
 from contextlib import suppress
 from fractions import Fraction
 from math import ceil
-from types import MappingProxyType
-from typing import Any, Final
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from pydantic import Field, field_validator
 
-from sonolube.laboratory.devices import DeviceError, DriveSetting
-from sonolube.laboratory.drivers.daqmx_library import daqmx_errors, daqmx_library, require_device
+from sonolube.facts.protocol.quantity_text import SiText, Table
+from sonolube.laboratory.devices import DeviceError, DriveSetting, DriveSource, Motor
+from sonolube.laboratory.drivers.daqmx_library import daqmx_errors, daqmx_resource, library_of
+from sonolube.laboratory.drivers.entry import DriveEntry, MotorEntry, Rate
 from sonolube.laboratory.drivers.output_limits import DriveLimits, require_speed
 from sonolube.text.units import format_si
 
@@ -22,18 +22,9 @@ _LONGEST_BUFFER: Final = 100_000  # samples
 _SHORTEST_BUFFER: Final = 1000  # samples, so that the driver refills it seldom
 _FREQUENCY_ERROR: Final = 1e-5  # a fifth of that of the clocks of such devices
 
-_SHAPES: Final[Mapping[str, Any]] = MappingProxyType(
-    {  # of a phase in periods, between -1 and 1
-        "sine": lambda phase: np.sin(2 * np.pi * phase),
-        "square": lambda phase: np.where(phase % 1 < 0.5, 1.0, -1.0),
-        "triangle": lambda phase: 1 - 4 * np.abs((phase + 0.25) % 1 - 0.5),
-        "sawtooth": lambda phase: 2 * ((phase + 0.5) % 1) - 1,
-    }
-)
-
 
 class DaqmxOutput:
-    """One analogue output.
+    """One analogue output, at 0 V while it is off.
 
     Parameters
     ----------
@@ -50,25 +41,28 @@ class DaqmxOutput:
         self._task: Any = None
         self._is_halted = False
 
-    @property
-    def is_open(self) -> bool:
-        """Whether device and driver were found."""
-        return self._library is not None
-
-    def open(self) -> None:
-        """Find driver and device, and give 0 V."""
+    def connect(self) -> None:
+        """Find driver and device, and set the output to 0 V."""
         if self._library is not None:
             return
-        library = daqmx_library()
-        require_device(library, self._terminal.partition("/")[0], name=self.name)
-        self._library = library
+        self._library = library_of(self._terminal.partition("/")[0], name=self.name)
         try:
-            self.hold(0.0)
+            self.off()
         except BaseException:
-            self.close()
+            self._forget()
             raise
 
-    def hold(self, voltage: float) -> None:
+    def off(self) -> None:
+        """Set the output to 0 V."""
+        if self._library is not None:
+            self._hold(0.0)
+
+    def _require_connected(self, *, before: str) -> None:
+        """Raise DeviceError where the device is not connected, before something such as driving."""
+        if self._library is None:
+            raise DeviceError(f"{self.name}: connect it before {before}")
+
+    def _hold(self, voltage: float) -> None:
         """Set a steady voltage. [V]"""
         self._release()
         with daqmx_errors(self.name), self._library.Task() as task:
@@ -89,9 +83,9 @@ class DaqmxOutput:
             with suppress(DeviceError), daqmx_errors(self.name):
                 task.control(self._library.constants.TaskMode.TASK_ABORT)
                 task.close()
-        self.hold(0.0)
+        self._hold(0.0)
 
-    def repeat(self, setting: DriveSetting, *, amplitude: float, offset: float, sample_rate: float) -> None:
+    def _repeat(self, setting: DriveSetting, *, amplitude: float, offset: float, sample_rate: float) -> None:
         """Generate a waveform continuously; amplitude peak to peak and offset in V, rate of the output in Hz."""
         self._release()
         continuous = self._library.constants.AcquisitionType.CONTINUOUS
@@ -101,7 +95,7 @@ class DaqmxOutput:
             task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=_SHORTEST_BUFFER)
             rate = float(task.timing.samp_clk_rate)
             periods, samples = whole_periods(frequency=setting.frequency, sample_rate=rate, device=self.name)
-            volts = offset + amplitude / 2 * waveform_samples(setting.waveform, periods=periods, samples=samples)
+            volts = offset + amplitude / 2 * setting.wave(np.arange(samples) * periods % samples / samples)
             task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=samples)
             task.write(volts, auto_start=False)
             if self._is_halted:
@@ -109,7 +103,13 @@ class DaqmxOutput:
             task.start()
 
     def close(self) -> None:
-        """Release the device."""
+        """Set the output to 0 V and release the device."""
+        with suppress(DeviceError):
+            self.off()
+        self._forget()
+
+    def _forget(self) -> None:
+        """Release task and device."""
         self._release()
         self._library = None
 
@@ -125,7 +125,7 @@ class DaqmxOutput:
                 task.close()
 
 
-class DaqmxDrive:
+class DaqmxDrive(DaqmxOutput):
     """Source of the drive voltage: an analogue output with an amplifier behind it.
 
     Parameters
@@ -138,47 +138,26 @@ class DaqmxDrive:
     """
 
     def __init__(self, *, terminal: str, sample_rate: float, limits: DriveLimits) -> None:
-        self._output = DaqmxOutput(terminal=terminal, voltage_range=limits.output_voltage)
-        self.name = self._output.name
+        super().__init__(terminal=terminal, voltage_range=limits.output_voltage)
         self.voltage_maximum = limits.voltage_maximum
         self._limits, self._sample_rate = limits, sample_rate
-
-    def connect(self) -> None:
-        """Find the device, and set the output to 0 V."""
-        self._output.open()
 
     def drive(self, setting: DriveSetting) -> None:
         """Set the output, which rests for some ms between two settings."""
         amplitude, offset = self._limits.output_of(setting, device=self.name)
-        if not self._output.is_open:
-            raise DeviceError(f"{self.name}: connect it before driving")
+        self._require_connected(before="driving")
         if setting.voltage_peak_to_peak == 0:
             self.off()
         else:
             try:
-                self._output.repeat(setting, amplitude=amplitude, offset=offset, sample_rate=self._sample_rate)
+                self._repeat(setting, amplitude=amplitude, offset=offset, sample_rate=self._sample_rate)
             except DeviceError:
                 with suppress(DeviceError):
                     self.off()
                 raise
 
-    def off(self) -> None:
-        """Set the output to 0 V."""
-        if self._output.is_open:
-            self._output.hold(0.0)
 
-    def halt(self) -> None:
-        """Set the output to 0 V while a call hangs."""
-        self._output.halt()
-
-    def close(self) -> None:
-        """Set the output to 0 V and release the device."""
-        with suppress(DeviceError):
-            self.off()
-        self._output.close()
-
-
-class DaqmxMotor:
+class DaqmxMotor(DaqmxOutput):
     """Motor whose controller takes its speed as a voltage.
 
     Parameters
@@ -192,37 +171,16 @@ class DaqmxMotor:
     """
 
     def __init__(self, *, terminal: str, rotation_speed_maximum: float, voltage_at_maximum: float) -> None:
-        self._output = DaqmxOutput(terminal=terminal, voltage_range=abs(voltage_at_maximum))
-        self.name = self._output.name
+        super().__init__(terminal=terminal, voltage_range=abs(voltage_at_maximum))
         self.rotation_speed_maximum = rotation_speed_maximum
         self._voltage_at_maximum = voltage_at_maximum
-
-    def connect(self) -> None:
-        """Find the device, and let the motor rest."""
-        self._output.open()
 
     def turn(self, rotation_speed: float) -> None:
         """Set the speed of the disc, 0 to stop. [1/s]"""
         require_speed(rotation_speed=rotation_speed, highest=self.rotation_speed_maximum, device=self.name)
-        if not self._output.is_open:
-            raise DeviceError(f"{self.name}: connect it before turning")
+        self._require_connected(before="turning")
         share = min(rotation_speed / self.rotation_speed_maximum, 1.0)
-        self._output.hold(share * self._voltage_at_maximum)
-
-    def off(self) -> None:
-        """Set the output to 0 V."""
-        if self._output.is_open:
-            self._output.hold(0.0)
-
-    def halt(self) -> None:
-        """Set the output to 0 V while a call hangs."""
-        self._output.halt()
-
-    def close(self) -> None:
-        """Set the output to 0 V and release the device."""
-        with suppress(DeviceError):
-            self.off()
-        self._output.close()
+        self._hold(share * self._voltage_at_maximum)
 
 
 def whole_periods(*, frequency: float, sample_rate: float, device: str) -> tuple[int, int]:
@@ -238,7 +196,85 @@ def whole_periods(*, frequency: float, sample_rate: float, device: str) -> tuple
     return share.numerator * times, share.denominator * times
 
 
-def waveform_samples(waveform: str, *, periods: int, samples: int) -> NDArray[np.float64]:
-    """Samples of whole periods of a waveform between -1 and 1; shape (samples,)."""
-    shape = _SHAPES[waveform](np.arange(samples) * periods % samples / samples)
-    return np.asarray(shape, dtype=np.float64)
+class DaqmxOutputEntry(Table):
+    """Keys of every output."""
+
+    extras: ClassVar[tuple[str, ...]] = ("daqmx",)
+
+    output: Annotated[str, Field(pattern=r"^[\w-]+/ao\d+$")]
+
+    @property
+    def where(self) -> str:
+        """Terminal."""
+        return self.output
+
+    @property
+    def reserved_as(self) -> str:
+        """Canonical name of the device."""
+        return daqmx_resource(self.output)
+
+    @property
+    def guarded_output(self) -> str:
+        """Terminal."""
+        return self.output
+
+
+class DaqmxDriveEntry(DaqmxOutputEntry, DriveEntry):
+    """Analogue output as source of the drive; keys as those of a generator.
+
+    Parameters
+    ----------
+    driver : str
+    output : str
+        Such as Dev1/ao0.
+    sample_rate : float
+        Of the output. [Hz]
+    """
+
+    driver: Literal["daqmx"]
+    sample_rate: Rate
+
+    @property
+    def highest_frequency(self) -> float:
+        """That the sample rate of the output allows. [Hz]"""
+        return min(self.frequency_maximum, self.sample_rate / SAMPLES_PER_PERIOD)
+
+    def new_device(self) -> DriveSource:
+        """Source, not connected."""
+        return DaqmxDrive(terminal=self.output, sample_rate=self.sample_rate, limits=self.limits)
+
+
+class DaqmxMotorEntry(DaqmxOutputEntry, MotorEntry):
+    """Motor whose controller takes its speed as a voltage.
+
+    Parameters
+    ----------
+    driver : str
+    output : str
+        Such as Dev1/ao1.
+    voltage_at_maximum : float
+        At which it turns at rotation_speed_maximum; 0 V is rest; in V.
+    description : str
+    rotation_speed_maximum : float
+        Of the disc, in 1/s.
+    groove_diameter : float
+        Of the circle under the pin. [m]
+    """
+
+    driver: Literal["daqmx"]
+    voltage_at_maximum: Annotated[float, SiText("V", -10.0, 10.0)]
+
+    @field_validator("voltage_at_maximum")
+    @classmethod
+    def _require_voltage(cls, voltage_at_maximum: float) -> float:
+        if abs(voltage_at_maximum) < 0.1:
+            raise ValueError("voltage_at_maximum must be at least 0.1 V, of either sign")
+        return voltage_at_maximum
+
+    def new_device(self) -> Motor:
+        """Motor, not connected."""
+        return DaqmxMotor(
+            terminal=self.output,
+            rotation_speed_maximum=self.rotation_speed_maximum,
+            voltage_at_maximum=self.voltage_at_maximum,
+        )

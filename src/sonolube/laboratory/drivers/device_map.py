@@ -10,7 +10,7 @@ from typing import Any, Final, TypeVar
 from pydantic import ValidationError
 
 from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError
-from sonolube.laboratory.devices import Acquisition, Devices, OutputGuard
+from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drivers.entry import AcquisitionEntry, DriverEntry
 from sonolube.laboratory.drivers.map_entries import MapEntries
 from sonolube.text.toml_text import text_of, toml_content
@@ -60,7 +60,7 @@ class DeviceMap:
         InvalidInput
             If a driver, such as one of another package, cannot make its device.
         """
-        entries = self.entries
+        entries, guard = self.entries, self.entries.guard
         return Devices(
             acquisition=_made(entries.acquisition, partial(entries.acquisition.new_device, self.files)),
             drive=_made(entries.drive, entries.drive.new_device),
@@ -68,19 +68,11 @@ class DeviceMap:
             description=MappingProxyType(self._description()),
             groove_diameter=entries.motor.groove_diameter,
             resources=tuple(dict.fromkeys(part.reserved_as for part in entries.parts if part.reserved_as)),
-            guard=self._guard(),
-            further=MappingProxyType(self._further()),
+            guard=None if guard is None else _made(guard, partial(guard.new_device, entries.guarded)),
+            further=MappingProxyType(
+                {name: _made(each, partial(each.new_device, self.files)) for name, each in entries.acquisitions.items()}
+            ),
         )
-
-    def _guard(self) -> OutputGuard | None:
-        """Watchdog and enable line."""
-        guard = self.entries.guard
-        return None if guard is None else _made(guard, partial(guard.new_device, self.entries.guarded))
-
-    def _further(self) -> dict[str, Acquisition]:
-        """Acquisitions with clocks of their own."""
-        further = self.entries.acquisitions.items()
-        return {name: _made(entry, partial(entry.new_device, self.files)) for name, entry in further}
 
     def _description(self) -> dict[str, str]:
         """Kind, serial number and settings of each device."""

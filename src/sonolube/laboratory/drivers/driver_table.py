@@ -23,7 +23,17 @@ from sonolube.variants import VariantTable
 GROUP: Final = "sonolube.drivers"
 """Group of entry points by which other packages add drivers."""
 
-_HERE: Final = "sonolube.laboratory.drivers"
+
+_OWN: Final = {  # drivers of sonolube, named as those of other packages
+    "acquisition.daqmx": "sonolube.laboratory.drivers.daqmx_acquisition:DaqmxAcquisitionEntry",
+    "acquisition.scpi_query": "sonolube.laboratory.drivers.scpi_query:ScpiQueryEntry",
+    "drive.scpi": "sonolube.laboratory.drivers.function_generator:GeneratorEntry",
+    "drive.daqmx": "sonolube.laboratory.drivers.daqmx_output:DaqmxDriveEntry",
+    "drive.scpi_commands": "sonolube.laboratory.drivers.scpi_source:ScpiSourceEntry",
+    "motor.line": "sonolube.laboratory.drivers.line_motor:LineMotorEntry",
+    "motor.daqmx": "sonolube.laboratory.drivers.daqmx_output:DaqmxMotorEntry",
+    "guard.daqmx": "sonolube.laboratory.drivers.daqmx_guard:DaqmxGuardEntry",
+}
 
 
 class DriverTable(VariantTable[type[DriverEntry]]):
@@ -35,12 +45,11 @@ class DriverTable(VariantTable[type[DriverEntry]]):
         Of the devices, such as drive.
     base : type
         From which their sections of a device map derive.
-    places : mapping of str to str
-        Module and attribute of those of sonolube.
     """
 
-    def __init__(self, role: str, base: type, places: Mapping[str, str]) -> None:
-        super().__init__(f"driver of the {role}", places)
+    def __init__(self, role: str, base: type) -> None:
+        own = ((*name.split("."), place) for name, place in _OWN.items())
+        super().__init__(f"driver of the {role}", {name: place for of, name, place in own if of == role})
         self.role, self._base = role, base
 
     def __getitem__(self, name: str) -> type[DriverEntry]:
@@ -95,29 +104,10 @@ class DriverTable(VariantTable[type[DriverEntry]]):
 
 DRIVERS: Final[Mapping[str, DriverTable]] = MappingProxyType(
     {
-        "acquisition": DriverTable(
-            "acquisition",
-            AcquisitionEntry,
-            {
-                "daqmx": f"{_HERE}.daqmx_entries:DaqmxAcquisitionEntry",
-                "scpi_query": f"{_HERE}.scpi_entries:ScpiQueryEntry",
-            },
-        ),
-        "drive": DriverTable(
-            "drive",
-            DriveEntry,
-            {
-                "scpi": f"{_HERE}.generator_entry:GeneratorEntry",
-                "daqmx": f"{_HERE}.daqmx_entries:DaqmxDriveEntry",
-                "scpi_commands": f"{_HERE}.scpi_entries:ScpiSourceEntry",
-            },
-        ),
-        "motor": DriverTable(
-            "motor",
-            MotorEntry,
-            {"line": f"{_HERE}.line_motor_entry:LineMotorEntry", "daqmx": f"{_HERE}.daqmx_entries:DaqmxMotorEntry"},
-        ),
-        "guard": DriverTable("guard", GuardEntry, {"daqmx": f"{_HERE}.daqmx_entries:DaqmxGuardEntry"}),
+        "acquisition": DriverTable("acquisition", AcquisitionEntry),
+        "drive": DriverTable("drive", DriveEntry),
+        "motor": DriverTable("motor", MotorEntry),
+        "guard": DriverTable("guard", GuardEntry),
     }
 )
 """Tables of drivers by the role of their devices."""

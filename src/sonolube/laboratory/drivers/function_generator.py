@@ -1,17 +1,16 @@
-"""Function generators of the Agilent and Keysight 33500 family by SCPI, with an amplifier behind their output."""
+"""Function generators of the Agilent and Keysight 33500 family by SCPI, and their section of a device map."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Final
+from typing import Final, Literal
 
-from sonolube.laboratory.devices import DeviceError, DriveSetting
+from sonolube.laboratory.devices import DeviceError, DriveSetting, DriveSource
+from sonolube.laboratory.drivers.entry import DriveEntry
 from sonolube.laboratory.drivers.output_limits import DriveLimits
 from sonolube.laboratory.drivers.switched_line import SwitchedLine
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
+from sonolube.laboratory.drivers.visa_entry import VisaEntry
 from sonolube.text.units import format_si
-
-OUTPUT_MAXIMUM: Final = 10.0
-"""Magnitude of the voltage into a high impedance. [V]"""
 
 MIN_AMPLITUDE: Final = 2e-3
 """Peak to peak, into a high impedance. [V]"""
@@ -29,8 +28,8 @@ _MAX_ERRORS: Final = 20  # that the queue of these generators holds
 _KNOWN: Final = ("335", "336")  # beginnings of models
 
 
-class FunctionGenerator:
-    """Source of the drive voltage.
+class FunctionGenerator(SwitchedLine):
+    """Source of the drive voltage: a generator with an amplifier behind its output.
 
     Parameters
     ----------
@@ -41,16 +40,11 @@ class FunctionGenerator:
     """
 
     def __init__(self, connection: VisaConnection, *, output: int, limits: DriveLimits) -> None:
-        self.name = connection.name
+        super().__init__(connection)
         self.voltage_maximum = limits.voltage_maximum
-        self._line, self._limits = connection, limits
+        self._limits = limits
         self._output, self._source = f"OUTP{output}", f"SOUR{output}"
-        self._switch = SwitchedLine(connection, set_up=self._set_up, switch_off=self._switch_off)
         self._set: dict[str, float | str] = {}  # as the generator has it since it was set up
-
-    def connect(self) -> None:
-        """Open the connection, and set the generator up with its output off."""
-        self._switch.connect()
 
     def drive(self, setting: DriveSetting) -> None:
         """Set the output; where the generator refuses, it ends off."""
@@ -61,24 +55,12 @@ class FunctionGenerator:
         if 0 < amplitude < MIN_AMPLITUDE:
             least = format_si(MIN_AMPLITUDE * self._limits.amplifier_gain, "V")
             raise DeviceError(f"{self.name}: less than {least} peak to peak at the actuator refused; it gives no less")
-        self._switch.require_connected(before="driving")
+        self._require_connected(before="driving")
         if amplitude == 0:
             self.off()
             return
-        with self._switch.setting():
+        with self._off_where_refused():
             self._send_setting(setting, amplitude=amplitude, offset=offset)
-
-    def off(self) -> None:
-        """Switch the output off, over a new connection where the present one is lost, and wait for the confirmation."""
-        self._switch.off()
-
-    def halt(self) -> None:
-        """Switch the output off over a further connection while a call hangs."""
-        self._switch.halt()
-
-    def close(self) -> None:
-        """Switch the output off and close the connection."""
-        self._switch.close()
 
     def _switch_off(self, line: VisaConnection) -> None:
         """Switch the output off and have that confirmed."""
@@ -141,3 +123,33 @@ class FunctionGenerator:
             complaints.append(answer[:80])
         if complaints:
             raise DeviceError(f"{self.name}: refuses {command!r}: {'; '.join(complaints[:3])}")
+
+
+class GeneratorEntry(VisaEntry, DriveEntry):
+    """Function generator of the Agilent and Keysight 33500 family.
+
+    Parameters
+    ----------
+    driver : str
+    resource : str
+        As VISA calls it.
+    visa_library : str
+    output : int
+    description, amplifier : str
+        Model and serial number.
+    amplifier_gain : float
+        []
+    voltage_maximum : float
+        Magnitude at the actuator, offset included. [V]
+    frequency_maximum : float
+        In Hz.
+    output_maximum : float
+        Magnitude that the amplifier takes, in V.
+    """
+
+    driver: Literal["scpi"]
+    output: Literal[1, 2] = 1
+
+    def new_device(self) -> DriveSource:
+        """Generator, not connected."""
+        return FunctionGenerator(self.line("function generator"), output=self.output, limits=self.limits)

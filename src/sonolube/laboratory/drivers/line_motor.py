@@ -1,121 +1,134 @@
 """Motor controllers that take lines of text, each with an answer; commands and answers stand in the device map."""
 
-from dataclasses import dataclass
-from typing import Final
+import re
+from typing import Annotated, Final, Literal, Self
 
-from sonolube.laboratory.devices import DeviceError
+from pydantic import AfterValidator, Field, model_validator
+
+from sonolube.facts.protocol.quantity_text import Table
+from sonolube.laboratory.devices import DeviceError, Motor
+from sonolube.laboratory.drivers.entry import MotorEntry, Speed
 from sonolube.laboratory.drivers.output_limits import require_speed
 from sonolube.laboratory.drivers.switched_line import SwitchedLine
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
+from sonolube.laboratory.drivers.visa_entry import VisaLineEntry
 from sonolube.text.units import format_si
 
 PLACEHOLDER: Final = "{speed}"
 """Text for which a command has the speed."""
 
+Line = Annotated[str, Field(min_length=1, max_length=80)]
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Exchange:
-    """A command and the answer that shows that it was taken.
+
+class ExchangeEntry(Table):
+    """A command and its answer.
 
     Parameters
     ----------
-    command : str
-    answer : str
+    command, answer : str
     """
 
-    command: str
-    answer: str
+    command: Line
+    answer: Line
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LineProtocol:
-    """Lines of text by which a controller is commanded.
+def _with_speed(text: str) -> str:
+    """Text with one place for the speed."""
+    if text.count(PLACEHOLDER) != 1 or re.search(r"[{}]", text.replace(PLACEHOLDER, "")):
+        raise ValueError(f"must hold {PLACEHOLDER} once, and no other braces")
+    return text
+
+
+class LineMotorEntry(VisaLineEntry, MotorEntry):
+    """Motor controller that takes lines of text.
 
     Parameters
     ----------
-    speed : Exchange
-        Sets the speed; `{speed}` stands for it.
-    stop : Exchange
-    at_connect : tuple of Exchange
-        Sent once, such as the choice of the control mode and the enabling.
-    query : Exchange or None
-        Asks for the set speed, with `{speed}` in the answer.
+    driver : str
+    resource : str
+        As VISA calls it, such as ASRL/dev/ttyUSB0::INSTR or ASRL3::INSTR.
+    visa_library : str
+    baud_rate : int or None
+        Of a serial port, 8 data bits without parity.
+    termination : str
     speed_unit : float
-        Speed of the disc for which 1 stands, gears included; in 1/s.
+        Speed of the disc for which 1 stands in commands, such as 1 rpm; in 1/s.
     decimals : int
-        Of the number.
+    speed_command, speed_answer : str
+        `{speed}` stands for the number.
+    stop_command, stop_answer : str
+    query, query_answer : str or None
+        Asks for the set speed.
+    at_connect : tuple of ExchangeEntry
+    description : str
+    rotation_speed_maximum : float
+        Of the disc, in 1/s.
+    groove_diameter : float
+        Of the circle under the pin. [m]
     """
 
-    speed: Exchange
-    stop: Exchange
-    speed_unit: float
-    at_connect: tuple[Exchange, ...] = ()
-    query: Exchange | None = None
-    decimals: int = 0
+    driver: Literal["line"]
+    termination: Literal["CR", "LF", "CRLF"] = "CR"
+    speed_unit: Speed
+    decimals: Annotated[int, Field(ge=0, le=6)] = 0
+    speed_command: Annotated[Line, AfterValidator(_with_speed)]
+    speed_answer: Line
+    stop_command: Line
+    stop_answer: Line
+    query: Line | None = None
+    query_answer: Annotated[Line, AfterValidator(_with_speed)] | None = None
+    at_connect: Annotated[tuple[ExchangeEntry, ...], Field(strict=False, max_length=20)] = ()
 
-    def number(self, rotation_speed: float) -> str:
-        """Text of a speed in 1/s."""
-        return f"{rotation_speed / self.speed_unit:.{self.decimals}f}"
+    @model_validator(mode="after")
+    def _require_pair(self) -> Self:
+        if (self.query is None) != (self.query_answer is None):
+            raise ValueError("query and query_answer belong together")
+        return self
+
+    def new_device(self) -> Motor:
+        """Motor, not connected."""
+        return LineMotor(self)
 
 
-class LineMotor:
+class LineMotor(SwitchedLine):
     """Motor with such a controller.
 
     Parameters
     ----------
-    connection : VisaConnection
-    protocol : LineProtocol
-    rotation_speed_maximum : float
-        Of the disc, in 1/s.
+    entry : LineMotorEntry
     """
 
-    def __init__(self, connection: VisaConnection, *, protocol: LineProtocol, rotation_speed_maximum: float) -> None:
-        self.name = connection.name
-        self.rotation_speed_maximum = rotation_speed_maximum
-        self._line, self._protocol = connection, protocol
-        self._switch = SwitchedLine(connection, set_up=self._set_up, switch_off=self._stop)
-
-    def connect(self) -> None:
-        """Open the connection, stop the motor, and send what the controller needs first."""
-        self._switch.connect()
+    def __init__(self, entry: LineMotorEntry) -> None:
+        super().__init__(entry.line("motor"))
+        self.rotation_speed_maximum = entry.rotation_speed_maximum
+        self._entry = entry
 
     def turn(self, rotation_speed: float) -> None:
         """Set the speed of the disc, 0 to stop; where the controller refuses, it is sent the stop command. [1/s]"""
         require_speed(rotation_speed=rotation_speed, highest=self.rotation_speed_maximum, device=self.name)
-        number = self._protocol.number(rotation_speed)
+        entry = self._entry
+        number = f"{rotation_speed / entry.speed_unit:.{entry.decimals}f}"
         if rotation_speed > 0 and float(number) == 0:
-            least = format_si(self._protocol.speed_unit * 10.0**-self._protocol.decimals, "1/s")
+            least = format_si(entry.speed_unit * 10.0**-entry.decimals, "1/s")
             raise DeviceError(f"{self.name}: {format_si(rotation_speed, '1/s')} refused; its smallest step is {least}")
-        self._switch.require_connected(before="turning")
+        self._require_connected(before="turning")
         if rotation_speed == 0:
             self.off()
             return
-        with self._switch.setting():
-            self._exchange(_filled(self._protocol.speed.command, number), _filled(self._protocol.speed.answer, number))
+        with self._off_where_refused():
+            self._exchange(_filled(entry.speed_command, number), _filled(entry.speed_answer, number))
             self._require_set(number)
-
-    def off(self) -> None:
-        """Stop, over a new connection where the present one is lost, and wait for the answer."""
-        self._switch.off()
-
-    def halt(self) -> None:
-        """Stop over a further connection while a call hangs; not every system opens a serial port twice."""
-        self._switch.halt()
-
-    def close(self) -> None:
-        """Stop and close the connection."""
-        self._switch.close()
 
     def _set_up(self) -> None:
         """Stop the motor, and send what the controller needs first."""
-        self._stop(self._line)
-        for exchange in self._protocol.at_connect:
+        self._switch_off(self._line)
+        for exchange in self._entry.at_connect:
             self._exchange(exchange.command, exchange.answer)
-        self._stop(self._line)
+        self._switch_off(self._line)
 
-    def _stop(self, line: VisaConnection) -> None:
+    def _switch_off(self, line: VisaConnection) -> None:
         """Stop and have that confirmed."""
-        line.ask_for(self._protocol.stop.command, self._protocol.stop.answer)
+        line.ask_for(self._entry.stop_command, self._entry.stop_answer)
 
     def _exchange(self, command: str, expected: str) -> None:
         """Send a command whose answer must be the expected one."""
@@ -125,19 +138,17 @@ class LineMotor:
 
     def _require_set(self, number: str) -> None:
         """Read the set speed back, where the controller has a query for it, and raise where it differs."""
-        query = self._protocol.query
-        if query is None:
+        query, expected = self._entry.query, self._entry.query_answer
+        if query is None or expected is None:
             return
-        answer = self._line.ask(query.command)
-        before, _, after = query.answer.partition(PLACEHOLDER)
+        answer = self._line.ask(query)
+        before, _, after = expected.partition(PLACEHOLDER)
         told = answer.removeprefix(before).removesuffix(after)
         try:
             difference = abs(float(told) - float(number))
         except ValueError:
-            raise DeviceError(
-                f"{self.name}: answers {answer[:80]!r} to {query.command!r}; expected {query.answer!r}"
-            ) from None
-        if not difference <= 0.5 * 10.0**-self._protocol.decimals:
+            raise DeviceError(f"{self.name}: answers {answer[:80]!r} to {query!r}; expected {expected!r}") from None
+        if not difference <= 0.5 * 10.0**-self._entry.decimals:
             raise DeviceError(f"{self.name}: was set to {number}, but answers {answer[:80]!r}")
 
 

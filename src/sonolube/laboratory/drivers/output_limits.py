@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 from typing import Final
 
-from sonolube.laboratory.devices import DeviceError, DriveSetting
+from sonolube.laboratory.devices import WAVEFORMS, DeviceError, DriveSetting
 from sonolube.text.units import format_si
 
-WAVEFORMS: Final = ("sine", "square", "triangle", "sawtooth")
 _ROUNDING: Final = 1 + 1e-9
 
 
@@ -56,7 +55,7 @@ class DriveLimits:
         """
         if setting.waveform not in WAVEFORMS:
             raise DeviceError(f"{device}: no waveform {setting.waveform!r}; it gives {', '.join(WAVEFORMS)}")
-        reached = setting.voltage_peak_to_peak / 2 + abs(setting.voltage_offset)
+        reached = setting.voltage_maximum
         if not 0 <= setting.voltage_peak_to_peak <= 2 * reached <= 2 * self.voltage_maximum * _ROUNDING:
             wanted, most = format_si(reached, "V"), format_si(self.voltage_maximum, "V")
             raise DeviceError(f"{device}: {wanted} at the actuator refused; it gives at most {most}")

@@ -12,7 +12,7 @@ from sonolube.laboratory.devices import DeviceError, Devices
 from sonolube.laboratory.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
 from sonolube.laboratory.drivers.device_map import DeviceMap, read_device_map
 from sonolube.laboratory.reservation import reserved
-from sonolube.laboratory.set_points import impossibilities
+from sonolube.laboratory.set_points import highest_of_steps, impossibilities
 from sonolube.text.units import format_si
 
 BLOCK_DURATION = 0.1
@@ -55,12 +55,8 @@ def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
     tuple of str
         All of them, each with its step.
     """
-    faults: dict[tuple[str, str], tuple[float, str]] = {}
-    for place, kind, value, text in _beyond(device_map, flattened(protocol)):
-        known = faults.get((place, kind))
-        if known is None or value > known[0]:
-            faults[place, kind] = (value, text)
-    return (*impossibilities(protocol, device_map.devices()), *(text for _, text in faults.values()))
+    beyond = highest_of_steps(_beyond(device_map, flattened(protocol)))
+    return (*impossibilities(protocol, device_map.devices()), *beyond)
 
 
 def _beyond(device_map: DeviceMap, points: Sequence[SetPoint]) -> Iterator[tuple[str, str, float, str]]:

@@ -1,4 +1,4 @@
-"""Canonical names of devices, by which a run reserves them: two ways to write one address have one name."""
+"""Canonical names of instruments, by which a run reserves them: two ways to write one address have one name."""
 
 import os
 import re
@@ -7,11 +7,6 @@ from typing import Final
 _SERIAL: Final = re.compile(r"ASRL(.*?)(::INSTR)?|(?:\\\\\.\\)?(COM\d+)", re.IGNORECASE)
 _PORT: Final = re.compile(r"(?:\\\\\.\\)?(?:COM)?(\d+)", re.IGNORECASE)
 _CLASSES: Final = ("instr", "socket", "raw")  # of resources
-
-
-def daqmx_resource(terminal: str) -> str:
-    """Name of a device of NI-DAQmx."""
-    return f"NI-DAQmx {terminal.partition('/')[0]}".lower()
 
 
 def visa_resource(resource: str) -> str:

@@ -2,38 +2,110 @@
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
-from typing import Final
+from typing import Annotated, Final, Literal, Self
 
 import numpy as np
+from pydantic import Field, model_validator
 
 from sonolube.errors import UnknownName
+from sonolube.facts.protocol.quantity_text import SiText
 from sonolube.laboratory.block import Block, Channel
-from sonolube.laboratory.devices import DeviceError, SamplesLost
-from sonolube.laboratory.drivers.scpi_replies import ErrorQueue, Reply, require_identity, send
-from sonolube.laboratory.drivers.visa_connection import VisaConnection
-from sonolube.text.units import format_si
+from sonolube.laboratory.devices import Acquisition, DeviceError, SamplesLost
+from sonolube.laboratory.drivers.entry import AcquisitionEntry, ChannelEntry
+from sonolube.laboratory.drivers.scpi_replies import ErrorEntry, ReplyEntry, ScpiEntry, require_identity, send
+from sonolube.text.units import format_si, to_si
 
 _LATE_PERIODS: Final = 1.0  # by which a query may begin late
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class QueriedChannel:
+class QueriedChannelEntry(ReplyEntry, ChannelEntry):
     """Channel read by a query.
 
     Parameters
     ----------
-    channel : Channel
-    reply : Reply
-    gain, offset : float
-        Of the number in the answer to the quantity, in SI.
+    name : str
+    quantity, unit, limit : str or None
+        As those of every channel.
+    query : str
+        Channels with the same query share one answer.
+    item : int
+        Place in the list between commas, from 1.
+    after : str
+        Word behind which the number stands, in place of item.
+    answer_unit : str or None
+        Unit of the number, such as degC; that of SI by default.
     """
 
-    channel: Channel
-    reply: Reply
-    gain: float = 1.0
-    offset: float = 0.0
+    answer_unit: Annotated[str, Field(max_length=40)] | None = None
+
+    @model_validator(mode="after")
+    def _require_convertible(self) -> Self:
+        self.conversion  # noqa: B018
+        return self
+
+    @cached_property
+    def conversion(self) -> tuple[float, float]:
+        """Gain and offset of the number in the answer to SI."""
+        if self.answer_unit is None:
+            return 1.0, 0.0
+        zero, one = (to_si(f"{n} {self.answer_unit}", unit=self.si_unit, name="answer_unit") for n in (0, 1))
+        return one - zero, zero
+
+    def value(self, answer: str, *, device: str) -> float:
+        """Value of the channel in SI by an answer to its query."""
+        gain, offset = self.conversion
+        return gain * self.number(answer, device=device) + offset
+
+
+class ScpiQueryEntry(ScpiEntry, AcquisitionEntry):
+    """Instrument that is asked for its readings in a steady period.
+
+    Parameters
+    ----------
+    driver : str
+    resource : str
+        As VISA calls it.
+    visa_library : str
+    baud_rate : int or None
+        Of a serial port.
+    termination : str
+    identity : str
+        Pattern of the answer to *IDN?, with * for any text.
+    setup : tuple of str
+        Sent once after connecting.
+    error : ErrorEntry or None
+    period : float
+        Time between two queries, longer than all of their answers take. [s]
+    channels : tuple of QueriedChannelEntry
+    description : str
+    """
+
+    driver: Literal["scpi_query"]
+    error: ErrorEntry | None = None
+    period: Annotated[float, SiText("s", 0.02, 3600.0)]
+    channels: Annotated[tuple[QueriedChannelEntry, ...], Field(strict=False, min_length=1, max_length=64)]
+
+    @model_validator(mode="after")
+    def _require_period(self) -> Self:
+        if self.sample_rate is not None:
+            raise ValueError("sample_rate: period tells it")
+        return self
+
+    @property
+    def own_rate(self) -> float:
+        """Queries a second. [Hz]"""
+        return 1 / self.period
+
+    @property
+    def channel_entries(self) -> Sequence[ChannelEntry]:
+        """Channels."""
+        return self.channels
+
+    def new_device(self, files: Mapping[str, str]) -> Acquisition:
+        """Instrument, not connected."""
+        return ScpiQueries(self)
 
 
 class ScpiQueries:
@@ -41,39 +113,18 @@ class ScpiQueries:
 
     Parameters
     ----------
-    connection : VisaConnection
-    identity : str
-        Pattern of the answer to ``*IDN?``.
-    setup : sequence of str
-        Sent once after connecting.
-    errors : ErrorQueue or None
-    period : float
-        [s]
-    channels : sequence of QueriedChannel
-        Those with one query share its answer.
+    entry : ScpiQueryEntry
     """
 
-    def __init__(
-        self,
-        connection: VisaConnection,
-        *,
-        identity: str,
-        setup: Sequence[str],
-        errors: ErrorQueue | None,
-        period: float,
-        channels: Sequence[QueriedChannel],
-    ) -> None:
-        self.name = connection.name
-        self._line, self._identity, self._setup, self._errors = connection, identity, tuple(setup), errors
-        self._period = period
-        self._known = {each.channel.name: each for each in channels}
-        self._chosen: tuple[QueriedChannel, ...] = ()
+    def __init__(self, entry: ScpiQueryEntry) -> None:
+        self._line, self._entry, self._period = entry.line("instrument"), entry, entry.period
+        self.name = self._line.name
+        self.channels: Mapping[str, Channel] = MappingProxyType(
+            {each.name: each.channel(sample_rate=entry.own_rate) for each in entry.channels}
+        )
+        self._known = {each.name: each for each in entry.channels}
+        self._chosen: tuple[QueriedChannelEntry, ...] = ()
         self._began, self._next = 0.0, 0
-
-    @property
-    def channels(self) -> Mapping[str, Channel]:
-        """Channels that can be recorded, by name."""
-        return MappingProxyType({name: each.channel for name, each in self._known.items()})
 
     def connect(self) -> None:
         """Open the connection and set the instrument up."""
@@ -81,11 +132,11 @@ class ScpiQueries:
             return
         self._line.open()
         try:
-            require_identity(self._line, self._identity)
-            if self._errors is not None:
-                self._errors.errors(self._line)  # of the last user
-            for command in self._setup:
-                send(self._line, command, self._errors)
+            require_identity(self._line, self._entry.identity)
+            if self._entry.error is not None:
+                self._entry.error.errors(self._line)  # of the last user
+            for command in self._entry.setup:
+                send(self._line, command, self._entry.error)
         except BaseException:
             self._line.close()
             raise
@@ -128,8 +179,5 @@ class ScpiQueries:
                 f"{self.name}: its answers take longer than the period of {format_si(self._period, 's')}; lengthen it"
             )
         self._next += 1
-        answers = {query: self._line.ask(query) for query in dict.fromkeys(each.reply.query for each in self._chosen)}
-        return [
-            each.gain * each.reply.number(answers[each.reply.query], device=self.name) + each.offset
-            for each in self._chosen
-        ]
+        answers = {query: self._line.ask(query) for query in dict.fromkeys(each.query for each in self._chosen)}
+        return [each.value(answers[each.query], device=self.name) for each in self._chosen]

@@ -1,142 +1,212 @@
 """Function generators by SCPI commands stated in a device map, with an amplifier behind their output."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Final
+import re
+from typing import Annotated, Final, Literal, Self
 
-from sonolube.laboratory.devices import DeviceError, DriveSetting
-from sonolube.laboratory.drivers.output_limits import DriveLimits
-from sonolube.laboratory.drivers.scpi_replies import ErrorQueue, Reply, require_identity, send
+from pydantic import AfterValidator, model_validator
+
+from sonolube.facts.protocol.quantity_text import SiText, Table
+from sonolube.laboratory.devices import DeviceError, DriveSetting, DriveSource
+from sonolube.laboratory.drivers.entry import DriveEntry, Line
+from sonolube.laboratory.drivers.scpi_replies import ErrorEntry, ReplyEntry, ScpiEntry, require_identity, send
 from sonolube.laboratory.drivers.switched_line import SwitchedLine
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
 from sonolube.text.units import format_si
 
-_DIFFERENCE: Final = {"frequency": (1e-4, 0.0), "amplitude": (2e-3, 1e-3), "offset": (2e-3, 1e-3)}
-"""Share, and absolute in V, by which a value that is read back may differ from the one that was set."""
-
-_UNITS: Final = {"frequency": "Hz", "amplitude": "V", "offset": "V"}
+_DIFFERENCE: Final = {"frequency": (1e-4, 0.0, "Hz"), "amplitude": (2e-3, 1e-3, "V"), "offset": (2e-3, 1e-3, "V")}
+"""Share, and absolute in a unit, by which a value that is read back may differ from the one that was set."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class SourceCommands:
-    """Commands of a generator, for one of its outputs; `{value}` stands for a number in Hz or V.
+def _with_value(text: str) -> str:
+    """Command with one place for a number."""
+    if text.count("{value}") != 1 or re.search(r"[{}]", text.replace("{value}", "")):
+        raise ValueError("must hold {value} once, and no other braces")
+    return text
+
+
+Setting = Annotated[Line, AfterValidator(_with_value)]
+
+
+class StateEntry(Table):
+    """Query of the state of an output.
 
     Parameters
     ----------
+    query, on, off : str
+        The query, and its answers up to a comma.
+    """
+
+    query: Line
+    on: Line
+    off: Line
+
+    @model_validator(mode="after")
+    def _require_different(self) -> Self:
+        if self.on == self.off:
+            raise ValueError("on and off must differ")
+        return self
+
+
+class ReadbackEntry(Table):
+    """Queries of what was set.
+
+    Parameters
+    ----------
+    frequency : ReplyEntry or None
+        [Hz]
+    amplitude, offset : ReplyEntry or None
+        In V.
+    """
+
+    frequency: ReplyEntry | None = None
+    amplitude: ReplyEntry | None = None
+    offset: ReplyEntry | None = None
+
+    @property
+    def replies(self) -> dict[str, ReplyEntry]:
+        """Queries that are stated, by the quantity that they read back."""
+        return {name: entry for name, entry in self if entry is not None}
+
+
+class WaveformEntry(Table):
+    """Commands by waveform.
+
+    Parameters
+    ----------
+    sine, square, triangle, sawtooth : str or None
+    """
+
+    sine: Line
+    square: Line | None = None
+    triangle: Line | None = None
+    sawtooth: Line | None = None
+
+
+class ScpiSourceEntry(ScpiEntry, DriveEntry):
+    """Function generator whose commands for one output stand here; `{value}` stands for a number in Hz or V.
+
+    Parameters
+    ----------
+    driver : str
+    resource : str
+        As VISA calls it.
+    visa_library : str
+    baud_rate : int or None
+        Of a serial port.
+    termination : str
     identity : str
-        Pattern of the answer to ``*IDN?``.
-    off, on : str
-        Switch the output.
-    state : str
-        Asks whether the output is on.
-    is_off, is_on : str
-        Answers to `state`, up to its first comma.
+        Pattern of the answer to *IDN?, with * for any text.
     setup : tuple of str
-        Sent once while the output is off; `{highest}` and `{lowest}` stand for the limits of the output, in V.
-    waveforms : mapping of str to str
-        Commands by waveform.
+        Sent once while the output is off: high impedance, peak-to-peak unit, no modulation, limits by {highest} and
+        {lowest}.
+    waveforms : WaveformEntry
     frequency : str
         Command with a number in Hz. [Hz]
     amplitude, offset : str
         Commands with a number in V; amplitude is peak to peak.
     amplitude_minimum : float
         Peak to peak, that the output gives, in V.
-    errors : ErrorQueue or None
-    readback : mapping of str to Reply
-        Of frequency, amplitude and offset.
+    on, off : str
+    state : StateEntry
+    error : ErrorEntry or None
+    readback : ReadbackEntry
+        Of frequency, amplitude and offset; all of them where there is no error queue.
+    description, amplifier : str
+        Model and serial number.
+    amplifier_gain : float
+        []
+    voltage_maximum : float
+        Magnitude at the actuator, offset included. [V]
+    frequency_maximum : float
+        In Hz.
+    output_maximum : float
+        Magnitude that the amplifier takes, in V.
     """
 
-    identity: str
-    off: str
-    on: str
-    state: str
-    is_off: str
-    is_on: str
-    setup: tuple[str, ...]
-    waveforms: Mapping[str, str]
-    frequency: str
-    amplitude: str
-    offset: str
-    amplitude_minimum: float
-    errors: ErrorQueue | None
-    readback: Mapping[str, Reply]
+    driver: Literal["scpi_commands"]
+    waveforms: WaveformEntry
+    frequency: Setting
+    amplitude: Setting
+    offset: Setting
+    amplitude_minimum: Annotated[float, SiText("V", 1e-6, 10.0)]
+    on: Line
+    off: Line
+    state: StateEntry
+    error: ErrorEntry | None = None
+    readback: ReadbackEntry = ReadbackEntry()
+
+    @model_validator(mode="after")
+    def _require_safe(self) -> Self:
+        if self.on == self.off:
+            raise ValueError("on and off must differ")
+        if any(self.on in command for command in self.setup):
+            raise ValueError(f"setup must not hold {self.on!r}, which switches the output on")
+        if self.error is None and len(self.readback.replies) < 3:
+            raise ValueError("without an error queue, readback needs frequency, amplitude and offset")
+        return self
+
+    def new_device(self) -> DriveSource:
+        """Generator, not connected."""
+        return ScpiSource(self)
 
 
-class ScpiSource:
+class ScpiSource(SwitchedLine):
     """Source of the drive voltage.
 
     Parameters
     ----------
-    connection : VisaConnection
-    commands : SourceCommands
-    limits : DriveLimits
+    entry : ScpiSourceEntry
     """
 
-    def __init__(self, connection: VisaConnection, *, commands: SourceCommands, limits: DriveLimits) -> None:
-        self.name = connection.name
-        self.voltage_maximum = limits.voltage_maximum
-        self._line, self._commands, self._limits = connection, commands, limits
-        self._switch = SwitchedLine(connection, set_up=self._set_up, switch_off=self._switch_off)
+    def __init__(self, entry: ScpiSourceEntry) -> None:
+        super().__init__(entry.line("function generator"))
+        self._entry, self._limits = entry, entry.limits
+        self.voltage_maximum = self._limits.voltage_maximum
+        self._waveforms: dict[str, str] = entry.waveforms.model_dump(exclude_none=True)
         self._set: dict[str, float | str] = {}  # as the generator has it since it was set up
         self._is_on = False
-
-    def connect(self) -> None:
-        """Open the connection, and set the generator up with its output off."""
-        self._switch.connect()
 
     def drive(self, setting: DriveSetting) -> None:
         """Set the output; where the generator refuses or has another value, it ends off."""
         amplitude, offset = self._limits.output_of(setting, device=self.name)
-        if setting.waveform not in self._commands.waveforms:
-            known = ", ".join(self._commands.waveforms)
+        if setting.waveform not in self._waveforms:
+            known = ", ".join(self._waveforms)
             raise DeviceError(f"{self.name}: no command for the waveform {setting.waveform}; it has {known}")
-        if 0 < amplitude < self._commands.amplitude_minimum:
-            least = format_si(self._commands.amplitude_minimum * self._limits.amplifier_gain, "V")
+        if 0 < amplitude < self._entry.amplitude_minimum:
+            least = format_si(self._entry.amplitude_minimum * self._limits.amplifier_gain, "V")
             raise DeviceError(f"{self.name}: less than {least} peak to peak at the actuator refused; it gives no less")
-        self._switch.require_connected(before="driving")
+        self._require_connected(before="driving")
         if amplitude == 0:
             self.off()
             return
-        with self._switch.setting():
+        with self._off_where_refused():
             self._send_setting(setting, amplitude=amplitude, offset=offset)
-
-    def off(self) -> None:
-        """Switch the output off, over a new connection where the present one is lost, and wait for the confirmation."""
-        self._switch.off()
-
-    def halt(self) -> None:
-        """Switch the output off over a further connection while a call hangs."""
-        self._switch.halt()
-
-    def close(self) -> None:
-        """Switch the output off and close the connection."""
-        self._switch.close()
 
     def _switch_off(self, line: VisaConnection) -> None:
         """Switch the output off and have that confirmed, by no answer to an earlier command."""
         self._is_on = False
-        line.write(self._commands.off)
-        require_identity(line, self._commands.identity)
-        self._require_state(line, self._commands.is_off)
+        line.write(self._entry.off)
+        require_identity(line, self._entry.identity)
+        self._require_state(line, self._entry.state.off)
 
     def _require_state(self, line: VisaConnection, expected: str) -> None:
         """Ask whether the output is on or off."""
-        line.ask_until(self._commands.state, lambda heard: heard.partition(",")[0] == expected, expected=expected)
+        line.ask_until(self._entry.state.query, lambda heard: heard.partition(",")[0] == expected, expected=expected)
 
     def _set_up(self) -> None:
         """Switch the output off, and send what the generator needs before it is set, with the smallest signal last."""
-        commands = self._commands
+        entry = self._entry
         self._set.clear()
         self._switch_off(self._line)
-        if commands.errors is not None:
-            commands.errors.errors(self._line)  # of the last user
+        if entry.error is not None:
+            entry.error.errors(self._line)  # of the last user
         limit = self._limits.voltage_maximum / self._limits.amplifier_gain
-        for command in commands.setup:
+        for command in entry.setup:
             filled = command.replace("{highest}", f"{limit:.9g}").replace("{lowest}", f"{-limit:.9g}")
-            send(self._line, filled, commands.errors)
+            send(self._line, filled, entry.error)
         self._send_value("offset", 0.0)
-        self._send_value("amplitude", commands.amplitude_minimum)
-        self._require_state(self._line, commands.is_off)
+        self._send_value("amplitude", entry.amplitude_minimum)
+        self._require_state(self._line, entry.state.off)
 
     def _send_setting(self, setting: DriveSetting, *, amplitude: float, offset: float) -> None:
         """Send what has changed, in an order in which no state between exceeds a limit, and switch on last."""
@@ -144,28 +214,28 @@ class ScpiSource:
         if amplitude > float(self._set["amplitude"]):
             voltages.reverse()
         if self._set.get("waveform") != setting.waveform:
-            send(self._line, self._commands.waveforms[setting.waveform], self._commands.errors)
+            send(self._line, self._waveforms[setting.waveform], self._entry.error)
             self._set["waveform"] = setting.waveform
         for name, value in [("frequency", setting.frequency), *voltages]:
             if self._set.get(name) != value:
                 self._send_value(name, value)
-        for name, reply in self._commands.readback.items():
+        for name, reply in self._entry.readback.replies.items():
             self._require_value(name, reply)
         if not self._is_on:
-            send(self._line, self._commands.on, self._commands.errors)
-            self._require_state(self._line, self._commands.is_on)
+            send(self._line, self._entry.on, self._entry.error)
+            self._require_state(self._line, self._entry.state.on)
             self._is_on = True
 
     def _send_value(self, name: str, value: float) -> None:
         """Send a frequency, amplitude or offset."""
-        command: str = getattr(self._commands, name)
-        send(self._line, command.replace("{value}", f"{value:.9g}"), self._commands.errors)
+        command: str = getattr(self._entry, name)
+        send(self._line, command.replace("{value}", f"{value:.9g}"), self._entry.error)
         self._set[name] = value
 
-    def _require_value(self, name: str, reply: Reply) -> None:
+    def _require_value(self, name: str, reply: ReplyEntry) -> None:
         """Raise where the generator has another value than the one that was set."""
         wanted, found = float(self._set[name]), reply.number(self._line.ask(reply.query), device=self.name)
-        share, absolute = _DIFFERENCE[name]
+        share, absolute, unit = _DIFFERENCE[name]
         if not abs(found - wanted) <= share * abs(wanted) + absolute:
-            has, was = format_si(found, _UNITS[name]), format_si(wanted, _UNITS[name])
+            has, was = format_si(found, unit), format_si(wanted, unit)
             raise DeviceError(f"{self.name}: has the {name} {has} where {was} was set")

@@ -1,32 +1,36 @@
 """Output of an instrument behind lines of text, set up before it is used and off whatever becomes of the connection."""
 
-from collections.abc import Callable, Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 from sonolube.laboratory.devices import DeviceError, DeviceLost
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
 
 
-class SwitchedLine:
+class SwitchedLine(ABC):
     """Output that lines of text set and switch off.
 
     Parameters
     ----------
     line : VisaConnection
-    set_up : callable
-        Switches the output off, and sends what the instrument needs before it is set.
-    switch_off : callable
-        Switches the output off over a connection and has that confirmed.
     """
 
-    def __init__(
-        self, line: VisaConnection, *, set_up: Callable[[], None], switch_off: Callable[[VisaConnection], None]
-    ) -> None:
-        self._line, self._set_up, self._switch_off = line, set_up, switch_off
+    def __init__(self, line: VisaConnection) -> None:
+        self.name = line.name
+        self._line = line
         self._is_connected = False
         self._is_set_up = False  # False also where the instrument may have lost what it was told
         self._is_lost = False
         self._is_halted = False
+
+    @abstractmethod
+    def _set_up(self) -> None:
+        """Switch the output off, and send what the instrument needs before it is set."""
+
+    @abstractmethod
+    def _switch_off(self, line: VisaConnection) -> None:
+        """Switch the output off over a connection and have that confirmed."""
 
     def connect(self) -> None:
         """Open the connection, and set the instrument up with its output off."""
@@ -40,13 +44,13 @@ class SwitchedLine:
             raise
         self._is_connected, self._is_set_up, self._is_lost = True, True, False
 
-    def require_connected(self, *, before: str) -> None:
+    def _require_connected(self, *, before: str) -> None:
         """Raise DeviceError where the instrument is not connected, before something such as driving."""
         if not self._is_connected:
-            raise DeviceError(f"{self._line.name}: connect it before {before}")
+            raise DeviceError(f"{self.name}: connect it before {before}")
 
     @contextmanager
-    def setting(self) -> Iterator[None]:
+    def _off_where_refused(self) -> Iterator[None]:
         """Set the output inside a `with` block, the instrument set up; where it refuses, the output ends off."""
         try:
             if not self._is_set_up:

@@ -1,14 +1,11 @@
 """Load that a drive setting puts on an amplifier: current, slew rate, power and heat of a capacitive actuator."""
 
 from dataclasses import dataclass
-from math import pi
-
-import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.facts.protocol import SetPoint
-from sonolube.models.actuator import Drive, amplifier_requirements, linear_amplifier_power
-from sonolube.rig.excitation import DriveVoltage
+from sonolube.laboratory.heating_assumptions import capacitive_load
+from sonolube.models.actuator import linear_amplifier_power
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,10 +66,12 @@ def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
     require_positive(capacitance=capacitance)
     if point.frequency is None or point.voltage_peak_to_peak == 0:
         return OFF
-    drive = Drive(frequency=point.frequency, voltage_peak_to_peak=point.voltage_peak_to_peak, waveform=point.waveform)
-    harmonics = np.atleast_1d(DriveVoltage(drive=drive).harmonics())
-    admittance = 2j * pi * point.frequency * capacitance * np.arange(1, harmonics.size + 1)
-    need = amplifier_requirements(admittance=admittance, voltage_amplitude=harmonics, frequency=point.frequency)
+    need = capacitive_load(
+        capacitance=capacitance,
+        frequency=point.frequency,
+        voltage_peak_to_peak=point.voltage_peak_to_peak,
+        waveform=point.waveform,
+    )
     power = linear_amplifier_power(
         capacitance=capacitance,
         voltage_maximum=point.voltage_maximum,

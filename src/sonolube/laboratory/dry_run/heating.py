@@ -1,41 +1,17 @@
 """Temperatures of contact and actuator over the time line of a protocol, by lumped bodies and the flash rise."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
+from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
 from sonolube.models.thermal.contact_history import contact_temperature_history
 from sonolube.models.thermal.network import network_rise
 
 _POINTS = 400  # of the time line, at least
 _MAX_PARTS = 200  # of one interval between set points
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class HeatedInterval:
-    """Time between two set points with its heat.
-
-    Parameters
-    ----------
-    duration : float
-        [s]
-    sliding_speed : float
-        [m/s]
-    friction_force : float
-        [N]
-    actuator_heat_rate : float
-        Heat of the actuator, in W.
-    """
-
-    duration: float
-    sliding_speed: float
-    friction_force: float
-    actuator_heat_rate: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -69,48 +45,33 @@ class Heating:
     ambient_temperature: float
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RubbedBodies:
-    """Materials of pin and disc, and their nominal contact.
-
-    Parameters
-    ----------
-    pin, disc : ThermalSolid
-    nominal_area : float
-        [m2]
-    """
-
-    pin: ThermalSolid
-    disc: ThermalSolid
-    nominal_area: float
-
-
 def heating_over(
-    intervals: Sequence[HeatedInterval], *, bodies: RubbedBodies | None, assumed: HeatingAssumptions
+    *,
+    duration: Floats,
+    friction_force: Floats,
+    sliding_speed: Floats,
+    actuator_heat_rate: Floats,
+    bodies: HeatedContact | None,
+    assumed: HeatingAssumptions,
 ) -> Heating | None:
     """Temperature rises over successive intervals of constant heat, from ambient temperature.
 
     None where no time passes.
     """
-    lasting = [each for each in intervals if each.duration > 0]
-    if not lasting:
+    lasts = duration > 0
+    if not lasts.any():
         return None
-    longest = sum(each.duration for each in lasting) / _POINTS
-    parts = [min(max(ceil(each.duration / longest), 1), _MAX_PARTS) for each in lasting]
-    steps = np.repeat([each.duration / count for each, count in zip(lasting, parts, strict=True)], parts)
+    longest = sum(duration[lasts].tolist()) / _POINTS
+    parts = np.clip(np.ceil(duration[lasts] / longest), 1, _MAX_PARTS).astype(int)
+    steps = np.repeat(duration[lasts] / parts, parts)
     time = np.concatenate([[0.0], np.cumsum(steps)])
-    speed, force, heat = (
-        np.repeat([getattr(each, name) for each in lasting], parts)
-        for name in ("sliding_speed", "friction_force", "actuator_heat_rate")
-    )
+    speed, force, heat = (np.repeat(each[lasts], parts) for each in (sliding_speed, friction_force, actuator_heat_rate))
     actuator = ThermalNetwork(
         heat_capacity=(assumed.actuator_heat_capacity,), links=(), losses=(assumed.actuator_conductance,)
     )
     contact_rise = pin_rise = None
     if bodies is not None:
-        history = contact_temperature_history(
-            _contact(bodies, assumed), time=time, friction_force=force, sliding_speed=speed
-        )
+        history = contact_temperature_history(bodies, time=time, friction_force=force, sliding_speed=speed)
         contact_rise, pin_rise = history.temperature_rise, history.bulk_rise
     return Heating(
         time=time,
@@ -123,9 +84,11 @@ def heating_over(
     )
 
 
-def _contact(bodies: RubbedBodies, assumed: HeatingAssumptions) -> HeatedContact:
+def rubbed_contact(
+    pin: ThermalSolid, disc: ThermalSolid, *, nominal_area: float, assumed: HeatingAssumptions
+) -> HeatedContact:
     """Contact of pin and disc, taken as circular."""
-    radius = float(np.sqrt(bodies.nominal_area / np.pi))
+    radius = float(np.sqrt(nominal_area / np.pi))
     network = ThermalNetwork(heat_capacity=(assumed.pin_heat_capacity,), links=(), losses=(assumed.pin_conductance,))
     source = EllipticSource(half_length=radius, half_width=radius)
-    return HeatedContact(pin=bodies.pin, disc=bodies.disc, source=source, network=network)
+    return HeatedContact(pin=pin, disc=disc, source=source, network=network)

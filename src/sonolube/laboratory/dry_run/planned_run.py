@@ -1,6 +1,6 @@
 """Dry run: a protocol gone through without devices, with the rig that it is meant for."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import isnan, pi
@@ -22,8 +22,9 @@ from sonolube.facts.protocol import (
 )
 from sonolube.laboratory.dry_run.amplifier_load import OFF, DriveLoad, drive_load
 from sonolube.laboratory.dry_run.findings import caveats_of, refusals_of
-from sonolube.laboratory.dry_run.heating import HeatedInterval, Heating, HeatingAssumptions, RubbedBodies, heating_over
+from sonolube.laboratory.dry_run.heating import Heating, heating_over, rubbed_contact
 from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint, PlannedRecording
+from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
 from sonolube.rig.excitation import actuator_capacitance
@@ -36,7 +37,6 @@ def dry_run(
     rig: Rig | None,
     amplifier: Amplifier | None = None,
     heating: HeatingAssumptions | None = None,
-    prompt_durations: Mapping[str, float] = PROMPT_DURATIONS,
 ) -> DryRun:
     """Planned course of a protocol: its duration, its amount of data, and the limits of drive and heat.
 
@@ -49,8 +49,6 @@ def dry_run(
         Limits of the amplifier; without it only those of the protocol are held against the drive.
     heating : HeatingAssumptions, optional
         Thermal properties that a rig file does not hold.
-    prompt_durations : mapping of str to float
-        Time that an operator needs, by the task of a prompt, in s.
 
     Returns
     -------
@@ -86,9 +84,9 @@ def dry_run(
         points=points,
         recordings=_recordings(settings),
         duration=settings[-1].time,
-        prompt_time=sum(prompt_durations[prompt.task] for prompt in prompts),
+        prompt_time=sum(PROMPT_DURATIONS[prompt.task] for prompt in prompts),
         heating=heated,
-        assumptions=_assumptions(assumed, rig, prompts, prompt_durations),
+        assumptions=_assumptions(assumed, rig, prompts),
     )
     return replace(
         found, refusals=(*notes.refusals, *refusals_of(found, amplifier)), caveats=(*notes.caveats, *caveats_of(found))
@@ -236,25 +234,22 @@ def _heating(
     points: Sequence[PlannedPoint], rig: Rig, metadata: Metadata, assumed: HeatingAssumptions, notes: _Notes
 ) -> Heating | None:
     """Temperatures over the time line."""
-    intervals = [
-        HeatedInterval(
-            duration=point.duration,
-            sliding_speed=point.sliding_speed or 0.0,
-            friction_force=point.friction_force or 0.0,
-            actuator_heat_rate=assumed.loss_factor * (point.load.capacitive_power if point.load else 0.0),
-        )
-        for point in points
-    ]
     try:
-        bodies = RubbedBodies(
-            pin=thermal_solid(_material(assumed.pin_material or rig.pin_material, metadata.pin_material, "pin")),
-            disc=thermal_solid(_material(assumed.disc_material or rig.disc_material, metadata.disc_material, "disc")),
-            nominal_area=rig.contact.nominal_area,
-        )
+        pin = thermal_solid(_material(assumed.pin_material or rig.pin_material, metadata.pin_material, "pin"))
+        disc = thermal_solid(_material(assumed.disc_material or rig.disc_material, metadata.disc_material, "disc"))
+        bodies = rubbed_contact(pin, disc, nominal_area=rig.contact.nominal_area, assumed=assumed)
     except SonolubeError as refusal:
         notes.caveats.append(f"temperature of the contact is left out: {refusal}")
         bodies = None
-    return heating_over(intervals, bodies=bodies, assumed=assumed)
+    power = np.array([point.load.capacitive_power if point.load else 0.0 for point in points])
+    return heating_over(
+        duration=np.array([point.duration for point in points]),
+        friction_force=np.array([point.friction_force or 0.0 for point in points]),
+        sliding_speed=np.array([point.sliding_speed or 0.0 for point in points]),
+        actuator_heat_rate=assumed.loss_factor * power,
+        bodies=bodies,
+        assumed=assumed,
+    )
 
 
 def _material(known: str | None, of_protocol: str, role: str) -> str:
@@ -265,15 +260,13 @@ def _material(known: str | None, of_protocol: str, role: str) -> str:
     return name
 
 
-def _assumptions(
-    assumed: HeatingAssumptions, rig: Rig | None, prompts: Sequence[Prompt], times: Mapping[str, float]
-) -> dict[str, str]:
+def _assumptions(assumed: HeatingAssumptions, rig: Rig | None, prompts: Sequence[Prompt]) -> dict[str, str]:
     """Assumptions, by their subject."""
     late = format_si(LATE, "s")
     found = {"supervisor": f"on devices, motor and drive are switched off where a block is late by more than {late}"}
     if prompts:
         tasks = dict.fromkeys(prompt.task for prompt in prompts)
-        found["prompts"] = ", ".join(f"{task} {times[task] / 60:g} min" for task in tasks)
+        found["prompts"] = ", ".join(f"{task} {PROMPT_DURATIONS[task] / 60:g} min" for task in tasks)
     if rig is not None:
         found["pin"] = f"one temperature, {assumed.pin_heat_capacity:g} J/K, loses {assumed.pin_conductance:g} W/K"
         found["actuator"] = (

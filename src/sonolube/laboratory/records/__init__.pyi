@@ -17,6 +17,5 @@ from .run import (
     read_run as read_run,
     run_folders as run_folders,
     run_summary as run_summary,
-    runs_in as runs_in,
 )
 from .run_folder import UNRESOLVED as UNRESOLVED

@@ -1,18 +1,18 @@
 """Raw blocks that were converted: removed once the recording holds every sample, and read back from it."""
 
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.records.documents import read_documents
 from sonolube.laboratory.records.part_clock import PartClock, part_clock
-from sonolube.laboratory.records.recorded_part import Floats, RecordedPart, recorded_part
+from sonolube.laboratory.records.recorded_part import ROWS, PartOfRecording, Pieces, recorded_part
 from sonolube.laboratory.records.run_folder import (
     PURPOSE,
     RunFacts,
@@ -27,58 +27,8 @@ from sonolube.operating_system import remove_file
 from sonolube.storage.files import locked_folder
 from sonolube.vocabulary import quantities
 
-_ROWS: Final = 1 << 17
 
-
-@dataclass(frozen=True, kw_only=True)
-class ConvertedPart:
-    """Part of a recording whose raw blocks were removed, read from its netCDF file.
-
-    Parameters
-    ----------
-    path : Path
-        Of the netCDF file.
-    samples, missing : int
-        Of each channel.
-    sample_rate : float
-        [Hz]
-    begun : float
-        In s since 1970.
-    variables : mapping of str to str
-        Quantity of each variable by its name.
-    units : mapping of str to str
-        SI unit of each variable of a free quantity, by its name.
-    clock : PartClock or None
-        Where it is not that of the run.
-    set_points : tuple of str
-        Names of those that hold set points.
-    lubricants : tuple of str
-    caveats : list of str
-    """
-
-    path: Path
-    samples: int
-    missing: int
-    sample_rate: float
-    begun: float
-    variables: Mapping[str, str]
-    units: Mapping[str, str]
-    clock: PartClock | None
-    set_points: tuple[str, ...]
-    lubricants: tuple[str, ...]
-    caveats: list[str]
-
-    def pieces(self) -> Iterator[tuple[Floats, list[Floats]]]:
-        """Yield time and columns, as `RecordedPart.pieces`."""
-        import h5netcdf
-
-        with h5netcdf.File(self.path, "r") as file:
-            for first in range(0, self.samples, _ROWS):
-                rows = slice(first, first + _ROWS)
-                yield file["time"][rows], [file[name][rows] for name in self.variables]
-
-
-def converted_part(path: Path) -> ConvertedPart:
+def converted_part(path: Path) -> PartOfRecording:
     """Part of a recording by its netCDF file."""
     import h5netcdf
 
@@ -95,7 +45,7 @@ def converted_part(path: Path) -> ConvertedPart:
         raise InvalidInput(f"{path}: is no recording of a run: {failure}") from None
     measured.pop("time")
     begun = datetime.strptime(str(attributes["begun"]), "%Y-%m-%d %H:%M:%S.%f").replace(tzinfo=UTC)
-    return ConvertedPart(
+    return PartOfRecording(
         path=path,
         samples=samples,
         missing=spanned - samples,
@@ -107,7 +57,18 @@ def converted_part(path: Path) -> ConvertedPart:
         set_points=tuple(name for name in measured if name in SET_POINT_CHANNELS),
         lubricants=tuple(json.loads(str(attributes.get("lubricants", "[]")))),
         caveats=str(attributes.get("caveats", "")).splitlines(),
+        pieces=partial(_pieces_of_file, path, samples, list(measured)),
     )
+
+
+def _pieces_of_file(path: Path, samples: int, names: list[str]) -> Pieces:
+    """Pieces of the netCDF file of a part."""
+    import h5netcdf
+
+    with h5netcdf.File(path, "r") as file:
+        for first in range(0, samples, ROWS):
+            rows = slice(first, first + ROWS)
+            yield file["time"][rows], [file[name][rows] for name in names]
 
 
 def _clock(attributes: Mapping[str, Any]) -> PartClock | None:
@@ -149,7 +110,7 @@ def drop_raw_blocks(folder: Path) -> tuple[str, ...]:
     return tuple(done)
 
 
-def _require_converted(folder: Path, number: int, part: RecordedPart, known: RunFacts) -> None:
+def _require_converted(folder: Path, number: int, part: PartOfRecording, known: RunFacts) -> None:
     """Raise unless the recording of a part holds every sample of its raw blocks, bit for bit, and none is damaged."""
     path = recording_path(folder, number, part.clock_name)
     if not part.samples:
@@ -158,8 +119,8 @@ def _require_converted(folder: Path, number: int, part: RecordedPart, known: Run
         raise InvalidInput(f"{folder}: {path.name} is missing or has no SHA-256; run sonolube lab recover first")
     if path.name in changed_recordings(folder, known):
         raise InvalidInput(f"{path}: was changed after the run wrote it; its raw blocks are kept")
-    if part.raw.damaged:
-        raise InvalidInput(f"{part.path}: is damaged at {part.raw.damaged} places, and is kept")
+    if part.damaged:
+        raise InvalidInput(f"{part.path}: is damaged at {part.damaged} places, and is kept")
     import h5netcdf
 
     first = 0

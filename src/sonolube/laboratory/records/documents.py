@@ -88,39 +88,31 @@ class DocumentLog:
         """Write the first document: facts, versions and files of the run."""
         self._write(
             "start",
-            {
-                "uid": self._run,
-                "time": known.begun,
-                "title": known.title,
-                "facts": {_key(name): value for name, value in known.facts.items()},
-                "versions": dict(known.versions),
-                "files": [f"{name} sha256:{digest}" for name, digest in known.files.items()],
-            },
+            uid=self._run,
+            time=known.begun,
+            title=known.title,
+            facts={_key(name): value for name, value in known.facts.items()},
+            versions=dict(known.versions),
+            files=[f"{name} sha256:{digest}" for name, digest in known.files.items()],
         )
 
     def note(self, kind: str, *, time: float, sample: int | None, facts: Mapping[str, Any]) -> None:
         """Write what happened as an event."""
         if not self._has_notes:
             types = {"kind": "string", "sample": "integer", "facts": "string"}
-            self._describe(
-                _NOTES,
-                self._notes,
-                time,
-                {name: {"dtype": kind, "shape": [], "source": "sonolube"} for name, kind in types.items()},
-            )
+            keys = {name: {"dtype": kind, "shape": [], "source": "sonolube"} for name, kind in types.items()}
+            self._describe(_NOTES, self._notes, time, keys)
             self._has_notes = True
         number = self._counts.get(_NOTES, 0) + 1
         data = {"kind": kind, "sample": sample, "facts": json.dumps(facts, default=_plain)}
         self._write(
             "event",
-            {
-                "uid": str(uuid4()),
-                "descriptor": self._notes,
-                "seq_num": number,
-                "time": time,
-                "data": data,
-                "timestamps": dict.fromkeys(data, time),
-            },
+            uid=str(uuid4()),
+            descriptor=self._notes,
+            seq_num=number,
+            time=time,
+            data=data,
+            timestamps=dict.fromkeys(data, time),
         )
         self._counts[_NOTES] = number
 
@@ -163,15 +155,13 @@ class DocumentLog:
         """Write the last document."""
         self._write(
             "stop",
-            {
-                "uid": str(uuid4()),
-                "run_start": self._run,
-                "time": time,
-                "exit_status": EXIT_STATUS[outcome],
-                "outcome": outcome,
-                "reason": reason,
-                "num_events": dict(self._counts),
-            },
+            uid=str(uuid4()),
+            run_start=self._run,
+            time=time,
+            exit_status=EXIT_STATUS[outcome],
+            outcome=outcome,
+            reason=reason,
+            num_events=dict(self._counts),
         )
 
     def close(self) -> None:
@@ -185,36 +175,32 @@ class DocumentLog:
         place |= {"part": part, "clock": clock} if clock else {}
         self._write(
             "stream_resource",
-            {
-                "uid": uid,
-                "run_start": self._run,
-                "data_key": channel,
-                "mimetype": _MIME,
-                "uri": f"file://localhost{path.resolve().as_posix()}",
-                "parameters": place,
-            },
+            uid=uid,
+            run_start=self._run,
+            data_key=channel,
+            mimetype=_MIME,
+            uri=f"file://localhost{path.resolve().as_posix()}",
+            parameters=place,
         )
 
     def _count(self, descriptor: str, resource: str, samples: int) -> None:
         """Write how many samples of a channel there are."""
         self._write(
             "stream_datum",
-            {
-                "uid": f"{resource}/0",
-                "stream_resource": resource,
-                "descriptor": descriptor,
-                "indices": {"start": 0, "stop": samples},
-                "seq_nums": {"start": 1, "stop": samples + 1},
-            },
+            uid=f"{resource}/0",
+            stream_resource=resource,
+            descriptor=descriptor,
+            indices={"start": 0, "stop": samples},
+            seq_nums={"start": 1, "stop": samples + 1},
         )
 
     def _describe(self, name: str, uid: str, time: float, keys: Mapping[str, Mapping[str, Any]]) -> None:
         """Write the description of a stream."""
-        self._write("descriptor", {"uid": uid, "run_start": self._run, "time": time, "name": name, "data_keys": keys})
+        self._write("descriptor", uid=uid, run_start=self._run, time=time, name=name, data_keys=keys)
 
-    def _write(self, name: str, document: Mapping[str, Any]) -> None:
+    def _write(self, kind: str, /, **entries: Any) -> None:
         """Append a document as one line."""
-        self._file.append((json.dumps([name, document], default=_plain) + "\n").encode())
+        self._file.append((json.dumps([kind, entries], default=_plain) + "\n").encode())
 
 
 def part_name(part: int) -> str:

@@ -8,9 +8,8 @@ from typing import Final
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.laboratory.records.converted_part import converted_part
 from sonolube.laboratory.records.documents import numbered_parts, part_clocks, read_documents
-from sonolube.laboratory.records.recorded_part import recorded_part
+from sonolube.laboratory.records.recorded_part import PartOfRecording, recorded_part
 from sonolube.laboratory.records.recording_files import (
-    PartOfRecording,
     write_csv_recording,
     write_netcdf_recording,
     write_tdms_recording,
@@ -56,9 +55,7 @@ def export_run(folder: Path, *, file_format: str, out: Path) -> list[Path]:
     ending, write = _WRITERS[file_format]
     known, documents = read_run_facts(folder), read_documents(folder)
     blocks = raw_parts(folder)
-    parts: dict[int, PartOfRecording] = {
-        number: recorded_part(folder, number, documents, facts=known.facts) for number in blocks
-    }
+    parts = {number: recorded_part(folder, number, documents, facts=known.facts) for number in blocks}
     clocks = part_clocks(documents)
     for number in numbered_parts(documents):
         path = recording_path(folder, number, clocks.get(number, ""))
@@ -68,7 +65,7 @@ def export_run(folder: Path, *, file_format: str, out: Path) -> list[Path]:
     if not filled:
         raise InvalidInput(f"{folder}: has no recording to export")
     name = folder.resolve().name
-    of_clock = {number: "" if part.clock is None else f"-{part.clock.name}" for number, part in filled}
+    of_clock = {number: f"-{part.clock_name}".rstrip("-") for number, part in filled}
     return [
         write(part, known, out / (f"{name}{ending}" if number == 1 else f"{name}-{number}{of_clock[number]}{ending}"))
         for number, part in filled

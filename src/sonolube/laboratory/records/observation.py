@@ -163,9 +163,9 @@ class RunObserver:
         if documents.of("stop"):
             ended = run_summary(folder)
             outcome, reason = ended.outcome, ended.reason
-        part, latest = self._latest(documents) if outcome == RUNNING else (None, None)
+        latest = self._latest(documents) if outcome == RUNNING else None
         told = self._progress
-        at = self._time(latest, now, is_running=outcome == RUNNING and told.state == "running")
+        at = self._time(latest and latest[1], now, is_running=outcome == RUNNING and told.state == "running")
         point = self._point(at)
         is_within = point is not None and outcome == RUNNING and told.state in ("running", "paused")
         return Observation(
@@ -179,7 +179,7 @@ class RunObserver:
             protocol_time=at,
             duration=self._times[-1] if self._times else None,
             set_points=self._present_set_points(point),
-            means={} if part is None or latest is None else _means(part, latest) | self._means_beside(documents),
+            means={} if latest is None else _means(*latest) | self._means_beside(documents),
             trips=tuple(told.trips),
             gaps=told.gaps,
             silence=max(now - _last_written(folder, documents), 0.0),
@@ -192,29 +192,30 @@ class RunObserver:
             self._progress.take(note_of(event))
         self._events = len(events)
 
-    def _latest(self, documents: ReadDocuments) -> tuple[RawPart | None, Block | None]:
+    def _latest(self, documents: ReadDocuments) -> tuple[RawPart, Block] | None:
         """Last samples of the part that is being recorded; None where none is, or nothing of it is whole."""
         parts = main_parts(documents)
-        return self._latest_of(parts[-1], documents) if parts else (None, None)
+        return self._latest_of(parts[-1], documents) if parts else None
 
-    def _latest_of(self, part: int, documents: ReadDocuments) -> tuple[RawPart | None, Block | None]:
+    def _latest_of(self, part: int, documents: ReadDocuments) -> tuple[RawPart, Block] | None:
         """Last samples of a part; None where it has ended, or nothing of it is whole."""
         described = {str(each.get("name")): str(each.get("uid")) for each in documents.of("descriptor")}
         uid = described[part_name(part)]
         if any(datum.get("descriptor") == uid for datum in documents.of("stream_datum")):
-            return None, None
+            return None
         try:
-            return latest_samples(raw_path(self._folder, part), duration=MEAN_DURATION)
+            found, block = latest_samples(raw_path(self._folder, part), duration=MEAN_DURATION)
         except InvalidInput:
-            return None, None  # its header is being written
+            return None  # its header is being written
+        return None if block is None else (found, block)
 
     def _means_beside(self, documents: ReadDocuments) -> dict[str, tuple[float | None, str]]:
         """Means of the channels of other clocks."""
         last = {clock: part for part, clock in sorted(part_clocks(documents).items())}
         found: dict[str, tuple[float | None, str]] = {}
         for number in last.values():
-            part, latest = self._latest_of(number, documents)
-            found |= {} if part is None or latest is None else _means(part, latest)
+            latest = self._latest_of(number, documents)
+            found |= {} if latest is None else _means(*latest)
         return found
 
     def _time(self, latest: Block | None, now: float, *, is_running: bool) -> float:

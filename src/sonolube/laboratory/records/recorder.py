@@ -1,7 +1,7 @@
 """Recorder of a run: every block is on its way to the disk when `append` returns, every event is a document."""
 
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import ExitStack, suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -198,11 +198,8 @@ class RunRecorder:
             If the disk is full.
         """
         self._require_running()
-        try:
+        with self._failing():
             self._note(kind, sample, facts)
-        except InvalidInput as failure:
-            self._fail(failure)
-            raise
         self._watch_clock(sample)
 
     def store_truth(self, dataset: "xr.Dataset") -> Path:
@@ -267,11 +264,8 @@ class RunRecorder:
         """Part that has begun."""
         number = len(self._parts) + 1
         raw_header(channels, sample_rate=sample_rate, begun=begun)  # refuses what is no part, which is no failure
-        try:
+        with self._failing():
             part = OpenPart(self.folder, number, channels, self._log, sample_rate=sample_rate, begun=begun, clock=clock)
-        except InvalidInput as failure:
-            self._fail(failure)
-            raise
         self._parts.append(part)
         return part
 
@@ -280,36 +274,27 @@ class RunRecorder:
         if part is None:
             raise InvalidInput("no part of the recording has begun; begin it before blocks are appended")
         part.require_fitting(block)
-        try:
+        with self._failing():
             part.append(block, lambda first, facts: self._note("gap", first, {**facts, **told}))
-        except InvalidInput as failure:
-            self._fail(failure)
-            raise
 
     def _end(self, part: OpenPart | None) -> None:
         """End a part; harmless where there is none."""
         if part is None:
             return
-        try:
+        with self._failing():
             part.close()
             part.describe(read_documents(self.folder))
-        except InvalidInput as failure:
-            self._fail(failure)
-            raise
 
     def _write_recordings(self) -> None:
         """Write all parts as netCDF."""
         documents, paths = read_documents(self.folder), list[Path]()
-        try:
+        with self._failing():
             for number in raw_parts(self.folder):
                 part = recorded_part(self.folder, number, documents, facts=self._known.facts)
                 paths.append(recording_path(self.folder, number, part.clock_name))
-                if part.raw.samples:
+                if part.samples:
                     write_netcdf_recording(part, self._known, paths[-1])
             self._known = keep_digests(self.folder, self._known, paths)
-        except InvalidInput as failure:
-            self._fail(failure)
-            raise
 
     def _note(self, kind: str, sample: int | None, facts: Mapping[str, str | float]) -> None:
         """Write an event."""
@@ -322,9 +307,14 @@ class RunRecorder:
             with suppress(InvalidInput):  # the next block tells it
                 self._note("clock jump", sample, {"seconds": jump})
 
-    def _fail(self, failure: InvalidInput) -> None:
-        """Remember why the record is not whole."""
-        self._failure = self._failure or str(failure)
+    @contextmanager
+    def _failing(self) -> Iterator[None]:
+        """Remember why the record is not whole where that is raised inside a `with` block."""
+        try:
+            yield
+        except InvalidInput as failure:
+            self._failure = self._failure or str(failure)
+            raise
 
     def _require_running(self) -> None:
         """Refuse blocks and notes after the end."""

@@ -2,18 +2,15 @@
 
 import io
 import json
-from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Final, Protocol as Interface, Self
+from typing import Any, Final
 
 import numpy as np
 
-from sonolube.laboratory.records.part_clock import PartClock
-from sonolube.laboratory.records.recorded_part import Floats
+from sonolube.laboratory.records.recorded_part import PartOfRecording
 from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts
 from sonolube.storage.files import unfinished_file
 from sonolube.vocabulary import quantities, unit_of
@@ -24,59 +21,24 @@ _WAVES: Final = {"stack_voltage", "stack_current"}  # quantities of which sample
 _CSV_DIGITS: Final = "%.17g"  # what 64-bit floats hold
 
 
-class PartOfRecording(Interface):
-    """Part of a recording, from raw blocks or from a file into which they were converted."""
-
-    @property
-    def samples(self) -> int:
-        """Samples of each channel."""
-
-    @property
-    def missing(self) -> int:
-        """Samples that are missing in gaps."""
-
-    @property
-    def sample_rate(self) -> float:
-        """Of each channel. [Hz]"""
-
-    @property
-    def begun(self) -> float:
-        """Begin in s since 1970."""
-
-    @property
-    def variables(self) -> Mapping[str, str]:
-        """Quantity of each variable by its name."""
-
-    @property
-    def units(self) -> Mapping[str, str]:
-        """SI unit of each variable of a free quantity, by its name."""
-
-    @property
-    def clock(self) -> PartClock | None:
-        """Clock, where it is not that of the run."""
-
-    @property
-    def set_points(self) -> tuple[str, ...]:
-        """Names of those that hold set points."""
-
-    @property
-    def lubricants(self) -> tuple[str, ...]:
-        """Names of the lubricants 1, 2, ..."""
-
-    @property
-    def caveats(self) -> list[str]:
-        """Caveats of the recording."""
-
-    def pieces(self) -> Iterator[tuple[Floats, list[Floats]]]:
-        """Yield the time since the first sample, in s, and the columns in the order of `variables`."""
-
-
 def write_netcdf_recording(part: PartOfRecording, known: RunFacts, path: Path) -> Path:
     """Write a part of a recording as netCDF, whole or not at all."""
-    with _NetCdfRecording(part, known, path) as file:
-        for time, columns in part.pieces():
-            file.write(time, columns)
-        file.complete()
+    import h5netcdf
+
+    with unfinished_file(path) as unfinished:
+        try:
+            with h5netcdf.File(unfinished, "w") as file:
+                _define(file, part, known)
+                first = 0
+                for time, columns in part.pieces():
+                    rows = slice(first, first + time.size)
+                    for name, values in zip(("time", *part.variables), (time, *columns), strict=True):
+                        file[name][rows] = values
+                    unfinished.check()
+                    first = rows.stop
+        finally:
+            unfinished.check()  # tells more than what HDF5 makes of it
+        unfinished.complete()
     return path
 
 
@@ -111,51 +73,17 @@ def write_csv_recording(part: PartOfRecording, known: RunFacts, path: Path) -> P
     return path
 
 
-class _NetCdfRecording:
-    """Recording that is being written as netCDF."""
-
-    def __init__(self, part: PartOfRecording, known: RunFacts, path: Path) -> None:
-        self._part, self._known, self._path, self._rows = part, known, path, 0
-
-    def __enter__(self) -> Self:
-        import h5netcdf
-
-        with ExitStack() as stack:
-            self._unfinished = stack.enter_context(unfinished_file(self._path))
-            self._file: Any = stack.enter_context(h5netcdf.File(self._unfinished, "w"))
-            self._file.dimensions = {"time": self._part.samples}
-            self._file.attrs.update(_attributes(self._part, self._known))
-            for name, of in {"time": "time", **self._part.variables}.items():
-                known = quantities().get(of)
-                meaning = of.replace("_", " ") if known is None else known.meaning
-                packed = _PACKED if name in self._part.set_points else {}
-                chunks = (max(1, min(_ROWS, self._part.samples)),) if packed else None
-                variable = self._file.create_variable(name, ("time",), np.float64, chunks=chunks, **packed)
-                unit = _unit(self._part, name) or "1"
-                variable.attrs.update({"units": unit, "long_name": meaning, "quantity": of})
-            self._open = stack.pop_all()
-        return self
-
-    def __exit__(self, kind: type | None, value: BaseException | None, trace: TracebackType | None) -> None:
-        try:
-            self._open.close()
-        finally:
-            self._unfinished.check()  # tells more than what HDF5 makes of it
-
-    def write(self, time: Floats, columns: list[Floats]) -> None:
-        """Write rows behind those before."""
-        rows = slice(self._rows, self._rows + time.size)
-        try:
-            for name, values in zip(("time", *self._part.variables), (time, *columns), strict=True):
-                self._file[name][rows] = values
-        finally:
-            self._unfinished.check()
-        self._rows = rows.stop
-
-    def complete(self) -> None:
-        """Replace the file by what was written."""
-        self._file.close()
-        self._unfinished.complete()
+def _define(file: Any, part: PartOfRecording, known: RunFacts) -> None:
+    """Define dimension, attributes and variables of a netCDF file."""
+    file.dimensions = {"time": part.samples}
+    file.attrs.update(_attributes(part, known))
+    for name, of in {"time": "time", **part.variables}.items():
+        quantity = quantities().get(of)
+        meaning = of.replace("_", " ") if quantity is None else quantity.meaning
+        packed = _PACKED if name in part.set_points else {}
+        chunks = (max(1, min(_ROWS, part.samples)),) if packed else None
+        variable = file.create_variable(name, ("time",), np.float64, chunks=chunks, **packed)
+        variable.attrs.update({"units": _unit(part, name) or "1", "long_name": meaning, "quantity": of})
 
 
 def _attributes(part: PartOfRecording, known: RunFacts) -> dict[str, str | float]:

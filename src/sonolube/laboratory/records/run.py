@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -17,6 +17,7 @@ from sonolube.laboratory.records.documents import (
     part_clocks,
     part_name,
     read_documents,
+    stream_counts,
 )
 from sonolube.laboratory.records.recorded_channels import RecordedChannel, recorded_channels
 from sonolube.laboratory.records.run_folder import (
@@ -246,25 +247,6 @@ def run_folders(parent: Path) -> list[Path]:
         raise InvalidInput(f"{parent}: cannot be read: {failure.strerror}") from None
 
 
-def runs_in(parent: Path) -> list[RunSummary]:
-    """Summaries of the runs in a folder, the oldest first; a run whose facts are damaged is listed as such.
-
-    Parameters
-    ----------
-    parent : Path
-
-    Returns
-    -------
-    list of RunSummary
-
-    Raises
-    ------
-    InvalidInput
-        If the folder cannot be read.
-    """
-    return [run_summary(folder) for folder in run_folders(parent)]
-
-
 def run_summary(folder: Path) -> RunSummary:
     """Summary of a run, also of one whose facts are damaged.
 
@@ -282,11 +264,7 @@ def run_summary(folder: Path) -> RunSummary:
     except InvalidInput as failure:
         known = RunFacts(title=folder.name, begun=0.0, facts={}, versions={}, files={})
         found = _summary(folder, known, documents)
-        return RunSummary(
-            **{name: getattr(found, name) for name in RunSummary.__slots__ if name not in ("outcome", "reason")},
-            outcome="failed",
-            reason=str(failure),
-        )
+        return replace(found, outcome="failed", reason=str(failure))
     return _summary(folder, known, documents)
 
 
@@ -299,15 +277,13 @@ def _summary(folder: Path, known: RunFacts, documents: ReadDocuments) -> RunSumm
         reason = str(stop.get("reason") or "")
     channels: dict[str, None] = {}
     samples, duration = 0, 0.0
-    counts, rates = _parts(documents)
-    main = set(map(part_name, main_parts(documents)))
-    timed = {str(each["uid"]) for each in documents.of("descriptor") if str(each.get("name")) in main}
+    counts, rates = stream_counts(documents), _sample_rates(documents)
     for descriptor in documents.of("descriptor"):
         if str(descriptor.get("name")).startswith(part_name(0)[:-1]):
             channels |= dict.fromkeys(map(str, descriptor["data_keys"]))
-    for uid, count in ((uid, count) for uid, count in counts.items() if uid in timed):
-        samples += count
-        duration += count / rates[uid] if rates.get(uid, 0) > 0 else 0.0
+    for name in map(part_name, main_parts(documents)):
+        samples += counts.get(name, 0)
+        duration += counts.get(name, 0) / rates[name] if name in rates else 0.0
     return RunSummary(
         folder=folder,
         title=known.title,
@@ -321,18 +297,16 @@ def _summary(folder: Path, known: RunFacts, documents: ReadDocuments) -> RunSumm
     )
 
 
-def _parts(documents: ReadDocuments) -> tuple[dict[str, int], dict[str, float]]:
-    """Samples and sample rate of each part, by the document that describes it."""
-    counts, rates, describes = dict[str, int](), dict[str, float](), dict[str, str]()
-    for datum in documents.of("stream_datum"):
-        uid = str(datum.get("descriptor"))
-        counts[uid] = max(counts.get(uid, 0), int(datum["indices"]["stop"]))
-        describes[str(datum.get("stream_resource"))] = uid
+def _sample_rates(documents: ReadDocuments) -> dict[str, float]:
+    """Sample rate of each part by the name of its stream, in Hz."""
+    names = {str(each["uid"]): str(each.get("name")) for each in documents.of("descriptor")}
+    streams = {str(each.get("stream_resource")): str(each.get("descriptor")) for each in documents.of("stream_datum")}
+    rates = {}
     for resource in documents.of("stream_resource"):
-        rate = resource["parameters"].get("sample_rate")
-        if resource["uid"] in describes and isinstance(rate, int | float) and 0 < rate < _FASTEST:
-            rates[describes[resource["uid"]]] = float(rate)
-    return counts, rates
+        name, rate = names.get(streams.get(resource["uid"], "")), resource["parameters"].get("sample_rate")
+        if name is not None and isinstance(rate, int | float) and 0 < rate < _FASTEST:
+            rates[name] = float(rate)
+    return rates
 
 
 def note_of(event: Mapping[str, Any]) -> Note:

@@ -239,6 +239,12 @@ def _digest_of(path: Path) -> str:
         return ""
 
 
+def number_of(facts: Mapping[str, Any], name: str) -> float | None:
+    """Number among facts; None where there is none."""
+    value = facts.get(name)
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
 def _plain(name: str, value: object) -> Fact:
     """Fact as JSON holds it; refuse what it cannot."""
     item = getattr(value, "item", None)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.laboratory.records.documents import ReadDocuments, part_name
-from sonolube.laboratory.records.run_folder import LATEST, Facts
+from sonolube.laboratory.records.run_folder import LATEST, Facts, number_of
 
 SET_POINT_CHANNELS: Final = (
     *("sliding_speed_set", "motor_on", "voltage_peak_to_peak_set", "frequency_set"),
@@ -20,7 +20,6 @@ SET_POINT_CHANNELS: Final = (
 
 _MOTOR: Final = ("sliding_speed_set", "motor_on")
 _DRIVE: Final = ("voltage_peak_to_peak_set", "frequency_set")
-_NUMBER: Final = (int, float)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -80,7 +79,7 @@ def set_point_steps(
 def _timed(document: Mapping[str, Any], first_sample: int, begun: float, sample_rate: float) -> Mapping[str, Any]:
     """Data of a note with the sample of another clock at its time."""
     time = document.get("time")
-    if not isinstance(time, _NUMBER) or abs(time) > LATEST:
+    if not isinstance(time, int | float) or abs(time) > LATEST:
         return {**document["data"], "sample": None}
     return {**document["data"], "sample": first_sample + max(ceil((time - begun) * sample_rate), 0)}
 
@@ -89,11 +88,10 @@ class _Steps:
     """Steps while the notes of a run are followed."""
 
     def __init__(self, first_sample: int, facts: Facts) -> None:
-        load = facts.get("normal_load")
-        known = float(load) if isinstance(load, _NUMBER) and not isinstance(load, bool) else float("nan")
+        load = number_of(facts, "normal_load")
         self._state = dict.fromkeys(SET_POINT_CHANNELS, 0.0)
         self._state |= dict.fromkeys((*_MOTOR, *_DRIVE), float("nan"))
-        self._state["normal_load_set"] = known
+        self._state["normal_load_set"] = float("nan") if load is None else load
         self._first, self._lubricants = first_sample, list[str]()
         self._samples, self._rows = list[int](), list[dict[str, float]]()
         self._drives = False
@@ -143,19 +141,19 @@ class _Steps:
     def _told(self, kind: str, facts: Mapping[str, Any]) -> dict[str, float]:
         """Set points by the facts of a note."""
         if kind == "drive":
-            volts = _number(facts, "voltage_peak_to_peak")
+            volts = number_of(facts, "voltage_peak_to_peak")
             if volts is None:
                 return {}
             self._drives = True
-            frequency = _number(facts, "frequency") or 0.0
+            frequency = number_of(facts, "frequency") or 0.0
             return {"voltage_peak_to_peak_set": volts, "frequency_set": frequency if volts else 0.0}
         if kind == "motor":
-            turns, speed = _number(facts, "rotation_speed"), _number(facts, "sliding_speed")
+            turns, speed = number_of(facts, "rotation_speed"), number_of(facts, "sliding_speed")
             on = turns if turns is not None else speed
             known = {} if on is None else {"motor_on": float(on > 0)}
             slides = speed if speed is not None else 0.0 if on == 0 else float("nan")
             return known | {"sliding_speed_set": slides}
-        load = _number(facts, "normal_load")
+        load = number_of(facts, "normal_load")
         changes = {} if load is None else {"normal_load_set": load}
         if isinstance(name := facts.get("lubricant"), str):
             changes["lubricant_set"] = self._number_of(name)
@@ -168,9 +166,3 @@ class _Steps:
         if lubricant not in self._lubricants:
             self._lubricants.append(lubricant)
         return 1.0 + self._lubricants.index(lubricant)
-
-
-def _number(facts: Mapping[str, Any], name: str) -> float | None:
-    """Number among facts; None where there is none."""
-    value = facts.get(name)
-    return float(value) if isinstance(value, _NUMBER) and not isinstance(value, bool) else None

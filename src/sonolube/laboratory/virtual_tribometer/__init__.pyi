@@ -1,5 +1,4 @@
 from .disturbances import UNDISTURBED as UNDISTURBED, Disturbances as Disturbances
-from .faults import Fault as Fault
 from .friction_draw import FrictionDraw as FrictionDraw, FrictionLevel as FrictionLevel
 from .tribometer import (
     GROOVE_DIAMETER as GROOVE_DIAMETER,

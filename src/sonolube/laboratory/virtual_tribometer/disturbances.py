@@ -155,25 +155,15 @@ DISTURBANCE_UNITS: Final = MappingProxyType({each.name: str(each.metadata["units
 """SI unit of each size."""
 
 _DRAWN: Final = ("wobble_1", "wobble_2", "run_in_share", "run_in_distance", "static_share", "ringing")
+_SWITCHED_OFF: Final[dict[str, Any]] = dict.fromkeys(
+    (
+        *("wobble_1", "wobble_2", "run_in_share", "static_share", "burst_duration", "friction_noise", "ringing"),
+        *("sensor_noise", "drift_rate", "hysteresis", "deflection_play", "displacement_noise", "flux_noise"),
+        *("temperature_noise", "voltage_noise", "current_noise", "clock_error"),
+    ),
+    0.0,
+)
 _SPREAD: Final = 0.3  # of the logarithm of a size, from test to test
 
-UNDISTURBED: Final = Disturbances(
-    wobble_1=0.0,
-    wobble_2=0.0,
-    run_in_share=0.0,
-    static_share=0.0,
-    burst_duration=0.0,
-    friction_noise=0.0,
-    ringing=0.0,
-    sensor_noise=0.0,
-    drift_rate=0.0,
-    hysteresis=0.0,
-    deflection_play=0.0,
-    displacement_noise=0.0,
-    flux_noise=0.0,
-    temperature_noise=0.0,
-    voltage_noise=0.0,
-    current_noise=0.0,
-    clock_error=0.0,
-)
+UNDISTURBED: Final = Disturbances(**_SWITCHED_OFF)
 """No disturbance but the lags of motor, vibration and temperature."""

@@ -9,6 +9,7 @@ from sonolube.execution.compilation import kernel
 
 _PULL_LOOPS = 5
 _PULL_PERIOD = 30.0  # s
+_HALL_WIDTH = 0.06  # of the distance of two magnets, standard deviation of a pulse
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,23 +82,10 @@ class Lagged:
         return Lagged(self.source.towards(target, time=time), reading, self.time_constant)
 
 
-def waveform(*, periods: Floats, shape: str) -> Floats:
-    """Waveform between -1 and 1 over its periods."""
-    turn = periods % 1.0
-    match shape:
-        case "square":
-            return np.where(turn < 0.5, 1.0, -1.0)
-        case "triangle":
-            return np.asarray(1 - 4 * np.abs((turn + 0.25) % 1.0 - 0.5))
-        case "sawtooth":
-            return np.asarray(2 * ((turn + 0.5) % 1.0) - 1)
-    return np.asarray(np.sin(2 * np.pi * turn))
-
-
-def hall_pulses(*, revolutions: Floats, magnets: int, pulse: float = 0.06) -> Floats:
+def hall_pulses(*, revolutions: Floats, magnets: int) -> Floats:
     """Signal of a Hall probe by magnets at the rim of a disc, of height 1."""
     from_centre = (revolutions * magnets) % 1.0 - 0.5
-    return np.asarray(np.exp(-0.5 * (from_centre / pulse) ** 2))
+    return np.asarray(np.exp(-0.5 * (from_centre / _HALL_WIDTH) ** 2))
 
 
 def pulled(*, since: Floats, greatest: float) -> Floats:

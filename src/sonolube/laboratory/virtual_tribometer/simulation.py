@@ -14,7 +14,6 @@ from sonolube.laboratory.devices import DeviceError, DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.arm_resonance import arm_resonance
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
-from sonolube.laboratory.virtual_tribometer.faults import Fault, FaultyReading
 from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
 from sonolube.laboratory.virtual_tribometer.signals import (
     Approach,
@@ -24,10 +23,9 @@ from sonolube.laboratory.virtual_tribometer.signals import (
     play,
     pulled,
     resonant,
-    waveform,
 )
 from sonolube.laboratory.virtual_tribometer.stick_slip import Bursts, StickSlip
-from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures, Thermocouple
+from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures
 from sonolube.laboratory.virtual_tribometer.truth import TruthSetting, truth_dataset
 from sonolube.models.dynamics.structure import electrical_admittance
 from sonolube.rig import Rig
@@ -45,11 +43,9 @@ CHANNELS: Final = (
     "displacement",
 )
 _NOISES: Final = (*CHANNELS[:7], "friction noise", "ringing", "displacement")
-STREAMS: Final = 13
-"""Streams of random numbers of a virtual rig."""
+_STREAMS: Final = 13  # of random numbers of a virtual rig
 _PHASES: Final = 9  # number of a stream, as those that follow; those of the noises are before them and after
-SIZES_STREAM: Final = 10
-"""Stream of the sizes of the disturbances."""
+_SIZES: Final = 10
 _BURSTS: Final = 11
 _DISPLACEMENT: Final = 12
 _GAUGE_RANGE: Final = 60.0  # N, that the gauge has at least
@@ -63,31 +59,29 @@ class VirtualRig:
     Parameters
     ----------
     rig : Rig
-    friction : FrictionDraw
+    seed : int
     disturbances : Disturbances
-        Of this test.
+        Of tests with the rig; those of this test are drawn about them.
     heating : HeatingAssumptions
-    streams : sequence of numpy.random.SeedSequence
-        `STREAMS` of them.
     groove_diameter : float
         Of the circle under the pin. [m]
     real_time : bool
-    fault : Fault or None
     """
 
     def __init__(
         self,
         rig: Rig,
-        friction: FrictionDraw,
+        seed: int,
         disturbances: Disturbances,
         heating: HeatingAssumptions,
-        streams: Sequence[np.random.SeedSequence],
         groove_diameter: float,
         real_time: bool,
-        fault: Fault | None,
     ) -> None:
+        streams = np.random.SeedSequence(seed).spawn(_STREAMS)
+        disturbances = disturbances.drawn(np.random.default_rng(streams[_SIZES]))
+        friction = FrictionDraw(rig, seed=seed)
         self._rig, self._friction, self._sizes = rig, friction, disturbances
-        self._diameter, self._real_time, self._reading = groove_diameter, real_time, FaultyReading(fault)
+        self._diameter, self._real_time = groove_diameter, real_time
         self._streams = streams
         phases = np.random.default_rng(streams[_PHASES])
         self._bursts = Bursts(np.random.default_rng(streams[_BURSTS]), disturbances.burst_duration)
@@ -105,8 +99,7 @@ class VirtualRig:
         self._turning = Approach(0.0, 0.0, 0.0, disturbances.motor_time)
         self._revolutions, self._began_to_slide, self._volume = 0.0, 0.0, 0.0
         self._ratio = Approach(0.0, 1.0, 1.0, disturbances.vibration_time)
-        thermocouple = Thermocouple(disturbances.contact_share, disturbances.thermocouple_time)
-        self._temperatures = Temperatures(rig, heating, thermocouple)
+        self._temperatures = Temperatures(rig, heating, disturbances)
         self._capacitance = actuator_capacitance(rig)
         self._prepared: list[tuple[DriveSetting | None, float]] = []
         self._admittances: dict[float, complex] = {}
@@ -152,26 +145,21 @@ class VirtualRig:
 
     def stop(self) -> None:
         """End to sample."""
-        self._reading.release()
         self._rate = 0.0
 
     def clock(self) -> float:
         """Time of the devices, by the samples and the prompts. [s]"""
-        return self._time + self._reading.delay
+        return self._time
 
     def read(self, samples: int) -> Block:
         """Next samples."""
         if not self._rate:
             raise DeviceError("virtual acquisition: nothing is sampled; call start first")
         first = self._sample
-        self._reading.begin(first, samples)
         time = self._epoch + (first + np.arange(samples)) / self._rate
         self._sample = first + samples
         self._time = self._epoch + self._sample / self._rate
         values = self._values(time)
-        if "friction_force" in self._names:
-            force = values[:, self._names.index("friction_force")]
-            self._reading.spoil(force, first, highest=self.channels["friction_force"].highest)
         if self._real_time:
             sleep(max(0.0, self._began_at + self._time - self._epoch - monotonic()))
         return Block(first_sample=first, sample_rate=self._rate, values=values)
@@ -358,7 +346,7 @@ class VirtualRig:
         if setting is None:
             return self._sizes.voltage_noise * noise
         half = setting.voltage_peak_to_peak / 2
-        wave = waveform(periods=self._phase(time, setting), shape=setting.waveform)
+        wave = setting.wave(self._phase(time, setting))
         return setting.voltage_offset + half * (wave + self._sizes.voltage_noise * noise)
 
     def _monitor(self, time: Floats) -> Floats:
@@ -375,11 +363,10 @@ class VirtualRig:
         admittance = self._admittance(setting.frequency)
         if admittance is not None and setting.waveform == "sine":
             lead = float(np.angle(admittance)) / (2 * pi)
-            wave = waveform(periods=self._phase(time, setting) + lead, shape="sine")
+            wave = setting.wave(self._phase(time, setting) + lead)
             return np.asarray(noise + abs(admittance) * setting.voltage_peak_to_peak / 2 * wave)
         step = 1 / (400 * setting.frequency)
-        phases = (self._phase(time + shift, setting) for shift in (-step / 2, step / 2))
-        before, after = (waveform(periods=phase, shape=setting.waveform) for phase in phases)
+        before, after = (setting.wave(self._phase(time + shift, setting)) for shift in (-step / 2, step / 2))
         return noise + capacitance * setting.voltage_peak_to_peak / 2 * (after - before) / step
 
     def _admittance(self, frequency: float) -> complex | None:

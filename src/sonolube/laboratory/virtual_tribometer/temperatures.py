@@ -1,6 +1,5 @@
 """Temperatures of actuator, pin and contact of a virtual rig, and the reading of its thermocouple."""
 
-from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
@@ -8,30 +7,14 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
 from sonolube.laboratory.devices import DriveSetting
-from sonolube.laboratory.heating_assumptions import HeatingAssumptions
+from sonolube.laboratory.heating_assumptions import HeatingAssumptions, capacitive_load
+from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
 from sonolube.laboratory.virtual_tribometer.signals import Approach, Lagged
-from sonolube.models.actuator import Drive, amplifier_requirements
 from sonolube.models.thermal import EllipticSource, ThermalSolid, contact_rise
 from sonolube.rig import Rig, thermal_solid
-from sonolube.rig.excitation import DriveVoltage, actuator_capacitance
+from sonolube.rig.excitation import actuator_capacitance
 
 _AT_ONCE = 1e-6  # s, in which the flash rise follows the heat
-
-
-@dataclass(frozen=True, slots=True)
-class Thermocouple:
-    """Place and lag of the thermocouple.
-
-    Parameters
-    ----------
-    contact_share : float
-        0 on the actuator, 1 in the contact.
-    time_constant : float
-        [s]
-    """
-
-    contact_share: float
-    time_constant: float
 
 
 class Temperatures:
@@ -42,7 +25,8 @@ class Temperatures:
     rig : Rig
         Without materials of pin and disc, only the actuator warms.
     assumed : HeatingAssumptions
-    thermocouple : Thermocouple
+    sizes : Disturbances
+        Place and lag of the thermocouple.
 
     Notes
     -----
@@ -50,11 +34,11 @@ class Temperatures:
     contact follows its heat at once. Heat of friction is the mean force of the present setting times the speed.
     """
 
-    def __init__(self, rig: Rig, assumed: HeatingAssumptions, thermocouple: Thermocouple) -> None:
-        self._rig, self._assumed, self._share = rig, assumed, thermocouple.contact_share
+    def __init__(self, rig: Rig, assumed: HeatingAssumptions, sizes: Disturbances) -> None:
+        self._rig, self._assumed, self._share = rig, assumed, sizes.contact_share
         self._capacitance = actuator_capacitance(rig) or 0.0
         self._bodies = _bodies(rig, assumed)
-        lag = thermocouple.time_constant
+        lag = sizes.thermocouple_time
         times = (
             assumed.actuator_heat_capacity / assumed.actuator_conductance,
             assumed.pin_heat_capacity / assumed.pin_conductance,
@@ -67,12 +51,21 @@ class Temperatures:
     def set(self, time: float, *, setting: DriveSetting | None, friction_force: float, sliding_speed: float) -> float:
         """Steady flash rise of a setting, whose heat counts from a time on; NaN where it is unknown. [K]"""
         assumed, heat = self._assumed, friction_force * sliding_speed
-        loss = assumed.loss_factor * capacitive_power(setting, capacitance=self._capacitance)
+        loss = 0.0 if setting is None else assumed.loss_factor * self._capacitive_power(setting)
         partition, flash = self._contact(heat, sliding_speed)
         self._actuator = self._actuator.towards(loss / assumed.actuator_conductance, time=time)
         self._pin = self._pin.towards(partition * heat / assumed.pin_conductance, time=time)
         self._flash = self._flash.towards(0.0 if np.isnan(flash) else flash, time=time)
         return flash
+
+    def _capacitive_power(self, setting: DriveSetting) -> float:
+        """Root-mean-square alternating voltage times root-mean-square current of the actuator as a capacitance. [W]"""
+        return capacitive_load(
+            capacitance=self._capacitance,
+            frequency=setting.frequency,
+            voltage_peak_to_peak=setting.voltage_peak_to_peak,
+            waveform=setting.waveform,
+        ).apparent_power
 
     def reading(self, time: Floats) -> Floats:
         """Temperature that the thermocouple reads. [K]"""
@@ -94,19 +87,6 @@ class Temperatures:
         source = EllipticSource(half_length=radius, half_width=radius)
         found = contact_rise(*self._bodies, source, heat_rate=heat, sliding_speed=sliding_speed)
         return float(found.heat_partition), float(found.mean_temperature_rise)
-
-
-def capacitive_power(setting: DriveSetting | None, *, capacitance: float) -> float:
-    """Root-mean-square alternating voltage times root-mean-square current of a capacitance; 0 for off. [W]"""
-    if setting is None:
-        return 0.0
-    drive = Drive(
-        frequency=setting.frequency, voltage_peak_to_peak=setting.voltage_peak_to_peak, waveform=setting.waveform
-    )
-    harmonics = np.atleast_1d(DriveVoltage(drive=drive).harmonics())
-    admittance = 2j * pi * setting.frequency * capacitance * np.arange(1, harmonics.size + 1)
-    need = amplifier_requirements(admittance=admittance, voltage_amplitude=harmonics, frequency=setting.frequency)
-    return need.apparent_power
 
 
 def _bodies(rig: Rig, assumed: HeatingAssumptions) -> tuple[ThermalSolid, ThermalSolid] | None:

@@ -3,21 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
-from sonolube.laboratory.virtual_tribometer.faults import Fault
-from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
-from sonolube.laboratory.virtual_tribometer.simulation import (
-    CHANNELS,
-    SIZES_STREAM,
-    STREAMS,
-    VOLTAGE_MAXIMUM,
-    VirtualRig,
-)
+from sonolube.laboratory.virtual_tribometer.simulation import CHANNELS, VOLTAGE_MAXIMUM, VirtualRig
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
 
@@ -38,7 +28,6 @@ def virtual_tribometer(
     real_time: bool = False,
     disturbances: Disturbances | None = None,
     groove_diameter: float = GROOVE_DIAMETER,
-    fault: Fault | None = None,
     heating: HeatingAssumptions | None = None,
 ) -> "VirtualTribometer":
     """Virtual tribometer of a rig.
@@ -55,8 +44,6 @@ def virtual_tribometer(
         Of tests with the rig; those of this test scatter about them. The usual ones by default.
     groove_diameter : float
         Of the circle under the pin. [m]
-    fault : Fault, optional
-        Of the hardware.
     heating : HeatingAssumptions, optional
         Thermal properties that a rig file does not hold; as in a dry run by default.
 
@@ -69,11 +56,8 @@ def virtual_tribometer(
     InvalidInput
         If the rig does not slide, does not vibrate or has no drive.
     """
-    streams = np.random.SeedSequence(seed).spawn(STREAMS)
-    drawn = (disturbances or Disturbances()).drawn(np.random.default_rng(streams[SIZES_STREAM]))
-    assumed = heating or HeatingAssumptions()
-    friction = FrictionDraw(rig, seed=seed)
-    virtual = VirtualRig(rig, friction, drawn, assumed, streams, groove_diameter, real_time, fault)
+    sizes, assumed = disturbances or Disturbances(), heating or HeatingAssumptions()
+    virtual = VirtualRig(rig, seed, sizes, assumed, groove_diameter, real_time)
     described = {"device": "virtual tribometer", "rig": rig.title, "seed": str(seed)}
     return VirtualTribometer(virtual, described, groove_diameter)
 
@@ -181,7 +165,7 @@ class _Drive(_Connected):
     def drive(self, setting: DriveSetting) -> None:
         """Set the output."""
         self._require_connected()
-        reached = abs(setting.voltage_offset) + setting.voltage_peak_to_peak / 2
+        reached = setting.voltage_maximum
         if not (setting.voltage_peak_to_peak >= 0 and reached <= VOLTAGE_MAXIMUM):
             wanted, most = format_si(reached, "V"), format_si(VOLTAGE_MAXIMUM, "V")
             raise DeviceError(f"{self.name}: {wanted} is refused; it gives 0 to {most}, the offset included")
