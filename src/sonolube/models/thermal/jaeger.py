@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import quad_vec
-from scipy.special import erf
+from scipy.special import erf, k0e, k1e
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.models.thermal.jaeger_integral import moving_band_integrals
 from sonolube.models.thermal.solid import ThermalSolid
 from sonolube.models.thermal.source import RectangularSource
 
@@ -67,8 +66,7 @@ def moving_band_rise(
     v = require_positive(sliding_speed=sliding_speed)
     x = require_finite(distance_ahead=distance_ahead)
     per_length = v / (2 * solid.thermal_diffusivity)
-    lower, upper = np.broadcast_arrays(per_length * (x - b), per_length * (x + b))
-    integral = moving_band_integrals(lower.ravel(), upper.ravel()).reshape(lower.shape)
+    integral = _antiderivative(per_length * (x + b)) - _antiderivative(per_length * (x - b))
     return q / (np.pi * solid.thermal_conductivity * per_length) * integral
 
 
@@ -149,3 +147,10 @@ def moving_rectangle_rise(
 
     integral, _ = quad_vec(integrand, 0.0, oldest, epsabs=_TOLERANCE, epsrel=_TOLERANCE, limit=2000)
     return np.asarray(q * b / (2 * np.sqrt(np.pi) * solid.thermal_conductivity) * integral)
+
+
+def _antiderivative(u: Floats) -> Floats:
+    """Antiderivative u exp(-u) (K0(abs u) - sgn(u) K1(abs u)) of exp(-u) K0(abs u), -1 at zero."""
+    s = np.maximum(np.abs(u), np.finfo(np.float64).tiny)
+    k0, k1 = k0e(s), k1e(s)  # times exp(s)
+    return np.asarray(np.where(u < 0, -s * (k0 + k1), s * np.exp(-2 * s) * (k0 - k1)))
