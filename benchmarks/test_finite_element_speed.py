@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy import sparse
+from tests.models.fem.ritz import rectangular_section, ritz_frequencies
 
 from sonolube.checks import Floats
 from sonolube.facts.materials import piezo_ceramic
@@ -44,9 +45,7 @@ from sonolube.models.fem import (
     hexagon,
     isotropic_medium,
     poled_medium,
-    rectangular_section,
     reduce_model,
-    ritz_frequencies,
     translate,
 )
 from sonolube.models.fem.solver.modes import spectral_shift

@@ -1,12 +1,4 @@
-from .bulk import (
-    HeatedDisc as HeatedDisc,
-    HeatedPin as HeatedPin,
-    disc_track_rise as disc_track_rise,
-    half_space_rise as half_space_rise,
-    lumped_rise as lumped_rise,
-    pin_conductance as pin_conductance,
-    pin_rise as pin_rise,
-)
+from .bulk import HeatedPin as HeatedPin, pin_conductance as pin_conductance, pin_rise as pin_rise
 from .contact_history import (
     ContactTemperatureHistory as ContactTemperatureHistory,
     HeatedContact as HeatedContact,

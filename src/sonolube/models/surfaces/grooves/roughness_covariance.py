@@ -11,6 +11,7 @@ from scipy import fft, stats
 from sonolube.checks import Floats
 from sonolube.models.surfaces.grooves.plane_coordinates import block_edges
 from sonolube.models.surfaces.height_map import HeightMap, Mask
+from sonolube.models.surfaces.spectrum import half_spectrum_multiplicity
 
 __all__: list[str] = []  # used in this room only
 
@@ -64,7 +65,7 @@ class RoughnessCovariance:
         """
         shape = _padded(first.shape[1:])
         cross = fft.rfft2(first, shape) * np.conj(fft.rfft2(second, shape))
-        weight = cross.real * _doubled(shape)
+        weight = cross.real * half_spectrum_multiplicity(shape[1])
         theta = self.parameters
 
         def value(parameters: Floats) -> Floats:
@@ -151,7 +152,7 @@ def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> Ro
     counted_waves = (periods_y[:, None] > _LOWEST) | (periods_x > _LOWEST)
     counted_waves &= (periods_y[:, None] < _HIGHEST * mean.shape[0] / 2) & (periods_x < _HIGHEST * mean.shape[1] / 2)
     used = np.flatnonzero(counted_waves)
-    weight = np.broadcast_to(_doubled(shape), counted_waves.shape).take(used)
+    weight = np.broadcast_to(half_spectrum_multiplicity(shape[1]), counted_waves.shape).take(used)
     weight *= total / math.prod(shape) / 2  # as many as there are cells, in pairs
     periodogram = np.abs(fft.rfft2(mean, shape).take(used)) ** 2 / total
     variance = max(float(np.sum(mean**2)) / total, np.finfo(float).tiny)
@@ -240,15 +241,6 @@ def _scored(
 def _padded(shape: tuple[int, ...]) -> tuple[int, int]:
     """Shape of the periodic grid on which sums over the cells do not wrap round."""
     return (fft.next_fast_len(2 * shape[-2], real=True), fft.next_fast_len(2 * shape[-1], real=True))
-
-
-def _doubled(shape: tuple[int, int]) -> Floats:
-    """Multiplicity of each wave of a real transform in a sum over all waves."""
-    twice = np.full(shape[1] // 2 + 1, 2.0)
-    twice[0] = 1.0
-    if shape[1] % 2 == 0:
-        twice[-1] = 1.0
-    return twice[None, :]
 
 
 def _lags(spectrum: Floats, shape: tuple[int, int]) -> Floats:
