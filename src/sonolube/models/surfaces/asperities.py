@@ -225,13 +225,8 @@ def nayak_summit_statistics(moments: SpectralMoments) -> SummitStatistics:
     )
 
 
-def _from_moments(surface: HeightMap) -> SummitStatistics:
-    """Summit statistics by Nayak's theory from the moments of a height map."""
-    return nayak_summit_statistics(spectral_moments(surface))
-
-
 _METHODS: Mapping[str, Callable[[HeightMap], SummitStatistics]] = MappingProxyType(
-    {"summits": summit_statistics, "moments": _from_moments}
+    {"summits": summit_statistics, "moments": lambda surface: nayak_summit_statistics(spectral_moments(surface))}
 )
 
 
