@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy import sparse
+from tests.models.fem.direct_response import direct_response
 from tests.models.fem.ritz import rectangular_section, ritz_frequencies
 
 from sonolube.checks import Floats
@@ -38,7 +39,6 @@ from sonolube.models.fem import (
     box_mesh,
     change_order,
     converged_modes,
-    direct_response,
     generate_mesh,
     grade_reentrant_edges,
     harmonic_response,

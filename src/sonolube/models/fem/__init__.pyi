@@ -65,11 +65,7 @@ from .solver.convergence import (
     extrapolate_frequencies as extrapolate_frequencies,
 )
 from .solver.forced_vibration import forced_response as forced_response
-from .solver.harmonic_analysis import (
-    HarmonicResponse as HarmonicResponse,
-    direct_response as direct_response,
-    harmonic_response as harmonic_response,
-)
+from .solver.harmonic_analysis import HarmonicResponse as HarmonicResponse, harmonic_response as harmonic_response
 from .solver.krylov import krylov_reduction as krylov_reduction
 from .solver.medium import (
     Medium as Medium,

@@ -5,6 +5,7 @@ import pytest
 from pytest import approx, raises
 from scipy.sparse import block_array
 from scipy.sparse.linalg import splu
+from tests.models.fem.direct_response import direct_response
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import coupling_factors, piezo_ceramic
@@ -17,7 +18,6 @@ from sonolube.models.fem import (
     box_mesh,
     change_order,
     coupled_resonances,
-    direct_response,
     generate_mesh,
     harmonic_response,
     isotropic_medium,
