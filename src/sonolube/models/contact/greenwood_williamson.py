@@ -1,15 +1,6 @@
-r"""Rough contact and its Greenwood-Williamson integrals: force, area and number of asperities over their heights.
+"""Rough contact and its Greenwood-Williamson integrals: force, area and number of asperities over their heights.
 
-With the normalized separation h = d/R_q, the density phi of summit heights, and an asperity that carries the force f on
-the area a at the interference w, the sums over all asperities are
-
-.. math::
-
-    F_n(h) &= \eta A_n \int_0^\infty f(w)\, \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q} \\
-    A_r(h) &= \eta A_n \int_0^\infty a(w)\, \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q} \\
-    n(h) &= \eta A_n \int_0^\infty \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
-
-They are computed by Gauss-Legendre quadrature on panels that end at the breakpoints of the asperity law, however small
+The integrals are computed by Gauss-Legendre quadrature on panels that end at the breakpoints of the asperity law, however small
 the critical interference. Under exponential heights every integral is its value at zero separation times
 exp(-lambda h); under other height distributions it is tabulated once, as a spline of its logarithm.
 
@@ -174,9 +165,20 @@ class LogSpline:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GreenwoodWilliamsonIntegrals:
-    """Sums over all asperities of a rough contact, as functions of the separation over R_q.
+    r"""Sums over all asperities of a rough contact, as functions of the separation over R_q.
 
     `lowest` and `highest` bound the separations over R_q for which the functions hold.
+
+    Notes
+    -----
+    With the normalized separation h = d/R_q, the density phi of summit heights, and an asperity that carries the force
+    f on the area a at the interference w,
+
+    .. math::
+
+        F_n(h) &= \eta A_n \int_0^\infty f(w)\, \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q} \\
+        A_r(h) &= \eta A_n \int_0^\infty a(w)\, \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q} \\
+        n(h) &= \eta A_n \int_0^\infty \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
     """
 
     lowest: float

@@ -1,13 +1,4 @@
-r"""Heat sources on a half-space: geometry, and the limits of their surface temperature at low and high Peclet number.
-
-Rises are dimensionless, in units of :math:`\bar q b/k` with the mean flux :math:`\bar q`, the half length b along the
-sliding and the conductivity k. With the Peclet number Pe the limits are
-
-.. math::
-
-    \frac{\Delta T}{\bar q b/k} \to c_0 \quad (\mathrm{Pe} \to 0) , \qquad
-    \frac{\Delta T}{\bar q b/k} \to \frac{c_\infty}{\sqrt{\mathrm{Pe}}} \quad (\mathrm{Pe} \to \infty) .
-"""
+"""Heat sources on a half-space: geometry, and the limits of their surface temperature at low and high Peclet number."""
 
 import math
 from abc import ABC, abstractmethod
@@ -46,9 +37,7 @@ _MEAN_TO_PEAK_HERTZ = 16 / (5 * math.pi) * _beta(1 / 2, 9 / 4) / math.sqrt(math.
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HeatSource(ABC):
-    """Heat flux distributed over a patch of a half-space, with the low- and high-Peclet limits of its temperature.
-
-    Rises are in units of mean flux times `half_length` over thermal conductivity.
+    r"""Heat flux distributed over a patch of a half-space, with the low- and high-Peclet limits of its temperature.
 
     Parameters
     ----------
@@ -61,6 +50,16 @@ class HeatSource(ABC):
         Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity.
     mean_to_peak_high_peclet : float
         Mean over peak rise for Pe to infinity.
+
+    Notes
+    -----
+    Rises are dimensionless, in units of :math:`\bar q b/k` with the mean flux :math:`\bar q`, the half length b along
+    the sliding and the conductivity k. With the Peclet number Pe the limits are
+
+    .. math::
+
+        \frac{\Delta T}{\bar q b/k} \to c_0 \quad (\mathrm{Pe} \to 0) , \qquad
+        \frac{\Delta T}{\bar q b/k} \to \frac{c_\infty}{\sqrt{\mathrm{Pe}}} \quad (\mathrm{Pe} \to \infty) .
     """
 
     half_length: float

@@ -35,10 +35,9 @@ def coupled_resonances(model: ReducedModel) -> tuple[Floats, Floats, Floats]:
 
     .. math:: k_\mathrm{eff} = \sqrt{1 - (f_s/f_p)^2}
     """
-    squares, shapes = np.linalg.eigh(model.stiffness.real)
+    squares, shapes = undamped_modes(model)
     drive = shapes.T @ model.drive.real
     capacitance = model.clamped_capacitance.real
-    squares = np.where(squares > _RIGID * squares.max(), squares, 0.0)
     driven = drive**2 > _UNCOUPLED * capacitance * squares
     driven &= squares > 0
     own = drive[driven]
@@ -47,3 +46,9 @@ def coupled_resonances(model: ReducedModel) -> tuple[Floats, Floats, Floats]:
     ratio = np.divide(squares, opened, out=np.ones_like(opened), where=opened > 0)
     coupling = np.sqrt(np.clip(1 - ratio, 0.0, 1.0))
     return np.sqrt(squares) / (2 * np.pi), np.sqrt(opened) / (2 * np.pi), coupling
+
+
+def undamped_modes(model: ReducedModel) -> tuple[Floats, Floats]:
+    """Squared angular frequencies of the modes without losses, zero for rigid-body ones, and their shapes, in columns."""
+    squares, shapes = np.linalg.eigh(model.stiffness.real)
+    return np.where(squares > _RIGID * squares.max(), squares, 0.0), shapes

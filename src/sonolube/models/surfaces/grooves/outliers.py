@@ -6,8 +6,6 @@ from scipy.ndimage import median_filter, uniform_filter
 from sonolube.models.surfaces.form_removal import robust_deviation
 from sonolube.models.surfaces.height_map import HeightMap
 
-__all__: list[str] = []  # used in this room only
-
 _DEVIATIONS = 8.0  # over the standard deviation of heights about the median of their neighbours
 _COMMON = 4.0  # over the deviation that 2 % of the pixels exceed
 _LEAST = 0.05  # of the range of heights: the kink of an edge is less
