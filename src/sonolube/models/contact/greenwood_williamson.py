@@ -1,4 +1,4 @@
-"""Rough contact and its Greenwood-Williamson integrals: force, area and number of asperities over their heights.
+"""Rough contact and its Greenwood-Williamson integrals: force, area and number of all asperities.
 
 The integrals are computed by Gauss-Legendre quadrature on panels that end at the breakpoints of the asperity law, however small
 the critical interference. Under exponential heights every integral is its value at zero separation times
