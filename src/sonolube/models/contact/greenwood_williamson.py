@@ -1,7 +1,7 @@
 """Rough contact and its Greenwood-Williamson integrals: force, area and number of all asperities.
 
-The integrals are computed by Gauss-Legendre quadrature on panels that end at the breakpoints of the asperity law, however small
-the critical interference. Under exponential heights every integral is its value at zero separation times
+They are computed by Gauss-Legendre quadrature on panels that end at the breakpoints of the asperity law, be
+the critical interference ever so small. Under exponential heights every integral is its value at zero separation times
 exp(-lambda h); under other height distributions it is tabulated once, as a spline of its logarithm.
 
 References

@@ -19,7 +19,7 @@ from .flash import (
     peclet_number as peclet_number,
 )
 from .flash_models import FLASH_MODELS as FLASH_MODELS
-from .jaeger import moving_band_rise as moving_band_rise, moving_rectangle_rise as moving_rectangle_rise
+from .jaeger import moving_rectangle_rise as moving_rectangle_rise
 from .network import ThermalNetwork as ThermalNetwork, network_rise as network_rise
 from .solid import ThermalSolid as ThermalSolid
 from .source import (

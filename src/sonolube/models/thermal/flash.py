@@ -195,7 +195,7 @@ def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike,
     --------
     low_peclet_rise, high_peclet_rise : the limits between which this interpolates.
     moving_ellipse_rise : without the error of the interpolation, for a uniform elliptic source.
-    moving_band_rise, moving_rectangle_rise : the integrals that this approximates.
+    moving_rectangle_rise : the integral that this approximates.
 
     Notes
     -----

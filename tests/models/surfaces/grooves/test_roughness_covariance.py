@@ -78,8 +78,8 @@ def test_the_variance_of_a_mean_is_estimated_from_one_map_within_its_uncertainty
     for seed in range(20):
         found = fitted(drawn_map(seed))
         variance, derivative = found.variance(weights)
-        logarithms.append(math.log(variance[0] / exact))
-        scores.append(logarithms[-1] / found.uncertainty(float(variance[0]), derivative[0]))
+        logarithms.append(math.log(variance / exact))
+        scores.append(logarithms[-1] / found.uncertainty(variance, derivative))
     assert np.mean(logarithms) == approx(0.0, abs=0.1)
     assert 0.5 < math.sqrt(np.mean(np.square(scores))) < 1.6
 

@@ -49,6 +49,6 @@ def coupled_resonances(model: ReducedModel) -> tuple[Floats, Floats, Floats]:
 
 
 def undamped_modes(model: ReducedModel) -> tuple[Floats, Floats]:
-    """Squared angular frequencies of the modes without losses, zero for rigid-body ones, and their shapes, in columns."""
+    """Squared angular frequencies of the modes without losses, zero for rigid-body ones, and shapes in columns."""
     squares, shapes = np.linalg.eigh(model.stiffness.real)
     return np.where(squares > _RIGID * squares.max(), squares, 0.0), shapes

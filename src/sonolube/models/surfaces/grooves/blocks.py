@@ -161,7 +161,8 @@ def block_averages(
     unworn, groove = block_means(fields[:4], counted & ~inside, edges), block_means(fields, worn, edges)
     if unworn.shape[1] < _MIN_UNWORN:
         raise InvalidInput(f"only {unworn.shape[1]} blocks of {longer / _BLOCKS:.2g} m are unworn; scan a wider field")
-    kept = np.abs(groove[2]) < _OUTLIER * _block_deviation(unworn[2], groove[2])
+    deviation = max(float(np.std(unworn[2])), robust_deviation(groove[2]) if groove.size else 0.0)
+    kept = np.abs(groove[2]) < _OUTLIER * deviation
     groove = groove[:, kept]
     free = np.empty((0, 0))
     if groove.size:
@@ -194,11 +195,6 @@ def _labels(masks: tuple[Mask, Mask], kept: Mask, edges: list[NDArray[np.intp]],
         of_cell[np.flatnonzero(np.bincount(cell[mask]))] = numbers
         labels[mask] = of_cell[cell[mask]]
     return labels
-
-
-def _block_deviation(unworn: Floats, groove: Floats) -> float:
-    """Standard deviation of the unworn blocks or of those of the groove about its mean section, the larger."""
-    return max(float(np.std(unworn)), robust_deviation(groove) if groove.size else 0.0)
 
 
 def _hat_functions(at: Floats, step: float) -> Floats:

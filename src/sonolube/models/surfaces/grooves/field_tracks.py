@@ -110,7 +110,8 @@ def field_tracks(surface: HeightMap) -> FieldTracks:
         troughs = _troughs(detected)
         deepest = max([trough.depth for trough in troughs] + [track.groove_depth for track in found])
         for trough in troughs:
-            if not _counts(rest, transverse, arc_length, trough, deepest, first=not (found or others)):
+            long = not (found or others) or _length(rest, transverse, arc_length, trough) >= _MIN_LENGTH
+            if not long or trough.depth < _MIN_DEPTH * deepest:
                 continue
             if feature := _other_feature(rest, transverse, arc_length, trough):
                 others.append(feature)
@@ -234,14 +235,6 @@ def _other_feature(surface: HeightMap, transverse: Floats, arc_length: Floats, t
         return ""
     length = present / _SEGMENTS * (stop - start)
     return f"{size} is only {1e3 * length:.2g} mm long, where a track crosses the field: a scratch or a pit"
-
-
-def _counts(
-    surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough, deepest: float, *, first: bool
-) -> bool:
-    """Whether a trough is deep enough beside the deepest and, after the first, long enough in the field."""
-    long = first or _length(surface, transverse, arc_length, trough) >= _MIN_LENGTH
-    return long and trough.depth >= _MIN_DEPTH * deepest
 
 
 def _length(surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough) -> float:
