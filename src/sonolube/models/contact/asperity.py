@@ -2,8 +2,8 @@
 
 Every law gives two ratios as functions of the interference w over the critical interference w_c, at which yielding
 begins: the force over that of an elastic sphere of the same radius (`force_ratio`), and the contact area over that of
-the sphere (`area_ratio`). `sonolube.models.contact.single_asperity` evaluates force and area with them. A new law takes
-one file `contact/asperity_laws/NAME.py` with its class, and one line of `ASPERITY_LAWS`; nothing else names a law.
+the sphere (`area_ratio`). `asperity_force` and `asperity_area` evaluate force and area with them. A new law takes one
+file `contact/asperity_laws/NAME.py` with its class, and one line of `ASPERITY_LAWS`; nothing else names a law.
 """
 
 import math

@@ -97,8 +97,7 @@ def summit_statistics(surface: HeightMap) -> SummitStatistics:
     See Also
     --------
     nayak_summit_statistics : The same from spectral moments, for an isotropic Gaussian surface.
-    sonolube.models.surfaces.features.feature_parameters : Density of significant peaks Spd, which is not the summit
-    density.
+    sonolube.models.surfaces.feature_parameters : Density of significant peaks Spd, which is not the summit density.
 
     Notes
     -----
