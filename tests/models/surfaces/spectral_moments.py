@@ -1,8 +1,15 @@
-"""Spectral moments m0, m2 and m4 of the spectra of random surfaces in closed form."""
+"""Spectral moments m0, m2 and m4 of the spectra of random surfaces in closed form, and as integrals of a spectrum."""
 
 import math
 
-from sonolube.models.surfaces import GaussianCorrelationSpectrum, HeightSpectrum, SelfAffineSpectrum, SpectralMoments
+from sonolube.models.surfaces import (
+    ArealSpectrum,
+    GaussianCorrelationSpectrum,
+    HeightSpectrum,
+    SelfAffineSpectrum,
+    SpectralMoments,
+)
+from sonolube.models.surfaces.spectrum import half_spectrum_multiplicity
 
 
 def moments(spectrum: HeightSpectrum, *, rms_height: float) -> SpectralMoments:
@@ -31,3 +38,17 @@ def _radial_integral(spectrum: SelfAffineSpectrum, power: int) -> float:
     exponent = power - 1 - 2 * spectrum.hurst_exponent
     decay = math.log(high / rolloff) if exponent == 0 else (high**exponent - rolloff**exponent) / exponent
     return float(plateau + rolloff ** (2 + 2 * spectrum.hurst_exponent) * decay)
+
+
+def moments_of_spectrum(spectrum: ArealSpectrum) -> SpectralMoments:
+    """Spectral moments as integrals of an areal power spectrum, averaged over both directions."""
+    multiplicity = half_spectrum_multiplicity(spectrum.columns)
+    density = spectrum.areal_spectral_density
+    along_x, along_y = multiplicity * density.sum(axis=0), density @ multiplicity
+    step = spectrum.height_variance / along_x.sum()
+    qx, qy = 2 * math.pi * spectrum.wavenumber_x, 2 * math.pi * spectrum.wavenumber_y
+    return SpectralMoments(
+        height_variance=spectrum.height_variance,
+        slope_variance=float(step * (along_x @ qx**2 + along_y @ qy**2) / 2),
+        curvature_variance=float(step * (along_x @ qx**4 + along_y @ qy**4) / 2),
+    )

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from pytest import approx, mark, raises
-from tests.models.surfaces.spectral_moments import moments
+from tests.models.surfaces.spectral_moments import moments, moments_of_spectrum
 
 from sonolube.errors import InvalidInput
 from sonolube.models.surfaces import (
@@ -13,7 +13,6 @@ from sonolube.models.surfaces import (
     SelfAffineSpectrum,
     areal_spectrum,
     gaussian_surface,
-    moments_of_spectrum,
     profile_spectrum,
     radial_spectrum,
 )
@@ -108,9 +107,3 @@ def test_a_line_an_unknown_window_or_direction_are_refused() -> None:
         profile_spectrum(RANDOM, along="x")  # type: ignore[arg-type]
     with raises(InvalidInput, match="two measured pixels"):
         profile_spectrum(line, along="columns")
-
-
-def test_a_flat_map_has_no_moments() -> None:
-    flat = HeightMap(height=np.ones((8, 8)), spacing_x=DX, spacing_y=DY)
-    with raises(InvalidInput, match="height_variance must be positive"):
-        moments_of_spectrum(areal_spectrum(flat))

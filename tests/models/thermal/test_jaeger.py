@@ -26,7 +26,7 @@ def band_rise(place: Floats, *, speed: float) -> Floats:
 
     def antiderivative(u: Floats) -> Floats:
         s = np.abs(u)
-        return np.where(u < 0, -s * (k0e(s) + k1e(s)), s * np.exp(-2 * s) * (k0e(s) - k1e(s)))
+        return np.asarray(np.where(u < 0, -s * (k0e(s) + k1e(s)), s * np.exp(-2 * s) * (k0e(s) - k1e(s))))
 
     integral = antiderivative(per_length * (place + HALF)) - antiderivative(per_length * (place - HALF))
     return FLUX / (np.pi * STEEL.thermal_conductivity * per_length) * integral

@@ -325,7 +325,7 @@ def _elements(network: MatchingNetwork, frequency: ArrayLike) -> tuple[Complexes
     )
 
 
-def _immittance(s: Complexes, *, rising: float | None, falling: float | None) -> Complexes:
+def _immittance(s: NDArray[np.complexfloating[Any, Any]], *, rising: float | None, falling: float | None) -> Complexes:
     """Immittance s r of an element that rises with the frequency, or 1/(s f) of one that falls; zero without either."""
     if falling is not None:
         return np.asarray(1 / (s * falling))

@@ -88,7 +88,6 @@ from .spectrum import (
     RadialSpectrum as RadialSpectrum,
     SpectralMoments as SpectralMoments,
     areal_spectrum as areal_spectrum,
-    moments_of_spectrum as moments_of_spectrum,
     profile_spectrum as profile_spectrum,
     profiles as profiles,
     radial_spectrum as radial_spectrum,

@@ -1,4 +1,4 @@
-"""Power spectral densities of a height map, areal, radial and of profiles, and spectral moments by integration."""
+"""Power spectral densities of a height map, areal, radial and of profiles, and spectral moments of a surface."""
 
 import math
 from dataclasses import asdict, dataclass
@@ -239,45 +239,6 @@ def profile_spectrum(
         wavenumber=fft.rfftfreq(points, spacing),
         profile_spectral_density=density,
         height_variance=float(half_spectrum_multiplicity(points) @ density) / (points * spacing),
-    )
-
-
-def moments_of_spectrum(spectrum: ArealSpectrum) -> SpectralMoments:
-    r"""Spectral moments m0, m2 and m4 as integrals of the areal power spectrum, averaged over both directions.
-
-    Parameters
-    ----------
-    spectrum : ArealSpectrum
-
-    Returns
-    -------
-    SpectralMoments
-
-    Raises
-    ------
-    InvalidInput
-        If a moment is zero, as for a flat map or a line.
-
-    See Also
-    --------
-    sonolube.models.surfaces.asperities.spectral_moments : By finite differences, which damp the shortest wavelengths.
-
-    Notes
-    -----
-    .. math:: m_n = \frac12 \iint \left[(2\pi k_x)^n + (2\pi k_y)^n\right] C \,\mathrm{d}k_x \mathrm{d}k_y,
-        \qquad n = 2, 4 .
-
-    In m4 the shortest wavelengths of the map, noise included, have the largest weight.
-    """
-    multiplicity = half_spectrum_multiplicity(spectrum.columns)
-    density = spectrum.areal_spectral_density
-    along_x, along_y = multiplicity * density.sum(axis=0), density @ multiplicity
-    step = spectrum.height_variance / (along_x.sum() or 1.0)
-    qx, qy = 2 * math.pi * spectrum.wavenumber_x, 2 * math.pi * spectrum.wavenumber_y
-    return SpectralMoments(
-        height_variance=spectrum.height_variance,
-        slope_variance=float(step * (along_x @ qx**2 + along_y @ qy**2) / 2),
-        curvature_variance=float(step * (along_x @ qx**4 + along_y @ qy**4) / 2),
     )
 
 
