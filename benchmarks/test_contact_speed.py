@@ -16,7 +16,6 @@ from sonolube.models.contact import (
     HeightDistribution,
     RoughContact,
     asperity_force,
-    height_density,
     normal_force,
     normal_stiffness,
     real_contact_area,
@@ -47,7 +46,7 @@ def solve_one_by_one(contact: RoughContact, loads: np.ndarray) -> None:
     def force(h: float) -> float:
         def integrand(w: float) -> float:
             one = asperity_force(contact.asperity, contact.pair, summit_radius=radius, interference=w * deviation)
-            return float(one * height_density(contact.heights, normalized_height=h + w))
+            return float(one * np.exp(contact.heights.log_density(np.asarray(h + w))))
 
         return float(summits * quad(integrand, 0, 10, epsrel=1e-8, limit=200)[0])
 

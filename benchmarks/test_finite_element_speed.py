@@ -21,6 +21,8 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy import sparse
+from tests.models.fem.direct_response import direct_response
+from tests.models.fem.ritz import rectangular_section, ritz_frequencies
 
 from sonolube.checks import Floats
 from sonolube.facts.materials import piezo_ceramic
@@ -37,16 +39,13 @@ from sonolube.models.fem import (
     box_mesh,
     change_order,
     converged_modes,
-    direct_response,
     generate_mesh,
     grade_reentrant_edges,
     harmonic_response,
     hexagon,
     isotropic_medium,
     poled_medium,
-    rectangular_section,
     reduce_model,
-    ritz_frequencies,
     translate,
 )
 from sonolube.models.fem.solver.modes import spectral_shift

@@ -21,9 +21,6 @@ from sonolube.models.thermal import (
     ThermalSolid,
     contact_rise,
     flash_rise,
-    half_space_rise,
-    lumped_rise,
-    moving_band_rise,
     pin_rise,
     superimposed_heat_rate,
 )
@@ -41,11 +38,6 @@ HEAT, SPEED, SHARE = (DRAWN.uniform(low, high, POINTS) for low, high in ((1e5, 1
 FORMS: dict[str, Callable[[], object]] = {
     "flash_rise": lambda: flash_rise(STEEL, DOT, heat_flux=HEAT, sliding_speed=SPEED),
     "contact_rise": lambda: contact_rise(STEEL, STEEL, DOT, heat_rate=SHARE, sliding_speed=SPEED),
-    "moving_band_rise": lambda: moving_band_rise(
-        STEEL, heat_flux=HEAT, half_length=1e-4, sliding_speed=SPEED, distance_ahead=0.0
-    ),
-    "half_space_rise": lambda: half_space_rise(STEEL, heat_flux=HEAT, time=SPEED, depth=1e-4),
-    "lumped_rise": lambda: lumped_rise(heat_rate=SHARE, thermal_conductance=0.05, heat_capacity=1.5, time=SPEED),
     "pin_rise": lambda: pin_rise(PIN, heat_rate=SHARE, depth=0.01 * SPEED),
     "superimposed_heat_rate": lambda: superimposed_heat_rate(
         friction_force=SHARE, sliding_speed=SPEED, vibration_velocity=SHARE

@@ -20,7 +20,6 @@ from sonolube.execution.compilation import few_points, kernel
 from sonolube.execution.threads import map_chunks
 from sonolube.models.contact import GaussianHeights, normal_force
 from sonolube.models.contact.greenwood_williamson import log_normal_force_function
-from sonolube.models.contact.rough import summit_population
 from sonolube.models.dynamics.harmonic_balance.bessel import wright_omega
 from sonolube.models.friction import sine_stick_slip_ratio
 from sonolube.models.friction.scaled_bessel import scaled_bessel_i0
@@ -177,4 +176,4 @@ def test_the_force_without_a_table_is_that_of_the_table() -> None:
     gaussian = replace(contact, heights=GaussianHeights.from_roughness_parameter(roughness_parameter=0.05))
     h = np.linspace(-3, 12, 40)
     by_table = np.log(normal_force(gaussian, separation=h * contact.roughness.rms_height))
-    assert log_normal_force_function(**summit_population(gaussian))(h) == approx(by_table, abs=1e-10)
+    assert log_normal_force_function(gaussian)(h) == approx(by_table, abs=1e-10)

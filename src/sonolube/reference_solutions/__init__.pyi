@@ -1,7 +1,6 @@
 from .boundary_element import (
     BoundaryElementContact as BoundaryElementContact,
     boundary_element_contact as boundary_element_contact,
-    mirror_extension as mirror_extension,
 )
 from .figures import (
     comparison_figure as comparison_figure,

@@ -48,7 +48,7 @@ def boundary_element_contact(
     Parameters
     ----------
     surface : HeightMap
-        Without missing pixels; if periodic, with continuous opposite edges: see `mirror_extension`.
+        Without missing pixels; if periodic, with continuous opposite edges, such as a map beside its mirror images.
     normal_load : array_like, shape (n,)
         Force pressing the bodies together, over the whole map. [N]
     effective_modulus : float
@@ -100,26 +100,6 @@ def boundary_element_contact(
         real_contact_area=area,
         peak_pressure=peak,
         reason=tuple(reason for _, reason in solved),
-    )
-
-
-def mirror_extension(surface: HeightMap) -> HeightMap:
-    """Even periodic extension of a height map: the map and its mirror images.
-
-    Parameters
-    ----------
-    surface : HeightMap
-
-    Returns
-    -------
-    HeightMap
-        Twice as many rows and columns, with the same height distribution.
-    """
-    doubled = np.concatenate([surface.height, surface.height[:, ::-1]], axis=1)
-    return HeightMap(
-        height=np.concatenate([doubled, doubled[::-1]], axis=0),
-        spacing_x=surface.spacing_x,
-        spacing_y=surface.spacing_y,
     )
 
 

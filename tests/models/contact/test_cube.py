@@ -1,4 +1,4 @@
-"""Stiffnesses of the cube of Dong (2015): those of a beam and a bar."""
+"""Stiffness of the cube of Dong (2015): that of a beam."""
 
 from collections.abc import Callable
 
@@ -10,7 +10,6 @@ from sonolube.models.contact import (
     ASPERITY_LAWS,
     ContactPair,
     RoughContact,
-    cube_axial_stiffness,
     cube_tangential_stiffness,
     mindlin_tangential_stiffness,
     normal_force,
@@ -36,12 +35,6 @@ def test_the_tangential_stiffness_of_the_cube_is_that_of_a_beam_with_fixed_ends(
     assert cube_tangential_stiffness(PUBLISHED, separation=d) == approx(beam)
 
 
-@given(d=st.floats(5e-6, 40e-6))
-def test_the_axial_stiffness_of_the_cube_is_that_of_a_bar(d: float) -> None:
-    area = float(real_contact_area(PUBLISHED, separation=d))
-    assert cube_axial_stiffness(PUBLISHED, separation=d) == approx(59.6e9 * area / d)
-
-
 def test_the_bending_stiffness_of_the_published_cube_far_exceeds_its_shear_stiffness() -> None:
     d = separation(PUBLISHED, normal_load=3.0)
     shear = 73e9 / (2 * 1.33) * 4981e-12 / 15.453e-6  # G A_r/d of aluminium, area and height as published
@@ -59,7 +52,7 @@ def test_a_displacement_of_3_8_um_leaves_a_hundredth_of_the_stiffness_and_a_seve
     assert normal_force(PUBLISHED, separation=displaced) / 3 == approx(0.15, abs=5e-3)
 
 
-@mark.parametrize("stiffness", [cube_tangential_stiffness, cube_axial_stiffness, mindlin_tangential_stiffness])
+@mark.parametrize("stiffness", [cube_tangential_stiffness, mindlin_tangential_stiffness])
 def test_a_cube_without_height_is_refused(stiffness: Callable[..., object]) -> None:
     with raises(InvalidInput, match=r"separation must be positive, got 0\.0 m"):
         stiffness(PUBLISHED, separation=[1e-6, 0.0])

@@ -12,18 +12,12 @@ from sonolube.models.contact import (
     ElasticBody,
     SphereOnFlat,
     contact_pair,
-    hertz_approach,
     hertz_axial_shear_stress,
     hertz_axial_stresses,
     hertz_contact_radius,
     hertz_mean_pressure,
     hertz_peak_pressure,
-    hertz_stiffness,
-    maximum_axial_shear,
-    nominal_area_from_groove,
     tip_radius_for_pressure,
-    worn_flat_pressure,
-    yield_onset_load,
 )
 
 ACORN_NUT = SphereOnFlat(tip_radius=5e-3, effective_modulus=59.57e9)
@@ -63,7 +57,7 @@ def test_point_loads_integrated_over_the_circle_deform_the_flat_to_the_shape_of_
     p0 = float(hertz_peak_pressure(ACORN_NUT, normal_load=load))
     modulus = ACORN_NUT.effective_modulus
     in_the_middle = 2 / modulus * quad(lambda r: p0 * np.sqrt(1 - (r / a) ** 2), 0, a)[0]
-    assert hertz_approach(ACORN_NUT, normal_load=load) == approx(in_the_middle, rel=1e-7)
+    assert a**2 / ACORN_NUT.tip_radius == approx(in_the_middle, rel=1e-7)
 
     def along_chord(phi: float) -> float:
         def pressure(s: float) -> float:
@@ -111,39 +105,11 @@ def test_at_the_centre_of_the_surface_the_radial_stress_is_half_plus_poissons_ra
 
 def test_shear_is_largest_at_half_the_contact_radius_with_a_third_of_the_peak() -> None:
     # Johnson, section 4.2: 0.31 p0 at 0.48 a for nu = 0.3.
-    shear, depth = maximum_axial_shear(poisson_ratio=0.3)
-    assert shear == approx(0.31, abs=0.0005)
-    assert depth == approx(0.48, abs=0.002)
-
-
-@given(nu=st.floats(0, 0.5))
-def test_no_depth_on_a_fine_grid_has_more_shear_than_the_largest(nu: float) -> None:
-    a = hertz_contact_radius(ACORN_NUT, normal_load=1.0)
-    p0 = hertz_peak_pressure(ACORN_NUT, normal_load=1.0)
-    shear, depth = maximum_axial_shear(poisson_ratio=nu)
-    on_grid = (
-        hertz_axial_shear_stress(ACORN_NUT, normal_load=1.0, depth=np.linspace(0, 2, 2001) * a, poisson_ratio=nu) / p0
-    )
-    assert on_grid.max() == approx(shear, rel=1e-5)
-    assert on_grid.max() <= shear * (1 + 1e-12)
-    assert np.argmax(on_grid) / 1000 == approx(depth, abs=2e-3)
-
-
-def test_yield_begins_at_one_point_six_times_the_yield_strength() -> None:
-    # Johnson, section 6.1: p0 = 1.60 Y for nu = 0.3.
-    load = yield_onset_load(ACORN_NUT, yield_strength=410e6, poisson_ratio=0.3)
-    assert hertz_peak_pressure(ACORN_NUT, normal_load=load) == approx(1.61 * 410e6, rel=0.005)
-
-
-@given(load=LOADS)
-def test_stiffness_is_the_slope_of_load_over_approach(load: float) -> None:
-    step = 1e-4 * load
-    slope = (
-        2
-        * step
-        / (hertz_approach(ACORN_NUT, normal_load=load + step) - hertz_approach(ACORN_NUT, normal_load=load - step))
-    )
-    assert hertz_stiffness(ACORN_NUT, normal_load=load) == approx(slope, rel=1e-5)
+    places = np.linspace(0, 2, 2001)
+    depth = places * hertz_contact_radius(ACORN_NUT, normal_load=1.0)
+    shear = hertz_axial_shear_stress(ACORN_NUT, normal_load=1.0, depth=depth, poisson_ratio=0.3)
+    assert shear.max() / hertz_peak_pressure(ACORN_NUT, normal_load=1.0) == approx(0.31, abs=0.0005)
+    assert places[np.argmax(shear)] == approx(0.48, abs=0.002)
 
 
 @given(load=LOADS, factor=st.floats(0.1, 10))
@@ -176,25 +142,15 @@ def test_three_hundred_megapascal_at_three_newton_require_a_tip_radius_of_a_cent
         assert hertz_peak_pressure(tip, normal_load=3.0) == approx(450e6, rel=1e-3)
 
 
-def test_the_nominal_area_of_the_dissertation_is_a_circle_of_four_tenths_of_a_millimetre() -> None:
-    # D Table 4.1: 0.126 mm2; E34: 3, 7, 9 N are 23.8, 55.6, 71.4 MPa.
-    assert nominal_area_from_groove(groove_width=0.4005e-3) == approx(0.126e-6, rel=1e-3)
-    assert worn_flat_pressure(normal_load=[3.0, 7.0, 9.0], groove_width=0.4005e-3) == approx(
-        [23.8e6, 55.6e6, 71.4e6], rel=2e-3
-    )
-
-
 def test_a_load_of_zero_has_no_contact_circle() -> None:
     assert hertz_contact_radius(ACORN_NUT, normal_load=0.0) == 0
     assert hertz_peak_pressure(ACORN_NUT, normal_load=0.0) == 0
-    assert hertz_stiffness(ACORN_NUT, normal_load=0.0) == 0
 
 
 def test_results_take_the_shape_of_the_arguments() -> None:
     loads = np.array([[1.0], [2.0]])
     depths = np.array([1e-6, 2e-6, 3e-6])
     assert hertz_axial_shear_stress(ACORN_NUT, normal_load=loads, depth=depths, poisson_ratio=0.3).shape == (2, 3)
-    assert yield_onset_load(ACORN_NUT, yield_strength=[1e8, 2e8], poisson_ratio=0.3).shape == (2,)
 
 
 def test_meaningless_arguments_are_refused_by_name() -> None:
@@ -205,6 +161,4 @@ def test_meaningless_arguments_are_refused_by_name() -> None:
     with raises(InvalidInput, match=r"depth must not be negative"):
         hertz_axial_shear_stress(ACORN_NUT, normal_load=1.0, depth=-1e-6, poisson_ratio=0.3)
     with raises(InvalidInput, match=r"poisson_ratio must lie between 0 and 0\.5, got 0\.6"):
-        maximum_axial_shear(poisson_ratio=0.6)
-    with raises(InvalidInput, match="groove_width must be positive"):
-        nominal_area_from_groove(groove_width=0.0)
+        hertz_axial_shear_stress(ACORN_NUT, normal_load=1.0, depth=1e-6, poisson_ratio=0.6)

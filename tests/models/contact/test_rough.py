@@ -26,12 +26,8 @@ from sonolube.models.contact import (
     contact_count,
     critical_interference,
     decay_length,
-    elastic_area,
-    elastic_load_fraction,
-    height_density,
     normal_force,
     normal_stiffness,
-    plastic_area,
     real_contact_area,
     separation,
 )
@@ -72,7 +68,7 @@ def adaptive_quadrature(contact: RoughContact, h: float, law: Callable[..., Floa
 
     def integrand(w: float) -> float:
         one = law(contact.asperity, contact.pair, summit_radius=Rs, interference=w * Rq)
-        return float(one * height_density(contact.heights, normalized_height=h + w))
+        return float(one * np.exp(contact.heights.log_density(np.asarray(h + w))))
 
     edges = sorted(bounds)
     parts = (float(quad(integrand, a, b, epsabs=0, epsrel=1e-10)[0]) for a, b in pairwise(edges))
@@ -131,11 +127,9 @@ def test_integrals_over_exponential_heights_are_the_closed_forms(yield_strength:
     whole = An * c * math.pi * beta / lam**2 * fall
 
     assert normal_force(contact, separation=d) == approx(elastic_force + plastic_force, rel=1e-11, abs=0)
-    assert elastic_load_fraction(contact, separation=d) == approx(
-        elastic_force / (elastic_force + plastic_force), rel=1e-11, abs=0
+    assert real_contact_area(contact, separation=d) == approx(
+        whole * (elastic_part + (2 + a) * math.exp(-a)), rel=1e-11, abs=0
     )
-    assert elastic_area(contact, separation=d) == approx(whole * elastic_part, rel=1e-11, abs=0)
-    assert plastic_area(contact, separation=d) == approx(whole * (2 + a) * math.exp(-a), rel=1e-11, abs=1e-14 * whole)
 
 
 def test_bodies_without_yielding_have_the_contact_of_greenwood_and_williamson(asperity: AsperityLaw) -> None:
@@ -148,8 +142,6 @@ def test_bodies_without_yielding_have_the_contact_of_greenwood_and_williamson(as
         1e-4 * 17 * math.pi * beta / 9 * math.exp(-6), rel=1e-9, abs=0
     )
     assert contact_count(contact, separation=d) == approx(FINE.summit_density * 1e-4 * 17 / 3 * math.exp(-6))
-    assert elastic_load_fraction(contact, separation=d) == 1
-    assert plastic_area(contact, separation=d) == 0
 
 
 @settings(max_examples=25)
@@ -172,13 +164,6 @@ def test_the_stiffness_is_the_slope_of_the_load(contact: RoughContact) -> None:
     assert normal_stiffness(contact, separation=d) == approx((8 * near - far) / (12 * step), rel=1e-8, abs=0)
 
 
-def test_elastic_and_plastic_areas_add_up(contact: RoughContact) -> None:
-    d = np.linspace(-0.5, 4, 10) * FINE.rms_height
-    parts = elastic_area(contact, separation=d), plastic_area(contact, separation=d)
-    assert sum(parts) == approx(real_contact_area(contact, separation=d), rel=1e-13, abs=0)
-    assert all((part >= 0).all() for part in parts)
-
-
 @given(load=st.floats(1e-3, 1e3), factor=st.floats(0.01, 100))
 def test_under_exponential_heights_area_count_and_stiffness_are_proportional_to_load(
     load: float, factor: float
@@ -186,7 +171,7 @@ def test_under_exponential_heights_area_count_and_stiffness_are_proportional_to_
     for law in LAWS:
         contact = replace(CONTACT, asperity=law)
         one, other = (separation(contact, normal_load=each) for each in (load, factor * load))
-        for quantity in (real_contact_area, contact_count, normal_stiffness, elastic_area):
+        for quantity in (real_contact_area, contact_count, normal_stiffness):
             assert quantity(contact, separation=other) == approx(
                 factor * quantity(contact, separation=one), rel=1e-9, abs=0
             )
@@ -208,7 +193,7 @@ def test_separations_fall_as_loads_rise(contact: RoughContact) -> None:
 
 def test_results_have_the_shape_of_the_arguments(contact: RoughContact) -> None:
     d = separation(contact, normal_load=np.full((2, 3), 10.0))
-    for quantity in (normal_force, real_contact_area, elastic_load_fraction, contact_count, normal_stiffness):
+    for quantity in (normal_force, real_contact_area, contact_count, normal_stiffness):
         assert quantity(contact, separation=d).shape == (2, 3)
         assert np.ndim(quantity(contact, separation=1e-7)) == 0
 
@@ -297,7 +282,7 @@ def test_a_decay_length_of_a_third_of_the_rms_height_changes_nothing(name: str) 
     measured = replace(CONTACT, asperity=ASPERITY_LAWS[name])
     stated = replace(measured, decay_length=FINE.rms_height / 3)
     d = np.linspace(0.1e-6, 1e-6, 7)
-    for quantity in (normal_force, real_contact_area, contact_count, normal_stiffness, elastic_area, plastic_area):
+    for quantity in (normal_force, real_contact_area, contact_count, normal_stiffness):
         assert quantity(stated, separation=d) == approx(quantity(measured, separation=d), rel=1e-12, abs=0)
     assert separation(stated, normal_load=3.0) == approx(separation(measured, normal_load=3.0), rel=1e-12)
 

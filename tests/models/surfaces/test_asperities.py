@@ -5,6 +5,7 @@ import math
 import numpy as np
 from hypothesis import given, strategies as st
 from pytest import approx, mark, raises
+from tests.models.surfaces.spectral_moments import moments
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.models.surfaces import (
@@ -37,7 +38,7 @@ def random_surface(spectrum: HeightSpectrum, *, seed: int, rms_height: float = 1
 
 @mark.parametrize("spectrum", [SINGLE_SCALE, SELF_AFFINE], ids=["single scale", "self-affine"])
 def test_summits_of_a_gaussian_surface_are_those_of_nayak(spectrum: HeightSpectrum) -> None:
-    theory = nayak_summit_statistics(spectrum.moments(rms_height=1e-6))
+    theory = nayak_summit_statistics(moments(spectrum, rms_height=1e-6))
     counted = [summit_statistics(random_surface(spectrum, seed=seed)) for seed in range(3)]
     number = sum(one.summit_density for one in counted) * 800 * 1.25e-6 * 1024e-6
     scatter = 3 / math.sqrt(number)
@@ -55,7 +56,7 @@ def test_summits_of_a_gaussian_surface_are_those_of_nayak(spectrum: HeightSpectr
 
 @mark.parametrize("spectrum", [SINGLE_SCALE, SELF_AFFINE], ids=["single scale", "self-affine"])
 def test_finite_differences_give_the_moments_of_the_spectrum(spectrum: HeightSpectrum) -> None:
-    found, exact = spectral_moments(random_surface(spectrum, seed=9)), spectrum.moments(rms_height=1e-6)
+    found, exact = spectral_moments(random_surface(spectrum, seed=9)), moments(spectrum, rms_height=1e-6)
     assert found.height_variance == approx(exact.height_variance, rel=0.12, abs=0)
     assert found.slope_variance == approx(exact.slope_variance, rel=0.04)
     assert found.curvature_variance == approx(exact.curvature_variance, rel=0.04)
@@ -118,7 +119,7 @@ def test_coarser_sampling_finds_fewer_and_blunter_summits() -> None:
     assert found.sampling_interval == approx(np.sqrt(1e-6 * 1.25e-6 * np.array([1, 3 * 2, 6 * 5, 12 * 10])))
     assert np.all(np.diff(found.summit_density) < 0)
     assert np.all(np.diff(found.summit_radius) > 0)
-    exact = nayak_summit_statistics(SELF_AFFINE.moments(rms_height=1e-6))
+    exact = nayak_summit_statistics(moments(SELF_AFFINE, rms_height=1e-6))
     assert found.summit_density[0] == approx(exact.summit_density, rel=0.1)
 
 

@@ -8,7 +8,7 @@ from pytest import approx, mark, raises
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.models.surfaces import HeightMap, band_pass, high_pass, low_pass, profile_low_pass
+from sonolube.models.surfaces import HeightMap, high_pass, low_pass, profile_low_pass
 
 CUTOFF = 80e-6
 ALPHA, GAMMA = 0.4697186393498257, 0.7309134280946760  # ISO 16610-21 and ISO 16610-31
@@ -119,19 +119,6 @@ def test_waviness_and_roughness_add_up_to_the_surface() -> None:
     np.testing.assert_allclose(whole, z, atol=1e-14)
 
 
-def test_a_band_pass_keeps_wavelengths_between_the_cutoffs() -> None:
-    x, _ = grid(2, 2000, 1e-6)
-
-    def kept(wavelength: float) -> float:
-        wave = surface(np.cos(2 * np.pi * (x - x[0, 1000]) / wavelength), 1e-6, 1e-6)
-        found = band_pass(wave, short_cutoff_length=8e-6, long_cutoff_length=250e-6)
-        return float(found.height[0, 1000])
-
-    assert kept(45e-6) > 0.95
-    assert kept(2e-6) < 0.001
-    assert kept(2000e-6) < 0.02
-
-
 def test_a_robust_high_pass_keeps_the_depth_of_a_groove() -> None:
     x, y = grid(120, 150)
     waviness = 2e-6 * np.sin(x / 120e-6) * np.cos(y / 150e-6)
@@ -174,11 +161,6 @@ def test_large_maps_are_filtered_in_strips_without_a_seam() -> None:
 def test_an_impossible_cutoff_or_order_is_refused(arguments: Any, error: type[Exception], message: str) -> None:
     with raises(error, match=message):
         low_pass(surface(np.zeros((9, 9))), **arguments)
-
-
-def test_cutoffs_in_the_wrong_order_are_refused() -> None:
-    with raises(InvalidInput, match=r"short_cutoff_length 0\.0002 m must be less than long_cutoff_length 0\.0001 m"):
-        band_pass(surface(np.zeros((9, 9))), short_cutoff_length=2e-4, long_cutoff_length=1e-4)
 
 
 def test_a_profile_without_a_measured_point_is_refused() -> None:

@@ -45,10 +45,6 @@ from .preload_bolt import (
 )
 from .stack import (
     PiezoStack as PiezoStack,
-    blocked_admittance as blocked_admittance,
-    blocked_force as blocked_force,
-    free_admittance as free_admittance,
-    free_stroke as free_stroke,
     require_allowed_voltage as require_allowed_voltage,
     stack_caveats as stack_caveats,
     stack_force as stack_force,

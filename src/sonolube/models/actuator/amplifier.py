@@ -6,9 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import require_finite, require_finite_complex, require_positive
-from sonolube.models.actuator.drive_power import dissipated_power, peak_current, power_factor
-
-_POINTS_PER_WAVE = 32  # of the highest harmonic, at which a periodic voltage is evaluated
+from sonolube.models.actuator.drive_power import dissipated_power, extremes_over_period, peak_current, power_factor
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -86,14 +84,8 @@ def amplifier_requirements(
     y = np.atleast_1d(require_finite_complex(admittance=admittance))
     volts = np.atleast_1d(require_finite_complex(voltage_amplitude=voltage_amplitude))
     f, offset = float(require_positive(frequency=frequency)), float(require_finite(voltage_offset=voltage_offset))
-    harmonics = np.arange(1, volts.shape[-1] + 1)
-    phase = np.linspace(0, 2 * np.pi, _POINTS_PER_WAVE * harmonics.size, endpoint=False)
-    waves = np.exp(1j * np.multiply.outer(harmonics, phase))
-    is_sine = harmonics.size == 1
-    amplitude = np.abs(volts).max()
-    history = (volts @ waves).real
-    lowest, highest = (-amplitude, amplitude) if is_sine else (history.min(), history.max())
-    rate = 2j * np.pi * f * harmonics * volts
+    lowest, highest = extremes_over_period(volts)
+    falling, rising = extremes_over_period(2j * np.pi * f * np.arange(1, volts.size + 1) * volts)
     rms_current = float(np.sqrt(0.5 * np.sum(np.abs(y * volts) ** 2)))
     return AmplifierRequirements(
         voltage_maximum=float(max(abs(offset + lowest), abs(offset + highest))),
@@ -102,5 +94,5 @@ def amplifier_requirements(
         apparent_power=rms_current * float(np.sqrt(0.5 * np.sum(np.abs(volts) ** 2))),
         dissipated_power=float(dissipated_power(admittance=y, voltage_amplitude=volts).sum()),
         power_factor=float(power_factor(admittance=y, voltage_amplitude=volts)),
-        slew_rate=float(np.abs(rate).max() if is_sine else np.abs((rate @ waves).real).max()),
+        slew_rate=float(max(-falling, rising)),
     )

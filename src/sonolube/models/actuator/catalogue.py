@@ -10,9 +10,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from sonolube.checks import require_finite, require_positive
+from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
-from sonolube.models.actuator.stack import PiezoStack
+from sonolube.models.actuator.stack import PiezoStack, require_voltage_limits
 from sonolube.text.toml_text import read_toml
 
 ACTUATOR_KINDS = ("stack", "flextensional")
@@ -84,10 +84,7 @@ class CatalogueActuator:
         names = ("stroke", "stroke_voltage", "free_capacitance", "resonance_frequency", "blocked_force")
         limits = ("actuator_mass", "tension_limit", "preload_limit")
         require_positive(**{name: getattr(self, name) for name in (*names, *limits) if getattr(self, name) is not None})
-        low, high = self.lowest_voltage, self.highest_voltage
-        require_finite(lowest_voltage=low or 0.0, highest_voltage=high or 0.0)
-        if low is not None and high is not None and low >= high:
-            raise InvalidInput(f"lowest_voltage must lie below highest_voltage, {high!r} V, got {low!r} V")
+        require_voltage_limits(self.lowest_voltage, self.highest_voltage)
         if self.kind not in ACTUATOR_KINDS:
             raise UnknownName.among(ACTUATOR_KINDS, kind="kind of actuator", name=self.kind)
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_finite_complex, require_non_negative, require_positive
+from sonolube.checks import Complexes, Floats, require_finite_complex, require_non_negative, require_positive
 
 _POINTS_PER_WAVE = 32  # peaks between points are missed by at most 1 - cos(pi/32), half a percent
 
@@ -161,9 +161,16 @@ def peak_current(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
     """
     y = require_finite_complex(admittance=admittance)
     current = np.atleast_1d(y * require_finite_complex(voltage_amplitude=voltage_amplitude))
-    harmonics = np.arange(1, current.shape[-1] + 1)
-    if harmonics.size == 1:
-        return np.asarray(np.abs(current[..., 0]))
-    phase = np.linspace(0, 2 * np.pi, _POINTS_PER_WAVE * harmonics.size, endpoint=False)
-    history = (current @ np.exp(1j * np.multiply.outer(harmonics, phase))).real
-    return np.asarray(np.abs(history).max(axis=-1))
+    lowest, highest = extremes_over_period(current)
+    return np.maximum(-lowest, highest)
+
+
+def extremes_over_period(harmonics: Complexes) -> tuple[Floats, Floats]:
+    """Least and greatest value over a period from the amplitudes of the harmonics 1 to n, shape (..., n)."""
+    order = np.arange(1, harmonics.shape[-1] + 1)
+    if order.size == 1:
+        amplitude = np.abs(harmonics[..., 0])
+        return -amplitude, amplitude
+    phase = np.linspace(0, 2 * np.pi, _POINTS_PER_WAVE * order.size, endpoint=False)
+    history = (harmonics @ np.exp(1j * np.multiply.outer(order, phase))).real
+    return np.asarray(history.min(axis=-1)), np.asarray(history.max(axis=-1))

@@ -319,31 +319,31 @@ def _capacitive(admittance: complex, frequency: float) -> tuple[complex, float]:
 def _elements(network: MatchingNetwork, frequency: ArrayLike) -> tuple[Complexes, Complexes]:
     """Impedance of the series element and admittance of the shunt element."""
     s = 2j * np.pi * require_positive(frequency=frequency)
-    series, shunt = np.zeros_like(s), np.zeros_like(s)
-    if network.series_inductance is not None:
-        series = s * network.series_inductance
-    if network.series_capacitance is not None:
-        series = 1 / (s * network.series_capacitance)
-    if network.shunt_inductance is not None:
-        shunt = 1 / (s * network.shunt_inductance)
-    if network.shunt_capacitance is not None:
-        shunt = s * network.shunt_capacitance
-    return np.asarray(series), np.asarray(shunt)
+    return (
+        _immittance(s, rising=network.series_inductance, falling=network.series_capacitance),
+        _immittance(s, rising=network.shunt_capacitance, falling=network.shunt_inductance),
+    )
+
+
+def _immittance(s: NDArray[np.complexfloating[Any, Any]], *, rising: float | None, falling: float | None) -> Complexes:
+    """Immittance s r of an element that rises with the frequency, or 1/(s f) of one that falls; zero without either."""
+    if falling is not None:
+        return np.asarray(1 / (s * falling))
+    return np.asarray(s * (rising or 0.0))
 
 
 def _series(reactance: float, omega: float) -> dict[str, Any]:
     """Series element of a reactance, as a keyword of the network."""
-    if reactance == 0:
-        return {}
-    if reactance > 0:
-        return {"series_inductance": reactance / omega}
-    return {"series_capacitance": -1 / (omega * reactance)}
+    return _element(reactance, omega, rising="series_inductance", falling="series_capacitance")
 
 
 def _shunt(susceptance: float, omega: float) -> dict[str, Any]:
     """Shunt element of a susceptance, as a keyword of the network."""
-    if susceptance == 0:
+    return _element(susceptance, omega, rising="shunt_capacitance", falling="shunt_inductance")
+
+
+def _element(value: float, omega: float, *, rising: str, falling: str) -> dict[str, Any]:
+    """Element of an immittance by the keyword for its sign; none where it is zero."""
+    if value == 0:
         return {}
-    if susceptance > 0:
-        return {"shunt_capacitance": susceptance / omega}
-    return {"shunt_inductance": -1 / (omega * susceptance)}
+    return {rising: value / omega} if value > 0 else {falling: -1 / (omega * value)}

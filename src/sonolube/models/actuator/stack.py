@@ -1,4 +1,4 @@
-"""Quasi-static model of a piezoelectric stack: constitutive law, admittance, force, and limits of its drive."""
+"""Quasi-static model of a piezoelectric stack: constitutive law, force, and limits of its drive."""
 
 import math
 import warnings
@@ -93,15 +93,8 @@ class PiezoStack:
         require_non_negative(stack_damping=self.stack_damping, stack_mass=self.stack_mass)
         if self.preload is not None:
             require_non_negative(preload=self.preload)
-        self._check_limits()
+        require_voltage_limits(self.lowest_voltage, self.highest_voltage)
         self._check_coupling()
-
-    def _check_limits(self) -> None:
-        """Refuse voltage limits in the wrong order."""
-        low, high = self.lowest_voltage, self.highest_voltage
-        require_finite(lowest_voltage=low or 0.0, highest_voltage=high or 0.0)
-        if low is not None and high is not None and low >= high:
-            raise InvalidInput(f"lowest_voltage must lie below highest_voltage, {high!r} V, got {low!r} V")
 
     def _check_coupling(self) -> None:
         """Refuse a derived coupling factor above one, and warn of a stated one that differs."""
@@ -132,121 +125,11 @@ class PiezoStack:
         return self.free_capacitance - self.charge_per_elongation * self.free_stroke_per_volt
 
 
-def free_stroke(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
-    r"""Static elongation of a stack with free ends. [m]
-
-    Parameters
-    ----------
-    stack : PiezoStack
-    stack_voltage : array_like, any shape
-        Voltage on the stack. [V]
-
-    Returns
-    -------
-    ndarray, shape of `stack_voltage`
-
-    Raises
-    ------
-    InvalidInput
-        If a voltage is not finite, or beyond the limits of the stack.
-
-    Notes
-    -----
-    .. math:: e = N d_{33} V
-
-    Examples
-    --------
-    >>> from sonolube.models.actuator import catalogue_actuator, catalogue_stack, free_stroke
-    >>> from sonolube.text.units import format_si
-    >>> actuator = catalogue_actuator("sa050510")  # 14 um at 180 V
-    >>> stack = catalogue_stack(actuator, frequency=22e3, mechanical_quality_factor=75.0)
-    >>> format_si(float(free_stroke(stack, stack_voltage=90.0)), "m")
-    '7 um'
-    """
-    return stack.free_stroke_per_volt * require_allowed_voltage(stack, stack_voltage=stack_voltage)
-
-
-def blocked_force(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
-    r"""Compressive force of a stack on blocked ends. [N]
-
-    Parameters
-    ----------
-    stack : PiezoStack
-    stack_voltage : array_like, any shape
-        Voltage on the stack. [V]
-
-    Returns
-    -------
-    ndarray, shape of `stack_voltage`
-
-    Raises
-    ------
-    InvalidInput
-        If a voltage is not finite, or beyond the limits of the stack.
-
-    Notes
-    -----
-    .. math:: P = N d_{33} k_p V \quad\text{(D 3.42)}
-
-    References
-    ----------
-    .. [1] D 3.42.
-    """
-    return stack.charge_per_elongation * require_allowed_voltage(stack, stack_voltage=stack_voltage)
-
-
-def blocked_admittance(stack: PiezoStack, *, frequency: ArrayLike) -> Complexes:
-    r"""Complex admittance of a stack with blocked ends. [S]
-
-    Parameters
-    ----------
-    stack : PiezoStack
-    frequency : array_like, any shape
-        Frequency of the voltage. [Hz]
-
-    Returns
-    -------
-    ndarray, shape of `frequency`
-
-    Raises
-    ------
-    InvalidInput
-        If a frequency is not positive.
-
-    Notes
-    -----
-    .. math:: Y = i\omega C_S
-    """
-    return np.asarray(2j * np.pi * require_positive(frequency=frequency) * stack.clamped_capacitance)
-
-
-def free_admittance(stack: PiezoStack, *, frequency: ArrayLike) -> Complexes:
-    r"""Complex admittance of a stack with free, unloaded ends. [S]
-
-    Parameters
-    ----------
-    stack : PiezoStack
-    frequency : array_like, any shape
-        Frequency of the voltage. [Hz]
-
-    Returns
-    -------
-    ndarray, shape of `frequency`
-
-    Raises
-    ------
-    InvalidInput
-        If a frequency is not positive.
-
-    Notes
-    -----
-    .. math:: Y = i\omega \left(C_S + \frac{(N d_{33} k_p)^2}{k_p + i\omega c_p}\right)
-
-    The mass of the stack is neglected. For ends with masses use a `LumpedChain` and the admittance of its structure.
-    """
-    s = 2j * np.pi * require_positive(frequency=frequency)
-    motional = stack.charge_per_elongation**2 / (stack.stack_stiffness + s * stack.stack_damping)
-    return np.asarray(s * (stack.clamped_capacitance + motional))
+def require_voltage_limits(low: float | None, high: float | None) -> None:
+    """Refuse limits of a voltage in the wrong order."""
+    require_finite(lowest_voltage=low or 0.0, highest_voltage=high or 0.0)
+    if low is not None and high is not None and low >= high:
+        raise InvalidInput(f"lowest_voltage must lie below highest_voltage, {high!r} V, got {low!r} V")
 
 
 def stack_force(

@@ -20,28 +20,21 @@ from .contact_motion import (
     load_balanced_motion as load_balanced_motion,
     sinusoidal_motion as sinusoidal_motion,
 )
-from .cube import cube_axial_stiffness as cube_axial_stiffness, cube_tangential_stiffness as cube_tangential_stiffness
+from .cube import cube_tangential_stiffness as cube_tangential_stiffness
 from .height_distribution import (
     HEIGHT_DISTRIBUTIONS as HEIGHT_DISTRIBUTIONS,
     ExponentialHeights as ExponentialHeights,
     GaussianHeights as GaussianHeights,
     HeightDistribution as HeightDistribution,
-    height_density as height_density,
 )
 from .hertz import (
     SphereOnFlat as SphereOnFlat,
-    hertz_approach as hertz_approach,
     hertz_axial_shear_stress as hertz_axial_shear_stress,
     hertz_axial_stresses as hertz_axial_stresses,
     hertz_contact_radius as hertz_contact_radius,
     hertz_mean_pressure as hertz_mean_pressure,
     hertz_peak_pressure as hertz_peak_pressure,
-    hertz_stiffness as hertz_stiffness,
-    maximum_axial_shear as maximum_axial_shear,
-    nominal_area_from_groove as nominal_area_from_groove,
     tip_radius_for_pressure as tip_radius_for_pressure,
-    worn_flat_pressure as worn_flat_pressure,
-    yield_onset_load as yield_onset_load,
 )
 from .mindlin import mindlin_tangential_stiffness as mindlin_tangential_stiffness
 from .pair import (
@@ -57,12 +50,6 @@ from .persson import (
     persson_load as persson_load,
     persson_separation as persson_separation,
     persson_stiffness as persson_stiffness,
-)
-from .plasticity import (
-    elastic_area as elastic_area,
-    elastic_load_fraction as elastic_load_fraction,
-    plastic_area as plastic_area,
-    plasticity_index as plasticity_index,
 )
 from .rough import (
     RoughContact as RoughContact,

@@ -2,8 +2,8 @@
 
 Every law gives two ratios as functions of the interference w over the critical interference w_c, at which yielding
 begins: the force over that of an elastic sphere of the same radius (`force_ratio`), and the contact area over that of
-the sphere (`area_ratio`). `sonolube.models.contact.single_asperity` evaluates force and area with them. A new law takes
-one file `contact/asperity_laws/NAME.py` with its class, and one line of `ASPERITY_LAWS`; nothing else names a law.
+the sphere (`area_ratio`). `asperity_force` and `asperity_area` evaluate force and area with them. A new law takes one
+file `contact/asperity_laws/NAME.py` with its class, and one line of `ASPERITY_LAWS`; nothing else names a law.
 """
 
 import math
@@ -111,7 +111,22 @@ class ElasticAsperity:
 
 
 @dataclass(frozen=True, slots=True)
-class Dong2015Asperity:
+class _ConstantVolumeAsperity:
+    """Constant pressure and conserved volume of an asperity beyond its critical interference."""
+
+    breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
+
+    def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
+        """Force over that of an elastic asperity. []"""
+        return _piecewise(interference_ratio, self.breakpoints, lambda r: 1.5 * (2 * r - 1) / r**1.5)
+
+    def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
+        """Contact area over that of an elastic asperity. []"""
+        return _piecewise(interference_ratio, self.breakpoints, lambda r: 2 - 1 / r)
+
+
+@dataclass(frozen=True, slots=True)
+class Dong2015Asperity(_ConstantVolumeAsperity):
     r"""Law of Chang, Etsion and Bogy as Dong (2015) prints it, with the factor 1 - nu^2 counted twice.
 
     Notes
@@ -133,23 +148,14 @@ class Dong2015Asperity:
 
     name: ClassVar[str] = "dong_2015"
     citation: ClassVar[str] = "D 3.1 to 3.8 as printed, after Chang, Etsion and Bogy"
-    breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
         """Peak contact pressure at the onset of yielding, C_nu (1 - nu^2) Y_0. [Pa]"""
         return _hardness_coefficient(pair) * (1 - pair.poisson_ratio**2) * pair.yield_strength
 
-    def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Force over that of an elastic asperity. []"""
-        return _constant_volume_force_ratio(interference_ratio)
-
-    def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Contact area over that of an elastic asperity. []"""
-        return _constant_volume_area_ratio(interference_ratio)
-
 
 @dataclass(frozen=True, slots=True)
-class ChangEtsionBogy:
+class ChangEtsionBogy(_ConstantVolumeAsperity):
     r"""Law of Chang, Etsion and Bogy beyond yielding, whose onset is that of Brizmer, Kligerman and Etsion.
 
     Notes
@@ -178,23 +184,14 @@ class ChangEtsionBogy:
         "W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987), with the onset of yielding of V. Brizmer,"
         " Y. Kligerman and I. Etsion, Int. J. Solids Struct. 43, 5736 (2006)"
     )
-    breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
         """Peak contact pressure at the onset of yielding, C_nu Y_0. [Pa]"""
         return _hardness_coefficient(pair) * pair.yield_strength
 
-    def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Force over that of an elastic asperity. []"""
-        return _constant_volume_force_ratio(interference_ratio)
-
-    def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Contact area over that of an elastic asperity. []"""
-        return _constant_volume_area_ratio(interference_ratio)
-
 
 @dataclass(frozen=True, slots=True)
-class ChangEtsionBogy1987:
+class ChangEtsionBogy1987(_ConstantVolumeAsperity):
     r"""Law of Chang, Etsion and Bogy with its own onset of yielding, at six tenths of the hardness.
 
     Notes
@@ -211,34 +208,15 @@ class ChangEtsionBogy1987:
 
     name: ClassVar[str] = "chang_etsion_bogy_1987"
     citation: ClassVar[str] = "W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987), K = 0.6"
-    breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
         """Peak contact pressure at the onset of yielding, 0.6 H with the hardness H = 2.8 Y_0. [Pa]"""
         return 0.6 * 2.8 * pair.yield_strength
 
-    def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Force over that of an elastic asperity. []"""
-        return _constant_volume_force_ratio(interference_ratio)
-
-    def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Contact area over that of an elastic asperity. []"""
-        return _constant_volume_area_ratio(interference_ratio)
-
 
 def _hardness_coefficient(pair: ContactPair) -> float:
     """C_nu, the peak pressure at the onset of yielding over the yield strength. []"""
     return 1.234 + 1.256 * pair.poisson_ratio  # D 3.1
-
-
-def _constant_volume_force_ratio(r: Floats) -> Floats:
-    """Force at constant pressure and volume over that of Hertz, for interferences over the critical one."""
-    return _piecewise(r, (1.0,), lambda r: 1.5 * (2 * r - 1) / r**1.5)
-
-
-def _constant_volume_area_ratio(r: Floats) -> Floats:
-    """Area at constant volume over that of Hertz, for interferences over the critical one."""
-    return _piecewise(r, (1.0,), lambda r: 2 - 1 / r)
 
 
 def _piecewise(r: Floats, breakpoints: tuple[float, ...], *yielded: Piece) -> Floats:

@@ -128,7 +128,8 @@ def equivalent_plane_strain_modulus(body: CoatedBody, *, contact_radius: ArrayLi
             f"got {a.max():.4g} m: use the modulus of the substrate alone"
         )
     ratios = [_stiffness_ratio(body, radius / body.thickness) for radius in a.ravel()]
-    return _plane_modulus(body.layer) * np.reshape(ratios, a.shape)
+    layer_modulus = body.layer.youngs_modulus / (1 - body.layer.poisson_ratio**2)
+    return layer_modulus * np.reshape(ratios, a.shape)
 
 
 def _stiffness_ratio(body: CoatedBody, radius: float) -> float:
@@ -159,8 +160,3 @@ def _compliance_ratio(body: CoatedBody, q: Floats) -> Floats:
     theta = np.exp(-2 * q)
     above = 1 + 4 * q * kappa * theta - lam * kappa * theta**2
     return np.asarray(above / (1 - (lam + kappa + 4 * kappa * q**2) * theta + lam * kappa * theta**2))
-
-
-def _plane_modulus(body: ElasticBody) -> float:
-    """Plane-strain modulus E/(1 - nu^2). [Pa]"""
-    return body.youngs_modulus / (1 - body.poisson_ratio**2)

@@ -1,9 +1,9 @@
-"""Stiffnesses of the cube of Dong (2015): a rough contact as one block of the real area, as high as the separation.
+"""Stiffness of the cube of Dong (2015): a rough contact as one block of the real area, as high as the separation.
 
 Dong's "cube" replaces all asperities by a single elastic block between the mean planes. Its top is the real contact
 area A_r and its height the separation d, so that it is neither a cube nor of fixed size: under vibration both follow
-the gap. Its bending stiffness is the tangential stiffness of the contact (D 3.9), its axial stiffness the normal one
-(D 3.43), and half its volume the wear particle (`sonolube.models.wear`).
+the gap. Its bending stiffness is the tangential stiffness of the contact (D 3.9), and half its volume the wear particle
+(`sonolube.models.wear`).
 """
 
 import numpy as np
@@ -51,35 +51,3 @@ def cube_tangential_stiffness(contact: RoughContact, *, separation: ArrayLike) -
     """
     d = require_positive(separation=separation)
     return contact.pair.effective_modulus * np.square(real_contact_area(contact, separation=d)) / d**3  # D 3.9
-
-
-def cube_axial_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    r"""Axial stiffness of the cube, along the surface normal. [N/m]
-
-    Parameters
-    ----------
-    contact : RoughContact
-    separation : array_like, any shape
-        Separation of the mean planes, the height of the cube. [m]
-
-    Returns
-    -------
-    ndarray, shape of `separation`
-
-    Raises
-    ------
-    InvalidInput
-        If a separation is not positive and finite.
-    OutsideRange
-        If a separation lies outside the range of the height distribution.
-
-    Notes
-    -----
-    .. math:: k_1 = \frac{E^* A_r}{d} \tag{D 3.43}
-
-    References
-    ----------
-    .. [1] D 3.43, which prints E* d/A_r; that is not a stiffness.
-    """
-    d = require_positive(separation=separation)
-    return contact.pair.effective_modulus * real_contact_area(contact, separation=d) / d

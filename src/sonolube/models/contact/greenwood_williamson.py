@@ -1,16 +1,7 @@
-r"""Greenwood-Williamson integrals: force, area and number of asperities in contact over a distribution of heights.
+"""Rough contact and its Greenwood-Williamson integrals: force, area and number of all asperities.
 
-With the normalized separation h = d/R_q, the density phi of summit heights, and an asperity that carries the force f on
-the area a at the interference w, the sums over all asperities are
-
-.. math::
-
-    F_n(h) &= \eta A_n \int_0^\infty f(w)\, \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q} \\
-    A_r(h) &= \eta A_n \int_0^\infty a(w)\, \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q} \\
-    n(h) &= \eta A_n \int_0^\infty \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
-
-They are computed by Gauss-Legendre quadrature on panels that end at the breakpoints of the asperity law, however small
-the critical interference. Under exponential heights every integral is its value at zero separation times
+They are computed by Gauss-Legendre quadrature on panels that end at the breakpoints of the asperity law, be
+the critical interference ever so small. Under exponential heights every integral is its value at zero separation times
 exp(-lambda h); under other height distributions it is tabulated once, as a spline of its logarithm.
 
 References
@@ -20,13 +11,15 @@ References
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
 
-from sonolube.checks import Floats
-from sonolube.models.contact.asperity import AsperityLaw
+from sonolube.checks import Floats, require_positive
+from sonolube.errors import InvalidInput
+from sonolube.models.contact.asperity import AsperityLaw, ChangEtsionBogy
 from sonolube.models.contact.height_distribution import ExponentialHeights, HeightDistribution
 from sonolube.models.contact.pair import ContactPair
 from sonolube.models.contact.single_asperity import asperity_area, asperity_force, critical_interference
@@ -38,6 +31,74 @@ TABLE_RANGE = (-6.0, 36.0)
 TABLE_STEP = 0.05
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RoughContact:
+    """Contact of two rough surfaces: roughness, materials, nominal area, height distribution and asperity law.
+
+    Parameters
+    ----------
+    roughness : Roughness
+        Combined roughness of both surfaces.
+    pair : ContactPair
+    nominal_area : float
+        Area over which the bodies face each other. [m2]
+    heights : HeightDistribution
+        Exponential by default.
+    asperity : AsperityLaw
+        That of Chang, Etsion and Bogy by default.
+    decay_length : float or None
+        Length over which the normal force falls by a factor of e, where it is known otherwise than by the roughness,
+        such as from the stiffness of a worn contact; for exponential heights only. R_q/lambda where None. [m]
+
+    Raises
+    ------
+    InvalidInput
+        If area or decay length is not positive and finite, or heights that are not exponential have a decay length.
+
+    Notes
+    -----
+    The pair is replaced by one surface with the roughness of both against a smooth flat. Its asperities are spheres of
+    one radius that do not interact, so the real area must stay far below the nominal one. Separations are measured from
+    the mean of the summit heights. `contact_caveats` returns the reasons against applying the model to a contact.
+
+    With a `decay_length` l the heights are those of a surface whose rms height is lambda l (`height_scale`): load,
+    area and number of contacts fall by a factor of e over l. `roughness` stays what was measured, often before wear.
+
+    See Also
+    --------
+    sonolube.models.contact.PerssonContact : Contact from the power spectrum, without asperities.
+
+    References
+    ----------
+    .. [1] J. A. Greenwood and J. B. P. Williamson, Proc. R. Soc. A 295, 300 (1966). doi:10.1098/rspa.1966.0242
+    .. [2] A. A. Polycarpou and I. Etsion, J. Tribol. 121, 234 (1999). doi:10.1115/1.2833926
+    """
+
+    roughness: Roughness
+    pair: ContactPair
+    nominal_area: float
+    heights: HeightDistribution = field(default_factory=ExponentialHeights)
+    asperity: AsperityLaw = field(default_factory=ChangEtsionBogy)
+    decay_length: float | None = None
+
+    def __post_init__(self) -> None:
+        require_positive(nominal_area=self.nominal_area)
+        if self.decay_length is not None:
+            require_positive(decay_length=self.decay_length)
+            if not isinstance(self.heights, ExponentialHeights):
+                raise InvalidInput(
+                    f"decay_length is for exponential heights, got {self.heights.name} heights, whose decay length"
+                    " varies with the separation: leave it out or use exponential heights"
+                )
+
+    @property
+    def height_scale(self) -> float:
+        """Rms height of the height distribution: the measured one, or lambda l where the decay length is given. [m]"""
+        if self.decay_length is None or not isinstance(self.heights, ExponentialHeights):
+            return self.roughness.rms_height
+        return self.heights.decay * self.decay_length
 
 
 class SeparationFunction(Protocol):
@@ -104,9 +165,20 @@ class LogSpline:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GreenwoodWilliamsonIntegrals:
-    """Sums over all asperities of a rough contact, as functions of the separation over R_q.
+    r"""Sums over all asperities of a rough contact, as functions of the separation over R_q.
 
     `lowest` and `highest` bound the separations over R_q for which the functions hold.
+
+    Notes
+    -----
+    With the normalized separation h = d/R_q, the density phi of summit heights, and an asperity that carries the force
+    f on the area a at the interference w,
+
+    .. math::
+
+        F_n(h) &= \eta A_n \int_0^\infty f(w)\, \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q} \\
+        A_r(h) &= \eta A_n \int_0^\infty a(w)\, \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q} \\
+        n(h) &= \eta A_n \int_0^\infty \phi\!\left( h + \frac{w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
     """
 
     lowest: float
@@ -114,69 +186,52 @@ class GreenwoodWilliamsonIntegrals:
     force: SeparationFunction
     area: SeparationFunction
     count: SeparationFunction
-    elastic_load_fraction: SeparationFunction
-    elastic_area_fraction: SeparationFunction
 
 
-def greenwood_williamson_integrals(
-    *, roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
-) -> GreenwoodWilliamsonIntegrals:
-    """Force, area and number of all asperities of a rough contact as functions of the separation."""
-    deviation = heights.standard_deviation
-    w, per_height = _per_height(roughness, pair, nominal_area, heights, asperity)
+@lru_cache(maxsize=512)
+def greenwood_williamson_integrals(contact: RoughContact) -> GreenwoodWilliamsonIntegrals:
+    """Force, area and number of all asperities of a rough contact as functions of the separation, computed once."""
+    heights, (w, per_height) = contact.heights, _per_height(contact)
     if isinstance(heights, ExponentialHeights):
-        logs = _log_integrals(heights, np.zeros(1), w, per_height)[0]
-        rates = heights.decay * np.array([1, 1, 1, 0, 0])
-        functions: list[SeparationFunction] = [ExponentialDecay(*line) for line in np.stack([logs, rates], 1).tolist()]
+        logs = _log_integrals(heights, np.zeros(1), w, per_height)[0].tolist()
+        functions: list[SeparationFunction] = [ExponentialDecay(log_at_zero, heights.decay) for log_at_zero in logs]
         # at most exp(600) times the values at zero separation: far beyond any meaning, and short of overflow
         lowest, highest = -600 / heights.decay, math.inf
     else:
-        h = deviation * np.arange(TABLE_RANGE[0], TABLE_RANGE[1] + TABLE_STEP / 2, TABLE_STEP)
+        h = heights.standard_deviation * np.arange(TABLE_RANGE[0], TABLE_RANGE[1] + TABLE_STEP / 2, TABLE_STEP)
         functions = [LogSpline(h, column) for column in _log_integrals(heights, h, w, per_height).T]
         lowest, highest = float(h[0]), float(h[-1])
-    names = ("force", "area", "count", "elastic_load_fraction", "elastic_area_fraction")
-    return GreenwoodWilliamsonIntegrals(lowest=lowest, highest=highest, **dict(zip(names, functions, strict=True)))
+    force, area, count = functions
+    return GreenwoodWilliamsonIntegrals(lowest=lowest, highest=highest, force=force, area=area, count=count)
 
 
-def log_normal_force_function(
-    *, roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
-) -> Callable[[Floats], Floats]:
+def log_normal_force_function(contact: RoughContact) -> Callable[[Floats], Floats]:
     """Function for the logarithm of the force of all asperities at a few separations, without a table.
 
     Of separations over R_q, shape (n,): that of the table to 1e-10, for forces in N.
     """
-    w, per_height = _per_height(roughness, pair, nominal_area, heights, asperity)
-    return lambda h: _log_integrals(heights, h, w, per_height)[:, 0]
+    w, per_height = _per_height(contact)
+    return lambda h: _log_integrals(contact.heights, h, w, per_height)[:, 0]
 
 
-def _per_height(
-    roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
-) -> tuple[Floats, Floats]:
-    """Interferences over R_q, and what summits at each add to the integrals per density of the heights.
-
-    The columns are elastic and plastic force, elastic and plastic area, and number.
-    """
-    Rq, Rs = roughness.rms_height, roughness.summit_radius
+def _per_height(contact: RoughContact) -> tuple[Floats, Floats]:
+    """Interferences over R_q, and what summits at each add to force, area and number per density of the heights."""
+    asperity, pair, Rq, Rs = contact.asperity, contact.pair, contact.height_scale, contact.roughness.summit_radius
     w_c = critical_interference(asperity, pair, summit_radius=Rs) / Rq
-    deviation = heights.standard_deviation
-    w, weights = _quadrature([each * w_c for each in asperity.breakpoints], standard_deviation=deviation)
+    breakpoints = [each * w_c for each in asperity.breakpoints]
+    w, weights = _quadrature(breakpoints, standard_deviation=contact.heights.standard_deviation)
     force = asperity_force(asperity, pair, summit_radius=Rs, interference=w * Rq)
     area = asperity_area(asperity, pair, summit_radius=Rs, interference=w * Rq)
-    summits = roughness.summit_density * nominal_area * weights
-    elastic, plastic = w < w_c, w >= w_c
-    integrands = [force * elastic, force * plastic, area * elastic, area * plastic, np.ones_like(w)]
-    return w, summits[:, None] * np.stack(integrands, axis=1)
+    summits = contact.roughness.summit_density * contact.nominal_area * weights
+    return w, summits[:, None] * np.stack([force, area, np.ones_like(w)], axis=1)
 
 
 def _log_integrals(heights: HeightDistribution, h: Floats, w: Floats, per_height: Floats) -> Floats:
-    """Logarithms of force, area, count and elastic fractions of force and area, one row per separation."""
+    """Logarithms of force, area and number, one row per separation."""
     # relative to the density at the separation itself, which underflows far out
     log_at_h = heights.log_density(h)
     density = np.exp(heights.log_density(h[:, None] + w) - log_at_h[:, None])
-    elastic_force, plastic_force, elastic_area, plastic_area, count = (density @ per_height).T
-    force, area = elastic_force + plastic_force, elastic_area + plastic_area
-    logs: Floats = np.log(np.stack([force, area, count, elastic_force / force, elastic_area / area], axis=1))
-    logs[:, :3] += log_at_h[:, None]
+    logs: Floats = np.log(density @ per_height) + log_at_h[:, None]
     return logs
 
 

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_finite, require_positive, require_within
+from sonolube.checks import Floats, require_positive, require_within
 from sonolube.errors import OutsideRange
 from sonolube.variants import VariantTable
 
@@ -184,27 +183,6 @@ class GaussianHeights:
         """Natural logarithm of the density. []"""
         s = self.summit_deviation_ratio
         return -0.5 * np.square(normalized_height / s) - math.log(s * math.sqrt(2 * math.pi))
-
-
-def height_density(heights: HeightDistribution, *, normalized_height: ArrayLike) -> Floats:
-    """Probability density of summit heights. []
-
-    Parameters
-    ----------
-    heights : HeightDistribution
-    normalized_height : array_like, any shape
-        Height above the mean of summit heights, over R_q. []
-
-    Returns
-    -------
-    ndarray, shape of `normalized_height`
-
-    Raises
-    ------
-    InvalidInput
-        If a height is not finite.
-    """
-    return np.exp(heights.log_density(require_finite(normalized_height=normalized_height)))
 
 
 HEIGHT_DISTRIBUTIONS: VariantTable[HeightDistribution] = VariantTable(

@@ -67,31 +67,6 @@ def hertz_contact_radius(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Flo
     return np.cbrt(3 * load * sphere.tip_radius / (4 * sphere.effective_modulus))  # Johnson 4.22
 
 
-def hertz_approach(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    r"""Approach of distant points of the two bodies. [m]
-
-    Parameters
-    ----------
-    sphere : SphereOnFlat
-    normal_load : array_like, any shape
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    ndarray, shape of `normal_load`
-
-    Raises
-    ------
-    InvalidInput
-        If a load is negative or not finite.
-
-    Notes
-    -----
-    .. math:: \delta = \frac{a^2}{R}
-    """
-    return hertz_contact_radius(sphere, normal_load=normal_load) ** 2 / sphere.tip_radius  # Johnson 4.23
-
-
 def hertz_peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
     r"""Peak contact pressure, at the centre of the contact circle. [Pa]
 
@@ -152,31 +127,6 @@ def hertz_mean_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floa
     .. math:: p_m = \tfrac23 p_0
     """
     return hertz_peak_pressure(sphere, normal_load=normal_load) / 1.5
-
-
-def hertz_stiffness(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    r"""Normal stiffness of the contact. [N/m]
-
-    Parameters
-    ----------
-    sphere : SphereOnFlat
-    normal_load : array_like, any shape
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    ndarray, shape of `normal_load`
-
-    Raises
-    ------
-    InvalidInput
-        If a load is negative or not finite.
-
-    Notes
-    -----
-    .. math:: \frac{\mathrm{d} F_N}{\mathrm{d} \delta} = 2 E^* a
-    """
-    return 2 * sphere.effective_modulus * hertz_contact_radius(sphere, normal_load=normal_load)
 
 
 def hertz_axial_stresses(
@@ -254,68 +204,6 @@ def hertz_axial_shear_stress(
     return np.abs(along - across) / 2
 
 
-def maximum_axial_shear(*, poisson_ratio: ArrayLike) -> tuple[Floats, Floats]:
-    """Largest shear stress on the axis over the peak pressure, and its depth over the contact radius. []
-
-    Parameters
-    ----------
-    poisson_ratio : array_like, any shape
-        Poisson's ratio of the body in which the stress is computed. []
-
-    Returns
-    -------
-    tuple of two ndarrays, shape of `poisson_ratio`
-        Near 0.31 and 0.48 for metals.
-
-    Raises
-    ------
-    InvalidInput
-        If Poisson's ratio is outside 0 to 0.5.
-    """
-    nu = require_within(0.0, 0.5, poisson_ratio=poisson_ratio)
-    zeta = np.full(nu.shape, 0.48)
-    for _ in range(6):  # Newton's method on the slope of Johnson 3.45; the root lies between 0.38 and 0.55
-        one = 1 + zeta**2
-        slope = (1 + nu) * (np.arctan2(1.0, zeta) - zeta / one) - 3 * zeta / one**2
-        curvature = -2 * (1 + nu) / one**2 - 3 * (1 - 3 * zeta**2) / one**3
-        zeta = zeta - slope / curvature
-    return np.asarray(0.75 / (1 + zeta**2) - (1 + nu) * (1 - zeta * np.arctan2(1.0, zeta)) / 2), zeta
-
-
-def yield_onset_load(sphere: SphereOnFlat, *, yield_strength: ArrayLike, poisson_ratio: ArrayLike) -> Floats:
-    r"""Load at the onset of yielding, below the centre of the contact. [N]
-
-    Parameters
-    ----------
-    sphere : SphereOnFlat
-    yield_strength : array_like, any shape
-        Yield strength of the body. [Pa]
-    poisson_ratio : array_like, broadcastable to `yield_strength`
-        Poisson's ratio of the body. []
-
-    Returns
-    -------
-    ndarray, the broadcast shape
-
-    Raises
-    ------
-    InvalidInput
-        If a yield strength is not positive, or Poisson's ratio outside 0 to 0.5.
-
-    Notes
-    -----
-    .. math:: F_Y = \frac{\pi^3 R^2 p_0^3}{6 E^{*2}}, \qquad p_0 = \frac{Y}{2\, (\tau/p_0)_{\max}}
-
-    with `maximum_axial_shear`. The criteria of Tresca and von Mises agree on the axis, where two principal stresses are
-    equal: the shear stress there reaches Y/2.
-    """
-    Y = require_positive(yield_strength=yield_strength)
-    largest, _ = maximum_axial_shear(poisson_ratio=poisson_ratio)
-    p0: Floats = Y / (2 * largest)
-    R, E = sphere.tip_radius, sphere.effective_modulus
-    return np.pi**3 * R**2 * p0**3 / (6 * E**2)  # Johnson 6.9
-
-
 def tip_radius_for_pressure(
     *, mean_pressure: ArrayLike, normal_load: ArrayLike, effective_modulus: ArrayLike
 ) -> Floats:
@@ -350,51 +238,3 @@ def tip_radius_for_pressure(
     area = load / require_positive(mean_pressure=mean_pressure)
     a: Floats = np.sqrt(area / np.pi)
     return 4 * require_positive(effective_modulus=effective_modulus) * a**3 / (3 * load)  # Johnson 4.22
-
-
-def nominal_area_from_groove(*, groove_width: ArrayLike) -> Floats:
-    r"""Nominal contact area as a circle of the width of the wear groove. [m2]
-
-    Parameters
-    ----------
-    groove_width : array_like, any shape
-        Width of the wear groove. [m]
-
-    Returns
-    -------
-    ndarray, shape of `groove_width`
-
-    Raises
-    ------
-    InvalidInput
-        If a width is not positive.
-
-    Notes
-    -----
-    .. math:: A_n = \frac{\pi w^2}{4}
-
-    D 4.1.1 and Table 4.1 take the nominal area from the width of the groove: 0.126 mm2 is a circle of 0.40 mm.
-    """
-    return np.pi * require_positive(groove_width=groove_width) ** 2 / 4
-
-
-def worn_flat_pressure(*, normal_load: ArrayLike, groove_width: ArrayLike) -> Floats:
-    """Mean pressure under a pin worn flat to the width of its groove. [Pa]
-
-    Parameters
-    ----------
-    normal_load : array_like, any shape
-        Force pressing the bodies together. [N]
-    groove_width : array_like, broadcastable to `normal_load`
-        Width of the wear groove. [m]
-
-    Returns
-    -------
-    ndarray, the broadcast shape
-
-    Raises
-    ------
-    InvalidInput
-        If a load is negative or a width not positive.
-    """
-    return require_non_negative(normal_load=normal_load) / nominal_area_from_groove(groove_width=groove_width)

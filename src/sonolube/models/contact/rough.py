@@ -1,99 +1,16 @@
 """Statistical contact of rough surfaces after Greenwood and Williamson: separation, real area and normal stiffness."""
 
-from dataclasses import dataclass, field, replace
-from functools import lru_cache
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.models.contact.asperity import AsperityLaw, ChangEtsionBogy
-from sonolube.models.contact.greenwood_williamson import GreenwoodWilliamsonIntegrals, greenwood_williamson_integrals
-from sonolube.models.contact.height_distribution import ExponentialHeights, HeightDistribution
-from sonolube.models.contact.pair import ContactPair
-from sonolube.models.surfaces import Roughness
-
-__all__ = [  # `integrals_at` serves this room only
-    "RoughContact",
-    "contact_count",
-    "decay_length",
-    "normal_force",
-    "normal_stiffness",
-    "real_contact_area",
-    "separation",
-    "separation_range",
-]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RoughContact:
-    """Contact of two rough surfaces: roughness, materials, nominal area, height distribution and asperity law.
-
-    Parameters
-    ----------
-    roughness : Roughness
-        Combined roughness of both surfaces.
-    pair : ContactPair
-    nominal_area : float
-        Area over which the bodies face each other. [m2]
-    heights : HeightDistribution
-        Exponential by default.
-    asperity : AsperityLaw
-        That of Chang, Etsion and Bogy by default.
-    decay_length : float or None
-        Length over which the normal force falls by a factor of e, where it is known otherwise than by the roughness,
-        such as from the stiffness of a worn contact; for exponential heights only. R_q/lambda where None. [m]
-
-    Raises
-    ------
-    InvalidInput
-        If area or decay length is not positive and finite, or heights that are not exponential have a decay length.
-
-    Notes
-    -----
-    The pair is replaced by one surface with the roughness of both against a smooth flat. Its asperities are spheres of
-    one radius that do not interact, so the real area must stay far below the nominal one. Separations are measured from
-    the mean of the summit heights. `contact_caveats` returns the reasons against applying the model to a contact.
-
-    With a `decay_length` l the heights are those of a surface whose rms height is lambda l (`height_scale`): load,
-    area and number of contacts fall by a factor of e over l. `roughness` stays what was measured, often before wear.
-
-    See Also
-    --------
-    sonolube.models.contact.greenwood_williamson : The integrals over all asperities behind the functions of this
-    module. sonolube.models.contact.PerssonContact : Contact from the power spectrum, without asperities.
-
-    References
-    ----------
-    .. [1] J. A. Greenwood and J. B. P. Williamson, Proc. R. Soc. A 295, 300 (1966). doi:10.1098/rspa.1966.0242
-    .. [2] A. A. Polycarpou and I. Etsion, J. Tribol. 121, 234 (1999). doi:10.1115/1.2833926
-    """
-
-    roughness: Roughness
-    pair: ContactPair
-    nominal_area: float
-    heights: HeightDistribution = field(default_factory=ExponentialHeights)
-    asperity: AsperityLaw = field(default_factory=ChangEtsionBogy)
-    decay_length: float | None = None
-
-    def __post_init__(self) -> None:
-        require_positive(nominal_area=self.nominal_area)
-        if self.decay_length is not None:
-            require_positive(decay_length=self.decay_length)
-            if not isinstance(self.heights, ExponentialHeights):
-                raise InvalidInput(
-                    f"decay_length is for exponential heights, got {self.heights.name} heights, whose decay length"
-                    " varies with the separation: leave it out or use exponential heights"
-                )
-
-    @property
-    def height_scale(self) -> float:
-        """Rms height of the height distribution: the measured one, or lambda l where the decay length is given. [m]"""
-        if self.decay_length is None or not isinstance(self.heights, ExponentialHeights):
-            return self.roughness.rms_height
-        return self.heights.decay * self.decay_length
+from sonolube.models.contact.greenwood_williamson import (
+    GreenwoodWilliamsonIntegrals,
+    RoughContact as RoughContact,
+    greenwood_williamson_integrals,
+)
+from sonolube.models.contact.height_distribution import ExponentialHeights
 
 
 def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
@@ -139,7 +56,7 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
     1.386
     """
     load = require_positive(normal_load=normal_load)
-    integrals = _integrals(contact)
+    integrals = greenwood_williamson_integrals(contact)
     lowest, highest = integrals.force.value(np.array([integrals.highest, integrals.lowest])).tolist()
     _require_range(contact, lowest, highest, "normal_load", "N", load)
     return integrals.force.inverse(load) * contact.height_scale
@@ -157,7 +74,7 @@ def separation_range(contact: RoughContact) -> tuple[float, float]:
     tuple of float
         The largest is infinite for exponential heights.
     """
-    integrals, Rq = _integrals(contact), contact.height_scale
+    integrals, Rq = greenwood_williamson_integrals(contact), contact.height_scale
     return integrals.lowest * Rq, integrals.highest * Rq
 
 
@@ -193,7 +110,7 @@ def normal_force(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     ----------
     .. [1] D 3.3 to 3.5
     """
-    integrals, h = integrals_at(contact, separation=separation)
+    integrals, h = _integrals_at(contact, separation=separation)
     return integrals.force.value(h)
 
 
@@ -221,16 +138,11 @@ def real_contact_area(contact: RoughContact, *, separation: ArrayLike) -> Floats
     -----
     .. math:: A_r = \eta A_n \int_0^\infty a(w)\, \phi\!\left( \frac{d + w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
 
-    See Also
-    --------
-    sonolube.models.contact.elastic_area : Part on asperities that have not yielded.
-    sonolube.models.contact.plastic_area : Part on asperities that have.
-
     References
     ----------
     .. [1] D 3.6
     """
-    integrals, h = integrals_at(contact, separation=separation)
+    integrals, h = _integrals_at(contact, separation=separation)
     return integrals.area.value(h)
 
 
@@ -254,7 +166,7 @@ def contact_count(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     OutsideRange
         If a separation lies outside the range of the height distribution.
     """
-    integrals, h = integrals_at(contact, separation=separation)
+    integrals, h = _integrals_at(contact, separation=separation)
     return integrals.count.value(h)
 
 
@@ -298,7 +210,7 @@ def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     >>> round(1e-6 * float(stiffness), 3)  # 3 N over a decay length of 2 um, in N/um
     1.5
     """
-    integrals, h = integrals_at(contact, separation=separation)
+    integrals, h = _integrals_at(contact, separation=separation)
     return integrals.force.value(h) * integrals.force.decay_rate(h) / contact.height_scale
 
 
@@ -333,40 +245,20 @@ def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) 
         if not isinstance(contact.heights, ExponentialHeights):
             raise InvalidInput(f"decay_length of {contact.heights.name} heights varies: give a separation")
         separation = 0.0
-    integrals, h = integrals_at(contact, separation=separation)
+    integrals, h = _integrals_at(contact, separation=separation)
     if contact.decay_length is not None:
         return np.full_like(h, contact.decay_length)
     return contact.height_scale / integrals.force.decay_rate(h)
 
 
-@lru_cache(maxsize=512)
-def _integrals(contact: RoughContact) -> GreenwoodWilliamsonIntegrals:
-    """Integrals over all asperities of a contact, computed once."""
-    return greenwood_williamson_integrals(**summit_population(contact))
-
-
-def summit_population(contact: RoughContact) -> dict[str, Any]:
-    """Arguments of the integrals over all asperities: those of the contact, its rms height that of the heights."""
-    roughness = contact.roughness
-    if contact.decay_length is not None:
-        roughness = replace(roughness, rms_height=contact.height_scale)
-    return {
-        "roughness": roughness,
-        "pair": contact.pair,
-        "nominal_area": contact.nominal_area,
-        "heights": contact.heights,
-        "asperity": contact.asperity,
-    }
-
-
-def integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:
+def _integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:
     """Integrals over all asperities of a contact, and the separations over the rms height of its heights.
 
     `h`: Normalized separation.
     """
     d = require_finite(separation=separation)
     _require_range(contact, *separation_range(contact), "separation", "m", d)
-    return _integrals(contact), d / contact.height_scale
+    return greenwood_williamson_integrals(contact), d / contact.height_scale
 
 
 def _require_range(contact: RoughContact, low: float, high: float, name: str, unit: str, values: Floats) -> None:

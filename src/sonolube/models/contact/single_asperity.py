@@ -1,13 +1,4 @@
-r"""Critical interference, normal force and contact area of one asperity under an asperity law.
-
-At the interference w of a summit of radius R_s, and with the critical interference w_c,
-
-.. math::
-
-    f(w) = \tfrac43 E^* \sqrt{R_s}\, w^{3/2}\, r_f(w/w_c), \qquad a(w) = \pi R_s w\, r_a(w/w_c),
-
-Hertz's sphere times the ratios of the law.
-"""
+"""Critical interference, normal force and contact area of one asperity: Hertz's sphere times the ratios of a law."""
 
 import math
 

@@ -1,6 +1,6 @@
 """Validity range of the statistical contact model: caveats of a contact, and the range of exponential heights."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import lru_cache
 
@@ -11,13 +11,7 @@ from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput
 from sonolube.models.contact.greenwood_williamson import TABLE_RANGE, log_normal_force_function
 from sonolube.models.contact.height_distribution import MINIMUM_ROUGHNESS_PARAMETER, ExponentialHeights, GaussianHeights
-from sonolube.models.contact.rough import (
-    RoughContact,
-    contact_count,
-    normal_force,
-    real_contact_area,
-    summit_population,
-)
+from sonolube.models.contact.rough import RoughContact, contact_count, normal_force, real_contact_area
 
 TYPICAL_ROUGHNESS_PARAMETERS = (0.02, 0.1)
 """Range of the roughness parameter of most engineering surfaces. []"""
@@ -71,7 +65,7 @@ def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) ->
     gaussian = replace(contact, heights=heights)
     is_exponential = isinstance(contact.heights, ExponentialHeights)
     exponential = contact if is_exponential else replace(contact, heights=ExponentialHeights())
-    log_force = log_normal_force_function(**summit_population(gaussian))
+    log_force = log_normal_force_function(gaussian)
 
     def log_ratio(h: Floats) -> Floats:
         load = normal_force(exponential, separation=h * roughness.rms_height)
@@ -130,36 +124,37 @@ def contact_caveats(contact: RoughContact, *, separation: ArrayLike) -> tuple[st
     """
     d = require_finite(separation=separation)
     lowest, highest = float(d.min()), float(d.max())
-    caveats = (
-        _roughness_caveat(contact),
-        _separation_caveat(lowest),
-        _exponential_caveat(contact, lowest, highest),
-        _area_caveat(contact, lowest),
-        _count_caveat(contact, highest),
-    )
-    return tuple(caveat for caveat in caveats if caveat)
+    return tuple(_caveats(contact, lowest, highest))
 
 
-def _roughness_caveat(contact: RoughContact) -> str:
-    """Caveat against an untypical roughness parameter, or an empty text."""
-    beta = contact.roughness.roughness_parameter
-    low, high = TYPICAL_ROUGHNESS_PARAMETERS
-    if low <= beta <= high:
-        return ""
-    return (
-        f"roughness parameter {beta:.3g} lies outside the typical range {low:g} to {high:g}: "
-        "measure rms height, summit radius and summit density on the same surface"
-    )
-
-
-def _separation_caveat(lowest: float) -> str:
-    """Caveat against mean planes that touch, or an empty text."""
-    if lowest > 0:
-        return ""
-    return (
-        f"separation {1e6 * lowest:.3g} um is not positive: the mean planes touch, and asperities interact; "
-        "reduce the load or the vibration amplitude"
-    )
+def _caveats(contact: RoughContact, lowest: float, highest: float) -> Iterator[str]:
+    """Caveats of a contact between its lowest and its highest separation."""
+    beta, (low, high) = contact.roughness.roughness_parameter, TYPICAL_ROUGHNESS_PARAMETERS
+    if not low <= beta <= high:
+        yield (
+            f"roughness parameter {beta:.3g} lies outside the typical range {low:g} to {high:g}: "
+            "measure rms height, summit radius and summit density on the same surface"
+        )
+    if not lowest > 0:
+        yield (
+            f"separation {1e6 * lowest:.3g} um is not positive: the mean planes touch, and asperities interact; "
+            "reduce the load or the vibration amplitude"
+        )
+    if caveat := _exponential_caveat(contact, lowest, highest):
+        yield caveat
+    fraction = float(real_contact_area(contact, separation=lowest)) / contact.nominal_area
+    if not fraction <= MAXIMUM_AREA_FRACTION:
+        yield (
+            f"real area is {100 * fraction:.3g} % of the nominal {1e6 * contact.nominal_area:.3g} mm2: above "
+            f"{100 * MAXIMUM_AREA_FRACTION:g} % asperities interact; reduce the load or increase the nominal area"
+        )
+    count = float(contact_count(contact, separation=highest))
+    if not count >= MINIMUM_CONTACT_COUNT:
+        yield (
+            f"only {count:.2g} asperities are in contact on the nominal {1e6 * contact.nominal_area:.3g} mm2: below "
+            f"{MINIMUM_CONTACT_COUNT} the mean is not representative of one contact; increase the load or the nominal"
+            " area"
+        )
 
 
 def _exponential_caveat(contact: RoughContact, lowest: float, highest: float) -> str:
@@ -179,26 +174,4 @@ def _exponential_caveat(contact: RoughContact, lowest: float, highest: float) ->
     return (
         f"separation over rms height is {reached}; the load of exponential heights is within a factor of 2 of that of "
         f"Gaussian ones only from {valid[0]:.2f} to {valid[1]:.2f}: use gaussian heights"
-    )
-
-
-def _area_caveat(contact: RoughContact, lowest: float) -> str:
-    """Caveat against a large real area, or an empty text."""
-    fraction = float(real_contact_area(contact, separation=lowest)) / contact.nominal_area
-    if fraction <= MAXIMUM_AREA_FRACTION:
-        return ""
-    return (
-        f"real area is {100 * fraction:.3g} % of the nominal {1e6 * contact.nominal_area:.3g} mm2: above "
-        f"{100 * MAXIMUM_AREA_FRACTION:g} % asperities interact; reduce the load or increase the nominal area"
-    )
-
-
-def _count_caveat(contact: RoughContact, highest: float) -> str:
-    """Caveat against too few asperities in contact, or an empty text."""
-    count = float(contact_count(contact, separation=highest))
-    if count >= MINIMUM_CONTACT_COUNT:
-        return ""
-    return (
-        f"only {count:.2g} asperities are in contact on the nominal {1e6 * contact.nominal_area:.3g} mm2: below "
-        f"{MINIMUM_CONTACT_COUNT} the mean is not representative of one contact; increase the load or the nominal area"
     )

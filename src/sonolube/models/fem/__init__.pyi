@@ -59,23 +59,13 @@ from .results.postprocessing import (
     von_mises_stress as von_mises_stress,
 )
 from .results.vtk_export import vtu_text as vtu_text
-from .ritz import (
-    CrossSection as CrossSection,
-    annular_section as annular_section,
-    rectangular_section as rectangular_section,
-    ritz_frequencies as ritz_frequencies,
-)
 from .solver.convergence import (
     ConvergedModes as ConvergedModes,
     converged_modes as converged_modes,
     extrapolate_frequencies as extrapolate_frequencies,
 )
 from .solver.forced_vibration import forced_response as forced_response
-from .solver.harmonic_analysis import (
-    HarmonicResponse as HarmonicResponse,
-    direct_response as direct_response,
-    harmonic_response as harmonic_response,
-)
+from .solver.harmonic_analysis import HarmonicResponse as HarmonicResponse, harmonic_response as harmonic_response
 from .solver.krylov import krylov_reduction as krylov_reduction
 from .solver.medium import (
     Medium as Medium,
@@ -96,10 +86,7 @@ from .solver.modes import (
     rigid_body_mode_count as rigid_body_mode_count,
 )
 from .solver.reduction import Output as Output, ReducedModel as ReducedModel, reduce_model as reduce_model
-from .solver.resonances import (
-    coupled_resonances as coupled_resonances,
-    series_parallel_resonances as series_parallel_resonances,
-)
+from .solver.resonances import coupled_resonances as coupled_resonances
 from .solver.structure_conversion import contact_structure as contact_structure, with_free_body as with_free_body
 from .surface_trajectories import TrajectoryEllipse as TrajectoryEllipse, trajectory_ellipse as trajectory_ellipse
 from .tuning import NamedMode as NamedMode, TunedMode as TunedMode, named_mode as named_mode, tuned_mode as tuned_mode

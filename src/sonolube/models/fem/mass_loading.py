@@ -9,20 +9,14 @@ from sonolube.models.fem.solver.assembly import tributary_areas
 from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.modes import NaturalModes, spectral_shift
 from sonolube.models.fem.solver.reduction import Output, output_matrix
-from sonolube.models.fem.solver.system import LinearSolver, SystemMatrices, assemble_system, shift_invert_solver
+from sonolube.models.fem.solver.system import LinearSolver, SystemMatrices
 
 _MOVING = 0.05  # of the largest squared modal displacement of the face, above which a mode is coupled to the mass
 _RESIDUAL_FREQUENCY = 1e3  # squared frequency of the mode that has the residual compliance, over that of the highest
 
 
 def mass_loaded_frequencies(
-    modes: NaturalModes,
-    model: Model,
-    *,
-    face: str,
-    along: str,
-    tool_mass: float,
-    residual_compliance: float | None = None,
+    modes: NaturalModes, model: Model, *, face: str, along: str, tool_mass: float, residual_compliance: float
 ) -> Floats:
     r"""Natural frequencies with a rigid mass that follows the mean displacement of a face in one direction.
 
@@ -38,8 +32,8 @@ def mass_loaded_frequencies(
         Direction in which the mass is inert, "x", "y" or "z".
     tool_mass : float
         Mass. [kg]
-    residual_compliance : float, optional
-        Result of `face_residual_compliance`, possibly of a coarser mesh; computed where absent. [m/N]
+    residual_compliance : float
+        Result of `face_residual_compliance`, possibly of a coarser mesh. [m/N]
 
     Returns
     -------
@@ -62,10 +56,6 @@ def mass_loaded_frequencies(
     mass = float(require_non_negative(tool_mass=tool_mass))
     displacement = _face_displacement(modes, model, face, along)
     squares = (2 * np.pi * modes.natural_frequency) ** 2
-    if residual_compliance is None:
-        equations = assemble_system(model)
-        inverse = shift_invert_solver(model, equations, shift=spectral_shift(model))
-        residual_compliance = face_residual_compliance(modes, model, equations, inverse=inverse, face=face, along=along)
     high = _RESIDUAL_FREQUENCY * squares.max()
     squares = np.append(squares, high)
     displacement = np.append(displacement, np.sqrt(max(residual_compliance, 0.0) * high))

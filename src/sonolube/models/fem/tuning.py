@@ -207,7 +207,7 @@ def tuned_mode(
     """
     require_positive(frequency=frequency, length=length, element_size=element_size)
 
-    def frequency_at(length: float, order: int) -> float:
+    def frequency_at(length: float, order: int = _COARSE_ORDER) -> float:
         model = model_at(_seven_digits(length), element_size)
         model = replace(model, mesh=change_order(grade_reentrant_edges(model.mesh, levels=1), order=order))
         modes = natural_modes(model, count=count)
@@ -215,12 +215,9 @@ def tuned_mode(
             advance(f"{length * 1e3:.2f} mm", 0, 1)
         return float(modes.natural_frequency[_mode_index(mode_names(model, modes, axis=axis), name)])
 
-    def coarse_frequency(length: float) -> float:
-        return frequency_at(length, _COARSE_ORDER)
-
-    found = _secant_length(coarse_frequency, frequency, length)
+    found = _secant_length(frequency_at, frequency, length)
     shorter, longer = found * (1 - _DIFFERENCE), found * (1 + _DIFFERENCE)
-    exponent = float(np.log(coarse_frequency(longer) / coarse_frequency(shorter)) / np.log(longer / shorter))
+    exponent = float(np.log(frequency_at(longer) / frequency_at(shorter)) / np.log(longer / shorter))
     slope = exponent * frequency / found
     found = _corrected(found, frequency_at(found, _FINE_ORDER) - frequency, slope, frequency)
     for _ in range(_MAX_CORRECTIONS):

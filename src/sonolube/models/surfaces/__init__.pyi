@@ -34,12 +34,7 @@ from .finish import (
     typical_summits as typical_summits,
 )
 from .form_removal import fit_form as fit_form, remove_form as remove_form
-from .gaussian_filter import (
-    band_pass as band_pass,
-    high_pass as high_pass,
-    low_pass as low_pass,
-    profile_low_pass as profile_low_pass,
-)
+from .gaussian_filter import high_pass as high_pass, low_pass as low_pass, profile_low_pass as profile_low_pass
 from .grooves.ball_on_disc import (
     WearScar as WearScar,
     disc_volume_loss as disc_volume_loss,
@@ -93,7 +88,6 @@ from .spectrum import (
     RadialSpectrum as RadialSpectrum,
     SpectralMoments as SpectralMoments,
     areal_spectrum as areal_spectrum,
-    moments_of_spectrum as moments_of_spectrum,
     profile_spectrum as profile_spectrum,
     profiles as profiles,
     radial_spectrum as radial_spectrum,

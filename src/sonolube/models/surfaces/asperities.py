@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import MappingProxyType
 
 import numpy as np
@@ -97,8 +97,7 @@ def summit_statistics(surface: HeightMap) -> SummitStatistics:
     See Also
     --------
     nayak_summit_statistics : The same from spectral moments, for an isotropic Gaussian surface.
-    sonolube.models.surfaces.features.feature_parameters : Density of significant peaks Spd, which is not the summit
-    density.
+    sonolube.models.surfaces.feature_parameters : Density of significant peaks Spd, which is not the summit density.
 
     Notes
     -----
@@ -147,10 +146,6 @@ def spectral_moments(surface: HeightMap) -> SpectralMoments:
     ------
     InvalidInput
         If the map is flat, or no three neighbouring pixels were measured along a row or along a column.
-
-    See Also
-    --------
-    sonolube.models.surfaces.spectrum.moments_of_spectrum : The same as integrals of the power spectrum.
 
     Notes
     -----
@@ -225,13 +220,8 @@ def nayak_summit_statistics(moments: SpectralMoments) -> SummitStatistics:
     )
 
 
-def _from_moments(surface: HeightMap) -> SummitStatistics:
-    """Summit statistics by Nayak's theory from the moments of a height map."""
-    return nayak_summit_statistics(spectral_moments(surface))
-
-
 _METHODS: Mapping[str, Callable[[HeightMap], SummitStatistics]] = MappingProxyType(
-    {"summits": summit_statistics, "moments": _from_moments}
+    {"summits": summit_statistics, "moments": lambda surface: nayak_summit_statistics(spectral_moments(surface))}
 )
 
 
@@ -340,9 +330,7 @@ def sampling_dependence(
     found = [contact_roughness(one, method=method) for one in coarser]
     return SamplingDependence(
         sampling_interval=np.array([math.sqrt(one.spacing_x * one.spacing_y) for one in coarser]),
-        rms_height=np.array([one.rms_height for one in found]),
-        summit_radius=np.array([one.summit_radius for one in found]),
-        summit_density=np.array([one.summit_density for one in found]),
+        **{field.name: np.array([getattr(one, field.name) for one in found]) for field in fields(Roughness)},
     )
 
 

@@ -17,7 +17,6 @@ _REFINED_TRIALS = 5  # best of the trials, which are refined
 _CONCENTRATION_STEPS = 20
 _MAX_ITERATIONS = 50
 _BISQUARE_REACH = 4.685  # in standard deviations: 95 % efficiency for Gaussian heights
-_DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
 _CONVERGED = 1e-4  # largest change of the form over the scale of the residuals
 _MIN_SCALE = 1e-9  # of the residuals, over the range of heights
 
@@ -121,6 +120,11 @@ def remove_form(
     return surface.with_height(surface.height - form.height)
 
 
+def robust_deviation(deviations: Floats) -> float:
+    """Standard deviation of Gaussian values, estimated from the median of their absolute deviations."""
+    return 1.4826 * float(np.median(np.abs(deviations)))
+
+
 class _Basis(NamedTuple):
     """Products of Legendre polynomials of total power up to the degree."""
 
@@ -222,7 +226,7 @@ def _robust_fit(basis: _Basis, z: Floats, counted: Mask, coefficients: Floats) -
     current = _values(basis, coefficients)
     for _ in range(_MAX_ITERATIONS):
         residual = np.abs(z - current)
-        scale = max(_DEVIATION_OVER_MEDIAN * float(np.median(residual[counted])), floor)
+        scale = max(robust_deviation(residual[counted]), floor)
         weights = counted * np.maximum(0.0, 1 - (residual / (_BISQUARE_REACH * scale)) ** 2) ** 2
         coefficients = _fit(basis, z, weights)
         previous, current = current, _values(basis, coefficients)

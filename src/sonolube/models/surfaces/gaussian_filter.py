@@ -54,7 +54,7 @@ def low_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robust
 
     See Also
     --------
-    high_pass, band_pass, profile_low_pass : L-filter, S-L surface, and the filter for profiles.
+    high_pass, profile_low_pass : L-filter, and the filter for profiles.
 
     Notes
     -----
@@ -123,43 +123,6 @@ def high_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robus
     """
     waviness = low_pass(surface, cutoff_length=cutoff_length, order=order, robust=robust)
     return surface.with_height(surface.height - waviness.height)
-
-
-def band_pass(
-    surface: HeightMap, *, short_cutoff_length: float, long_cutoff_length: float, order: int = 0, robust: bool = False
-) -> HeightMap:
-    """S-L surface of ISO 25178-3: short wavelengths removed by the S-filter and long ones by the L-filter.
-
-    Parameters
-    ----------
-    surface : HeightMap
-        Missing pixels stay missing.
-    short_cutoff_length : float
-        Nesting index of the S-filter, which removes shorter wavelengths. [m]
-    long_cutoff_length : float
-        Nesting index of the L-filter, which removes longer wavelengths. [m]
-    order : int
-        Order of the regressions, 0 or 2.
-    robust : bool
-        Whether pixels far from the waviness lose weight in the L-filter.
-
-    Returns
-    -------
-    HeightMap
-
-    Raises
-    ------
-    InvalidInput
-        As `low_pass`, or if the cutoffs are not in order.
-    """
-    require_positive(short_cutoff_length=short_cutoff_length, long_cutoff_length=long_cutoff_length)
-    if short_cutoff_length >= long_cutoff_length:
-        raise InvalidInput(
-            f"short_cutoff_length {short_cutoff_length:g} m must be less than long_cutoff_length"
-            f" {long_cutoff_length:g} m"
-        )
-    without_noise = low_pass(surface, cutoff_length=short_cutoff_length, order=order)
-    return high_pass(without_noise, cutoff_length=long_cutoff_length, order=order, robust=robust)
 
 
 def profile_low_pass(

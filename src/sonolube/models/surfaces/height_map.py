@@ -71,6 +71,12 @@ class HeightMap:
         """Positions of the rows, from 0 at the first, in m."""
         return self.spacing_y * np.arange(self.height.shape[0], dtype=np.float64)
 
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Lengths of the field along x and y, as many spacings as it has columns and rows, in m."""
+        rows, columns = self.height.shape
+        return columns * self.spacing_x, rows * self.spacing_y
+
     def with_height(self, height: Floats) -> "HeightMap":
         """Height map of other heights on the same grid.
 

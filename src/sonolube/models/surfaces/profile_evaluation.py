@@ -202,35 +202,17 @@ def _evaluated(
         )
         short = None
     primary = levelled if short is None else profile_low_pass(height=levelled, spacing_x=spacing, cutoff_length=short)
-    if long is None:
-        length = levelled.size * spacing
-        caveats.append(
-            f"no L-filter: the profile of {_micrometres(length)} has less than one section of"
-            f" {_micrometres(SETTING_CLASSES[0].long_cutoff_length)}, or too few points in it; the parameters are those"
-            " of the primary profile (P)"
-        )
-        whole = profile_parameters(height=primary, spacing=spacing, section_length=length)
-        return ProfileEvaluation(
-            parameters=whole,
-            primary=primary,
-            evaluated=primary,
-            start=0,
-            setting_class="",
-            short_cutoff_length=short,
-            long_cutoff_length=None,
-            section_count=1,
-            section_length=length,
-            caveats=tuple(caveats),
-        )
-    roughness = primary - profile_low_pass(height=primary, spacing_x=spacing, cutoff_length=long)
-    count = min(_SECTIONS, _whole_sections(primary.size * spacing, long))
-    points = min(primary.size, round(count * long / spacing))
-    start = (primary.size - points) // 2
-    evaluated = roughness[start : start + points]
-    points -= points % count
-    evaluated, section_length = evaluated[:points], points // count * spacing
+    length, start, evaluated, count = levelled.size * spacing, 0, primary, 1
+    section_length = length
+    if long is not None:
+        roughness = primary - profile_low_pass(height=primary, spacing_x=spacing, cutoff_length=long)
+        count = min(_SECTIONS, _whole_sections(length, long))
+        points = min(primary.size, round(count * long / spacing))
+        start = (primary.size - points) // 2
+        points -= points % count
+        evaluated, section_length = roughness[start : start + points], points // count * spacing
     parameters = profile_parameters(height=evaluated, spacing=spacing, section_length=section_length)
-    caveats += _departures(parameters, count, long, primary.size * spacing, settings)
+    caveats += _departures(parameters, count, long, length, settings)
     return ProfileEvaluation(
         parameters=parameters,
         primary=primary,
@@ -246,9 +228,15 @@ def _evaluated(
 
 
 def _departures(
-    parameters: ProfileParameters, count: int, long: float, length: float, settings: SettingClass | None
+    parameters: ProfileParameters, count: int, long: float | None, length: float, settings: SettingClass | None
 ) -> list[str]:
     """Departures of an evaluation from the standard's defaults."""
+    if long is None:
+        return [
+            f"no L-filter: the profile of {_micrometres(length)} has less than one section of"
+            f" {_micrometres(SETTING_CLASSES[0].long_cutoff_length)}, or too few points in it; the parameters are those"
+            " of the primary profile (P)"
+        ]
     found = []
     if count < _SECTIONS:
         found.append(f"{count} of the standard's {_SECTIONS} sections of {_micrometres(long)} fit the profile")

@@ -9,7 +9,6 @@ from scipy import fft
 from sonolube.checks import Floats, require_positive, require_within
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.surfaces.height_map import HeightMap
-from sonolube.models.surfaces.spectrum import SpectralMoments
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,26 +54,6 @@ class GaussianCorrelationSpectrum:
         ndarray, shape of `wavenumber`
         """
         return np.asarray(np.exp(-np.square(math.pi * self.correlation_length * wavenumber)))
-
-    def moments(self, *, rms_height: float) -> SpectralMoments:
-        """Spectral moments m0, m2 and m4 in closed form.
-
-        Parameters
-        ----------
-        rms_height : float
-            Standard deviation of heights. [m]
-
-        Returns
-        -------
-        SpectralMoments
-        """
-        require_positive(rms_height=rms_height)
-        length = self.correlation_length
-        return SpectralMoments(
-            height_variance=rms_height**2,
-            slope_variance=2 * rms_height**2 / length**2,
-            curvature_variance=12 * rms_height**2 / length**4,
-        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -143,33 +122,6 @@ class SelfAffineSpectrum:
         density = np.maximum(wavenumber * self.rolloff_wavelength, 1.0) ** (-2 - 2 * self.hurst_exponent)
         inside = (wavenumber * self.longest_wavelength >= 1) & (wavenumber * self.shortest_wavelength <= 1)
         return np.where(inside, density, 0.0)
-
-    def moments(self, *, rms_height: float) -> SpectralMoments:
-        """Spectral moments m0, m2 and m4 in closed form.
-
-        Parameters
-        ----------
-        rms_height : float
-            Standard deviation of heights. [m]
-
-        Returns
-        -------
-        SpectralMoments
-        """
-        require_positive(rms_height=rms_height)
-        m0 = 2 * math.pi * self._radial_integral(1)
-        m2 = 2 * math.pi * (2 * math.pi) ** 2 / 2 * self._radial_integral(3)  # mean of cos^2 is 1/2
-        m4 = 2 * math.pi * (2 * math.pi) ** 4 * 3 / 8 * self._radial_integral(5)  # mean of cos^4 is 3/8
-        scale = rms_height**2 / m0
-        return SpectralMoments(height_variance=rms_height**2, slope_variance=scale * m2, curvature_variance=scale * m4)
-
-    def _radial_integral(self, power: int) -> float:
-        """Integral of k^power times the relative density over k."""
-        low, rolloff, high = 1 / self.longest_wavelength, 1 / self.rolloff_wavelength, 1 / self.shortest_wavelength
-        plateau = (rolloff ** (power + 1) - low ** (power + 1)) / (power + 1)
-        exponent = power - 1 - 2 * self.hurst_exponent
-        decay = math.log(high / rolloff) if exponent == 0 else (high**exponent - rolloff**exponent) / exponent
-        return float(plateau + rolloff ** (2 + 2 * self.hurst_exponent) * decay)
 
 
 HeightSpectrum = GaussianCorrelationSpectrum | SelfAffineSpectrum

@@ -1,4 +1,4 @@
-"""Power spectral densities of a height map, areal, radial and of profiles, and spectral moments by integration."""
+"""Power spectral densities of a height map, areal, radial and of profiles, and spectral moments of a surface."""
 
 import math
 from dataclasses import asdict, dataclass
@@ -157,7 +157,7 @@ def areal_spectrum(surface: HeightMap, *, window: Window = "hann") -> ArealSpect
         wavenumber_x=fft.rfftfreq(columns, dx),
         wavenumber_y=fft.fftshift(fft.fftfreq(rows, dy)),
         areal_spectral_density=fft.fftshift(density, axes=0),
-        height_variance=float(_multiplicity(columns) @ density.sum(axis=0)) / (rows * columns * dx * dy),
+        height_variance=float(half_spectrum_multiplicity(columns) @ density.sum(axis=0)) / (rows * columns * dx * dy),
         columns=columns,
     )
 
@@ -187,7 +187,9 @@ def radial_spectrum(spectrum: ArealSpectrum) -> RadialSpectrum:
     ring_width = max(kx[1], ky[1] - ky[0])
     rings = int(min(kx[-1], -ky[0]) / ring_width + 0.5)
     sums = np.zeros((3, rings + 1))
-    _ring_sums(kx, ky, _multiplicity(spectrum.columns), spectrum.areal_spectral_density, 1 / ring_width, sums)
+    _ring_sums(
+        kx, ky, half_spectrum_multiplicity(spectrum.columns), spectrum.areal_spectral_density, 1 / ring_width, sums
+    )
     count, radius, density = sums[:, sums[0] > 0]
     return RadialSpectrum(wavenumber=radius / count, areal_spectral_density=density / count)
 
@@ -236,46 +238,7 @@ def profile_spectrum(
     return ProfileSpectrum(
         wavenumber=fft.rfftfreq(points, spacing),
         profile_spectral_density=density,
-        height_variance=float(_multiplicity(points) @ density) / (points * spacing),
-    )
-
-
-def moments_of_spectrum(spectrum: ArealSpectrum) -> SpectralMoments:
-    r"""Spectral moments m0, m2 and m4 as integrals of the areal power spectrum, averaged over both directions.
-
-    Parameters
-    ----------
-    spectrum : ArealSpectrum
-
-    Returns
-    -------
-    SpectralMoments
-
-    Raises
-    ------
-    InvalidInput
-        If a moment is zero, as for a flat map or a line.
-
-    See Also
-    --------
-    sonolube.models.surfaces.asperities.spectral_moments : By finite differences, which damp the shortest wavelengths.
-
-    Notes
-    -----
-    .. math:: m_n = \frac12 \iint \left[(2\pi k_x)^n + (2\pi k_y)^n\right] C \,\mathrm{d}k_x \mathrm{d}k_y,
-        \qquad n = 2, 4 .
-
-    In m4 the shortest wavelengths of the map, noise included, have the largest weight.
-    """
-    multiplicity = _multiplicity(spectrum.columns)
-    density = spectrum.areal_spectral_density
-    along_x, along_y = multiplicity * density.sum(axis=0), density @ multiplicity
-    step = spectrum.height_variance / (along_x.sum() or 1.0)
-    qx, qy = 2 * math.pi * spectrum.wavenumber_x, 2 * math.pi * spectrum.wavenumber_y
-    return SpectralMoments(
-        height_variance=spectrum.height_variance,
-        slope_variance=float(step * (along_x @ qx**2 + along_y @ qy**2) / 2),
-        curvature_variance=float(step * (along_x @ qx**4 + along_y @ qy**4) / 2),
+        height_variance=float(half_spectrum_multiplicity(points) @ density) / (points * spacing),
     )
 
 
@@ -313,7 +276,7 @@ def _window(points: int, window: Window) -> Floats:
     raise InvalidInput(f"window must be hann or none, got {window!r}")
 
 
-def _multiplicity(points: int) -> Floats:
+def half_spectrum_multiplicity(points: int) -> Floats:
     """Number of occurrences of each wavenumber of a half spectrum in the two-sided one."""
     multiplicity = np.full(points // 2 + 1, 2.0)
     multiplicity[0] = 1.0
@@ -351,21 +314,9 @@ def _apply_window(height: Floats, weight_y: Floats, weight_x: Floats, weighted: 
 @kernel(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def _apply_window_to_rows(height: Floats, weight: Floats, weighted: Floats) -> Floats:
     """As `_apply_window`, for each row separately; return the sum of squared weights of each row."""
-    squares = np.zeros(height.shape[0])
+    squares, one = np.empty(height.shape[0]), np.ones(1)
     for row in range(height.shape[0]):
-        line = height[row]
-        a, b, c = 0.0, 0.0, 0.0
-        for column in range(line.size):
-            z = line[column]
-            w = weight[column] if z == z else 0.0
-            a += w
-            b += w * w
-            c += w * (z if z == z else 0.0)
-        squares[row] = b
-        mean = c / a
-        for column in range(line.size):
-            z = line[column]
-            weighted[row, column] = weight[column] * (z - mean) if z == z else 0.0
+        squares[row] = _apply_window(height[row : row + 1], one, weight, weighted[row : row + 1])
     return squares
 
 

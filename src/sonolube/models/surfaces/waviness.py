@@ -1,19 +1,18 @@
 """Dominant wavelengths of the waviness of a height map, from peaks of its mean power spectrum."""
 
-from typing import Literal
-
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.surfaces.form_removal import remove_form
 from sonolube.models.surfaces.height_map import HeightMap
+from sonolube.models.surfaces.spectrum import ProfileDirection, profiles
 
 _PADDING = 8  # zero padding, so that a parabola locates the peak of the spectrum
 _MIN_WAVES = 1.5  # in the map: longer waves are not distinguishable from form
 
 
-def dominant_wavelengths(surface: HeightMap, *, along: Literal["rows", "columns"] = "rows", most: int = 3) -> Floats:
+def dominant_wavelengths(surface: HeightMap, *, along: ProfileDirection = "rows", most: int = 3) -> Floats:
     """Dominant wavelengths of the waviness in one direction, the strongest first. [m]
 
     Parameters
@@ -47,11 +46,8 @@ def dominant_wavelengths(surface: HeightMap, *, along: Literal["rows", "columns"
     .. [1] D 4.1.3, where Fourier transforms of the heights give 0.18 mm in both directions for a powder coating and
        1.25 mm and 0.95 mm for its coarser level.
     """
-    z = np.nan_to_num(remove_form(surface).height)
-    spacing = surface.spacing_x
-    if along == "columns":
-        z, spacing = z.T, surface.spacing_y
-    points = z.shape[1]
+    levelled, spacing = profiles(remove_form(surface), along=along)
+    z, points = np.nan_to_num(levelled), levelled.shape[1]
     if points < 16:
         raise InvalidInput(f"waviness requires at least 16 pixels along {along}, got {points}")
     spectrum = np.fft.rfft(z * np.hanning(points + 1)[:-1], _PADDING * points, axis=1)

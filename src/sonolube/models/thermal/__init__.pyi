@@ -1,12 +1,4 @@
-from .bulk import (
-    HeatedDisc as HeatedDisc,
-    HeatedPin as HeatedPin,
-    disc_track_rise as disc_track_rise,
-    half_space_rise as half_space_rise,
-    lumped_rise as lumped_rise,
-    pin_conductance as pin_conductance,
-    pin_rise as pin_rise,
-)
+from .bulk import HeatedPin as HeatedPin, pin_conductance as pin_conductance, pin_rise as pin_rise
 from .contact_history import (
     ContactTemperatureHistory as ContactTemperatureHistory,
     HeatedContact as HeatedContact,
@@ -27,7 +19,7 @@ from .flash import (
     peclet_number as peclet_number,
 )
 from .flash_models import FLASH_MODELS as FLASH_MODELS
-from .jaeger import moving_band_rise as moving_band_rise, moving_rectangle_rise as moving_rectangle_rise
+from .jaeger import moving_rectangle_rise as moving_rectangle_rise
 from .network import ThermalNetwork as ThermalNetwork, network_rise as network_rise
 from .solid import ThermalSolid as ThermalSolid
 from .source import (

@@ -113,11 +113,7 @@ def low_peclet_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: Array
     -----
     .. math:: \Delta T_0 = c_0 \frac{\bar q b}{k}
 
-    with :math:`c_0` the source's `peak_low_peclet` or `mean_low_peclet`.
-
-    References
-    ----------
-    .. [1] J. C. Jaeger, J. Proc. R. Soc. N.S.W. 76, 203 (1942).
+    with :math:`c_0` the source's `peak_low_peclet` or `mean_low_peclet` (Jaeger, as in `high_peclet_rise`).
     """
     scale = _rise_scale(solid, source, heat_flux)
     return FlashRise(scale * source.peak_low_peclet, scale * source.mean_low_peclet)
@@ -195,12 +191,10 @@ def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike,
     --------
     low_peclet_rise, high_peclet_rise : the limits between which this interpolates.
     moving_ellipse_rise : without the error of the interpolation, for a uniform elliptic source.
-    moving_band_rise, moving_rectangle_rise : the integrals that this approximates.
+    moving_rectangle_rise : the integral that this approximates.
 
     Notes
     -----
-    Interpolates between the limits of low and high Peclet number as
-
     .. math:: \Delta T = \left( \Delta T_0^{-2} + \Delta T_\infty^{-2} \right)^{-1/2} ,
 
     which has the form :math:`c/\sqrt{\mathrm{Pe}_0 + \mathrm{Pe}}` and leaves no constant to fit. It reproduces the
@@ -210,7 +204,7 @@ def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike,
     square the peak is within 2.5 % and the mean within 4 %; for the Hertzian source within 1.5 % and 5 %. Of a uniform
     circle the peak is at most 2.3 % too high (Pe = 0.6) and 0.7 % too low (Pe = 9), and the mean at most 3.8 % too low
     (Pe = 0.8); of an ellipse 0.3 as wide as long both are up to 16 % too high, of one 4 times as wide the mean is up to
-    12 % too low: `moving_ellipse_rise` has none of these errors.
+    12 % too low.
 
     References
     ----------

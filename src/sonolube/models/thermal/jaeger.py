@@ -1,75 +1,15 @@
-"""Surface temperature around moving heat sources by integration: Jaeger's band and rectangle."""
+"""Surface temperature around a rectangular heat source, at rest or moving, by integration after Jaeger."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import quad_vec
 from scipy.special import erf
 
-from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.models.thermal.jaeger_integral import moving_band_integrals
+from sonolube.checks import Floats, require_finite, require_non_negative
 from sonolube.models.thermal.solid import ThermalSolid
 from sonolube.models.thermal.source import RectangularSource
 
 _TOLERANCE = 1e-9  # absolute and relative, of the quadrature
-
-
-def moving_band_rise(
-    solid: ThermalSolid,
-    *,
-    heat_flux: ArrayLike,
-    half_length: ArrayLike,
-    sliding_speed: ArrayLike,
-    distance_ahead: ArrayLike,
-) -> Floats:
-    r"""Steady surface temperature rise around a uniform moving band source, by Jaeger's integral. [K]
-
-    Parameters
-    ----------
-    solid : ThermalSolid
-    heat_flux : array_like
-        Heat flux into the solid, uniform over the band, which is infinitely long across the sliding. [W/m2]
-    half_length : array_like, broadcast against `heat_flux`
-        Half the length of the band along the sliding, b. [m]
-    sliding_speed : array_like, broadcast against them
-        Speed of the band over the solid, V; the rise of a stationary band is unbounded. [m/s]
-    distance_ahead : array_like, broadcast against them
-        Distance ahead of the centre of the band, negative behind it, x. [m]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    Raises
-    ------
-    InvalidInput
-        If a flux is negative, a length or speed not positive, or a value not finite.
-
-    See Also
-    --------
-    moving_rectangle_rise : a source of finite width, stationary or moving, also in time.
-
-    Notes
-    -----
-    .. math::
-
-        \Delta T(x) = \frac{2 q \kappa}{\pi k V} \int_{V(x - b)/2\kappa}^{V(x + b)/2\kappa} e^{-u} K_0(|u|)\,du .
-
-    The integrand has the antiderivative :math:`u e^{-u} [K_0(|u|) - \operatorname{sgn}(u) K_1(|u|)]`, so that no
-    quadrature is needed: accurate to 1e-11 of the maximum.
-
-    References
-    ----------
-    .. [1] J. C. Jaeger, J. Proc. R. Soc. N.S.W. 76, 203 (1942).
-    .. [2] NIST Digital Library of Mathematical Functions, 10.43.9.
-    """
-    q = require_non_negative(heat_flux=heat_flux)
-    b = require_positive(half_length=half_length)
-    v = require_positive(sliding_speed=sliding_speed)
-    x = require_finite(distance_ahead=distance_ahead)
-    per_length = v / (2 * solid.thermal_diffusivity)
-    lower, upper = np.broadcast_arrays(per_length * (x - b), per_length * (x + b))
-    integral = moving_band_integrals(lower.ravel(), upper.ravel()).reshape(lower.shape)
-    return q / (np.pi * solid.thermal_conductivity * per_length) * integral
 
 
 def moving_rectangle_rise(
@@ -107,10 +47,6 @@ def moving_rectangle_rise(
     ------
     InvalidInput
         If the flux, the speed or the duration is negative, or a value not finite.
-
-    See Also
-    --------
-    moving_band_rise : the limit of a source of infinite width, in closed form.
 
     Notes
     -----

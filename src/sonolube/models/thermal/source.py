@@ -1,13 +1,4 @@
-r"""Heat sources on a half-space: geometry, and the limits of their surface temperature at low and high Peclet number.
-
-Rises are dimensionless, in units of :math:`\bar q b/k` with the mean flux :math:`\bar q`, the half length b along the
-sliding and the conductivity k. With the Peclet number Pe the limits are
-
-.. math::
-
-    \frac{\Delta T}{\bar q b/k} \to c_0 \quad (\mathrm{Pe} \to 0) , \qquad
-    \frac{\Delta T}{\bar q b/k} \to \frac{c_\infty}{\sqrt{\mathrm{Pe}}} \quad (\mathrm{Pe} \to \infty) .
-"""
+"""Heat sources on a half-space: geometry, and the limits of their surface temperature at low and high Peclet number."""
 
 import math
 from abc import ABC, abstractmethod
@@ -38,19 +29,15 @@ def _beta(a: float, b: float) -> float:
 _PEAK_HIGH_PECLET_UNIFORM = float(2 / np.sqrt(np.pi))  # half-space heated for the time of passage of the whole length
 _MEAN_TO_PEAK_RECTANGLE = 2 / 3  # mean of sqrt(x) over its end value
 _MEAN_TO_PEAK_ELLIPSE = 4 / (3 * math.pi) * _beta(1 / 2, 7 / 4)  # the same, averaged over all chords
-_MEAN_TO_CENTRE_ELLIPSE = 8 / (3 * np.pi)  # at rest, for any ratio of axes: mean and centre scale alike
 # Flux q = 3/2 sqrt(1 - x^2) of its mean along the middle chord: the maximum, over s, of the integral up to s of
 # q/sqrt(2 pi (s - x)), which lies 0.652 half lengths behind the centre.
 _PEAK_HIGH_PECLET_HERTZ = 2.3210497325 / float(np.sqrt(np.pi))
 _MEAN_TO_PEAK_HERTZ = 16 / (5 * math.pi) * _beta(1 / 2, 9 / 4) / math.sqrt(math.pi) / _PEAK_HIGH_PECLET_HERTZ
-_MEAN_TO_CENTRE_HERTZ = 3 / 4  # at rest, for any ratio of axes
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HeatSource(ABC):
-    """Heat flux distributed over a patch of a half-space, with the low- and high-Peclet limits of its temperature.
-
-    Rises are in units of mean flux times `half_length` over thermal conductivity.
+    r"""Heat flux distributed over a patch of a half-space, with the low- and high-Peclet limits of its temperature.
 
     Parameters
     ----------
@@ -63,6 +50,16 @@ class HeatSource(ABC):
         Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity.
     mean_to_peak_high_peclet : float
         Mean over peak rise for Pe to infinity.
+
+    Notes
+    -----
+    Rises are dimensionless, in units of :math:`\bar q b/k` with the mean flux :math:`\bar q`, the half length b along
+    the sliding and the conductivity k. With the Peclet number Pe the limits are
+
+    .. math::
+
+        \frac{\Delta T}{\bar q b/k} \to c_0 \quad (\mathrm{Pe} \to 0) , \qquad
+        \frac{\Delta T}{\bar q b/k} \to \frac{c_\infty}{\sqrt{\mathrm{Pe}}} \quad (\mathrm{Pe} \to \infty) .
     """
 
     half_length: float
@@ -90,7 +87,31 @@ class HeatSource(ABC):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class EllipticSource(HeatSource):
+class _EllipticPatch(HeatSource):
+    """Heat flux over an ellipse, whose rises at rest scale alike with the ratio of its axes."""
+
+    centre_low_peclet: ClassVar[float]  # rise at the centre over K(m) min(b, l)/b
+    mean_to_centre_low_peclet: ClassVar[float]
+
+    @property
+    def area(self) -> float:
+        """Area of the patch. [m2]"""
+        return float(np.pi * self.half_length * self.half_width)
+
+    @property
+    def peak_low_peclet(self) -> float:
+        """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
+        short, long = sorted((self.half_length, self.half_width))
+        return self.centre_low_peclet * _complete_elliptic_integral(short / long) * short / self.half_length
+
+    @property
+    def mean_low_peclet(self) -> float:
+        """Dimensionless mean rise under the stationary source, Pe = 0. []"""
+        return self.mean_to_centre_low_peclet * self.peak_low_peclet
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class EllipticSource(_EllipticPatch):
     r"""Uniform heat flux over an ellipse with one axis along the sliding; a circle where both axes are equal.
 
     Parameters
@@ -129,26 +150,12 @@ class EllipticSource(HeatSource):
 
     peak_high_peclet: ClassVar[float] = _PEAK_HIGH_PECLET_UNIFORM
     mean_to_peak_high_peclet: ClassVar[float] = _MEAN_TO_PEAK_ELLIPSE
-
-    @property
-    def area(self) -> float:
-        """Area of the patch. [m2]"""
-        return float(np.pi * self.half_length * self.half_width)
-
-    @property
-    def peak_low_peclet(self) -> float:
-        """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
-        short, long = sorted((self.half_length, self.half_width))
-        return 2 / math.pi * _complete_elliptic_integral(short / long) * short / self.half_length
-
-    @property
-    def mean_low_peclet(self) -> float:
-        """Dimensionless mean rise under the stationary source, Pe = 0. []"""
-        return float(_MEAN_TO_CENTRE_ELLIPSE * self.peak_low_peclet)
+    centre_low_peclet: ClassVar[float] = 2 / math.pi
+    mean_to_centre_low_peclet: ClassVar[float] = 8 / (3 * math.pi)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class HertzianSource(HeatSource):
+class HertzianSource(_EllipticPatch):
     r"""Heat flux in proportion to the Hertzian pressure on an ellipse: the parabolic source of Tian and Kennedy.
 
     Parameters
@@ -185,22 +192,8 @@ class HertzianSource(HeatSource):
 
     peak_high_peclet: ClassVar[float] = _PEAK_HIGH_PECLET_HERTZ
     mean_to_peak_high_peclet: ClassVar[float] = _MEAN_TO_PEAK_HERTZ
-
-    @property
-    def area(self) -> float:
-        """Area of the patch. [m2]"""
-        return float(np.pi * self.half_length * self.half_width)
-
-    @property
-    def peak_low_peclet(self) -> float:
-        """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
-        short, long = sorted((self.half_length, self.half_width))
-        return 3 / 4 * _complete_elliptic_integral(short / long) * short / self.half_length
-
-    @property
-    def mean_low_peclet(self) -> float:
-        """Dimensionless mean rise under the stationary source, Pe = 0. []"""
-        return _MEAN_TO_CENTRE_HERTZ * self.peak_low_peclet
+    centre_low_peclet: ClassVar[float] = 3 / 4
+    mean_to_centre_low_peclet: ClassVar[float] = 3 / 4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

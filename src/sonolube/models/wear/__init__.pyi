@@ -6,11 +6,7 @@ from .cube import (
     load_balanced_wear_ratio as load_balanced_wear_ratio,
     vibrating_cube_wear_rate as vibrating_cube_wear_rate,
 )
-from .measures import (
-    mass_loss as mass_loss,
-    specific_wear_rate as specific_wear_rate,
-    vibration_contact_count as vibration_contact_count,
-)
+from .measures import vibration_contact_count as vibration_contact_count
 from .mechanism import (
     CrystalStructure as CrystalStructure,
     VibrationEffect as VibrationEffect,

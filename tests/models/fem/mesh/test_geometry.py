@@ -10,11 +10,13 @@ from pytest import MonkeyPatch, approx, mark, raises
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
+
+from tests.models.fem.ritz import annular_section, ritz_frequencies
+
 from sonolube.errors import InvalidInput
 from sonolube.models.fem import (
     Model,
     Slot,
-    annular_section,
     block,
     bond,
     cylinder,
@@ -23,7 +25,6 @@ from sonolube.models.fem import (
     natural_modes,
     read_step,
     ring,
-    ritz_frequencies,
     stepped_horn,
     translate,
 )

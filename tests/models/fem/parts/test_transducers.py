@@ -13,11 +13,11 @@ from sonolube.facts.materials import piezo_ceramic
 from sonolube.models.fem import (
     FixedSupport,
     block,
+    coupled_resonances,
     generate_mesh,
     harmonic_response,
     poled_part,
     reduce_model,
-    series_parallel_resonances,
     stack_transducer,
 )
 
@@ -53,7 +53,7 @@ def test_a_slim_stack_held_at_its_back_has_the_admittance_of_a_short_circuited_b
     few = reduce_model(model, count=12, outputs=tip)
     speed = 1 / np.sqrt(PIC255.compliance_short_circuit[2, 2] * PIC255.material.value("density"))
     quarter = speed / (4 * LENGTH)
-    series, _, coupling = series_parallel_resonances(few)
+    series, _, coupling = coupled_resonances(few)
     driven = int(np.argmax(coupling))
     assert series[driven] == approx(quarter, rel=0.01)
     f = np.array([0.3, 0.6, 0.8]) * quarter

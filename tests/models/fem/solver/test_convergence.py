@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from pytest import approx, raises
+from tests.models.fem.ritz import annular_section, rectangular_section, ritz_frequencies
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
@@ -14,7 +15,6 @@ from sonolube.models.fem import (
     Model,
     NotConverged,
     Slot,
-    annular_section,
     block,
     box_mesh,
     change_order,
@@ -24,8 +24,6 @@ from sonolube.models.fem import (
     generate_mesh,
     isotropic_medium,
     natural_modes,
-    rectangular_section,
-    ritz_frequencies,
 )
 from sonolube.models.fem.mesh.grading import grade_reentrant_edges
 

@@ -5,6 +5,7 @@ import pytest
 from pytest import approx, raises
 from scipy.sparse import block_array
 from scipy.sparse.linalg import splu
+from tests.models.fem.direct_response import direct_response
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import coupling_factors, piezo_ceramic
@@ -16,14 +17,13 @@ from sonolube.models.fem import (
     ReducedModel,
     box_mesh,
     change_order,
-    direct_response,
+    coupled_resonances,
     generate_mesh,
     harmonic_response,
     isotropic_medium,
     poled_medium,
     reduce_model,
     ring,
-    series_parallel_resonances,
 )
 from sonolube.models.fem.solver.system import assemble_system
 
@@ -68,7 +68,7 @@ def test_a_plate_without_lateral_motion_has_the_impedance_of_its_thickness_mode(
     assert 1 / direct_response(plate, frequency=f, outputs=TIP).admittance == approx(exact, rel=2e-3)
     few = reduce_model(plate, count=6, outputs=TIP)
     assert 1 / harmonic_response(few, frequency=f).admittance == approx(exact, rel=2e-3)
-    series, parallel, coupling = series_parallel_resonances(few)
+    series, parallel, coupling = coupled_resonances(few)
     driven = int(np.argmax(coupling))
     assert parallel[driven] == approx(speed / (2 * L), rel=1e-3)
     ratio = series[driven] / parallel[driven]
@@ -164,7 +164,7 @@ def test_a_wide_ring_has_a_breathing_mode_far_below_its_thickness_resonance() ->
         media={"ring": poled_medium(PZT, along=(0.0, 0.0, 1.0), lossless=True)},
         electrodes=Electrodes(driven=("+z",), grounded=("-z",)),
     )
-    series, _, coupling = series_parallel_resonances(
+    series, _, coupling = coupled_resonances(
         reduce_model(model, count=12, outputs={"end": Output(face="+z", along="z")})
     )
     breathing = series[np.flatnonzero(coupling > 0.3)[0]]

@@ -5,9 +5,10 @@ import pytest
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
+from tests.models.fem.direct_response import direct_response
+
 from sonolube.models.fem import (
     coupled_resonances,
-    direct_response,
     generate_mesh,
     harmonic_response,
     krylov_reduction,

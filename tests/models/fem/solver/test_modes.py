@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from pytest import approx
 from scipy.linalg import eigh
+from tests.models.fem.ritz import rectangular_section, ritz_frequencies
 
 from sonolube.models.fem import (
     FaceSpring,
@@ -14,9 +15,7 @@ from sonolube.models.fem import (
     box_mesh,
     isotropic_medium,
     natural_modes,
-    rectangular_section,
     rigid_body_mode_count,
-    ritz_frequencies,
 )
 from sonolube.models.fem.solver.assembly import assemble_matrices
 

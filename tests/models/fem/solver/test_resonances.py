@@ -16,7 +16,6 @@ from sonolube.models.fem import (
     natural_modes,
     poled_medium,
     reduce_model,
-    series_parallel_resonances,
 )
 
 PZT = piezo_ceramic("pzt4")
@@ -43,11 +42,11 @@ def bar(*, lossless: bool, along_axis: bool = True, order: int = 2, **held: tupl
 def test_parallel_resonances_are_the_natural_frequencies_of_the_open_circuit() -> None:
     shorted = bar(lossless=True)
     opened = Model(mesh=shorted.mesh, media=shorted.media, electrodes=Electrodes(floating=("+x",), grounded=("-x",)))
-    series, parallel, coupling = series_parallel_resonances(reduce_model(shorted, count=8, outputs=TIP))
+    series, parallel, coupling = coupled_resonances(reduce_model(shorted, count=8, outputs=TIP))
     assert np.all(series[:6] == 0)
     assert np.all(coupling[:6] == 0)
     assert natural_modes(shorted, count=8).natural_frequency == approx(series[:14], rel=1e-6, abs=1.0)
-    assert natural_modes(opened, count=8).natural_frequency == approx(parallel[:14], rel=2e-4, abs=1.0)
+    assert natural_modes(opened, count=8).natural_frequency == approx(np.sort(parallel)[:14], rel=2e-4, abs=1.0)
 
 
 def test_a_mode_that_is_not_driven_has_one_frequency() -> None:

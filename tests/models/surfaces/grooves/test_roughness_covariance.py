@@ -39,7 +39,7 @@ def fitted(height: Floats, counted: NDArray[np.bool_] | None = None) -> Roughnes
 
 
 def of_mean(covariance: RoughnessCovariance, weights: Floats) -> float:
-    return float(covariance.products(weights[None], weights[None])[0][0])
+    return covariance.variance(weights)[0]
 
 
 def middle_band(rows: int) -> Floats:
@@ -77,9 +77,9 @@ def test_the_variance_of_a_mean_is_estimated_from_one_map_within_its_uncertainty
     exact, scores, logarithms = exact_variance(weights), [], []
     for seed in range(20):
         found = fitted(drawn_map(seed))
-        variance, derivative = found.products(weights[None], weights[None])
-        logarithms.append(math.log(variance[0] / exact))
-        scores.append(logarithms[-1] / found.uncertainty(float(variance[0]), derivative[0]))
+        variance, derivative = found.variance(weights)
+        logarithms.append(math.log(variance / exact))
+        scores.append(logarithms[-1] / found.uncertainty(variance, derivative))
     assert np.mean(logarithms) == approx(0.0, abs=0.1)
     assert 0.5 < math.sqrt(np.mean(np.square(scores))) < 1.6
 

@@ -48,7 +48,12 @@ def grade_reentrant_edges(mesh: Mesh, *, levels: int) -> Mesh:
     singular = _reentrant_nodes(mesh)
     if not singular.size or not levels:
         return mesh
-    subdivision = _Subdivision.of(mesh)
+    subdivision = _Subdivision(
+        corners=mesh.elements[:, :4],
+        barycentric=np.broadcast_to(np.eye(4), (len(mesh.elements), 4, 4)),
+        parents=np.arange(len(mesh.elements)),
+        faces={name: triangles[:, :3] for name, triangles in mesh.faces.items()},
+    )
     for _ in range(levels):
         subdivision = _divided(subdivision, singular)
     return _mesh_of_subdivision(mesh, subdivision)
@@ -74,16 +79,6 @@ class _Subdivision:
     barycentric: Floats
     parents: Integers
     faces: dict[str, Integers]
-
-    @classmethod
-    def of(cls, mesh: Mesh) -> "_Subdivision":
-        """Undivided tetrahedra of a mesh."""
-        return cls(
-            corners=mesh.elements[:, :4],
-            barycentric=np.broadcast_to(np.eye(4), (len(mesh.elements), 4, 4)),
-            parents=np.arange(len(mesh.elements)),
-            faces={name: triangles[:, :3] for name, triangles in mesh.faces.items()},
-        )
 
 
 def _reentrant_nodes(mesh: Mesh) -> Integers:

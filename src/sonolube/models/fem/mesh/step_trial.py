@@ -14,7 +14,9 @@ _WAIT: Final = 300  # s, for a machine that gives the process a fifth of a proce
 _BYTES: Final = 4 * 2**30
 _REFUSED: Final = 3  # exit status of the trial where it refuses the file
 _TRIAL: Final = (
-    "from sonolube.models.fem.mesh import geometry, step_trial; step_trial.run_trial(geometry.unguarded_step_geometry)"
+    "from sonolube.models.fem.mesh.geometry import unguarded_step_geometry;"
+    "from sonolube.models.fem.mesh.step_trial import run_trial;"
+    "run_trial(unguarded_step_geometry)"
 )
 
 

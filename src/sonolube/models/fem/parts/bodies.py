@@ -280,14 +280,8 @@ def booster(
 
 
 PARTS: Mapping[str, Callable[..., Geometry]] = {
-    "block": block,
-    "booster": booster,
-    "conical_horn": conical_horn,
-    "cylinder": cylinder,
-    "exponential_horn": exponential_horn,
-    "hexagon": hexagon,
-    "ring": ring,
-    "stepped_horn": stepped_horn,
+    body.__name__: body
+    for body in (block, booster, conical_horn, cylinder, exponential_horn, hexagon, ring, stepped_horn)
 }
 """The parametric bodies by name."""
 

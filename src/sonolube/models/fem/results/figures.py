@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sonolube.charts import Axis, Chart, Line, Panel, Part, Points
 from sonolube.checks import Complexes, Floats, Integers
@@ -169,38 +168,29 @@ def impedance_chart(
     spectra: Mapping[str, SupportedSpectrum], *, title: str, measured: tuple[Floats, Complexes] | None = None
 ) -> Chart:
     """Magnitude and phase of the impedance, and motion of the tip per volt, over frequency."""
-    magnitude: list[Part] = []
-    phase: list[Part] = []
-    motion: list[Part] = []
+    drawn: tuple[list[Part], list[Part], list[Part]] = [], [], []  # magnitude, phase and motion
     if measured is not None:
         frequency, impedance = measured
-        within = _within(frequency, spectra)
+        computed = next(iter(spectra.values())).response.frequency
+        within = (frequency >= computed[0]) & (frequency <= computed[-1])
         f, z = 1e-3 * frequency[within], impedance[within]
-        magnitude.append(Points(x=f, y=np.abs(z), label="measured", colour="0.5", is_faint=True))
-        phase.append(Points(x=f, y=np.degrees(np.angle(z)), label="measured", colour="0.5", is_faint=True))
+        for parts, values in zip(drawn, (np.abs(z), np.degrees(np.angle(z))), strict=False):
+            parts.append(Points(x=f, y=values, label="measured", colour="0.5", is_faint=True))
     for k, (name, spectrum) in enumerate(spectra.items()):
         f, z = 1e-3 * spectrum.response.frequency, spectrum.impedance
         per_volt = 1e9 * np.abs(spectrum.response.displacement_per_volt[0])
         label = name if len(spectra) > 1 or measured is not None else ""
-        for parts, values in ((magnitude, np.abs(z)), (phase, np.degrees(np.angle(z))), (motion, per_volt)):
+        for parts, values in zip(drawn, (np.abs(z), np.degrees(np.angle(z)), per_volt), strict=True):
             parts.append(Line(x=f, y=values, label=label, colour=k, dash=k, weight=0.85))
     x = Axis(label="Frequency", unit="kHz")
-    panels = (
-        Panel(x=x, y=Axis(label="Impedance", unit="ohm", logarithmic=True), parts=tuple(magnitude), title=title),
-        Panel(
-            x=x,
-            y=Axis(label="Phase", unit="deg", lowest=-100.0, highest=100.0, ticks=(-90, -45, 0, 45, 90)),
-            parts=tuple(phase),
-        ),
-        Panel(x=x, y=Axis(label="Tip motion per volt", unit="nm/V", logarithmic=True), parts=tuple(motion)),
+    axes = (
+        Axis(label="Impedance", unit="ohm", logarithmic=True),
+        Axis(label="Phase", unit="deg", lowest=-100.0, highest=100.0, ticks=(-90, -45, 0, 45, 90)),
+        Axis(label="Tip motion per volt", unit="nm/V", logarithmic=True),
     )
+    titled = zip(axes, drawn, (title, "", ""), strict=True)
+    panels = tuple(Panel(x=x, y=y, parts=tuple(parts), title=own) for y, parts, own in titled)
     return Chart(panels=panels, size=(5.6, 5.8), heights=(1.4, 1, 1.2), legend="top", shares_x=True)
-
-
-def _within(frequency: Floats, spectra: Mapping[str, SupportedSpectrum]) -> NDArray[np.bool_]:
-    """Which measured frequencies lie within the computed range."""
-    computed = next(iter(spectra.values())).response.frequency
-    return np.asarray((frequency >= computed[0]) & (frequency <= computed[-1]))
 
 
 def _drawn_order(mesh: Mesh) -> int:

@@ -6,21 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.models.fem import (
-    ConvergedModes,
-    Electrodes,
-    FixedSupport,
-    Geometry,
-    Medium,
-    Mesh,
-    Model,
-    Transducer,
-    converged_modes,
-    generate_mesh,
-    mode_names,
-)
+from sonolube.models.fem.classification import mode_names
+from sonolube.models.fem.mesh.geometry import Geometry
+from sonolube.models.fem.mesh.mesh import Mesh
+from sonolube.models.fem.mesh.meshing import generate_mesh
+from sonolube.models.fem.parts.transducers import Transducer
 from sonolube.models.fem.results.figures import shaped_surface
 from sonolube.models.fem.results.mode_files import elastic_rows
+from sonolube.models.fem.solver.convergence import ConvergedModes, converged_modes
+from sonolube.models.fem.solver.medium import Medium
+from sonolube.models.fem.solver.model import Electrodes, FixedSupport, Model
 from sonolube.models.fem.tuning import Advance
 from sonolube.vocabulary import quantity
 

@@ -15,6 +15,7 @@ the element matrices of nodes a and b and displacement components i and j are
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -33,8 +34,7 @@ _VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # row in Voigt notation of
 _CHUNK = 2**22  # gradients evaluated at a time, which bounds the memory
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class GlobalMatrices:
+class GlobalMatrices(NamedTuple):
     """Global matrices without boundary conditions; node n has the displacement unknowns 3n to 3n+2 and potential n.
 
     Parameters
@@ -89,14 +89,8 @@ def assemble_matrices(model: Model) -> GlobalMatrices:
                     dielectric_loss.add(at, medium.loss_tangent * capacitance)
     for spring in model.springs:
         stiffness.add(pattern.positions(mesh.faces[spring.face]), _foundation_matrices(mesh, spring))
-    return GlobalMatrices(
-        mass=_repeated_in_three_directions(mass.matrix()),
-        stiffness=stiffness.matrix(),
-        stiffness_loss=stiffness_loss.matrix(),
-        coupling=coupling.matrix(),
-        dielectric=dielectric.matrix(),
-        dielectric_loss=dielectric_loss.matrix(),
-    )
+    others = (stiffness, stiffness_loss, coupling, dielectric, dielectric_loss)
+    return GlobalMatrices(_repeated_in_three_directions(mass.matrix()), *(each.matrix() for each in others))
 
 
 def scalar_mass_matrix(model: Model) -> sparse.csc_array:

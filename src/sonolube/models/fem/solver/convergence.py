@@ -30,7 +30,6 @@ class ConvergedModes:
     model : Model
         Finite-element model on the last mesh, with the highest element order.
     modes : NaturalModes
-        Its natural modes.
     natural_frequency : ndarray, shape (k,)
         Extrapolated natural frequencies, zero for rigid-body modes. [Hz]
     frequency_error : ndarray, shape (k,)
@@ -93,13 +92,8 @@ def converged_modes(
     -----
     On one mesh the element order rises from two to six. In smooth bodies each order reduces the error by a factor of
     five to ten, and by less at re-entrant corners and where bodies are bonded. Elements of each order approximate the
-    curved geometry to that order, so that the geometrical error falls likewise. Elements next to re-entrant edges are
-    graded to be thin across them. If order six is not sufficient, the mesh is refined and graded once more.
-
-    See Also
-    --------
-    extrapolate_frequencies : The error estimate.
-    sonolube.models.fem.solver.modes.natural_modes : Modes on one given mesh.
+    curved geometry to that order, so that the geometrical error falls likewise; next to re-entrant edges they are thin
+    across them. If order six is not sufficient, the mesh is refined and graded once more.
 
     References
     ----------

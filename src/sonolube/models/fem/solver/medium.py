@@ -136,12 +136,8 @@ def medium_from_material(material: Material, *, elastic_loss: float = 0.0) -> Me
     MissingProperty
         If Young's modulus, Poisson's ratio or density is not known.
     """
-    return isotropic_medium(
-        youngs_modulus=material.value("youngs_modulus"),
-        poisson_ratio=material.value("poisson_ratio"),
-        density=material.value("density"),
-        elastic_loss=elastic_loss,
-    )
+    constants = {name: material.value(name) for name in ("youngs_modulus", "poisson_ratio", "density")}
+    return isotropic_medium(**constants, elastic_loss=elastic_loss)
 
 
 def poled_medium(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless: bool = False) -> Medium:

@@ -86,10 +86,6 @@ def natural_modes(model: Model, *, count: int) -> NaturalModes:
     vectors, so that modes of up to eight coincident frequencies are all found. It is fastest with
     OPENBLAS_NUM_THREADS=1 in the environment, as its matrix products are small.
 
-    See Also
-    --------
-    sonolube.models.fem.solver.convergence.converged_modes : The same to a requested accuracy.
-
     References
     ----------
     .. [1] R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15, 228 (1994).

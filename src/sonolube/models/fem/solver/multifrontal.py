@@ -174,7 +174,8 @@ def _fronts(
         rows, values = position[matrix.indices[entries]], matrix.data[entries]
         later = index.union(rows, *(positions for positions, _ in received), after=stop)
         local = index.local(start, stop, later)
-        diagonal, below, schur = (np.zeros(shape, order="F") for shape in _block_shapes(size, len(later)))
+        shapes = (size, size), (len(later), size), (len(later), len(later))  # of the lower half of a frontal matrix
+        diagonal, below, schur = (np.zeros(shape, order="F") for shape in shapes)
         is_own, is_later = (rows >= start) & (rows < stop), rows >= stop
         diagonal[local[rows[is_own]], column[is_own]] = values[is_own]
         below[local[rows[is_later]] - size, column[is_later]] = values[is_later]
@@ -224,11 +225,6 @@ class _FrontIndex:
         self.numbers[start:stop] = np.arange(stop - start)
         self.numbers[later] = stop - start + np.arange(len(later))
         return self.numbers
-
-
-def _block_shapes(own: int, later: int) -> tuple[tuple[int, int], ...]:
-    """Shapes of the three blocks of the lower half of a symmetric frontal matrix."""
-    return (own, own), (later, own), (later, later)
 
 
 def _cholesky(block: Floats, sign: int) -> Floats:

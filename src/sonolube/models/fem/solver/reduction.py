@@ -176,27 +176,19 @@ def output_matrix(model: Model, equations: SystemMatrices, outputs: Mapping[str,
     return np.asarray(rows.reshape(len(outputs), 3 * model.mesh.node_count)[:, equations.free_dofs])
 
 
-def lossy_dielectric(equations: SystemMatrices) -> sparse.csc_array:
-    """Complex permittivity matrix P of the unknown potentials, losses included; shape (p, p)."""
-    return sparse.csc_array(equations.dielectric - 1.0j * equations.dielectric_loss)
-
-
-def drive_charge(equations: SystemMatrices, *, lossless: bool = False) -> Complexes:
-    """Charge p_V at the nodes of unknown potential per volt of the drive; shape (p,)."""
-    loss = 0.0 if lossless else equations.drive_dielectric_loss
-    return np.asarray(equations.drive_dielectric - 1j * loss, dtype=np.complex128)
-
-
 def _potential_solver(equations: SystemMatrices, *, lossless: bool) -> LinearSolver | None:
     """Solver for the unknown potentials at given displacements; None where there are none."""
     if not equations.potential_count:
         return None
-    return superlu_factor(equations.dielectric if lossless else lossy_dielectric(equations))
+    if lossless:
+        return superlu_factor(equations.dielectric)
+    return superlu_factor(sparse.csc_array(equations.dielectric - 1.0j * equations.dielectric_loss))
 
 
 def _drive(equations: SystemMatrices, solve: LinearSolver | None, *, lossless: bool) -> tuple[Complexes, complex]:
     """Nodal forces per volt and clamped capacitance, with the unknown potentials condensed."""
-    charge = drive_charge(equations, lossless=lossless)
+    loss = 0.0 if lossless else equations.drive_dielectric_loss
+    charge = equations.drive_dielectric - 1j * loss
     capacitance = equations.drive_capacitance.real if lossless else equations.drive_capacitance
     if solve is None:
         return -equations.drive_coupling.astype(np.complex128), complex(capacitance)

@@ -6,8 +6,7 @@ from sonolube.checks import Floats, require_positive
 from sonolube.errors import UnknownName
 from sonolube.models.dynamics import Structure, modal_structure
 from sonolube.models.fem.solver.reduction import ReducedModel
-
-_RIGID = 1e-9  # squared frequency over the largest, up to which a mode counts as rigid-body mode
+from sonolube.models.fem.solver.resonances import undamped_modes
 
 
 def contact_structure(model: ReducedModel, *, contact: str, outwards: float = 1.0) -> Structure:
@@ -42,8 +41,7 @@ def contact_structure(model: ReducedModel, *, contact: str, outwards: float = 1.
     """
     if contact not in model.outputs:
         raise UnknownName.among(model.outputs, kind="output", name=contact)
-    squares, shapes = np.linalg.eigh(model.stiffness.real)
-    squares = np.where(squares > _RIGID * squares.max(), squares, 0.0)
+    squares, shapes = undamped_modes(model)
     loss = np.einsum("ki,kl,li->i", shapes, model.stiffness.imag, shapes)
     ratios = np.divide(np.maximum(loss, 0.0), 2 * squares, out=np.zeros_like(squares), where=squares > 0)
     return modal_structure(

@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, NoGroove
-from sonolube.models.surfaces.form_removal import fit_form
+from sonolube.models.surfaces.form_removal import fit_form, robust_deviation
 from sonolube.models.surfaces.grooves.plane_coordinates import centred_coordinates
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 
@@ -22,7 +22,6 @@ _MIN_SCAR = 50  # pixels
 _LEVELS = 16  # of depth, at which the scar's area is counted
 _LEVELS_REACH = 3.0  # deepest level over the detection limit
 _LEVELS_FRACTION = 0.2  # deepest level over the depth of the scar, where that is deeper
-_DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
 _HEIGHT_RESOLUTION = 1e-12  # m, below that of any instrument
 
 
@@ -288,7 +287,7 @@ def _scar(levelled: HeightMap, worn: Mask) -> Mask:
     """Largest connected patch below the sphere by more than the noise."""
     smooth = _smooth(levelled)
     unworn = ~worn if not worn.all() else worn
-    patches, count = label(smooth < -max(_WORN * _robust_deviation(smooth[unworn]), _HEIGHT_RESOLUTION))
+    patches, count = label(smooth < -max(_WORN * _scatter(smooth[unworn]), _HEIGHT_RESOLUTION))
     sizes = np.bincount(patches.ravel())[1:]
     if not count or sizes.max() < _MIN_SCAR:
         return np.zeros_like(worn)
@@ -300,13 +299,13 @@ def _area_at_zero_depth(levelled: HeightMap, worn: Mask) -> float:
     rimmed = _with_rim(worn)
     depth = median_filter(-np.where(levelled.measured, levelled.height, _smooth(levelled)), _WINDOW)
     deep = max(float(np.quantile(depth[worn], 0.9)), _HEIGHT_RESOLUTION)
-    low = max(_WORN * _robust_deviation(depth[~rimmed]), _HEIGHT_RESOLUTION)
+    low = max(_WORN * _scatter(depth[~rimmed]), _HEIGHT_RESOLUTION)
     high = min(max(_LEVELS_REACH * low, _LEVELS_FRACTION * deep), 0.8 * deep)
     levels = np.linspace(min(low, high / 2), high, _LEVELS)
     areas = np.count_nonzero(depth[rimmed] > levels[:, np.newaxis], axis=1)
     return float(np.polyfit(levels / high, areas, 1)[1])
 
 
-def _robust_deviation(values: Floats) -> float:
-    """Standard deviation of Gaussian values, estimated from the median absolute deviation."""
-    return _DEVIATION_OVER_MEDIAN * float(np.median(np.abs(values - np.median(values))))
+def _scatter(values: Floats) -> float:
+    """Standard deviation of Gaussian values about their median."""
+    return robust_deviation(values - np.median(values))

@@ -11,6 +11,7 @@ from scipy.ndimage import uniform_filter1d
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.models.surfaces.form_removal import robust_deviation
 from sonolube.models.surfaces.grooves.plane_coordinates import block_edges, block_means, centred_coordinates, monomials
 from sonolube.models.surfaces.grooves.track import GrooveTrack
 from sonolube.models.surfaces.height_map import HeightMap, Mask
@@ -28,7 +29,6 @@ _SLOPE_WINDOW = 7  # pixels
 _MIN_UNWORN = 12  # blocks
 _MODULATIONS, _MAX_MODULATIONS = 12, 8.0  # harmonics of the groove's depth along it; most waves in the longer side
 _OUTLIER = 5.0  # deviation of a worn block from the mean section, over the standard deviation: debris or torn-out chips
-_DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -143,14 +143,12 @@ def block_averages(
     surface: HeightMap, *, track: GrooveTrack, worn_band: tuple[float, float], excluded: Mask | None = None
 ) -> BlockAverages:
     """Block averages of a scan with a groove, worn blocks less its mean cross-section."""
-    rows, columns = surface.height.shape
-    field = (columns * surface.spacing_x, rows * surface.spacing_y)
-    longer = max(field)
+    longer = max(surface.sides)
     transverse, arc_length = track.curvilinear_coordinates(surface)
     counted = surface.measured if excluded is None else surface.measured & ~excluded
     inside = (transverse > worn_band[0]) & (transverse < worn_band[1])
     worn = counted & inside
-    section, rotated, bent = np.zeros((3, rows, columns))
+    section, rotated, bent = np.zeros((3, *surface.height.shape))
     if worn.any():
         t = arc_length[worn] / longer
         means, slope = _transverse_means(transverse[worn], np.stack([surface.height[worn], t, t**2 / 2]), surface)
@@ -163,7 +161,8 @@ def block_averages(
     unworn, groove = block_means(fields[:4], counted & ~inside, edges), block_means(fields, worn, edges)
     if unworn.shape[1] < _MIN_UNWORN:
         raise InvalidInput(f"only {unworn.shape[1]} blocks of {longer / _BLOCKS:.2g} m are unworn; scan a wider field")
-    kept = np.abs(groove[2]) < _OUTLIER * _block_deviation(unworn[2], groove[2])
+    deviation = max(float(np.std(unworn[2])), robust_deviation(groove[2]) if groove.size else 0.0)
+    kept = np.abs(groove[2]) < _OUTLIER * deviation
     groove = groove[:, kept]
     free = np.empty((0, 0))
     if groove.size:
@@ -178,7 +177,7 @@ def block_averages(
         mean_section=both[3],
         section=np.concatenate([np.zeros((unworn.shape[1], free.shape[1])), free]),
         unworn=unworn.shape[1],
-        field=field,
+        field=surface.sides,
         labels=_labels((counted & ~inside, worn), kept, edges, unworn.shape[1]),
     )
 
@@ -196,12 +195,6 @@ def _labels(masks: tuple[Mask, Mask], kept: Mask, edges: list[NDArray[np.intp]],
         of_cell[np.flatnonzero(np.bincount(cell[mask]))] = numbers
         labels[mask] = of_cell[cell[mask]]
     return labels
-
-
-def _block_deviation(unworn: Floats, groove: Floats) -> float:
-    """Standard deviation of the unworn blocks or of those of the groove about its mean section, the larger."""
-    own = _DEVIATION_OVER_MEDIAN * float(np.median(np.abs(groove))) if groove.size else 0.0
-    return max(float(np.std(unworn)), own)
 
 
 def _hat_functions(at: Floats, step: float) -> Floats:

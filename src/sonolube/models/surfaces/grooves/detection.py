@@ -149,8 +149,7 @@ class _Section(NamedTuple):
 
 def _block_means(surface: HeightMap, blocks: int) -> _Blocks:
     """Means of positions and heights over square blocks, so many along the longer side of the field."""
-    rows, columns = surface.height.shape
-    reach = max(rows * surface.spacing_y, columns * surface.spacing_x)
+    reach = max(surface.sides)
     fields = (*centred_coordinates(surface), surface.height)
     px, py, height, _ = block_means(fields, surface.measured, block_edges(surface, reach / blocks))
     side = max(surface.spacing_x, surface.spacing_y, reach / blocks)

@@ -110,7 +110,8 @@ def field_tracks(surface: HeightMap) -> FieldTracks:
         troughs = _troughs(detected)
         deepest = max([trough.depth for trough in troughs] + [track.groove_depth for track in found])
         for trough in troughs:
-            if not _counts(rest, transverse, arc_length, trough, deepest, first=not (found or others)):
+            long = not (found or others) or _length(rest, transverse, arc_length, trough) >= _MIN_LENGTH
+            if not long or trough.depth < _MIN_DEPTH * deepest:
                 continue
             if feature := _other_feature(rest, transverse, arc_length, trough):
                 others.append(feature)
@@ -121,8 +122,7 @@ def field_tracks(surface: HeightMap) -> FieldTracks:
             rest = _without(rest, transverse, trough, wider=True)
         rest = rest.with_height(rest.height - fit_form(rest, degree=2).height)  # a hollow of the form is no track
     if not found:
-        what = "; ".join(others)
-        raise NoGroove(f"no groove found: {what}")
+        raise NoGroove(f"no groove found: {'; '.join(others)}")
     return FieldTracks(tuple(sorted(found, key=_order)), tuple(others), masked)
 
 
@@ -135,13 +135,13 @@ def without_tracks(surface: HeightMap, tracks: Sequence[FieldTrack]) -> HeightMa
     return surface
 
 
-def _order(track: FieldTrack) -> tuple[float, float]:
+def _order(track: FieldTrack) -> float:
     """Radius of a circular track; place of a straight one from the left, or from the first row."""
     line = track.detected.track
     if abs(line.track_curvature) * track.groove_width > 1e-3:
-        return (abs(1 / line.track_curvature - line.track_offset), 0.0)
+        return abs(1 / line.track_curvature - line.track_offset)
     x, y = -math.sin(line.track_direction), math.cos(line.track_direction)
-    return (line.track_offset * (x if abs(x) > 0.5 else y), 0.0)
+    return line.track_offset * (x if abs(x) > 0.5 else y)
 
 
 def _troughs(detected: DetectedGroove) -> list[_Trough]:
@@ -212,10 +212,8 @@ def _track(detected: DetectedGroove, trough: _Trough, *, alone: bool) -> FieldTr
 def _other_feature(surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough) -> str:
     """Description of a trough too narrow or too short for a track; empty for a track."""
     width, middle = trough.right - trough.left, (trough.left + trough.right) / 2
-    rows, columns = surface.height.shape
-    longer = max(rows * surface.spacing_y, columns * surface.spacing_x)
     size = f"a trough {1e6 * width:.0f} um wide and {1e6 * trough.depth:.2g} um deep on average"
-    if width < _NARROWEST * longer:
+    if width < _NARROWEST * max(surface.sides):
         return f"{size} is a scratch, or too narrow for this field: scan it at a higher magnification"
     core = surface.measured & (np.abs(transverse - middle) < width / 4)
     if not core.any():
@@ -239,21 +237,11 @@ def _other_feature(surface: HeightMap, transverse: Floats, arc_length: Floats, t
     return f"{size} is only {1e3 * length:.2g} mm long, where a track crosses the field: a scratch or a pit"
 
 
-def _counts(
-    surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough, deepest: float, *, first: bool
-) -> bool:
-    """Whether a trough is deep enough beside the deepest and, after the first, long enough in the field."""
-    long = first or _length(surface, transverse, arc_length, trough) >= _MIN_LENGTH
-    return long and trough.depth >= _MIN_DEPTH * deepest
-
-
 def _length(surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough) -> float:
     """Length in the field of the middle of a trough, over the shorter side of the field."""
-    rows, columns = surface.height.shape
     near = np.abs(transverse - (trough.left + trough.right) / 2) < (trough.right - trough.left) / 4
     near &= surface.measured
-    shorter = min(rows * surface.spacing_y, columns * surface.spacing_x)
-    return float(np.ptp(arc_length[near])) / shorter if near.any() else 0.0
+    return float(np.ptp(arc_length[near])) / min(surface.sides) if near.any() else 0.0
 
 
 def _plane_above(surface: HeightMap, transverse: Floats, arc_length: Floats, beside: Mask) -> Floats:

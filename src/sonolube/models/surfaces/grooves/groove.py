@@ -8,6 +8,7 @@ from scipy.ndimage import uniform_filter
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove, SeveralGrooves
+from sonolube.models.surfaces.form_removal import robust_deviation
 from sonolube.models.surfaces.grooves.detection import DetectedGroove
 from sonolube.models.surfaces.grooves.field_tracks import FieldTracks, field_tracks, without_tracks
 from sonolube.models.surfaces.grooves.groove_intervals import GrooveErrors, section_estimates
@@ -279,8 +280,8 @@ def _measured(
 def _spikes(levelled: HeightMap, transverse: Floats, band: tuple[float, float]) -> Mask:
     """Mask of debris and dust beside the band, by the median absolute deviation."""
     beside = levelled.measured & ((transverse < band[0]) | (transverse > band[1]))
-    deviation = 1.4826 * float(np.median(np.abs(levelled.height[beside])))  # of Gaussian heights
-    return beside & (np.abs(np.where(beside, levelled.height, 0.0)) > _SPIKE * deviation)
+    highest = _SPIKE * robust_deviation(levelled.height[beside])
+    return beside & (np.abs(np.where(beside, levelled.height, 0.0)) > highest)
 
 
 def _projections(levelled: HeightMap, transverse: Floats, between: tuple[float, float]) -> Mask:

@@ -89,21 +89,18 @@ class GrooveErrors:
         scale = min(max(scale, _MIN_SCALE), _LARGEST_SCALE)
         return cls(levelled, reference, transverse, arc_length, section, cells, covariance, scale)
 
-    def half_width(self, direct: Floats, *further: float) -> tuple[float, float]:
-        """Standard uncertainty and 95 % half-width of a sum of heights over the groove, above the reference."""
-        weights = self.floor_scale * direct - self.reference.pixel_weights(direct)
-        return self._combined(weights, self.reference.deviation_between_models(direct), *further)
-
     def sum_over(self, worn: Mask, volume: float) -> Estimate:
         """Volume below the reference over worn pixels; a missing one weighs on those of its bin."""
         measured = worn & self.levelled.measured
         whole, known = (np.bincount(self.bins[mask], minlength=self.section.pixels.size) for mask in (worn, measured))
         share = (whole / np.maximum(known, 1))[self.bins]
         pixel = self.levelled.spacing_x * self.levelled.spacing_y
-        return Estimate(volume, *self.half_width(np.where(measured, share * pixel, 0.0)))
+        direct = np.where(measured, share * pixel, 0.0)
+        weights = self.floor_scale * direct - self.reference.pixel_weights(direct)
+        return Estimate(volume, *self._combined(weights, self.reference.deviation_between_models(direct)))
 
     def of_reference(self, direct: Floats, *further: float) -> tuple[float, float]:
-        """The same of the reference alone."""
+        """Standard uncertainty and 95 % half-width of a sum of heights above the reference, from the latter alone."""
         between = self.reference.deviation_between_models(direct)
         return self._combined(-self.reference.pixel_weights(direct), between, *further)
 
@@ -114,12 +111,10 @@ class GrooveErrors:
         return self._combined(self.floor_scale * self.reference.track_pixel_weights((rotation, bending)))[0]
 
     def _combined(self, weights: Floats, *further: float) -> tuple[float, float]:
-        summed = self.cells.sums(weights)[None]
-        variance, derivative = self.covariance.products(summed, summed)
+        variance, derivative = self.covariance.variance(self.cells.sums(weights))
         white = self.covariance.noise_of_pixel * float(np.sum(weights**2))
-        rest = sum(each**2 for each in further)
-        total = float(variance[0]) + white + rest
-        factor = coverage_factor(self.covariance.uncertainty(total, derivative[0]))
+        total = variance + white + sum(each**2 for each in further)
+        factor = coverage_factor(self.covariance.uncertainty(total, derivative))
         uncertainty = math.sqrt(max(total, 0.0))
         return uncertainty, factor * uncertainty
 

@@ -3,14 +3,12 @@
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter
 
+from sonolube.models.surfaces.form_removal import robust_deviation
 from sonolube.models.surfaces.height_map import HeightMap
-
-__all__: list[str] = []  # used in this room only
 
 _DEVIATIONS = 8.0  # over the standard deviation of heights about the median of their neighbours
 _COMMON = 4.0  # over the deviation that 2 % of the pixels exceed
 _LEAST = 0.05  # of the range of heights: the kink of an edge is less
-_DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
 
 
 def without_outliers(surface: HeightMap) -> HeightMap:
@@ -23,7 +21,7 @@ def without_outliers(surface: HeightMap) -> HeightMap:
     of_measured = deviation[measured]
     low, high = np.quantile(filled[measured], [0.005, 0.995])
     limit = max(
-        _DEVIATIONS * _DEVIATION_OVER_MEDIAN * float(np.median(of_measured)),
+        _DEVIATIONS * robust_deviation(of_measured),
         _COMMON * float(np.quantile(of_measured, 0.98)),
         _LEAST * float(high - low),
     )

@@ -11,6 +11,7 @@ from scipy import fft, stats
 from sonolube.checks import Floats
 from sonolube.models.surfaces.grooves.plane_coordinates import block_edges
 from sonolube.models.surfaces.height_map import HeightMap, Mask
+from sonolube.models.surfaces.spectrum import half_spectrum_multiplicity
 
 __all__: list[str] = []  # used in this room only
 
@@ -54,26 +55,19 @@ class RoughnessCovariance:
     cell_sides: tuple[float, float]
     pixels_per_cell: float
 
-    def products(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
-        """Covariance of two weighted sums of heights, and its derivatives with respect to the parameters.
+    def variance(self, weights: Floats) -> tuple[float, Floats]:
+        """Variance of a weighted sum of heights, and its derivatives with respect to the first five parameters.
 
-        `first, second` has shape (n, cell rows, cell columns).
-
-        `covariance`: Of the first with the second sums, in m2 times the square of the weights' unit, without the noise.
-        `derivatives` has shape (n, 5).
+        Of weights of shape (cell rows, cell columns); in m2 times the square of their unit, without the noise.
         """
-        shape = _padded(first.shape[1:])
-        cross = fft.rfft2(first, shape) * np.conj(fft.rfft2(second, shape))
-        weight = cross.real * _doubled(shape)
-        theta = self.parameters
+        shape = _padded(weights.shape)
+        power = np.abs(fft.rfft2(weights, shape)) ** 2 * half_spectrum_multiplicity(shape[1])
 
-        def value(parameters: Floats) -> Floats:
-            density = _density(parameters, shape, self.cell_sides)
-            return np.asarray(np.einsum("nij,ij->n", weight, density) / math.prod(shape))
+        def value(parameters: Floats) -> float:
+            return float(np.vdot(power, _density(parameters, shape, self.cell_sides))) / math.prod(shape)
 
-        base = value(theta)
-        steps = [_STEP * row for row in np.eye(6)[:5]]
-        return base, np.stack([(value(theta + step) - base) / _STEP for step in steps], axis=1)
+        base = value(self.parameters)
+        return base, np.array([(value(self.parameters + _STEP * row) - base) / _STEP for row in np.eye(6)[:5]])
 
     def smeared(self, weights: Floats) -> Floats:
         """Covariance with the height of each cell of a weighted sum over cells, without the noise, in m2."""
@@ -102,8 +96,7 @@ class Cells:
     """Sums of pixel weights and means of heights over the cells of a map."""
 
     def __init__(self, surface: HeightMap) -> None:
-        longer = max(surface.height.shape[0] * surface.spacing_y, surface.height.shape[1] * surface.spacing_x)
-        self._edges = block_edges(surface, longer / _CELLS)
+        self._edges = block_edges(surface, max(surface.sides) / _CELLS)
         self._shape = surface.height.shape
         sizes = [int(edge[1]) if edge.size > 1 else surface.height.shape[axis] for axis, edge in enumerate(self._edges)]
         self.cell_sides = (sizes[0] * surface.spacing_y, sizes[1] * surface.spacing_x)
@@ -151,7 +144,7 @@ def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> Ro
     counted_waves = (periods_y[:, None] > _LOWEST) | (periods_x > _LOWEST)
     counted_waves &= (periods_y[:, None] < _HIGHEST * mean.shape[0] / 2) & (periods_x < _HIGHEST * mean.shape[1] / 2)
     used = np.flatnonzero(counted_waves)
-    weight = np.broadcast_to(_doubled(shape), counted_waves.shape).take(used)
+    weight = np.broadcast_to(half_spectrum_multiplicity(shape[1]), counted_waves.shape).take(used)
     weight *= total / math.prod(shape) / 2  # as many as there are cells, in pairs
     periodogram = np.abs(fft.rfft2(mean, shape).take(used)) ** 2 / total
     variance = max(float(np.sum(mean**2)) / total, np.finfo(float).tiny)
@@ -240,15 +233,6 @@ def _scored(
 def _padded(shape: tuple[int, ...]) -> tuple[int, int]:
     """Shape of the periodic grid on which sums over the cells do not wrap round."""
     return (fft.next_fast_len(2 * shape[-2], real=True), fft.next_fast_len(2 * shape[-1], real=True))
-
-
-def _doubled(shape: tuple[int, int]) -> Floats:
-    """Multiplicity of each wave of a real transform in a sum over all waves."""
-    twice = np.full(shape[1] // 2 + 1, 2.0)
-    twice[0] = 1.0
-    if shape[1] % 2 == 0:
-        twice[-1] = 1.0
-    return twice[None, :]
 
 
 def _lags(spectrum: Floats, shape: tuple[int, int]) -> Floats:

@@ -126,15 +126,13 @@ def groove_extent(section: MeanCrossSection, worn_band: tuple[float, float]) -> 
     )
 
 
-def cross_sections(
-    levelled: HeightMap, track: GrooveTrack, *, reach: tuple[float, float], sections: int | None = None
-) -> CrossSections:
+def cross_sections(levelled: HeightMap, track: GrooveTrack, *, reach: tuple[float, float]) -> CrossSections:
     """Cross-sections perpendicular to the track, at every arc length at which one crosses the field."""
     transverse, arc_length = track.curvilinear_coordinates(levelled)
     near = (transverse >= reach[0]) & (transverse <= reach[1])
     step = max(levelled.spacing_x, levelled.spacing_y)
     start, stop = float(arc_length[near].min()), float(arc_length[near].max())
-    t = np.linspace(start, stop, sections or max(2, 1 + round((stop - start) / step)))
+    t = np.linspace(start, stop, max(2, 1 + round((stop - start) / step)))
     s = np.linspace(reach[0], reach[1], max(2, round((reach[1] - reach[0]) / step)))
     row, column = (np.rint(each).astype(np.intp) for each in track.pixel_position(levelled, *np.meshgrid(s, t)))
     rows, columns = levelled.height.shape

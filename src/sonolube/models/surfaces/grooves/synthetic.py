@@ -180,8 +180,9 @@ def synthetic_groove(
     """
     field = field or ScannedField()
     rng = np.random.default_rng(seed)
-    ground = _plane(field, rng) + _wave(field, rng)
-    unworn = HeightMap(height=ground, spacing_x=field.spacing_x, spacing_y=field.spacing_y)
+    flat = HeightMap(height=np.zeros(field.field_shape), spacing_x=field.spacing_x, spacing_y=field.spacing_y)
+    x, y = centred_coordinates(flat)
+    unworn = flat.with_height(_plane(field, x, y, rng) + _wave(field, x, y, rng))
     transverse, arc_length = track.curvilinear_coordinates(unworn)
     depth, ridge = shape.depth_at(transverse, arc_length), shape.ridge_at(transverse)
     height = unworn.height - depth + ridge
@@ -197,23 +198,15 @@ def synthetic_groove(
     )
 
 
-def _positions(field: ScannedField) -> tuple[Floats, Floats]:
-    """Positions of columns and rows relative to the centre of a field, in m."""
-    flat = HeightMap(height=np.zeros(field.field_shape), spacing_x=field.spacing_x, spacing_y=field.spacing_y)
-    return centred_coordinates(flat)
-
-
-def _plane(field: ScannedField, rng: np.random.Generator) -> Floats:
+def _plane(field: ScannedField, x: Floats, y: Floats, rng: np.random.Generator) -> Floats:
     """Plane of the field's tilt in a random direction."""
-    x, y = _positions(field)
     angle = rng.uniform(0, 2 * math.pi)
     plane = x * math.cos(angle) + y * math.sin(angle)
     return np.asarray(plane * (field.tilt / max(float(np.ptp(plane)), np.finfo(float).tiny)))
 
 
-def _wave(field: ScannedField, rng: np.random.Generator) -> Floats:
+def _wave(field: ScannedField, x: Floats, y: Floats, rng: np.random.Generator) -> Floats:
     """Plane wave of the field's waviness in a random direction."""
-    x, y = _positions(field)
     angle, phase = rng.uniform(0, 2 * math.pi, 2)
     along = x * math.cos(angle) + y * math.sin(angle)
     return np.asarray(field.waviness_amplitude * np.sin(2 * math.pi / field.waviness_length * along + phase))

@@ -115,17 +115,15 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
         raise InvalidInput(f"{track} is too short or too flat for a spectrum")
     maxima = 1 + np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:]))
     candidates = maxima[np.argsort(-(power * k)[maxima])][:_CANDIDATES]
-    backgrounds = [_background(k, power, np.abs(k - k[index]) > _LOBE / length, length) for index in candidates]
-    alarms = [
-        _false_alarm(k, power / level, spectra / np.sqrt(level), int(index), length)
-        for index, level in zip(candidates, backgrounds, strict=True)
-    ]
-    best = int(np.argmin(alarms)) if candidates.size else 0
-    top, alarm = (int(candidates[best]), alarms[best]) if candidates.size else (0, 1.0)
-    background = (
-        backgrounds[best] if candidates.size else _background(k, power, np.ones(k.size, dtype=np.bool_), length)
-    )
-    prominence = float(power[top] / background[top]) if candidates.size else 0.0
+    alarm, top, background = 1.0, 0, power
+    for index in candidates.tolist():
+        level = _background(k, power, np.abs(k - k[index]) > _LOBE / length, length)
+        found = _false_alarm(k, power / level, spectra / np.sqrt(level), index, length)
+        if top == 0 or found < alarm:
+            alarm, top, background = found, index, level
+    if top == 0:
+        background = _background(k, power, np.ones(k.size, dtype=np.bool_), length)
+    prominence = float(power[top] / background[top]) if top else 0.0
     significant = alarm < _FALSE_ALARMS
     spacing = 1 / _interpolated_maximum(k, power, top) if significant else None
     weak = f"no periodic marks found (largest peak {prominence:.1f} times the background, p = {alarm:.2g})"
