@@ -60,9 +60,9 @@ class StickSlipEstimate:
         Time of each slip, in s.
     """
 
-    detected: bool
-    resolved: bool
-    reason: str
+    detected: bool = True
+    resolved: bool = True
+    reason: str = ""
     stick_slip_frequency: float
     spectral_frequency: float
     stick_slip_amplitude: float
@@ -105,9 +105,6 @@ def combined(estimates: Sequence[StickSlipEstimate], spans: Sequence[float]) -> 
     ends = weights @ np.array([one.stick_slip_amplitude_interval for one in found])
     filled = sum(one.stick_slip_fraction * span for one, span in zip(estimates, spans, strict=True))
     return StickSlipEstimate(
-        detected=True,
-        resolved=True,
-        reason="",
         stick_slip_frequency=float(weights @ [one.stick_slip_frequency for one in found]),
         spectral_frequency=longest.spectral_frequency,
         stick_slip_amplitude=float(weights @ [one.stick_slip_amplitude for one in found]),

@@ -160,7 +160,6 @@ def friction_at_voltage_steps(
     --------
     mean_of_parts : the means and their uncertainty, wobble, run-in, drift and stick-slip taken off jointly.
     stick_slip_of_parts : stick-slip in the steps.
-    estimate_friction_reduction : reduction between two parts of any recording.
 
     Notes
     -----
