@@ -9,11 +9,10 @@ from scipy.stats import chi2
 
 from sonolube.checks import Floats
 from sonolube.identification.decay_length.conditions import SwitchConditions
-from sonolube.identification.decay_length.posterior import RunPosterior
+from sonolube.identification.decay_length.posterior import HYPOTHESES, RunPosterior
 from sonolube.identification.decay_length.run_model import DIFFERENCE, Channel, run_channels
 from sonolube.identification.decay_length.switch_table import SwitchTable
 from sonolube.identification.decay_length.verdict import (
-    HYPOTHESES,
     Undecided,
     decided_sentence,
     misfit_reason,

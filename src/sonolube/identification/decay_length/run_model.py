@@ -22,7 +22,7 @@ large drive, which follows that of the vibration or does not.
 """
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -53,6 +53,15 @@ _DRIFT: Final = 0.03  # of the friction ratio over the run, by what the model le
 _UNEXPLAINED: Final = 0.3  # the same where the friction ratio changes by itself
 _LARGEST_SHARE: Final = 0.8  # of a capacitive current over the motional one
 _ANY: Final = 10.0  # standard deviation of a level that is not known
+
+
+class Changes(NamedTuple):
+    """Which quantities of the readings beside the zero change in a run, and whether the large drive follows."""
+
+    grows: bool
+    falls: bool
+    drifts: bool
+    follows: bool
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -98,21 +107,13 @@ class RunModel:
     """
 
     def __init__(
-        self,
-        table: SwitchTable,
-        conditions: SwitchConditions,
-        *,
-        grows: bool,
-        falls: bool,
-        drifts: bool,
-        follows: bool,
-        channels: tuple[Channel, ...],
+        self, table: SwitchTable, conditions: SwitchConditions, changes: Changes, *, channels: tuple[Channel, ...]
     ) -> None:
-        self.table, self.conditions, self.channels, self.follows = table, conditions, channels, follows
+        self.table, self.conditions, self.channels, self.follows = table, conditions, channels, changes.follows
         self._whiteners = [np.linalg.inv(np.linalg.cholesky(each.covariance)) for each in channels]
-        self.means, self.deviations = self._priors(grows=grows, falls=falls, drifts=drifts)
+        self.means, self.deviations = self._priors(changes)
 
-    def _priors(self, *, grows: bool, falls: bool, drifts: bool) -> tuple[Floats, Floats]:
+    def _priors(self, changes: Changes) -> tuple[Floats, Floats]:
         """Means and standard deviations of the normal priors of the parameters."""
         end = self.table.sliding_distance[-1]
         change = (DIFFERENCE, _CHANGE_SPREAD)
@@ -125,13 +126,13 @@ class RunModel:
             "shift_scale": self._shift_scale(),
             "capacitive_share": (-0.5, 1.0),
             "turned_share": (0.0, 1.0),
-            "growth": change if grows else (0.0, _STEADY_LENGTH),
+            "growth": change if changes.grows else (0.0, _STEADY_LENGTH),
             "growth_distance": (np.log(end / 5), 1.0),
             "growth_exponent": (0.3, 0.4),
-            "fall": change if falls else (0.0, _STEADY_AMPLITUDE),
+            "fall": change if changes.falls else (0.0, _STEADY_AMPLITUDE),
             "fall_distance": (np.log(end / 2), 1.0),
             "fall_exponent": (0.3, 0.4),
-            "drift": (0.0, _UNEXPLAINED if drifts else _DRIFT),
+            "drift": (0.0, _UNEXPLAINED if changes.drifts else _DRIFT),
             "drift_distance": (np.log(end / 3), 1.0),
         }
         table = np.array([priors[name] for name in PARAMETERS])

@@ -301,20 +301,16 @@ class _Problem:
             )
             for k in self.inside(solution)
         ]
-        caveats = (
-            ()
-            if solution.correlation <= _CORRELATED
-            else (
-                f"residuals of the fit are correlated over {solution.correlation:.0f} points, which widens the"
-                " intervals: the sweep shows more than the fitted modes; sweep less far",
-            )
+        correlated = (
+            f"residuals of the fit are correlated over {solution.correlation:.0f} points, which widens the"
+            " intervals: the sweep shows more than the fitted modes; sweep less far"
         )
         return ResonanceFit(
             spectrum=self.spectrum,
             resonances=tuple(found),
             fitted=np.asarray(fitted, dtype=np.complex128),
             residual_correlation=solution.correlation,
-            caveats=caveats,
+            caveats=(correlated,) if solution.correlation > _CORRELATED else (),
         )
 
 

@@ -275,19 +275,14 @@ def ratio_interval(numerator: ArrayLike, denominator: ArrayLike, *, confidence_l
     v_a, v_b, rho = x.var(ddof=1) / x.size, y.var(ddof=1) / y.size, a / b
     t = float(stats.t.ppf((1 + confidence_level) / 2, _welch((v_a, rho**2 * v_b), (x.size, y.size))[1]))
     lead = b * b - t * t * v_b  # leading coefficient of the quadratic in rho
-    if lead <= 0:
-        return RatioEstimate(
-            ratio=rho,
-            lower=-np.inf,
-            upper=np.inf,
-            bounded=False,
-            reason=f"the denominator, {b:.3g} with standard error {v_b**0.5:.2g}, may be zero; make more tests",
-            confidence_level=confidence_level,
-        )
-    half = t * float(np.sqrt(max(0.0, v_a * lead + v_b * a * a))) / lead
-    centre = a * b / lead
+    lower, upper, reason = -np.inf, np.inf, ""
+    if lead > 0:
+        half = t * float(np.sqrt(max(0.0, v_a * lead + v_b * a * a))) / lead
+        lower, upper = a * b / lead - half, a * b / lead + half
+    else:
+        reason = f"the denominator, {b:.3g} with standard error {v_b**0.5:.2g}, may be zero; make more tests"
     return RatioEstimate(
-        ratio=rho, lower=centre - half, upper=centre + half, bounded=True, reason="", confidence_level=confidence_level
+        ratio=rho, lower=lower, upper=upper, bounded=lead > 0, reason=reason, confidence_level=confidence_level
     )
 
 

@@ -23,6 +23,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.surface_reading import FIXED_BY_FORMAT, SurfaceReading
+from sonolube.measurement.surface_files.wyko import terminated_text
 
 _SIGNATURE = b"OM_MS_2.0"
 _SIGNATURE_AT = 32
@@ -83,14 +84,9 @@ class NanoFocusNms:
             spacing_y=1e-9 * step_y,
             lateral_unit="nm",
             unit_origin=FIXED_BY_FORMAT,
-            title=_text(header, _TITLE_AT),
-            measured_at=_measured_at(_text(header, _TIME_AT)),
+            title=terminated_text(header[_TITLE_AT : _TITLE_AT + _TEXT_LENGTH]),
+            measured_at=_measured_at(terminated_text(header[_TIME_AT : _TIME_AT + _TEXT_LENGTH])),
         )
-
-
-def _text(header: bytes, at: int) -> str:
-    """Text at a byte up to its first null."""
-    return header[at : at + _TEXT_LENGTH].split(b"\0", 1)[0].decode("latin-1").strip()
 
 
 def _measured_at(text: str) -> datetime | None:
