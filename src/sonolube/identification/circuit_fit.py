@@ -1,11 +1,9 @@
 """Butterworth-Van Dyke circuits from measured impedance spectra, by rational approximation and least squares."""
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import AAA
 
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
@@ -24,7 +22,9 @@ from sonolube.measurement.statistics.log_parameter_fit import (
     ConfidenceInterval,
     LogParameterFit,
     confidence_intervals,
+    distinct_modes,
     fit_log_parameters,
+    rational_poles,
     residual_inefficiency,
     spanning_intervals,
 )
@@ -37,7 +37,6 @@ from sonolube.models.actuator import (
 )
 
 _MAX_BRANCHES = 8
-_TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
 _LOWEST_QUALITY, _HIGHEST_QUALITY = 3.0, 1e7
 _ROUNDING = 1e-9  # current of a branch over the total, below which it is rounding
 _MAX_CANDIDATES = 3  # fitted for the next branch
@@ -262,25 +261,15 @@ def _candidates(spectrum: _Spectrum, logarithms: Floats) -> list[Floats]:
         capacitance = float(np.real(np.vdot(shape, relative)) / np.real(np.vdot(shape, shape)))
         explained = capacitance**2 * float(np.real(np.vdot(shape, shape)))
         if capacitance > 0 and explained > f.size * _ROUNDING**2:
-            ranked.append((explained, np.log([f_s, quality, capacitance])))
-    distinct: list[Floats] = []
-    for _, candidate in sorted(ranked, key=lambda pair: -pair[0]):
-        if all(abs(candidate[0] - other[0]) > np.exp(-other[1]) for other in distinct):  # a resonance width apart
-            distinct.append(candidate)
-    return distinct
+            ranked.append((-explained, np.log([f_s, quality, capacitance])))
+    return distinct_modes(ranked, widths=1.0)
 
 
 def _poles(f: Floats, values: Complexes) -> list[complex]:
     """Decaying poles of AAA approximations that are real for real signals, in Hz."""
     scale = float(np.sqrt(f[0] * f[-1]))
     x, y = np.concatenate([1j * f, -1j * f]) / scale, np.concatenate([values, values.conj()])
-    found: list[complex] = []
-    for terms in _TERMS:
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore", RuntimeWarning)  # about the limited number of terms
-            poles = scale * AAA(x, y, max_terms=terms, rtol=1e-10).poles()
-        found.extend(complex(pole) for pole in poles if pole.imag > 0 and pole.real < 0)
-    return found
+    return [pole for pole in rational_poles(x, y, scale=scale) if pole.imag > 0 and pole.real < 0]
 
 
 def _by_other_residuals(

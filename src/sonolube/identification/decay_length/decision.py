@@ -157,12 +157,13 @@ def decide_decay_length(
         "zero_error": zero.factor,
     }
     lacking = _lacking(found, leading, misfits, changes, table)
+    verdict, advice = lacking or (decided_sentence(leading, probabilities), "")
     return DecayLengthDecision(
         probabilities=probabilities,
         decided=lacking is None,
         leading=leading,
-        verdict=decided_sentence(leading, probabilities) if lacking is None else lacking.verdict,
-        advice="" if lacking is None else lacking.advice,
+        verdict=verdict,
+        advice=advice,
         growth=_interval(changes["long_sliding"]),
         fall=_interval(changes["detuning"]),
         zero_factor=_interval(changes["zero_error"]),

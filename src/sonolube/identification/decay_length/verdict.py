@@ -1,8 +1,7 @@
 """Sentences of a decision about the decay length: the hypothesis that holds, or why none is decided."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 from sonolube.identification.decay_length.posterior import HYPOTHESES
 
@@ -27,17 +26,8 @@ _CHANGES: Final = {
 }
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Undecided:
-    """Why nothing is decided.
-
-    Parameters
-    ----------
-    verdict : str
-        One sentence.
-    advice : str
-        What to repeat or add.
-    """
+class Undecided(NamedTuple):
+    """Sentence that says why nothing is decided, and what to measure next."""
 
     verdict: str
     advice: str

@@ -1,17 +1,4 @@
-"""NMS files of NanoFocus' usurf confocal microscopes.
-
-The header has 3468 little-endian bytes. The spacing at byte 1376 is in nanometres: in two files of 512 x 512 pixels
-(SurfaceTopography's examples nms-1 and nms-2, both of a field of 160 um) it reads 312.49999, musurf-reader [1]_ and
-surfalize [2]_ divide it by 1000 to have micrometres, and as the millimetres for which SurfaceTopography 1.27.1 takes it
-(``IO/NMS.py``, ``dx_mm``, then times 1000 to micrometres) the field would be 160 m. That library also scales heights by
-the 65534 of an older convention instead of the range at bytes 8 and 12, and takes nms-2 for a MATLAB file; so this
-format is read here.
-
-References
-----------
-.. [1] D. Mendroch, musurf-reader, https://github.com/drocheam/musurf-reader
-.. [2] F. Schell, surfalize, https://github.com/fredericjs/surfalize
-"""
+"""NMS files of NanoFocus' usurf confocal microscopes."""
 
 import math
 import struct
@@ -38,7 +25,20 @@ _TEXT_LENGTH = 64
 
 @final
 class NanoFocusNms:
-    """NMS files of NanoFocus' usurf confocal microscopes."""
+    """NMS files of NanoFocus' usurf confocal microscopes.
+
+    The header has 3468 little-endian bytes. The spacing at byte 1376 is in nanometres: in two files of 512 x 512
+    pixels (SurfaceTopography's examples nms-1 and nms-2, both of a field of 160 um) it reads 312.49999,
+    musurf-reader [1]_ and surfalize [2]_ divide it by 1000 to have micrometres, and as the millimetres for which
+    SurfaceTopography 1.27.1 takes it (``IO/NMS.py``, ``dx_mm``, then times 1000 to micrometres) the field would be
+    160 m. That library also scales heights by the 65534 of an older convention instead of the range at bytes 8 and
+    12, and takes nms-2 for a MATLAB file; so this format is read here.
+
+    References
+    ----------
+    .. [1] D. Mendroch, musurf-reader, https://github.com/drocheam/musurf-reader
+    .. [2] F. Schell, surfalize, https://github.com/fredericjs/surfalize
+    """
 
     name: ClassVar[str] = "NanoFocus NMS"
     suffixes: ClassVar[tuple[str, ...]] = (".nms",)

@@ -1,10 +1,4 @@
-"""Wyko OPD files of Veeco's and Bruker's Vision software for white-light interferometers.
-
-The file is little-endian: two bytes, a directory of entries of 24 bytes (name, type, length, attribute), the first of
-which describes the directory itself, and then the blocks one after the other in the directory's order. Dialects differ
-in which blocks they have and in the type they declare for a block, so a number is read by its length. Every size that
-the file states is checked against the size it has.
-"""
+"""Wyko OPD files of Veeco's and Bruker's Vision software for white-light interferometers."""
 
 import math
 import struct
@@ -43,7 +37,13 @@ class _Block(NamedTuple):
 
 @final
 class WykoOpd:
-    """Wyko OPD files of Veeco's and Bruker's Vision software, in all its dialects."""
+    """Wyko OPD files of Veeco's and Bruker's Vision software, in all its dialects.
+
+    The file is little-endian: two bytes, a directory of entries of 24 bytes (name, type, length, attribute), the
+    first of which describes the directory itself, and then the blocks one after the other in the directory's order.
+    Dialects differ in which blocks they have and in the type they declare for a block, so a number is read by its
+    length. Every size that the file states is checked against the size it has.
+    """
 
     name: ClassVar[str] = "Wyko OPD"
     suffixes: ClassVar[tuple[str, ...]] = (".opd",)
