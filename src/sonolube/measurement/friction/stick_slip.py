@@ -331,7 +331,6 @@ def _by_cycle(t: Floats, force: Floats, cycle: ForceCycle, spectral: float) -> S
         force_drops=sum(burst.force_drops for burst in bursts),
         stick_slip_fraction=min(1.0, sum(b.end_time - b.start_time for b in bursts) / float(t[-1] - t[0])),
         bursts=bursts,
-        slip_time=np.empty(0),
     )
 
 

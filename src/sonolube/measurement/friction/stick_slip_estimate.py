@@ -1,7 +1,7 @@
 """Records of stick-slip in a friction force, and that of a part by those of its stretches."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -65,13 +65,13 @@ class StickSlipEstimate:
     reason: str = ""
     stick_slip_frequency: float
     spectral_frequency: float
-    stick_slip_amplitude: float
-    stick_slip_amplitude_uncertainty: float
-    stick_slip_amplitude_interval: tuple[float, float]
-    force_drops: int
-    stick_slip_fraction: float
-    bursts: tuple[StickSlipBurst, ...]
-    slip_time: Floats
+    stick_slip_amplitude: float = 0.0
+    stick_slip_amplitude_uncertainty: float = 0.0
+    stick_slip_amplitude_interval: tuple[float, float] = (0.0, 0.0)
+    force_drops: int = 0
+    stick_slip_fraction: float = 0.0
+    bursts: tuple[StickSlipBurst, ...] = ()
+    slip_time: Floats = field(default_factory=lambda: np.empty(0))
 
 
 def not_detected(reason: str, spectral_frequency: float, *, resolved: bool = True) -> StickSlipEstimate:
@@ -82,13 +82,6 @@ def not_detected(reason: str, spectral_frequency: float, *, resolved: bool = Tru
         reason=reason,
         stick_slip_frequency=spectral_frequency,
         spectral_frequency=spectral_frequency,
-        stick_slip_amplitude=0.0,
-        stick_slip_amplitude_uncertainty=0.0,
-        stick_slip_amplitude_interval=(0.0, 0.0),
-        force_drops=0,
-        stick_slip_fraction=0.0,
-        bursts=(),
-        slip_time=np.empty(0),
     )
 
 

@@ -99,10 +99,7 @@ class _Abscissa:
     def agrees(self, other: "_Abscissa") -> bool:
         """Whether two channels have the same time at each row."""
         if self.written is None or other.written is None:
-            return (self.written is None) == (other.written is None) and (self.start, self.step) == (
-                other.start,
-                other.step,
-            )
+            return self.written is other.written and (self.start, self.step) == (other.start, other.step)
         both = np.isfinite(self.written) & np.isfinite(other.written)
         return bool((self.written[both] == other.written[both]).all())
 
