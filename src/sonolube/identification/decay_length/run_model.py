@@ -1,25 +1,4 @@
-r"""Readings at the switches from the courses of decay length and amplitude, with their priors and noise.
-
-Over the run the decay length grows by :math:`e^{g}` and the amplitude falls by :math:`e^{d}`,
-
-.. math:: l(s) = l_0 e^{g\,c(s; S_l, n_l)}, \qquad a(s) = a_0 e^{-d\,c(s; S_a, n_a)}, \qquad
-    c(s; S, n) = \frac{1 - e^{-(s/S)^n}}{1 - e^{-(s_1/S)^n}} ,
-
-where :math:`s_1` is the distance of the run. The readings are
-
-.. math::
-
-    \frac{F_1 - z}{F_0 - z} &= R(a/l,\ v l/(\omega a D_c)) + \delta_0 + \delta_1 \ln\frac{a\,l_0}{a_0\,l}
-        + \delta_2\,c(s; S_\delta) \\
-    I &\propto \abs{\mathrm{j} p + r e^{-\mathrm{j}\varphi}}, \qquad r = a/a_0, \quad
-        \sin\varphi = t \sqrt{1 - r^2} \\
-    \Delta_s (1 + \Delta_s/2f_0) &= \frac{F_N/l}{8 \pi^2 m f_0}, \qquad
-    \frac{\Delta_l (1 + \Delta_l/2f_0)}{\Delta_s (1 + \Delta_s/2f_0)} = \frac{2 I_1(\beta)}{\beta I_0(\beta)}
-
-with asperity stick-slip R, a capacitive current p over the motional one, whose phase turns where the resonance leaves
-the drive (t = 1 or -1) and does not where the drive weakens (t = 0), and :math:`\beta = A/l` for the amplitude A at
-large drive, which follows that of the vibration or does not.
-"""
+"""Readings at the switches from the courses of decay length and amplitude, with their priors and noise."""
 
 from dataclasses import dataclass
 from typing import Final, NamedTuple
@@ -56,7 +35,17 @@ _ANY: Final = 10.0  # standard deviation of a level that is not known
 
 
 class Changes(NamedTuple):
-    """Which quantities of the readings beside the zero change in a run, and whether the large drive follows."""
+    """Quantities of the readings beside the zero that change in a run.
+
+    Parameters
+    ----------
+    grows, falls : bool
+        Whether the decay length grows, and the amplitude falls, over the run; if not they are steady.
+    drifts : bool
+        Whether the friction ratio changes by itself too.
+    follows : bool
+        Whether the amplitude at large drive falls with that of the vibration.
+    """
 
     grows: bool
     falls: bool
@@ -90,18 +79,33 @@ class Channel:
 
 
 class RunModel:
-    """Residuals of all readings of a run for many parameter values at once.
+    r"""Residuals of all readings of a run for many parameter values at once.
+
+    Over the run the decay length grows by :math:`e^{g}` and the amplitude falls by :math:`e^{d}`,
+
+    .. math:: l(s) = l_0 e^{g\,c(s; S_l, n_l)}, \qquad a(s) = a_0 e^{-d\,c(s; S_a, n_a)}, \qquad
+        c(s; S, n) = \frac{1 - e^{-(s/S)^n}}{1 - e^{-(s_1/S)^n}} ,
+
+    where :math:`s_1` is the distance of the run. The readings are
+
+    .. math::
+
+        \frac{F_1 - z}{F_0 - z} &= R(a/l,\ v l/(\omega a D_c)) + \delta_0 + \delta_1 \ln\frac{a\,l_0}{a_0\,l}
+            + \delta_2\,c(s; S_\delta) \\
+        I &\propto \abs{\mathrm{j} p + r e^{-\mathrm{j}\varphi}}, \qquad r = a/a_0, \quad
+            \sin\varphi = t \sqrt{1 - r^2} \\
+        \Delta_s (1 + \Delta_s/2f_0) &= \frac{F_N/l}{8 \pi^2 m f_0}, \qquad
+        \frac{\Delta_l (1 + \Delta_l/2f_0)}{\Delta_s (1 + \Delta_s/2f_0)} = \frac{2 I_1(\beta)}{\beta I_0(\beta)}
+
+    with asperity stick-slip R, a capacitive current p over the motional one, whose phase turns where the resonance
+    leaves the drive (t = 1 or -1) and does not where the drive weakens (t = 0), and :math:`\beta = A/l` for the
+    amplitude A at large drive, which follows that of the vibration or does not.
 
     Parameters
     ----------
     table : SwitchTable
     conditions : SwitchConditions
-    grows, falls : bool
-        Whether the decay length grows, and the amplitude falls, over the run; if not they are steady.
-    drifts : bool
-        Whether the friction ratio changes by itself too.
-    follows : bool
-        Whether the amplitude at large drive falls with that of the vibration.
+    changes : Changes
     channels : tuple of Channel
         From `run_channels`.
     """
