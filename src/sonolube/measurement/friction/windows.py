@@ -154,8 +154,9 @@ def streamed_window_statistics(
     parts: dict[str, list[Floats]] = {}
     units: dict[str, str] = {}
     origin = None
-    for t, signals, units in _complete_windows(path, channels, mapping, window_duration, block_samples):  # noqa: B007
+    for t, signals, units_of_block in _complete_windows(path, channels, mapping, window_duration, block_samples):
         origin = t[0] if origin is None else origin
+        units = units_of_block
         for name, x in signals.items():
             parts.setdefault(name, []).append(_moments(x, t, origin, window_duration))
     if origin is None:
