@@ -80,8 +80,6 @@ def test_contradicting_facts_are_named_and_the_rank_decides() -> None:
     assert found.satisfied == {"rate", "weight"}
     assert [fit.satisfied for fit in found.consistent_fits] == [{"rate", "weight"}, {"half_rate", "weight"}]
     assert found.consistent_fits[0].residuals["half_rate"] == approx(-50, rel=1e-2)
-    assert found.is_consistent_without("rate")
-    assert not found.is_consistent_without("weight")
     assert found.estimates["arm_stiffness"].value == approx(STIFFNESS, rel=1e-3)
 
 

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 from scipy.linalg import expm
+from tests.pin_on_disc import PinOnDiscTest, pin_on_disc_model
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.identification import Fact, PinOnDiscTest, identify, pin_on_disc_model
+from sonolube.identification import Conditions, Fact, identify
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.dynamics.chain import chain_structure, pin_on_disc_chain
 from sonolube.models.dynamics.linear import poles
@@ -171,10 +172,12 @@ def test_facts_of_the_stack_alone_do_not_determine_the_arm() -> None:
     assert len(found.unidentifiable_directions) >= 2
 
 
-@pytest.mark.parametrize("name", ["frequency", "voltage_peak_to_peak", "normal_load", "decay_length", "settling_time"])
-def test_a_test_without_a_positive_setting_is_refused_by_name(name: str) -> None:
+@pytest.mark.parametrize(
+    "name", ["frequency", "voltage_peak_to_peak", "normal_load", "decay_length", "observation_time"]
+)
+def test_a_condition_that_is_not_positive_is_refused_by_name(name: str) -> None:
     with raises(InvalidInput, match=f"{name} must be positive"):
-        replace(TEST, **{name: 0.0})  # type: ignore[arg-type]
+        Conditions(**{name: 0.0})  # type: ignore[arg-type]
 
 
 def test_a_missing_parameter_is_named() -> None:

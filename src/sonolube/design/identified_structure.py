@@ -5,9 +5,14 @@ from dataclasses import astuple, dataclass
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.identification import Posterior, SingularDirection, pin_on_disc_model, posterior
+from sonolube.identification import Posterior, SingularDirection, posterior
 from sonolube.rig import Rig
-from sonolube.validation.tribometer import tribometer_identification, tribometer_problem, tribometer_test
+from sonolube.validation.tribometer import (
+    tribometer_identification,
+    tribometer_model,
+    tribometer_problem,
+    tribometer_stack,
+)
 
 _STACK_FIELDS = 5  # leading fields of a stack that must agree with the tribometer's
 _STACK_TOLERANCE = 0.01  # relative
@@ -35,15 +40,15 @@ def identified_structure(
     rig: Rig, *, seed: int, advance: Callable[[int, int], None] | None = None
 ) -> IdentifiedStructure:
     """Posterior of the tribometer's masses, springs and dampers, given the published facts that are consistent."""
-    stack, test = rig.stack, tribometer_test()
+    stack, expected = rig.stack, astuple(tribometer_stack())[:_STACK_FIELDS]
     if stack is None or not all(
-        own == expected or (own and expected and abs(own / expected - 1) < _STACK_TOLERANCE)
-        for own, expected in zip(astuple(stack)[:_STACK_FIELDS], astuple(test.stack)[:_STACK_FIELDS], strict=True)
+        own == other or (own and other and abs(own / other - 1) < _STACK_TOLERANCE)
+        for own, other in zip(astuple(stack)[:_STACK_FIELDS], expected, strict=True)
     ):
         raise InvalidInput(
             f"{rig.file or rig.title}: an identified structure needs the tribometer's stack, which the facts are of"
         )
     identification, bounds = tribometer_identification(seed=seed), tribometer_problem().bounds
     consistent = [fact for fact in identification.facts if fact.name in identification.satisfied]
-    drawn = posterior(pin_on_disc_model(test), facts=consistent, bounds=bounds, seed=seed, advance=advance)
+    drawn = posterior(tribometer_model(), facts=consistent, bounds=bounds, seed=seed, advance=advance)
     return IdentifiedStructure(posterior=drawn, unidentifiable_directions=identification.unidentifiable_directions)

@@ -27,7 +27,6 @@ from .observation import (
     observable_unit as observable_unit,
     structure_model as structure_model,
 )
-from .pin_on_disc import PinOnDiscTest as PinOnDiscTest, pin_on_disc_model as pin_on_disc_model
 from .result import (
     ConsistentFit as ConsistentFit,
     Identification as Identification,

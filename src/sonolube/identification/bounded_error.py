@@ -72,15 +72,13 @@ def identify(model: ForwardModel, *, facts: Sequence[Fact], bounds: Bounds, seed
     _require_distinct_names(facts)
     bounded = BoundedModel(model=model, bounds=bounds)
     bounded.residuals(facts, bounded.lower[np.newaxis])  # refuses an unknown observable before the long search
-    found = consistent_facts(bounded, facts, seed=seed)
-    first, *others = sorted(found.points, key=lambda names: _reliability(names, facts), reverse=True)
+    subsets, points = consistent_facts(bounded, facts, seed=seed)
+    first, *others = sorted(points, key=lambda names: _reliability(names, facts), reverse=True)
     satisfied = [fact for fact in facts if fact.name in first]
     starts = [find_feasible_point(bounded, satisfied, seed=seed + i) for i in range(_STARTS)]
     fits = [
-        _consistent_fit(
-            bounded, facts, first, (*found.points[first], *(start for start in starts if start is not None))
-        ),
-        *(_consistent_fit(bounded, facts, names, found.points[names]) for names in others),
+        _consistent_fit(bounded, facts, first, (*points[first], *(start for start in starts if start is not None))),
+        *(_consistent_fit(bounded, facts, names, points[names]) for names in others),
     ]
     point = np.log(list(fits[0].parameters.values()))
     observed = bounded.observables(point[np.newaxis])
@@ -92,7 +90,7 @@ def identify(model: ForwardModel, *, facts: Sequence[Fact], bounds: Bounds, seed
         ),
         directions=_singular_directions(bounded, satisfied, point),
         consistent_fits=tuple(fits),
-        conflicts=found.subsets.conflicts,
+        conflicts=subsets.conflicts,
     )
 
 

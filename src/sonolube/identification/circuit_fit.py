@@ -1,11 +1,9 @@
 """Butterworth-Van Dyke circuits from measured impedance spectra, by rational approximation and least squares."""
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import AAA
 
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
@@ -24,7 +22,9 @@ from sonolube.measurement.statistics.log_parameter_fit import (
     ConfidenceInterval,
     LogParameterFit,
     confidence_intervals,
+    distinct_modes,
     fit_log_parameters,
+    rational_poles,
     residual_inefficiency,
     spanning_intervals,
 )
@@ -37,7 +37,6 @@ from sonolube.models.actuator import (
 )
 
 _MAX_BRANCHES = 8
-_TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
 _LOWEST_QUALITY, _HIGHEST_QUALITY = 3.0, 1e7
 _ROUNDING = 1e-9  # current of a branch over the total, below which it is rounding
 _MAX_CANDIDATES = 3  # fitted for the next branch
@@ -171,13 +170,24 @@ def fit_circuit(
     measured = replace(logarithmic, residual=residual_for(spectrum, residual))
     is_selected = measured.residual == logarithmic.residual
     chosen = fits[-1] if is_selected else fit_log_parameters(measured.residuals, fits[-1].logarithms)
-    found = _circuit_fit(measured, chosen, fits, branches, confidence_level)
-    if found.residual_correlation > _CORRELATED:
-        others = _other_residuals(measured, chosen, has_phase=spectrum.has_phase)
-        found = replace(found, intervals=_over_residuals(found, others))
-    fitted = circuit_admittance(found.circuit, frequency=spectrum.frequency)
-    of_spectrum = (*turned, *caveats_of_spectrum(spectrum, found.intervals), *inductive_caveats(spectrum, fitted))
-    return replace(found, caveats=(*of_spectrum, *found.caveats))
+    circuit, correlation = _circuit(chosen.logarithms, series_resistance), measured.correlation(chosen)
+    intervals = _intervals(measured, chosen, confidence_level)
+    if correlation > _CORRELATED:
+        others = _by_other_residuals(measured, chosen, confidence_level, has_phase=spectrum.has_phase)
+        intervals = spanning_intervals(intervals, others)
+    fitted = circuit_admittance(circuit, frequency=spectrum.frequency)
+    of_spectrum = (*turned, *caveats_of_spectrum(spectrum, intervals), *inductive_caveats(spectrum, fitted))
+    return CircuitFit(
+        circuit=circuit,
+        resonances=circuit_resonances(circuit),
+        intervals=intervals,
+        residual=measured.residual,
+        residual_rms=float(np.sqrt(chosen.sum_of_squares / points)),
+        information_criteria=tuple(each.information_criterion for each in fits),
+        residual_correlation=correlation,
+        confidence_level=confidence_level,
+        caveats=(*of_spectrum, *_caveats(chosen, len(circuit.branches), branches, correlation)),
+    )
 
 
 def _fits_by_branches(spectrum: _Spectrum, most: int, *, by_criterion: bool) -> list[LogParameterFit]:
@@ -251,50 +261,35 @@ def _candidates(spectrum: _Spectrum, logarithms: Floats) -> list[Floats]:
         capacitance = float(np.real(np.vdot(shape, relative)) / np.real(np.vdot(shape, shape)))
         explained = capacitance**2 * float(np.real(np.vdot(shape, shape)))
         if capacitance > 0 and explained > f.size * _ROUNDING**2:
-            ranked.append((explained, np.log([f_s, quality, capacitance])))
-    distinct: list[Floats] = []
-    for _, candidate in sorted(ranked, key=lambda pair: -pair[0]):
-        if all(abs(candidate[0] - other[0]) > np.exp(-other[1]) for other in distinct):  # a resonance width apart
-            distinct.append(candidate)
-    return distinct
+            ranked.append((-explained, np.log([f_s, quality, capacitance])))
+    return distinct_modes(ranked, widths=1.0)
 
 
 def _poles(f: Floats, values: Complexes) -> list[complex]:
     """Decaying poles of AAA approximations that are real for real signals, in Hz."""
     scale = float(np.sqrt(f[0] * f[-1]))
     x, y = np.concatenate([1j * f, -1j * f]) / scale, np.concatenate([values, values.conj()])
-    found: list[complex] = []
-    for terms in _TERMS:
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore", RuntimeWarning)  # about the limited number of terms
-            poles = scale * AAA(x, y, max_terms=terms, rtol=1e-10).poles()
-        found.extend(complex(pole) for pole in poles if pole.imag > 0 and pole.real < 0)
+    return [pole for pole in rational_poles(x, y, scale=scale) if pole.imag > 0 and pole.real < 0]
+
+
+def _by_other_residuals(
+    spectrum: _Spectrum, chosen: LogParameterFit, confidence_level: float, *, has_phase: bool
+) -> list[dict[str, ConfidenceInterval]]:
+    """Intervals by the residuals that were not chosen, of those that need no phase that was not measured."""
+    found = []
+    for name in RESIDUALS:
+        if name != spectrum.residual and (has_phase or name != LOG_COMPLEX):
+            other = replace(spectrum, residual=name)
+            fit = fit_log_parameters(other.residuals, chosen.logarithms)
+            if fit.converged and other.resolves(fit.logarithms):
+                found.append(_intervals(other, fit, confidence_level))
     return found
 
 
-def _other_residuals(
-    spectrum: _Spectrum, chosen: LogParameterFit, *, has_phase: bool
-) -> list[tuple[_Spectrum, LogParameterFit]]:
-    """Fits with as many branches by the residuals that were not chosen, which need no phase that was not measured."""
-    names = [name for name in RESIDUALS if name != spectrum.residual and (has_phase or name != LOG_COMPLEX)]
-    weighted = [replace(spectrum, residual=name) for name in names]
-    fits = [(each, fit_log_parameters(each.residuals, chosen.logarithms)) for each in weighted]
-    return [(each, fit) for each, fit in fits if fit.converged and each.resolves(fit.logarithms)]
-
-
-def _over_residuals(
-    found: CircuitFit, others: list[tuple[_Spectrum, LogParameterFit]]
-) -> dict[str, ConfidenceInterval]:
-    """Intervals of a fit, extended over those of the fits by other residuals."""
-    return spanning_intervals(
-        found.intervals,
-        [
-            confidence_intervals(
-                fit, _quantities, correlation=each.correlation(fit), confidence_level=found.confidence_level
-            )
-            for each, fit in others
-        ],
-    )
+def _intervals(spectrum: _Spectrum, fit: LogParameterFit, confidence_level: float) -> dict[str, ConfidenceInterval]:
+    """Confidence intervals of the quantities of a fitted circuit."""
+    correlation = spectrum.correlation(fit)
+    return confidence_intervals(fit, _quantities, correlation=correlation, confidence_level=confidence_level)
 
 
 def _circuit(logarithms: Floats, series_resistance: float) -> ButterworthVanDyke:
@@ -329,29 +324,6 @@ def _quantities(logarithms: Floats) -> dict[str, float]:
             f"coupling_factor_{index + 1}": float(found.coupling_factor[index]),
         }
     return named
-
-
-def _circuit_fit(
-    spectrum: _Spectrum,
-    fit: LogParameterFit,
-    fits: list[LogParameterFit],
-    requested: int | None,
-    confidence_level: float,
-) -> CircuitFit:
-    """Result record of the chosen fit; `fits` are those with 1, 2, ... branches."""
-    circuit = _circuit(fit.logarithms, spectrum.series_resistance)
-    correlation = spectrum.correlation(fit)
-    return CircuitFit(
-        circuit=circuit,
-        resonances=circuit_resonances(circuit),
-        intervals=confidence_intervals(fit, _quantities, correlation=correlation, confidence_level=confidence_level),
-        residual=spectrum.residual,
-        residual_rms=float(np.sqrt(fit.sum_of_squares / spectrum.frequency.size)),
-        information_criteria=tuple(each.information_criterion for each in fits),
-        residual_correlation=correlation,
-        confidence_level=confidence_level,
-        caveats=_caveats(fit, len(circuit.branches), requested, correlation),
-    )
 
 
 def _caveats(fit: LogParameterFit, branches: int, requested: int | None, correlation: float) -> tuple[str, ...]:

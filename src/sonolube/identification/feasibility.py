@@ -1,6 +1,6 @@
 """Consistency of facts under a model: a global search for a feasible point for each set of facts in question."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,24 +14,12 @@ from sonolube.identification.subsets import ConsistentSubsets, consistent_subset
 _ATTEMPTS, _CONFIRMING_ATTEMPTS = 2, 10  # searches for a set, and those that confirm a minimal conflict
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ConsistentFacts:
-    """Minimal conflicts and maximal consistent subsets of facts, with feasible points that prove the consistency.
+def consistent_facts(
+    bounded: BoundedModel, facts: Sequence[Fact], *, seed: int
+) -> tuple[ConsistentSubsets, dict[frozenset[str], tuple[Floats, ...]]]:
+    """Minimal conflicts and maximal consistent subsets of facts under a bounded model, and feasible points of these.
 
-    Parameters
-    ----------
-    subsets : ConsistentSubsets
-        Of the names of the facts.
-    points : mapping of frozenset of str to tuple of ndarray
-        For each maximal consistent subset, logarithms of parameters with which its facts hold.
-    """
-
-    subsets: ConsistentSubsets
-    points: Mapping[frozenset[str], tuple[Floats, ...]]
-
-
-def consistent_facts(bounded: BoundedModel, facts: Sequence[Fact], *, seed: int) -> ConsistentFacts:
-    """Minimal conflicts and maximal consistent subsets of facts under a bounded model.
+    The points are logarithms of parameters with which all facts of a subset hold.
 
     A search that fails proves nothing. So every minimal conflict is confirmed by ten more searches at the end, and
     where one of them finds a feasible point, the subsets are enumerated again with that knowledge.
@@ -47,13 +35,9 @@ def consistent_facts(bounded: BoundedModel, facts: Sequence[Fact], *, seed: int)
                 f"fact {next(iter(conflict))} cannot be satisfied by any parameters within the bounds; widen the bounds"
                 " or its tolerance"
             )
-    return ConsistentFacts(
-        subsets=subsets,
-        points={
-            names: tuple(point for satisfied, point in oracle.found if names <= satisfied)
-            for names in subsets.consistent
-        },
-    )
+    return subsets, {
+        names: tuple(point for satisfied, point in oracle.found if names <= satisfied) for names in subsets.consistent
+    }
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

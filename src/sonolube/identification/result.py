@@ -107,7 +107,3 @@ class Identification:
     def unidentifiable_directions(self) -> tuple[SingularDirection, ...]:
         """Directions in which the facts do not determine the parameters within a factor of e."""
         return tuple(direction for direction in self.directions if direction.is_unidentifiable)
-
-    def is_consistent_without(self, name: str) -> bool:
-        """Whether all other facts are consistent once the fact of this name is left out."""
-        return all(name in conflict for conflict in self.conflicts)

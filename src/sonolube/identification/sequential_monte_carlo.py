@@ -1,6 +1,6 @@
 """Posterior samples of parameters given facts, by sequential Monte Carlo with differential-evolution moves."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from sonolube.identification.bounded_search import BoundedModel
 from sonolube.identification.fact import Bounds, Fact, ForwardModel
 
 Advance = Callable[[int, int], None]
+_LogLikelihood = Callable[[Floats], Floats]
 
 _POPULATIONS = 4
 _MOVES = 20  # of every sample at each temperature
@@ -112,9 +113,14 @@ def posterior(
     if draws < 256 or draws % _POPULATIONS:
         raise InvalidInput(f"draws must be a multiple of {_POPULATIONS} and at least 256, got {draws}")
     bounded = BoundedModel(model=model, bounds=bounds)
+
+    def log_likelihood(points: Floats) -> Floats:
+        """Logarithm of the likelihood at points of shape (n, parameters), up to a constant, shape (n,)."""
+        return np.asarray(-0.5 * np.sum(bounded.residuals(facts, points) ** 2, axis=1))
+
     found = []
     for index in range(_POPULATIONS):
-        found.append(_population(bounded, facts, draws // _POPULATIONS, np.random.default_rng([seed, index])))
+        found.append(_population(bounded, log_likelihood, draws // _POPULATIONS, np.random.default_rng([seed, index])))
         if advance is not None:
             advance(index + 1, _POPULATIONS)
     populations = np.stack(found)
@@ -128,23 +134,24 @@ def posterior(
     )
 
 
-def _population(bounded: BoundedModel, facts: Sequence[Fact], count: int, random: np.random.Generator) -> Floats:
+def _population(
+    bounded: BoundedModel, log_likelihood: _LogLikelihood, count: int, random: np.random.Generator
+) -> Floats:
     """Logarithms of the parameters of one population of samples, shape (count, parameters)."""
     unit = qmc.LatinHypercube(d=len(bounded.bounds), rng=random).random(count)
     samples = np.asarray(bounded.lower + (bounded.upper - bounded.lower) * unit)
-    log_likelihood, power = _log_likelihood(bounded, facts, samples), 0.0
+    likelihoods, power = log_likelihood(samples), 0.0
     while power < 1:
-        increment = _next_power(log_likelihood, power) - power
-        indices = _systematic_resampling(np.exp(increment * (log_likelihood - log_likelihood.max())), random)
-        samples, log_likelihood, power = samples[indices], log_likelihood[indices], power + increment
+        increment = _next_power(likelihoods, power) - power
+        indices = _systematic_resampling(np.exp(increment * (likelihoods - likelihoods.max())), random)
+        samples, likelihoods, power = samples[indices], likelihoods[indices], power + increment
         for _ in range(_MOVES):
-            _metropolis_move(bounded, facts, samples, log_likelihood, power, random)
+            for own, proposal in _proposals(samples, random):
+                inside = np.all((proposal >= bounded.lower) & (proposal <= bounded.upper), axis=1)
+                proposed = log_likelihood(np.clip(proposal, bounded.lower, bounded.upper))
+                accepted = inside & (np.log(random.random(own.size)) < power * (proposed - likelihoods[own]))
+                samples[own[accepted]], likelihoods[own[accepted]] = proposal[accepted], proposed[accepted]
     return samples
-
-
-def _log_likelihood(bounded: BoundedModel, facts: Sequence[Fact], points: Floats) -> Floats:
-    """Logarithm of the likelihood at points of shape (n, parameters), up to a constant, shape (n,)."""
-    return np.asarray(-0.5 * np.sum(bounded.residuals(facts, points) ** 2, axis=1))
 
 
 def _next_power(log_likelihood: Floats, power: float) -> float:
@@ -165,22 +172,11 @@ def _systematic_resampling(weights: Floats, random: np.random.Generator) -> NDAr
     return np.asarray(np.minimum(indices, cumulative.size - 1), dtype=np.intp)
 
 
-def _metropolis_move(
-    bounded: BoundedModel,
-    facts: Sequence[Fact],
-    samples: Floats,
-    log_likelihood: Floats,
-    power: float,
-    random: np.random.Generator,
-) -> None:
-    """One Metropolis step of every sample, in place, along the difference of two samples of the other half."""
+def _proposals(samples: Floats, random: np.random.Generator) -> Iterator[tuple[NDArray[np.intp], Floats]]:
+    """Yield the indices of either half of the samples, and these moved along differences of two of the other half."""
     one, two = np.array_split(random.permutation(len(samples)), 2)
     for own, others in ((one, two), (two, one)):
         first = random.integers(others.size, size=own.size)
         second = (first + random.integers(1, others.size, size=own.size)) % others.size
         length = np.exp(random.uniform(np.log(_SHORTEST), np.log(_LONGEST), (own.size, 1)))
-        proposal = samples[own] + length * (samples[others[first]] - samples[others[second]])
-        inside = np.all((proposal >= bounded.lower) & (proposal <= bounded.upper), axis=1)
-        proposed = _log_likelihood(bounded, facts, np.clip(proposal, bounded.lower, bounded.upper))
-        accepted = inside & (np.log(random.random(own.size)) < power * (proposed - log_likelihood[own]))
-        samples[own[accepted]], log_likelihood[own[accepted]] = proposal[accepted], proposed[accepted]
+        yield own, samples[own] + length * (samples[others[first]] - samples[others[second]])

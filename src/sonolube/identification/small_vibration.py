@@ -109,14 +109,9 @@ class SmallVibration:
         return np.asarray(self._mass_roots.transpose(0, 2, 1) @ self._mass_roots)
 
     @cached_property
-    def _standard_stiffness(self) -> Floats:
-        """Symmetric matrices of the standard eigenvalue problem, contact free, drive short-circuited."""
-        return _standard_form(self._mass_roots, self.matrices.stiffness_matrix)
-
-    @cached_property
     def _eigenpairs(self) -> tuple[Floats, Floats]:
-        """Squared angular frequencies, ascending, and eigenvectors of the same problem."""
-        squares, vectors = np.linalg.eigh(self._standard_stiffness)
+        """Squared angular frequencies, ascending, and eigenvectors, contact free, drive short-circuited."""
+        squares, vectors = np.linalg.eigh(_standard_form(self._mass_roots, self.matrices.stiffness_matrix))
         return squares, vectors
 
     @cached_property

@@ -134,7 +134,8 @@ def _initial_stack(
     omega, measured = 2 * np.pi * spectrum.frequency, admittance_with_phase(spectrum)
     best, least = None, np.inf
     for stiffness in stack.stack_stiffness * _STIFFNESS_FACTORS:
-        for damping in (stack.stack_damping or _light_damping(stack)) * np.array(_DAMPING_FACTORS):
+        light = 1e-6 * stack.stack_stiffness / (2 * np.pi)  # that of a loss factor of 2 % at 20 kHz
+        for damping in (stack.stack_damping or light) * np.array(_DAMPING_FACTORS):
             trial = replace(
                 stack,
                 stack_stiffness=float(stiffness),
@@ -160,11 +161,6 @@ def _initial_stack(
             "no stack in this structure fits the spectrum; check the masses of the structure and the range of the sweep"
         )
     return best
-
-
-def _light_damping(stack: PiezoStack) -> float:
-    """Damping that gives a loss factor of 2 % at 20 kHz, in N s/m."""
-    return 1e-6 * stack.stack_stiffness / (2 * np.pi)
 
 
 def _logarithms(stack: PiezoStack) -> Floats:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import product
 
 import numpy as np
@@ -174,27 +174,14 @@ def _built_arrays(build: StructureBuilder, names: tuple[str, ...]) -> _Arrays:
 
 def _array(structure: Structure) -> Floats:
     """All matrices, vectors and the capacitance of a structure in one array."""
-    return np.concatenate(
-        [
-            structure.mass_matrix.ravel(),
-            structure.damping_matrix.ravel(),
-            structure.stiffness_matrix.ravel(),
-            structure.drive_vector,
-            structure.contact_vector,
-            [structure.clamped_capacitance],
-        ]
-    )
+    return np.concatenate([np.ravel(getattr(structure, part.name)) for part in fields(StructureMatrices)])
 
 
 def _matrices(arrays: Floats, coordinates: int) -> StructureMatrices:
     """Matrices of n structures from their arrays, shape (n, 3 k^2 + 2 k + 1)."""
-    square = coordinates**2
-    squares = arrays[:, : 3 * square].reshape(-1, 3, coordinates, coordinates)
+    shapes = (*[(coordinates, coordinates)] * 3, *[(coordinates,)] * 2, ())
+    parts = np.split(arrays, np.cumsum([math.prod(shape) for shape in shapes])[:-1], axis=1)
+    shaped = [np.ascontiguousarray(part.reshape(-1, *shape)) for part, shape in zip(parts, shapes, strict=True)]
     return StructureMatrices(
-        mass_matrix=np.ascontiguousarray(squares[:, 0]),
-        damping_matrix=np.ascontiguousarray(squares[:, 1]),
-        stiffness_matrix=np.ascontiguousarray(squares[:, 2]),
-        drive_vector=arrays[:, 3 * square : 3 * square + coordinates],
-        contact_vector=arrays[:, 3 * square + coordinates : -1],
-        clamped_capacitance=arrays[:, -1],
+        **{part.name: values for part, values in zip(fields(StructureMatrices), shaped, strict=True)}
     )

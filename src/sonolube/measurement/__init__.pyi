@@ -33,10 +33,6 @@ from .friction.motor_current import (
     MotorFrictionTrace as MotorFrictionTrace,
     friction_from_motor_current as friction_from_motor_current,
 )
-from .friction.reduction import (
-    FrictionReductionEstimate as FrictionReductionEstimate,
-    estimate_friction_reduction as estimate_friction_reduction,
-)
 from .friction.rotation import (
     DiscRotation as DiscRotation,
     disc_rotation as disc_rotation,
@@ -135,7 +131,6 @@ from .recordings.reader import (
 from .statistics.autocorrelation import (
     CorrelatedMean as CorrelatedMean,
     correlated_mean as correlated_mean,
-    correlation_time as correlation_time,
     statistical_inefficiency as statistical_inefficiency,
 )
 from .statistics.correlated_regression import (
@@ -153,11 +148,9 @@ from .statistics.repeated_tests import (
     MeanDifference as MeanDifference,
     MeanEstimate as MeanEstimate,
     RatioEstimate as RatioEstimate,
-    Repeatability as Repeatability,
     compare_means as compare_means,
     mean_estimate as mean_estimate,
     ratio_interval as ratio_interval,
-    repeatability as repeatability,
 )
 from .surface_files.formats import SURFACE_FORMATS as SURFACE_FORMATS, SurfaceFormat as SurfaceFormat
 from .surface_files.reader import (

@@ -178,10 +178,6 @@ def analyse_voltage_steps(
     -------
     tuple of VoltageStep
 
-    See Also
-    --------
-    friction_at_voltage_steps : of arrays.
-
     References
     ----------
     .. [1] D 4.1.2, figure 4.3, Table 4.2.
@@ -240,10 +236,6 @@ def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
     Returns
     -------
     FrictionCycles
-
-    See Also
-    --------
-    friction_work, friction_loops : of arrays.
 
     References
     ----------
@@ -346,10 +338,6 @@ def analyse_wobble(
     ------
     InvalidInput
         If not exactly one of `rotation` and `rotation_speed` is given.
-
-    See Also
-    --------
-    remove_wobble : of arrays.
 
     References
     ----------

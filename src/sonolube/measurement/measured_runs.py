@@ -120,8 +120,7 @@ def _friction_reductions(path: Path, columns: dict[str, Floats], lines: Sequence
     count = next(iter(columns.values())).size if columns else 0
     reduction = columns.get("friction_reduction", np.full(count, np.nan))
     reduction = np.where(np.isnan(reduction), 1 - columns.get("friction_ratio", np.full(count, np.nan)), reduction)
-    forces = [columns.get(name) for name in ("friction_force", "intrinsic_friction_force")]
-    force, without = forces
+    force, without = columns.get("friction_force"), columns.get("intrinsic_friction_force")
     if force is not None and without is not None:
         for line, each in zip(lines, without, strict=True):
             if not (each > 0 or np.isnan(each)):

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 _LARGEST_RATIO: Final = 2.0  # beyond it, vibration along the normal is not what changed
 _SMALLEST_RATIO: Final = -0.2  # of a force whose zero is off
-_MAX_LINES: Final = 6  # named in a caveat
 
 
 def checked_ratios(runs: "xr.Dataset", *, title: str) -> Floats:

@@ -3,7 +3,7 @@
 import io
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -71,14 +71,6 @@ class _Column:
         return self.name if re.fullmatch(rf"{self.name}\W*.*", label) else f"column {_quoted(label)}"
 
 
-@dataclass(slots=True)
-class _Assignment:
-    """Columns that are read, and the labels of those that are not."""
-
-    columns: list[_Column] = field(default_factory=list)
-    left_out: list[str] = field(default_factory=list)
-
-
 def run_table(path: Path, *, mapping: RecordingMapping | None = None) -> RunTable:
     """Columns of a table of runs in a text file."""
     table, caveats = run_text(path, mapping)
@@ -119,25 +111,19 @@ def assigned_columns(
     separator: str = ",",
 ) -> RunTable:
     """Columns of a table of runs by its labels and rows."""
-    assigned = _by_mapping(path, labels, mapping) if mapping else _Assignment()
-    _by_headings(path, line, labels, assigned, mapping)
+    mapped = _by_mapping(path, labels, mapping) if mapping else []
+    others, left_out = _by_headings(path, line, labels, mapped, mapping)
     layout = mapping.text if mapping else TextLayout()
-    numbers = [each for each in assigned.columns if each.name not in TEXT_NAMES]
-    sign = layout.decimal_sign or (
-        "."
-        if separator == ","
-        else detected_decimal_sign(_cell(cells, each.place) for _, cells in rows for each in numbers)
-    )
+    numbers = [each for each in (*mapped, *others) if each.name not in TEXT_NAMES]
+    words = [each for each in (*mapped, *others) if each.name in TEXT_NAMES]
+    filled = (_cell(cells, each.place) for _, cells in rows for each in numbers)
+    sign = layout.decimal_sign or ("." if separator == "," else detected_decimal_sign(filled))
     missing = frozenset(layout.missing)
     return RunTable(
         columns={each.name: _in_si(path, line, each, rows, sign, missing) for each in numbers},
-        texts={
-            each.name: [_cell(cells, each.place) for _, cells in rows]
-            for each in assigned.columns
-            if each.name in TEXT_NAMES
-        },
+        texts={each.name: [_cell(cells, each.place) for _, cells in rows] for each in words},
         lines=[number for number, _ in rows],
-        caveats=_left_out_caveat(assigned.left_out),
+        caveats=_left_out_caveat(left_out),
     )
 
 
@@ -153,44 +139,45 @@ def _below_preamble(text: str, layout: TextLayout) -> TextLayout:
     return replace(layout, lines_to_skip=skipped)
 
 
-def _by_mapping(path: Path, labels: Sequence[str], mapping: RecordingMapping) -> _Assignment:
+def _by_mapping(path: Path, labels: Sequence[str], mapping: RecordingMapping) -> list[_Column]:
     """Columns that a mapping names."""
     places = {label: place for place, label in enumerate(numbered_labels(labels))}
-    assigned = _Assignment()
-    for name, source in mapping.for_labels(labels).channels.items():
-        if not (source.optional and source.column not in places):
-            assigned.columns.append(_Column(name, column_of_label(places, source.column, path), source))
-    return assigned
+    return [
+        _Column(name, column_of_label(places, source.column, path), source)
+        for name, source in mapping.for_labels(labels).channels.items()
+        if not (source.optional and source.column not in places)
+    ]
 
 
 def _by_headings(
-    path: Path, line: int, labels: Sequence[str], assigned: _Assignment, mapping: RecordingMapping | None
-) -> None:
-    """Add the other columns by their headings; those of unknown meaning are left out, or refused where it matters."""
-    mapped = {each.place for each in assigned.columns}
-    names = {each.name for each in assigned.columns}
+    path: Path, line: int, labels: Sequence[str], mapped: Sequence[_Column], mapping: RecordingMapping | None
+) -> tuple[list[_Column], list[str]]:
+    """Other columns by their headings, and labels of those left out; of unknown meaning, refused where it matters."""
+    places, names = {each.place for each in mapped}, {each.name for each in mapped}
     without = {
         *(mapping.selection.without if mapping else ()),
         *(mapping.axis.labels if mapping and mapping.axis else ()),
     }
+    columns: list[_Column] = []
+    left_out: list[str] = []
     known: dict[str, str] = {}
     for place, (label, numbered) in enumerate(zip(labels, numbered_labels(labels), strict=True)):
-        if place in mapped:
+        if place in places:
             continue
         found = run_heading(label)
         if not without.isdisjoint((label, numbered)) or (found is not None and found.name in names):
-            assigned.left_out.append(numbered)
+            left_out.append(numbered)
         elif found is None:
             _require_harmless(path, line, place, label)
-            assigned.left_out.append(numbered)
+            left_out.append(numbered)
         else:
             if found.name in known:
                 first = known[found.name]
                 both = "" if first == label else f", {_quoted(first)} and {_quoted(label)}"
                 raise InvalidInput(f"{path}: two columns are named {found.name}{both}")
             known[found.name] = label
-            source = ChannelSource(column=label, unit=found.unit)
-            assigned.columns.append(_Column(found.name, place, source))
+            columns.append(_Column(found.name, place, ChannelSource(column=label, unit=found.unit)))
+    return columns, left_out
 
 
 def _require_harmless(path: Path, line: int, place: int, label: str) -> None:

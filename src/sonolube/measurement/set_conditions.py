@@ -1,12 +1,12 @@
 """Stretches of a recording in which everything that was set is constant, by its channels of set points."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.measurement.time_series import constant_stretches
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,10 +51,10 @@ def set_conditions(recording: "xr.Dataset") -> tuple[SetConditions, ...]:
     columns = [_column(recording, name) for name in _SETTINGS]
     drive = [_column(recording, name) for name in ("voltage_peak_to_peak_set", "frequency_set")]
     found = []
-    for begin, end in _stretches(columns):
+    for begin, end in constant_stretches(*columns):
         levels = tuple(
             (slice(begin + first, begin + last), float(drive[0][begin + first]), float(drive[1][begin + first]))
-            for first, last in _stretches([column[begin:end] for column in drive])
+            for first, last in constant_stretches(*(column[begin:end] for column in drive))
         )
         motor, speed, load, lubricant, _ = (float(column[begin]) for column in columns)
         found.append(
@@ -77,13 +77,3 @@ def _column(recording: "xr.Dataset", name: str) -> Floats:
         return values
     missing = 0.0 if name in ("voltage_peak_to_peak_set", "frequency_set") else np.nan
     return np.full(recording["time"].size, missing)
-
-
-def _stretches(columns: list[Floats]) -> list[tuple[int, int]]:
-    """First sample of each stretch in which no column changes, and the sample after its last one."""
-    size = columns[0].size
-    changes = np.zeros(max(size - 1, 0), bool)
-    for values in columns:
-        changes |= (values[1:] != values[:-1]) & ~(np.isnan(values[1:]) & np.isnan(values[:-1]))
-    edges = [0, *(np.flatnonzero(changes) + 1).tolist(), size]
-    return [(begin, end) for begin, end in pairwise(edges) if end > begin]

@@ -10,6 +10,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.recordings.formats import recording_format
 from sonolube.measurement.recordings.reader import read_recording
+from sonolube.measurement.time_series import constant_stretches
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,8 +38,7 @@ def swept_impedance(path: Path) -> ImpedanceSpectrum | None:
         return None
     time, frequency = recording["time"].to_numpy(), recording["frequency_set"].to_numpy()
     found: dict[float, complex] = {}
-    edges = np.flatnonzero(np.diff(frequency)) + 1
-    for begin, end in zip([0, *edges], [*edges, frequency.size], strict=True):
+    for begin, end in constant_stretches(frequency):
         hertz = float(frequency[begin])
         piece = slice(begin + round(_SETTLING * (end - begin)), min(end, begin + _MOST))
         if hertz > 0 and piece.stop - piece.start >= _FEWEST:

@@ -171,21 +171,18 @@ def temperature_rise_by_stage(
         raise InvalidInput("stages must be at least two increasing times")
     known = np.isfinite(reference)
     without = np.interp(t, t_0[known], reference[known], left=np.nan, right=np.nan)
-    differences = []
-    for place, (start, end) in enumerate(pairwise(ends.tolist()), start=1):
-        mean, error = _span_mean(t, value - without, (start, end), f"stage {place}")
-        differences.append(TemperatureRise(temperature_rise=mean, temperature_rise_uncertainty=error))
-    return tuple(differences)
+    spans = enumerate(pairwise(ends.tolist()), start=1)
+    return tuple(_rise(t, value - without, span, f"stage {place}") for place, span in spans)
 
 
-def _span_mean(t: Floats, value: Floats, span: tuple[float, float], name: str) -> tuple[float, float]:
-    """Mean over a time span and its standard error."""
+def _rise(t: Floats, rise: Floats, span: tuple[float, float], name: str) -> TemperatureRise:
+    """Mean rise over a time span and its standard error."""
     start, end = span
-    inside = (t >= start) & (t <= end) & np.isfinite(value)
+    inside = (t >= start) & (t <= end) & np.isfinite(rise)
     if np.count_nonzero(inside) < 2:
         raise InvalidInput(f"{name}, {start:g} to {end:g} s, holds {np.count_nonzero(inside)} values; two are needed")
-    estimate = correlated_mean(value[inside])
-    return estimate.mean, estimate.uncertainty
+    estimate = correlated_mean(rise[inside])
+    return TemperatureRise(temperature_rise=estimate.mean, temperature_rise_uncertainty=estimate.uncertainty)
 
 
 def _basis(t: Floats, logarithms: Floats) -> Floats:

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import median_filter, uniform_filter1d
 
 from sonolube.checks import Complexes, Floats, require_finite
@@ -50,6 +50,15 @@ def _signal(name: str, values: ArrayLike, samples: int) -> Floats:
     if np.isnan(signal).all():
         raise InvalidInput(f"{name} holds no value among {samples}")
     return signal
+
+
+def constant_stretches(*columns: Floats | NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First sample of each stretch in which no column changes, and the sample after its last one."""
+    changes = np.zeros(max(columns[0].size - 1, 0), bool)
+    for values in columns:
+        changes |= (values[1:] != values[:-1]) & ~(np.isnan(values[1:]) & np.isnan(values[:-1]))
+    edges = [0, *(np.flatnonzero(changes) + 1).tolist(), columns[0].size]
+    return [(begin, end) for begin, end in pairwise(edges) if end > begin]
 
 
 def uniform_sample_interval(*, time: Floats) -> float:

@@ -4,15 +4,23 @@ The file tribometer.toml beside this one states them. Rank 1: measurements and c
 that the dissertation computed. Rank 3: statements in words and conclusions drawn here.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
 from sonolube.facts.published import si_value
-from sonolube.identification import Identification, IdentificationProblem, PinOnDiscTest, identify, pin_on_disc_model
+from sonolube.identification import (
+    ForwardModel,
+    Identification,
+    IdentificationProblem,
+    identify,
+    parametric_structure,
+    reference_parameters,
+    structure_model,
+)
 from sonolube.models.actuator.stack import PiezoStack
-from sonolube.models.contact import decay_length
+from sonolube.models.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.rig.facts_file import read_facts
-from sonolube.validation.contacts import wear_contact
 
 IDENTIFIED: Final = {
     "tip_mass": 0.1093,
@@ -24,28 +32,22 @@ IDENTIFIED: Final = {
 }
 """Rounded result of `tribometer_identification`, in SI; the search takes half a minute."""
 
-_GRAVITY = 9.80665  # m/s2
-
 
 def tribometer_identification(*, seed: int = 0) -> Identification:
     """Identification of m1, m2, m3, k2, c1 and c2 of D 3.31 from the published facts."""
     known = tribometer_problem()
-    return identify(pin_on_disc_model(tribometer_test()), facts=known.facts, bounds=known.bounds, seed=seed)
+    return identify(tribometer_model(), facts=known.facts, bounds=known.bounds, seed=seed)
 
 
-def tribometer_test() -> PinOnDiscTest:
-    """Stack of the tribometer as printed, with its drive and load."""
-    load = si_value("table-3.2-normal_load-1")
-    load_of_most_arm_vibration = (si_value("4.1.2-peak-load-1") + si_value("4.1.2-peak-load-2")) / 2
-    return PinOnDiscTest(
-        stack=tribometer_stack(),
-        frequency=si_value("4.1.1-frequency"),
-        voltage_peak_to_peak=si_value("table-4.1-voltage_peak_to_peak-15"),
-        normal_load=load,
-        decay_length=float(decay_length(wear_contact())),
-        settling_time=si_value("3.3.4-settling-time"),
-        added_mass=(load_of_most_arm_vibration - load) / _GRAVITY,
-    )
+def tribometer_model() -> ForwardModel:
+    """Forward model of the published facts: the chain of tip, printed stack, reaction mass and arm."""
+    known, stack = tribometer_problem(), tribometer_stack()
+
+    def build(parameters: Mapping[str, float]) -> Structure:
+        return chain_structure(pin_on_disc_chain(stack, **parameters))
+
+    reference = reference_parameters(build, bounds=known.bounds)
+    return structure_model(parametric_structure(build, reference=reference), known.observations)
 
 
 def tribometer_stack() -> PiezoStack:

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx
 from tests.identified import identified_tribometer
+from tests.pin_on_disc import pin_on_disc_model, tribometer_test
 
-from sonolube.identification import Identification, pin_on_disc_model
+from sonolube.identification import Identification
 from sonolube.identification.fact import ForwardModel
 from sonolube.rig import facts_file
-from sonolube.validation.tribometer import tribometer_problem, tribometer_test
+from sonolube.validation.tribometer import tribometer_problem
 
 Program = Callable[..., Any]
 

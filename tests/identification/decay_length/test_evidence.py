@@ -35,7 +35,7 @@ class TwoSigns:
 def test_the_evidence_of_a_linear_model_is_its_normal_density() -> None:
     rng = np.random.default_rng(1)
     design, readings = rng.standard_normal((12, 5)), 2 * rng.standard_normal(12)
-    found = evidence(Linear(design, readings), starts=np.zeros((1, 5)))
+    found = evidence(Linear(design, readings).residuals, starts=np.zeros((1, 5)))
     covariance = np.eye(12) + design @ design.T
     exact = -0.5 * (readings @ np.linalg.solve(covariance, readings) + np.linalg.slogdet(covariance)[1])
     assert found.log_evidence == pytest.approx(exact, abs=0.05)
@@ -44,7 +44,7 @@ def test_the_evidence_of_a_linear_model_is_its_normal_density() -> None:
 
 
 def test_both_modes_count_where_the_sign_is_open() -> None:
-    found = evidence(TwoSigns(), starts=np.array([[0.8], [-0.9]]))
+    found = evidence(TwoSigns().residuals, starts=np.array([[0.8], [-0.9]]))
     x = np.linspace(-5, 5, 20001)
     density = np.exp(-0.5 * ((x**2 - 1) / 0.1) ** 2 - 0.5 * x**2) / np.sqrt(2 * np.pi)
     assert found.log_evidence == pytest.approx(np.log(np.trapezoid(density, x)), abs=0.05)

@@ -7,7 +7,7 @@ from reliability import decay_length_recordings as made
 
 from sonolube.identification import SwitchConditions, SwitchTable
 from sonolube.identification.decay_length.channel_noise import noise_covariance, relaxation
-from sonolube.identification.decay_length.run_model import PARAMETERS, RunModel, run_channels
+from sonolube.identification.decay_length.run_model import PARAMETERS, Changes, RunModel, run_channels
 from sonolube.identification.decay_length.stick_slip_table import interpolated_ratio
 
 S = np.arange(5.0, 300.0, 5.0)
@@ -44,9 +44,8 @@ def steady_model(**conditions: float) -> RunModel:
         large_drive_shift=0.8 * shift + np.cos(S),
     )
     known = SwitchConditions(natural_frequency=40.0, **conditions)
-    return RunModel(
-        table, known, grows=True, falls=True, drifts=False, follows=True, channels=run_channels(table, known)
-    )
+    changes = Changes(grows=True, falls=True, drifts=False, follows=True)
+    return RunModel(table, known, changes, channels=run_channels(table, known))
 
 
 def deviates(model: RunModel, **values: float) -> np.ndarray:

@@ -5,7 +5,7 @@ import pytest
 from pytest import approx
 from scipy.signal import lfilter
 
-from sonolube.measurement.statistics.autocorrelation import correlated_mean, correlation_time, statistical_inefficiency
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, statistical_inefficiency
 
 RNG = np.random.default_rng(7)
 
@@ -26,7 +26,6 @@ def test_the_standard_error_is_the_standard_deviation_of_repeated_means(phi: flo
 def test_the_statistical_inefficiency_of_an_autoregressive_process_has_its_closed_form() -> None:
     x = autoregressive(0.8, (400_000,))
     assert statistical_inefficiency(x) == approx(1.8 / 0.2, rel=0.05)
-    assert correlation_time(x, sample_interval=0.01) == approx(0.045, rel=0.05)
 
 
 def test_the_mean_of_a_constant_has_no_uncertainty() -> None:

@@ -1,4 +1,4 @@
-"""Few repeated tests: scipy for Welch, enumeration of permutations, the definition of Fieller, ISO 5725 by hand."""
+"""Few repeated tests: scipy for Welch, enumeration of permutations, the definition of Fieller."""
 
 from itertools import permutations
 
@@ -9,7 +9,7 @@ from pytest import approx, raises
 from scipy import stats
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.statistics.repeated_tests import compare_means, mean_estimate, ratio_interval, repeatability
+from sonolube.measurement.statistics.repeated_tests import compare_means, mean_estimate, ratio_interval
 
 tests = st.lists(st.floats(-100, 100).map(lambda x: round(x, 3)), min_size=2, max_size=4)
 
@@ -59,27 +59,6 @@ def test_tests_without_scatter_have_p_values_of_zero_or_one() -> None:
     assert compare_means([1, 1], [1, 1]).welch_p == 1
 
 
-def test_repeatability_of_a_balanced_trial_worked_by_hand() -> None:
-    # means 10.5, 12.5, 11.5; within: six squares of 0.25 over 3 = 0.5; between: (2 * 2 / 2 - 0.5) / 2 = 0.75
-    found = repeatability([[10, 11], [12, 13], [11, 12]])
-    assert found.within**2 == approx(0.5)
-    assert found.between**2 == approx(0.75)
-    assert found.reproducibility**2 == approx(1.25)
-    assert found.repeatability_limit == approx(2.8 * 0.5**0.5)
-
-
-def test_repeatability_of_unequal_groups_recovers_the_variance_components() -> None:
-    rng = np.random.default_rng(3)
-    groups = [rng.normal(rng.normal(5, 0.7), 0.2, rng.integers(2, 6)) for _ in range(4000)]
-    found = repeatability(groups)
-    assert found.within == approx(0.2, rel=0.03)
-    assert found.between == approx(0.7, rel=0.04)
-
-
-def test_groups_that_agree_within_their_scatter_have_no_variance_between_them() -> None:
-    assert repeatability([[1, 3], [1, 3], [3, 1]]).between == 0
-
-
 def test_the_limits_of_fiellers_interval_satisfy_its_definition() -> None:
     x, y = np.array([0.35, 0.41, 0.38]), np.array([1.02, 0.95, 1.08, 1.0])
     found = ratio_interval(x, y)
@@ -108,5 +87,3 @@ def test_a_denominator_not_significantly_different_from_zero_leaves_the_interval
 def test_a_single_test_is_refused() -> None:
     with raises(InvalidInput, match="tests must be at least two tests, got 1"):
         mean_estimate([1.0])
-    with raises(InvalidInput, match="needs two groups and one with two tests"):
-        repeatability([[1.0], [2.0]])

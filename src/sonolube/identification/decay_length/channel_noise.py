@@ -1,7 +1,5 @@
 """Covariance of a reading's noise along the sliding distance, beside any smooth course of it."""
 
-from itertools import product
-
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
@@ -34,11 +32,10 @@ def noise_covariance(distance: Floats, values: Floats, uncertainty: Floats | Non
     """
     weights = np.ones(values.size) if uncertainty is None else uncertainty**2 / np.mean(uncertainty**2)
     gaps = np.abs(np.subtract.outer(distance, distance)) / distance[-1]
-    shapes = [np.diag(weights)]
-    shares = [0.0]
-    for share, length in product(_SHARES[1:], _LENGTHS):
-        shapes.append((1 - share) * np.diag(weights) + share * np.exp(-gaps / length))
-        shares.append(share)
+    white = np.diag(weights)
+    wandering = [(share, length) for share in _SHARES[1:] for length in _LENGTHS]
+    shapes = [white, *((1 - share) * white + share * np.exp(-gaps / length) for share, length in wandering)]
+    shares = [0.0, *(share for share, _ in wandering)]
     courses = relaxation(distance, reach=distance[-1] * np.array(_COURSES))
     designs = [np.column_stack([np.ones(values.size), c, c**2]) for c in courses]
     found = [(*_restricted(values, design, shape), index) for index, shape in enumerate(shapes) for design in designs]

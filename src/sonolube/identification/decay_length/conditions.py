@@ -1,6 +1,6 @@
 """Conditions of a run that tells what sets the decay length, and the two lengths between which it decides."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Final
 
 from sonolube.checks import require_positive
@@ -48,13 +48,6 @@ class SwitchConditions:
     modal_mass: float | None = None
 
     def __post_init__(self) -> None:
-        require_positive(
-            normal_load=self.normal_load,
-            vibration_amplitude=self.vibration_amplitude,
-            frequency=self.frequency,
-            sliding_speed=self.sliding_speed,
-        )
-        for name in ("large_drive_amplitude", "natural_frequency", "modal_mass"):
-            value = getattr(self, name)
+        for name, value in asdict(self).items():
             if value is not None:
                 require_positive(**{name: value})

@@ -9,11 +9,10 @@ from scipy.stats import chi2
 
 from sonolube.checks import Floats
 from sonolube.identification.decay_length.conditions import SwitchConditions
-from sonolube.identification.decay_length.posterior import RunPosterior
+from sonolube.identification.decay_length.posterior import HYPOTHESES, RunPosterior
 from sonolube.identification.decay_length.run_model import DIFFERENCE, Channel, run_channels
 from sonolube.identification.decay_length.switch_table import SwitchTable
 from sonolube.identification.decay_length.verdict import (
-    HYPOTHESES,
     Undecided,
     decided_sentence,
     misfit_reason,
@@ -158,12 +157,13 @@ def decide_decay_length(
         "zero_error": zero.factor,
     }
     lacking = _lacking(found, leading, misfits, changes, table)
+    verdict, advice = lacking or (decided_sentence(leading, probabilities), "")
     return DecayLengthDecision(
         probabilities=probabilities,
         decided=lacking is None,
         leading=leading,
-        verdict=decided_sentence(leading, probabilities) if lacking is None else lacking.verdict,
-        advice="" if lacking is None else lacking.advice,
+        verdict=verdict,
+        advice=advice,
         growth=_interval(changes["long_sliding"]),
         fall=_interval(changes["detuning"]),
         zero_factor=_interval(changes["zero_error"]),

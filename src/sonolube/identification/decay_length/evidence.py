@@ -1,8 +1,8 @@
 """Evidence of a model with normal priors: its modes by least squares, then importance sampling."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 
@@ -17,12 +17,8 @@ _WIDENED: Final = 1.2  # scale matrix over covariance
 _FREEDOM: Final = 6.0  # of the multivariate t distribution that is drawn from
 
 
-class WhiteModel(Protocol):
-    """Residuals with unit variance as function of standard normal deviates."""
-
-    def residuals(self, deviates: Floats) -> Floats:
-        """White residuals, shape (n, readings), for deviates of shape (n, parameters)."""
-        ...
+Residuals = Callable[[Floats], Floats]
+"""White residuals with unit variance, shape (n, readings), of standard normal deviates, shape (n, parameters)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -50,7 +46,7 @@ class Evidence:
     effective_draws: float
 
 
-def evidence(model: WhiteModel, *, starts: Floats, seed: int = 0) -> Evidence:
+def evidence(residuals: Residuals, *, starts: Floats, seed: int = 0) -> Evidence:
     """Marginal likelihood by adaptive importance sampling, beginning with t distributions at the modes.
 
     `starts` has shape (starts, parameters).
@@ -62,11 +58,11 @@ def evidence(model: WhiteModel, *, starts: Floats, seed: int = 0) -> Evidence:
     doi:10.1111/j.1467-9469.2011.00756.x
     """
     parameters = starts.shape[1]
-    found = [_mode(model, start) for start in starts]
+    found = [_mode(residuals, start) for start in starts]
     rng = np.random.default_rng(seed)
     proposals = [(at, np.linalg.cholesky(_WIDENED * np.linalg.inv(precision))) for at, precision, _ in found]
     draws = np.concatenate([_t_draws(rng, *proposal) for proposal in proposals])
-    log_posterior = _log_posterior(model, draws)
+    log_posterior = _log_posterior(residuals, draws)
     log_weights = log_posterior - _log_mixture(draws, proposals)
     for _ in range(_ROUNDS):
         if _effective(log_weights) >= _ENOUGH:
@@ -78,7 +74,7 @@ def evidence(model: WhiteModel, *, starts: Floats, seed: int = 0) -> Evidence:
         proposals.append((mean, np.linalg.cholesky(_WIDENED * covariance)))
         fresh = _t_draws(rng, *proposals[-1])
         draws = np.concatenate([draws, fresh])
-        log_posterior = np.concatenate([log_posterior, _log_posterior(model, fresh)])
+        log_posterior = np.concatenate([log_posterior, _log_posterior(residuals, fresh)])
         log_weights = log_posterior - _log_mixture(draws, proposals)
     weights = np.exp(log_weights - log_weights.max())
     return Evidence(
@@ -106,14 +102,14 @@ def _tempered(log_weights: Floats, fewest: float) -> Floats:
     return np.asarray(weights)
 
 
-def _log_posterior(model: WhiteModel, deviates: Floats) -> Floats:
+def _log_posterior(residuals: Residuals, deviates: Floats) -> Floats:
     """Logarithm of likelihood times prior density, less a constant of the data."""
-    rest = model.residuals(deviates)
+    rest = residuals(deviates)
     prior = np.sum(deviates**2, axis=1) + deviates.shape[1] * np.log(2 * np.pi)
     return np.asarray(-0.5 * (np.sum(rest**2, axis=1) + prior))
 
 
-def _mode(model: WhiteModel, start: Floats) -> tuple[Floats, Floats, float]:
+def _mode(residuals: Residuals, start: Floats) -> tuple[Floats, Floats, float]:
     """Mode of the posterior by damped Gauss-Newton steps, its precision, and the sum of squares there."""
     at, damping = start, 1e-2
     count = start.size
@@ -121,7 +117,7 @@ def _mode(model: WhiteModel, start: Floats) -> tuple[Floats, Floats, float]:
     jacobian, rest = np.zeros((0, count)), np.zeros(0)
     cost = np.inf
     for _ in range(_STEPS):
-        batch = model.residuals(np.vstack([at, at + pushes]))
+        batch = residuals(np.vstack([at, at + pushes]))
         rest = batch[0]
         jacobian = (batch[1:] - rest).T / 1e-4
         cost = float(rest @ rest + at @ at)
@@ -131,7 +127,7 @@ def _mode(model: WhiteModel, start: Floats) -> tuple[Floats, Floats, float]:
         steps = np.stack([np.linalg.solve(normal + each * np.diag(np.diag(normal)), -gradient) for each in dampings])
         steps *= np.minimum(1.0, 3.0 / np.linalg.norm(steps, axis=1, keepdims=True))
         tried = at + steps
-        costs = np.sum(model.residuals(tried) ** 2, axis=1) + np.sum(tried**2, axis=1)
+        costs = np.sum(residuals(tried) ** 2, axis=1) + np.sum(tried**2, axis=1)
         best = int(np.argmin(costs))
         damping = float(np.clip(dampings[best], 1e-8, 1e8))
         if costs[best] >= cost - 1e-7:

@@ -8,9 +8,9 @@ import numpy as np
 from sonolube.charts import Axis, Chart, Line, Panel, Points
 from sonolube.checks import Floats
 from sonolube.identification.decay_length.decision import DecayLengthDecision
+from sonolube.identification.decay_length.posterior import HYPOTHESES
 from sonolube.identification.decay_length.run_model import zero_free_ratio
 from sonolube.identification.decay_length.switch_table import SwitchTable
-from sonolube.identification.decay_length.verdict import HYPOTHESES
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:

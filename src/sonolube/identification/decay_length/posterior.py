@@ -11,9 +11,18 @@ from scipy.special import logsumexp
 from sonolube.checks import Floats
 from sonolube.identification.decay_length.conditions import SwitchConditions
 from sonolube.identification.decay_length.evidence import Evidence, evidence
-from sonolube.identification.decay_length.run_model import PARAMETERS, Channel, RunModel
+from sonolube.identification.decay_length.run_model import PARAMETERS, Changes, Channel, RunModel
 from sonolube.identification.decay_length.switch_table import SwitchTable
-from sonolube.identification.decay_length.verdict import HYPOTHESES
+
+HYPOTHESES: Final[Mapping[str, str]] = {
+    "long_sliding": "long sliding: the decay length grows with the sliding distance",
+    "zero_error": "zero error: the zero of the load cell is off",
+    "detuning": "detuning: the amplitude at the contact falls during the run",
+    "none": "none of them: decay length, zero and amplitude stay, the decay length belongs to the rig",
+    "several": "several at once",
+    "other": "something else: the friction ratio changes by itself",
+}
+"""Hypotheses about what sets the decay length by name, each in words."""
 
 _SEVERAL: Final = 0.1  # prior probability of more than one change, shared by four combinations
 _OTHER: Final = 0.05  # prior probability that the friction ratio changes by itself
@@ -65,9 +74,9 @@ class Combination:
         return own / 2 if self.falls else own
 
     @property
-    def key(self) -> tuple[bool, bool, bool, bool]:
-        """Parameters on which the readings beside the zero depend."""
-        return self.grows, self.falls, self.drifts, self.follows
+    def changes(self) -> Changes:
+        """Changes on which the readings beside the zero depend."""
+        return Changes(self.grows, self.falls, self.drifts, self.follows)
 
 
 COMBINATIONS: Final = (
@@ -105,20 +114,11 @@ class RunPosterior:
         seed: int,
     ) -> None:
         self._seed = seed
-        self.models: dict[tuple[bool, bool, bool, bool], tuple[RunModel, Evidence]] = {}
+        self.models: dict[Changes, tuple[RunModel, Evidence]] = {}
         for each in COMBINATIONS:
-            if each.key not in self.models:
-                model = RunModel(
-                    table,
-                    conditions,
-                    grows=each.grows,
-                    falls=each.falls,
-                    drifts=each.drifts,
-                    follows=each.follows,
-                    channels=channels,
-                )
-                found = evidence(model, starts=_starts(), seed=seed)
-                self.models[each.key] = model, found
+            if each.changes not in self.models:
+                model = RunModel(table, conditions, each.changes, channels=channels)
+                self.models[each.changes] = model, evidence(model.residuals, starts=_starts(), seed=seed)
         logs = np.array(
             [
                 np.log(each.prior) + self._log_evidence(each) + (zero_log_ratio if each.off else 0.0)
@@ -131,7 +131,7 @@ class RunPosterior:
 
     def fit_of(self, combination: Combination) -> tuple[RunModel, Evidence]:
         """Model of a combination with its evidence."""
-        return self.models[combination.key]
+        return self.models[combination.changes]
 
     def _log_evidence(self, combination: Combination) -> float:
         """Logarithm of the evidence; a friction ratio that changes by itself has a moment prior."""
@@ -161,10 +161,10 @@ class RunPosterior:
         rng = np.random.default_rng(self._seed)
         shares = dict.fromkeys(self.models, 0.0)
         for each, weight in self.weights.items():
-            shares[each.key] += weight
+            shares[each.changes] += weight
         lengths, amplitudes = [], []
-        for key, share in shares.items():
-            model, found = self.models[key]
+        for changes, share in shares.items():
+            model, found = self.models[changes]
             rows = rng.choice(len(found.weights), size=round(share * _COUNT), p=found.weights)
             length, amplitude = model.courses(found.draws[rows])
             lengths.append(length)

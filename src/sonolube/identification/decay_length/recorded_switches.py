@@ -1,7 +1,6 @@
 """Reduction of a recording with switched vibration and lifted pin to the table of its switches."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -12,6 +11,7 @@ from sonolube.identification.decay_length.switch_table import SwitchTable
 from sonolube.measurement.friction.step_means import sampled_parts, without_wobble, wobble_columns
 from sonolube.measurement.friction_analysis import channel_values
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
+from sonolube.measurement.time_series import constant_stretches
 from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
@@ -135,9 +135,8 @@ def _parts(load: Floats, voltage: Floats) -> list[_Part]:
         raise InvalidInput("normal_load must be positive while the pin slides; lifted it falls below a tenth")
     lifted, driven = load < _LIFTED * median, voltage > _DRIVEN * np.nanmax(voltage)
     driven &= ~lifted
-    ends = np.flatnonzero((np.diff(lifted.astype(np.int8)) != 0) | (np.diff(driven.astype(np.int8)) != 0)) + 1
-    edges = [0, *ends.tolist(), load.size]
-    return [_Part(begin, end, bool(lifted[begin]), bool(driven[begin])) for begin, end in pairwise(edges)]
+    stretches = constant_stretches(lifted, driven)
+    return [_Part(begin, end, bool(lifted[begin]), bool(driven[begin])) for begin, end in stretches]
 
 
 def _switches(parts: list[_Part]) -> list[tuple[_Part, _Part | None, _Part]]:

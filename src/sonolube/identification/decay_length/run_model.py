@@ -1,28 +1,7 @@
-r"""Readings at the switches from the courses of decay length and amplitude, with their priors and noise.
-
-Over the run the decay length grows by :math:`e^{g}` and the amplitude falls by :math:`e^{d}`,
-
-.. math:: l(s) = l_0 e^{g\,c(s; S_l, n_l)}, \qquad a(s) = a_0 e^{-d\,c(s; S_a, n_a)}, \qquad
-    c(s; S, n) = \frac{1 - e^{-(s/S)^n}}{1 - e^{-(s_1/S)^n}} ,
-
-where :math:`s_1` is the distance of the run. The readings are
-
-.. math::
-
-    \frac{F_1 - z}{F_0 - z} &= R(a/l,\ v l/(\omega a D_c)) + \delta_0 + \delta_1 \ln\frac{a\,l_0}{a_0\,l}
-        + \delta_2\,c(s; S_\delta) \\
-    I &\propto \abs{\mathrm{j} p + r e^{-\mathrm{j}\varphi}}, \qquad r = a/a_0, \quad
-        \sin\varphi = t \sqrt{1 - r^2} \\
-    \Delta_s (1 + \Delta_s/2f_0) &= \frac{F_N/l}{8 \pi^2 m f_0}, \qquad
-    \frac{\Delta_l (1 + \Delta_l/2f_0)}{\Delta_s (1 + \Delta_s/2f_0)} = \frac{2 I_1(\beta)}{\beta I_0(\beta)}
-
-with asperity stick-slip R, a capacitive current p over the motional one, whose phase turns where the resonance leaves
-the drive (t = 1 or -1) and does not where the drive weakens (t = 0), and :math:`\beta = A/l` for the amplitude A at
-large drive, which follows that of the vibration or does not.
-"""
+"""Readings at the switches from the courses of decay length and amplitude, with their priors and noise."""
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -55,6 +34,25 @@ _LARGEST_SHARE: Final = 0.8  # of a capacitive current over the motional one
 _ANY: Final = 10.0  # standard deviation of a level that is not known
 
 
+class Changes(NamedTuple):
+    """Quantities of the readings beside the zero that change in a run.
+
+    Parameters
+    ----------
+    grows, falls : bool
+        Whether the decay length grows, and the amplitude falls, over the run; if not they are steady.
+    drifts : bool
+        Whether the friction ratio changes by itself too.
+    follows : bool
+        Whether the amplitude at large drive falls with that of the vibration.
+    """
+
+    grows: bool
+    falls: bool
+    drifts: bool
+    follows: bool
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Channel:
     """Readings of one kind with their noise.
@@ -81,38 +79,45 @@ class Channel:
 
 
 class RunModel:
-    """Residuals of all readings of a run for many parameter values at once.
+    r"""Residuals of all readings of a run for many parameter values at once.
+
+    Over the run the decay length grows by :math:`e^{g}` and the amplitude falls by :math:`e^{d}`,
+
+    .. math:: l(s) = l_0 e^{g\,c(s; S_l, n_l)}, \qquad a(s) = a_0 e^{-d\,c(s; S_a, n_a)}, \qquad
+        c(s; S, n) = \frac{1 - e^{-(s/S)^n}}{1 - e^{-(s_1/S)^n}} ,
+
+    where :math:`s_1` is the distance of the run. The readings are
+
+    .. math::
+
+        \frac{F_1 - z}{F_0 - z} &= R(a/l,\ v l/(\omega a D_c)) + \delta_0 + \delta_1 \ln\frac{a\,l_0}{a_0\,l}
+            + \delta_2\,c(s; S_\delta) \\
+        I &\propto \abs{\mathrm{j} p + r e^{-\mathrm{j}\varphi}}, \qquad r = a/a_0, \quad
+            \sin\varphi = t \sqrt{1 - r^2} \\
+        \Delta_s (1 + \Delta_s/2f_0) &= \frac{F_N/l}{8 \pi^2 m f_0}, \qquad
+        \frac{\Delta_l (1 + \Delta_l/2f_0)}{\Delta_s (1 + \Delta_s/2f_0)} = \frac{2 I_1(\beta)}{\beta I_0(\beta)}
+
+    with asperity stick-slip R, a capacitive current p over the motional one, whose phase turns where the resonance
+    leaves the drive (t = 1 or -1) and does not where the drive weakens (t = 0), and :math:`\beta = A/l` for the
+    amplitude A at large drive, which follows that of the vibration or does not.
 
     Parameters
     ----------
     table : SwitchTable
     conditions : SwitchConditions
-    grows, falls : bool
-        Whether the decay length grows, and the amplitude falls, over the run; if not they are steady.
-    drifts : bool
-        Whether the friction ratio changes by itself too.
-    follows : bool
-        Whether the amplitude at large drive falls with that of the vibration.
+    changes : Changes
     channels : tuple of Channel
         From `run_channels`.
     """
 
     def __init__(
-        self,
-        table: SwitchTable,
-        conditions: SwitchConditions,
-        *,
-        grows: bool,
-        falls: bool,
-        drifts: bool,
-        follows: bool,
-        channels: tuple[Channel, ...],
+        self, table: SwitchTable, conditions: SwitchConditions, changes: Changes, *, channels: tuple[Channel, ...]
     ) -> None:
-        self.table, self.conditions, self.channels, self.follows = table, conditions, channels, follows
+        self.table, self.conditions, self.channels, self.follows = table, conditions, channels, changes.follows
         self._whiteners = [np.linalg.inv(np.linalg.cholesky(each.covariance)) for each in channels]
-        self.means, self.deviations = self._priors(grows=grows, falls=falls, drifts=drifts)
+        self.means, self.deviations = self._priors(changes)
 
-    def _priors(self, *, grows: bool, falls: bool, drifts: bool) -> tuple[Floats, Floats]:
+    def _priors(self, changes: Changes) -> tuple[Floats, Floats]:
         """Means and standard deviations of the normal priors of the parameters."""
         end = self.table.sliding_distance[-1]
         change = (DIFFERENCE, _CHANGE_SPREAD)
@@ -125,13 +130,13 @@ class RunModel:
             "shift_scale": self._shift_scale(),
             "capacitive_share": (-0.5, 1.0),
             "turned_share": (0.0, 1.0),
-            "growth": change if grows else (0.0, _STEADY_LENGTH),
+            "growth": change if changes.grows else (0.0, _STEADY_LENGTH),
             "growth_distance": (np.log(end / 5), 1.0),
             "growth_exponent": (0.3, 0.4),
-            "fall": change if falls else (0.0, _STEADY_AMPLITUDE),
+            "fall": change if changes.falls else (0.0, _STEADY_AMPLITUDE),
             "fall_distance": (np.log(end / 2), 1.0),
             "fall_exponent": (0.3, 0.4),
-            "drift": (0.0, _UNEXPLAINED if drifts else _DRIFT),
+            "drift": (0.0, _UNEXPLAINED if changes.drifts else _DRIFT),
             "drift_distance": (np.log(end / 3), 1.0),
         }
         table = np.array([priors[name] for name in PARAMETERS])

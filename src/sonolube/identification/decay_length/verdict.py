@@ -1,18 +1,9 @@
 """Sentences of a decision about the decay length: the hypothesis that holds, or why none is decided."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
-HYPOTHESES: Final[Mapping[str, str]] = {
-    "long_sliding": "long sliding: the decay length grows with the sliding distance",
-    "zero_error": "zero error: the zero of the load cell is off",
-    "detuning": "detuning: the amplitude at the contact falls during the run",
-    "none": "none of them: decay length, zero and amplitude stay, the decay length belongs to the rig",
-    "several": "several at once",
-    "other": "something else: the friction ratio changes by itself",
-}
-"""Hypotheses about what sets the decay length by name, each in words."""
+from sonolube.identification.decay_length.posterior import HYPOTHESES
 
 _READINGS: Final = {
     "friction_ratio": "the friction ratio",
@@ -35,17 +26,8 @@ _CHANGES: Final = {
 }
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Undecided:
-    """Why nothing is decided.
-
-    Parameters
-    ----------
-    verdict : str
-        One sentence.
-    advice : str
-        What to repeat or add.
-    """
+class Undecided(NamedTuple):
+    """Sentence that says why nothing is decided, and what to measure next."""
 
     verdict: str
     advice: str

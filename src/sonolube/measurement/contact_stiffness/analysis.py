@@ -108,10 +108,9 @@ def measured_contact_stiffness(
     free_fits = tuple(() if floats else (_fit(one, mode_near) for one in free))
     found = [fit.strongest() if mode_near is None else fit.nearest(mode_near) for fit in free_fits[:1]]
     found += [fit.nearest(found[0].frequency) for fit in free_fits[1:]]
-    near = about if about is not None else (found[0].frequency if mode_near is None and found else None)
-    pressed_fit = _fit(pressed, near if mode_near is not None or floats else None)
+    pressed_fit = _fit(pressed, about)
     at_load = _pressed(pressed_fit, found, pressed_near)
-    large_fit = None if large is None else _fit(large, near if mode_near is not None or floats else None)
+    large_fit = None if large is None else _fit(large, about)
     at_large = None if large_fit is None else _between(large_fit, found, at_load)
     if modal_mass is not None:
         mean = float(np.mean([one.frequency for one in found]))
@@ -127,10 +126,10 @@ def measured_contact_stiffness(
         vibration_amplitude=vibration_amplitude,
         log_amplitude_deviation=log_amplitude_deviation,
     )
-    fits = [*free_fits, pressed_fit, *([] if large_fit is None else [large_fit])]
     own = [
         f"{fit.spectrum.file_name or fit.spectrum.quantity}: {caveat}"
-        for fit in fits
+        for fit in (*free_fits, pressed_fit, large_fit)
+        if fit is not None
         for caveat in (*fit.spectrum.caveats, *fit.caveats)
     ]
     return MeasuredContactStiffness(

@@ -1,6 +1,5 @@
 """Resonances of a spectrum by nonlinear least squares, with the standard uncertainty of their frequencies."""
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,9 +8,9 @@ from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.contact_stiffness.resonance_spectrum import ResonanceSpectrum
 from sonolube.measurement.statistics.autocorrelation import statistical_inefficiency
+from sonolube.measurement.statistics.log_parameter_fit import distinct_modes, rational_poles
 
 _MAX_MODES = 5
-_TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
 _LOWEST_QUALITY, _HIGHEST_QUALITY = 0.6, 1e7  # of a resonance
 _BEYOND = 1.6  # frequency over the end of the sweep of a mode that still shows in it
 _MAX_CANDIDATES = 3  # fitted for the next mode
@@ -217,26 +216,14 @@ class _Problem:
             if self.is_within(f_r, quality):
                 added = np.log([f_r, quality])
                 ranked.append((float(np.sum(self.residuals(np.concatenate([before, added])) ** 2)), added))
-        distinct: list[Floats] = []
-        for _, candidate in sorted(ranked, key=lambda pair: pair[0]):
-            if all(abs(candidate[0] - other[0]) > 0.5 * np.exp(-other[1]) for other in distinct):
-                distinct.append(candidate)
-        return distinct
+        return distinct_modes(ranked, widths=0.5)
 
     def poles(self, values: Complexes | Floats) -> list[complex]:
         """Frequencies of free decay, complex, by rational approximations that are real for real signals."""
-        from scipy.interpolate import AAA
-
         thinned = slice(None, None, -(-self.f.size // _POINTS_OF_CANDIDATES))
         f, y = self.f[thinned] / self.f[-1], values[thinned]
         x, y = np.concatenate([f, -f]), np.concatenate([y, y.conj()])
-        found: list[complex] = []
-        for terms in _TERMS:
-            with warnings.catch_warnings(), np.errstate(all="ignore"):
-                warnings.simplefilter("ignore", RuntimeWarning)  # about the limited number of terms
-                roots = self.f[-1] * AAA(x, y, max_terms=terms, rtol=1e-10).poles()
-            found.extend(complex(root) for root in roots if root.imag > 0 and root.real > 0)
-        return found
+        return [root for root in rational_poles(x, y, scale=self.f[-1]) if root.imag > 0 and root.real > 0]
 
     def is_within(self, f_r: float, quality: float) -> bool:
         """Whether a mode resonates within the sweep or near its ends."""
@@ -301,20 +288,16 @@ class _Problem:
             )
             for k in self.inside(solution)
         ]
-        caveats = (
-            ()
-            if solution.correlation <= _CORRELATED
-            else (
-                f"residuals of the fit are correlated over {solution.correlation:.0f} points, which widens the"
-                " intervals: the sweep shows more than the fitted modes; sweep less far",
-            )
+        correlated = (
+            f"residuals of the fit are correlated over {solution.correlation:.0f} points, which widens the"
+            " intervals: the sweep shows more than the fitted modes; sweep less far"
         )
         return ResonanceFit(
             spectrum=self.spectrum,
             resonances=tuple(found),
             fitted=np.asarray(fitted, dtype=np.complex128),
             residual_correlation=solution.correlation,
-            caveats=caveats,
+            caveats=(correlated,) if solution.correlation > _CORRELATED else (),
         )
 
 

@@ -5,25 +5,21 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.impedance.column_headings import ColumnHeading, parse_heading
 from sonolube.measurement.impedance.passivity import passive_spectrum
-from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.reader import read_impedance, sweep_bytes
 from sonolube.measurement.limits import require_points
 from sonolube.measurement.numeric_text import detected_decimal_sign, parse_number
 from sonolube.measurement.time_series import require_equal_length
-from sonolube.storage.input_files import input_bytes
 
 _ORDERS = {"displacement": 0, "amplitude": 0, "receptance": 0, "velocity": 1, "mobility": 1, "acceleration": 2}
 _VIBRATION = re.compile(rf"\W*({'|'.join(_ORDERS)})\b", re.IGNORECASE)
 _COMMENTS = ("#", "!", "%")
-_LARGEST_FILE = 1 << 28  # bytes; far above any sweep
 _MIN_POINTS = 12
 _HEAD_LINES = 64  # among which the headings of a table of vibration stand
 
@@ -147,28 +143,19 @@ def read_resonance_spectrum(path: Path, *, sweep: str | None = None) -> Resonanc
     UnknownName
         Naming the file, if it has no such sweep.
     """
-    content = _content(path)
+    content = sweep_bytes(path)
     table = _vibration_table(path, content.decode("utf-8-sig", errors="replace").splitlines())
     if table is None:
         return _of_impedance(path, sweep)
     if sweep is not None:
         raise InvalidInput(f"{path}: is a table of one spectrum of vibration; leave sweep {sweep!r} out")
-    order = np.argsort(table.frequency, kind="stable")
+    frequency, response, quantity = table
+    order = np.argsort(frequency, kind="stable")
     try:
-        found = vibration_spectrum(
-            frequency=table.frequency[order], response=table.response[order], quantity=table.quantity
-        )
+        found = vibration_spectrum(frequency=frequency[order], response=response[order], quantity=quantity)
     except InvalidInput as refusal:
         raise InvalidInput(f"{path}: {refusal}") from None
-    return _named(found, path, hashlib.sha256(content).hexdigest(), ())
-
-
-class _Table(NamedTuple):
-    """Columns of a table of vibration."""
-
-    frequency: Floats
-    response: Complexes | Floats
-    quantity: str
+    return replace(found, file_name=path.name, sha256=hashlib.sha256(content).hexdigest())
 
 
 def _of_impedance(path: Path, sweep: str | None) -> ResonanceSpectrum:
@@ -187,71 +174,52 @@ def _of_impedance(path: Path, sweep: str | None) -> ResonanceSpectrum:
         )
     except InvalidInput as refusal:
         raise InvalidInput(f"{path}: {refusal}") from None
-    return _named(found, path, spectrum.sha256, turned)
+    return replace(found, file_name=path.name, sha256=spectrum.sha256, caveats=turned)
 
 
-def _named(found: ResonanceSpectrum, path: Path, digest: str, caveats: tuple[str, ...]) -> ResonanceSpectrum:
-    """Spectrum with its origin."""
-    return replace(found, file_name=path.name, sha256=digest, caveats=caveats)
-
-
-def _content(path: Path) -> bytes:
-    """Bytes of a file of limited size."""
-    with refuse_unreadable(path):
-        if path.stat().st_size > _LARGEST_FILE:
-            raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST_FILE >> 20} MiB, more than any sweep")
-        return input_bytes(path, most=_LARGEST_FILE)
-
-
-def _vibration_table(path: Path, lines: list[str]) -> _Table | None:
-    """Columns of a table of vibration, or None where the file has no heading of one among its first lines."""
-    for at, line in enumerate(lines[:_HEAD_LINES]):
-        if line.startswith(_COMMENTS):
-            continue
-        separator = next((sign for sign in "\t;," if sign in line), ",")
-        labels = [label.strip().strip('"') for label in line.split(separator)]
+def _vibration_table(path: Path, lines: list[str]) -> tuple[Floats, Complexes | Floats, str] | None:
+    """Frequency, response and quantity of a table of vibration; None without headings of one among the first lines."""
+    for line, text in enumerate(lines[:_HEAD_LINES], start=1):
+        separator = next((sign for sign in "\t;," if sign in text), ",")
+        labels = [label.strip().strip('"') for label in text.split(separator)]
         headings = [parse_heading(label) for label in labels]
-        amplitude = next((place for place, label in enumerate(labels) if _VIBRATION.match(label)), None)
-        frequency = next((place for place, heading in enumerate(headings) if heading and heading.symbol == "f"), None)
-        if amplitude is None or frequency is None:
-            continue
-        _require_one_of_each(path, at + 1, labels, headings)
-        phase = next((place for place, h in enumerate(headings) if h and h.symbol.startswith("theta")), None)
-        if phase is None and any(label.lower().startswith("phase") for label in labels):
-            raise InvalidInput(f"{path}: line {at + 1}: the phase needs a unit, 'phase (deg)' or '(rad)'")
-        rows = [(n, row.split(separator)) for n, row in enumerate(lines[at + 1 :], at + 2) if row.strip()]
-        rows = [(n, row) for n, row in rows if not row[0].startswith(_COMMENTS)]
-        require_points(len(rows), path, line=at + 1)
-        sign = detected_decimal_sign(cell for _, row in rows for cell in row) if separator != "," else "."
-
-        def column(place: int, *, rows: list[tuple[int, list[str]]] = rows, sign: str = sign) -> Floats:
-            return np.array([_number(path, n, row, place, sign) for n, row in rows])
-
-        f_heading = headings[frequency]
-        assert f_heading is not None
-        response: Complexes | Floats = column(amplitude)
-        if phase is not None:
-            turn = headings[phase]
-            assert turn is not None
-            response = response * np.exp(1j * turn.scale * column(phase))
-        matched = _VIBRATION.match(labels[amplitude])
-        assert matched is not None
-        return _Table(f_heading.scale * column(frequency), response, matched[1].lower())
+        has_frequency = any(heading and heading.symbol == "f" for heading in headings)
+        if has_frequency and any(map(_VIBRATION.match, labels)) and not text.startswith(_COMMENTS):
+            places = _places(path, line, labels, headings)
+            rows = [(n, row.split(separator)) for n, row in enumerate(lines[line:], line + 1) if row.strip()]
+            rows = [(n, row) for n, row in rows if not row[0].startswith(_COMMENTS)]
+            require_points(len(rows), path, line=line)
+            sign = detected_decimal_sign(cell for _, row in rows for cell in row) if separator != "," else "."
+            quantity = next(kind for kind in places if kind in _ORDERS)
+            read = [kind for kind in (quantity, "phase", "frequency") if kind in places]
+            columns = {kind: _column(path, rows, places[kind], headings[places[kind]], sign) for kind in read}
+            turn = np.exp(1j * columns["phase"]) if "phase" in columns else 1.0
+            return columns["frequency"], columns[quantity] * turn, quantity
     return None
 
 
-def _require_one_of_each(path: Path, line: int, labels: list[str], headings: Sequence[ColumnHeading | None]) -> None:
-    """Refuse a table with two columns of the frequency, of one quantity of vibration or of the phase."""
-    found: dict[str, int] = {}
-    for place, (label, heading) in enumerate(zip(labels, headings, strict=True), start=1):
+def _places(path: Path, line: int, labels: list[str], headings: Sequence[ColumnHeading | None]) -> dict[str, int]:
+    """Places of the frequency, of quantities of vibration and of the phase; refuse two of one, and a bare phase."""
+    places: dict[str, int] = {}
+    for place, (label, heading) in enumerate(zip(labels, headings, strict=True)):
         vibration = _VIBRATION.match(label)
-        symbol = heading.symbol if heading else ""
-        kind = vibration[1].lower() if vibration else {"f": "frequency"}.get(symbol, symbol[:5])
-        if kind in ("frequency", "theta") or vibration:
-            if kind in found:
-                word = "phase" if kind == "theta" else kind
-                raise InvalidInput(f"{path}: line {line}: columns {found[kind]} and {place} are of {word}; keep one")
-            found[kind] = place
+        symbol = heading.symbol.partition("_")[0] if heading else ""
+        kind = vibration[1].lower() if vibration else {"f": "frequency", "theta": "phase"}.get(symbol)
+        if kind in places:
+            several = f"columns {places[kind] + 1} and {place + 1} are of {kind}"
+            raise InvalidInput(f"{path}: line {line}: {several}; keep one")
+        if kind is not None:
+            places[kind] = place
+    if "phase" not in places and any(label.lower().startswith("phase") for label in labels):
+        raise InvalidInput(f"{path}: line {line}: the phase needs a unit, 'phase (deg)' or '(rad)'")
+    return places
+
+
+def _column(
+    path: Path, rows: list[tuple[int, list[str]]], place: int, heading: ColumnHeading | None, sign: str
+) -> Floats:
+    """Numbers of a column, those of frequency and phase in SI."""
+    return (heading.scale if heading else 1.0) * np.array([_number(path, n, row, place, sign) for n, row in rows])
 
 
 def _number(path: Path, line: int, row: list[str], place: int, sign: str) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.special import gammaln
 
 from sonolube.checks import Floats
+from sonolube.measurement.friction.wobble_search import harmonic_columns
 from sonolube.measurement.statistics.autocorrelation import statistical_inefficiency
 
 MIN_SAMPLES_OF_CYCLE = 6
@@ -113,8 +114,8 @@ def find_cycle(signal: Floats, *, sample_interval: float, frequency: float) -> t
         whole = _inner(filled)
         if not _is_steady_in_bursts(power, whole, _inner(~filled)):
             return None, ""
-    waves = coefficients @ _waves(np.arange(_PHASES) / _PHASES, harmonics).T
-    falls = np.ptp(waves[whole], axis=1)
+    waves = harmonic_columns(revolutions=np.arange(_PHASES) / _PHASES, harmonics=harmonics).T
+    falls = np.ptp((coefficients @ waves)[whole], axis=1)
     mean_wave, shifts = _aligned(coefficients, harmonics)
     top = int(np.argmax(mean_wave))
     fall_share = (int(np.argmin(mean_wave)) - top) % _PHASES / _PHASES
@@ -125,7 +126,7 @@ def find_cycle(signal: Floats, *, sample_interval: float, frequency: float) -> t
         return None, reason
     fewer = coefficients.copy()
     fewer[:, [harmonics - 1, 2 * harmonics - 1]] = 0.0
-    lower = np.ptp(fewer[whole] @ _waves(np.arange(_PHASES) / _PHASES, harmonics).T, axis=1)
+    lower = np.ptp(fewer[whole] @ waves, axis=1)
     starts = np.flatnonzero(filled) * size
     middles = (top / _PHASES + fall_share / 2 - shifts[filled, None] + np.arange(_CYCLES_OF_SECTION)) * per_cycle
     slips = np.ceil(starts[:, None] + middles % (_CYCLES_OF_SECTION * per_cycle)).astype(int).ravel()
@@ -153,16 +154,11 @@ def _other_origin(frequency: float, duration: float, *, has_bursts: bool) -> str
     return f"the cycle of {frequency:.4g} Hz cannot be told from hum of the mains" if mains else ""
 
 
-def _waves(cycles: Floats, harmonics: int) -> Floats:
-    """Cosines, then sines, of the harmonics at numbers of cycles."""
-    angle = 2 * np.pi * cycles[:, None] * np.arange(1, harmonics + 1)
-    return np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
-
-
 def _fits(parts: Floats, per_cycle: float, harmonics: int) -> tuple[Floats, np.ndarray]:
     """Coefficients of the harmonics in each section, and whether they hold half of its variance."""
     cycles = np.arange(parts.shape[1]) / per_cycle
-    design = np.column_stack([_waves(cycles, harmonics), np.ones(cycles.size), cycles - cycles.mean()])
+    waves = harmonic_columns(revolutions=cycles, harmonics=harmonics)
+    design = np.column_stack([waves, np.ones(cycles.size), cycles - cycles.mean()])
     coefficients = parts @ np.linalg.pinv(design).T
     residual = np.var(parts - coefficients @ design.T, axis=1)
     explained = np.var(coefficients[:, : 2 * harmonics] @ design[:, : 2 * harmonics].T, axis=1)

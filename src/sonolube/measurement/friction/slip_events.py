@@ -41,15 +41,12 @@ class SlipChain:
     ----------
     bursts : tuple of ndarray of int
         Indices of the samples after each fall, one array per burst of consecutive slips.
-    template_period : int
-        Period of the template, in samples.
     score : float
         Of the highest-scoring burst; stick-slip from `DETECTION_SCORE` on.
     """
 
-    bursts: tuple[Indices, ...]
-    template_period: int
-    score: float
+    bursts: tuple[Indices, ...] = ()
+    score: float = 0.0
 
 
 def noise_spectra(parts: Sequence[Floats], *, sample_interval: float) -> list[Floats]:
@@ -136,7 +133,7 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
     """
     periods = _periods(signal.size, sample_interval)
     if not periods:
-        return SlipChain(bursts=(), template_period=0, score=0.0)
+        return SlipChain()
     flat = np.full(spectrum.size, np.median(spectrum[spectrum.size // 2 :]))
     best = _best_of_periods(signal, spectrum, periods)
     if best.bursts:
@@ -149,8 +146,7 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
 
 def _best_of_periods(signal: Floats, spectrum: Floats, periods: Sequence[int]) -> SlipChain:
     """Chains whose sawtooth holds the most power, and then those of the template for their median gap."""
-    best = SlipChain(bursts=(), template_period=0, score=0.0)
-    most = 0.0
+    best, most = SlipChain(), 0.0
     size = 1 << int(np.ceil(np.log2(signal.size + 2 * periods[-1])))
     weight = 1 / np.interp(np.fft.rfftfreq(size), np.linspace(0, 0.5, spectrum.size), spectrum)
     weighted = np.fft.rfft(signal, size) * weight
@@ -200,20 +196,19 @@ def _chain_of_period(weighted: Floats, weight: Floats, samples: int, size: int, 
     strongest = np.sort(np.abs(response[1:-1][_maxima(np.abs(response))]))[-_FEWEST:]
     response *= min(1.0, _LARGEST_RESPONSE / max(float(strongest[0]), 1.0)) if strongest.size else 1.0
     periods = response.size // period
-    none = SlipChain(bursts=(), template_period=period, score=0.0)
     if periods < _FEWEST - 1:
-        return none
+        return SlipChain()
     largest_rise = float(np.median(-response[: periods * period].reshape(periods, period).min(axis=1)))
     rise = max(largest_rise, _MIN_RESPONSE) ** 2
     cost = rise / 2 + max(_EVENT_COST, rise / _RISE_SPREAD)
     score, chain = _best_chain(response, period, cost)
     if chain.size < _FEWEST:
-        return none
+        return SlipChain()
     rises = _best_chain(-response, period, cost)[0]
     excess = min(score - rises, 2 * (score - _RISE_RATIO * rises))
     if excess < DETECTION_SCORE:
-        return SlipChain(bursts=(), template_period=period, score=max(0.0, excess))
-    return SlipChain(bursts=_bursts(response, period, cost, chain, half), template_period=period, score=excess)
+        return SlipChain(score=max(0.0, excess))
+    return SlipChain(bursts=_bursts(response, period, cost, chain, half), score=excess)
 
 
 def _bursts(response: Floats, period: int, cost: float, first: Indices, half: int) -> tuple[Indices, ...]:

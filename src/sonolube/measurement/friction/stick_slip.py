@@ -207,7 +207,8 @@ def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: fl
     highest = np.array([float(np.ptp(signal[a:b])) for burst in bursts for a, b in pairwise(burst)])
     mean, error = float(min(np.mean(falls), np.mean(highest))), _standard_error(falls)
     reach = float(student.ppf(0.975, max(falls.size - 1, 1))) * error + mean / float(np.mean(gaps))
-    smooth = mean - _range_of_mean_cycle(signal, bursts) if noise * _CLEAR < mean else 0.0
+    cycle = _mean_profile(signal, bursts, 0.5)  # whose range is below the rise of the ramps where slips are not sudden
+    smooth = mean - float(np.ptp(cycle)) if cycle.size and noise * _CLEAR < mean else 0.0
     ends = _within_range(mean - max(smooth, 0.0), reach, signal)[0], _within_range(mean, reach, signal)[1]
     spans = tuple(
         StickSlipBurst(
@@ -218,9 +219,6 @@ def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: fl
         for burst in bursts
     )
     return StickSlipEstimate(
-        detected=True,
-        resolved=True,
-        reason="",
         stick_slip_frequency=1 / period,
         spectral_frequency=spectral,
         stick_slip_amplitude=mean,
@@ -247,14 +245,6 @@ def _falls(signal: Floats, bursts: Sequence[Indices]) -> tuple[Floats, float]:
             inner = residual[np.abs(x) < 0.5]
             squares, count = squares + float(inner @ inner), count + inner.size
     return np.array(rises), float(np.sqrt(squares / max(count, 1)))
-
-
-def _range_of_mean_cycle(signal: Floats, bursts: Sequence[Indices]) -> float:
-    """Range of the mean of the force about the slips; below the ramps' rise where slips are not sudden."""
-    half = int(max(2, 0.5 * np.median(np.concatenate([np.diff(burst) for burst in bursts]))))
-    slips = np.concatenate(bursts)
-    slips = slips[(slips >= half) & (slips <= signal.size - half)]
-    return float(np.ptp(np.mean(signal[slips[:, None] + np.arange(-half, half)], axis=0))) if slips.size else np.inf
 
 
 def _without_false_ends(signal: Floats, burst: Indices, least: float) -> Indices:
@@ -287,14 +277,20 @@ def _standard_error(falls: Floats) -> float:
     return float(np.sqrt((variance + 2 * max(shared, 0.0)) / falls.size))
 
 
+def _mean_profile(signal: Floats, bursts: Sequence[Indices], share: float) -> Floats:
+    """Mean of the force about the slips, a share of their median gap before and after; empty where none fits in."""
+    half = int(max(2, share * np.median(np.concatenate([np.diff(burst) for burst in bursts]))))
+    slips = np.concatenate(bursts)
+    slips = slips[(slips >= half) & (slips <= signal.size - half)]
+    return np.mean(signal[slips[:, None] + np.arange(-half, half)], axis=0) if slips.size else np.empty(0)
+
+
 def _slip_duration(signal: Floats, bursts: Sequence[Indices], fall: float) -> float:
     """Mean duration of a slip in samples, 0 for a fall between two samples, by the mean profile of slips."""
-    reach = int(max(2, _PROFILE * np.median(np.concatenate([np.diff(burst) for burst in bursts]))))
-    slips = np.concatenate(bursts)
-    slips = slips[(slips >= reach) & (slips <= signal.size - reach)]
-    if not slips.size:
+    profile = _mean_profile(signal, bursts, _PROFILE)
+    if not profile.size:
         return 0.0
-    profile = np.mean(signal[slips[:, None] + np.arange(-reach, reach)], axis=0)
+    reach = profile.size // 2
     middle = (np.median(profile[: reach // 2]) + np.median(profile[-(reach // 2) :])) / 2
     relative = (profile - middle) / fall
     if relative.min() < -_OVERSHOOT:  # of a sensor that rings, whose reading takes longer than the slip
@@ -327,9 +323,6 @@ def _by_cycle(t: Floats, force: Floats, cycle: ForceCycle, spectral: float) -> S
         for part in np.split(cycle.sections, breaks)
     )
     return StickSlipEstimate(
-        detected=True,
-        resolved=True,
-        reason="",
         stick_slip_frequency=cycle.frequency,
         spectral_frequency=spectral,
         stick_slip_amplitude=mean,
@@ -338,7 +331,6 @@ def _by_cycle(t: Floats, force: Floats, cycle: ForceCycle, spectral: float) -> S
         force_drops=sum(burst.force_drops for burst in bursts),
         stick_slip_fraction=min(1.0, sum(b.end_time - b.start_time for b in bursts) / float(t[-1] - t[0])),
         bursts=bursts,
-        slip_time=np.empty(0),
     )
 
 

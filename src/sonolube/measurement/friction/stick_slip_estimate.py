@@ -1,7 +1,7 @@
 """Records of stick-slip in a friction force, and that of a part by those of its stretches."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -60,18 +60,18 @@ class StickSlipEstimate:
         Time of each slip, in s.
     """
 
-    detected: bool
-    resolved: bool
-    reason: str
+    detected: bool = True
+    resolved: bool = True
+    reason: str = ""
     stick_slip_frequency: float
     spectral_frequency: float
-    stick_slip_amplitude: float
-    stick_slip_amplitude_uncertainty: float
-    stick_slip_amplitude_interval: tuple[float, float]
-    force_drops: int
-    stick_slip_fraction: float
-    bursts: tuple[StickSlipBurst, ...]
-    slip_time: Floats
+    stick_slip_amplitude: float = 0.0
+    stick_slip_amplitude_uncertainty: float = 0.0
+    stick_slip_amplitude_interval: tuple[float, float] = (0.0, 0.0)
+    force_drops: int = 0
+    stick_slip_fraction: float = 0.0
+    bursts: tuple[StickSlipBurst, ...] = ()
+    slip_time: Floats = field(default_factory=lambda: np.empty(0))
 
 
 def not_detected(reason: str, spectral_frequency: float, *, resolved: bool = True) -> StickSlipEstimate:
@@ -82,13 +82,6 @@ def not_detected(reason: str, spectral_frequency: float, *, resolved: bool = Tru
         reason=reason,
         stick_slip_frequency=spectral_frequency,
         spectral_frequency=spectral_frequency,
-        stick_slip_amplitude=0.0,
-        stick_slip_amplitude_uncertainty=0.0,
-        stick_slip_amplitude_interval=(0.0, 0.0),
-        force_drops=0,
-        stick_slip_fraction=0.0,
-        bursts=(),
-        slip_time=np.empty(0),
     )
 
 
@@ -105,9 +98,6 @@ def combined(estimates: Sequence[StickSlipEstimate], spans: Sequence[float]) -> 
     ends = weights @ np.array([one.stick_slip_amplitude_interval for one in found])
     filled = sum(one.stick_slip_fraction * span for one, span in zip(estimates, spans, strict=True))
     return StickSlipEstimate(
-        detected=True,
-        resolved=True,
-        reason="",
         stick_slip_frequency=float(weights @ [one.stick_slip_frequency for one in found]),
         spectral_frequency=longest.spectral_frequency,
         stick_slip_amplitude=float(weights @ [one.stick_slip_amplitude for one in found]),

@@ -160,7 +160,6 @@ def friction_at_voltage_steps(
     --------
     mean_of_parts : the means and their uncertainty, wobble, run-in, drift and stick-slip taken off jointly.
     stick_slip_of_parts : stick-slip in the steps.
-    estimate_friction_reduction : reduction between two parts of any recording.
 
     Notes
     -----
@@ -194,10 +193,7 @@ def friction_at_voltage_steps(
     v = None if sliding_speed is None else require_time_series(time=time, sliding_speed=sliding_speed)[1]
     found = sliding_steps(t, f, u, v, shortest_step=shortest_step, settling_time=settling_time, tolerance=tolerance)
     parts = sampled_parts(found.settled, time=t, friction_force=f)
-    if revolutions is not None:
-        turned: list[Floats] | None = _of_parts(f, require_finite(revolutions=revolutions), found.settled)
-    else:
-        turned = None
+    turned = None if revolutions is None else _of_parts(f, require_finite(revolutions=revolutions), found.settled)
     places = None if v is None else _of_parts(f, _slid(t, v), found.settled)
     waves = wobble_columns(parts, revolutions=turned, places=places, harmonics=harmonics)[0]
     stick_slip = _stick_slip(parts, without_wobble(parts, waves))

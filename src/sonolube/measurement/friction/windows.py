@@ -114,7 +114,7 @@ def window_statistics(
     """
     require_positive(window_duration=window_duration)
     t, x = require_time_series(time=time, **{channel or "signal": signal})
-    return _statistics([_moments(t, {channel: x}, t[0], window_duration)], channel, unit, t[0], window_duration)
+    return _statistics([_moments(x, t, t[0], window_duration)], channel, unit, t[0], window_duration)
 
 
 def streamed_window_statistics(
@@ -151,19 +151,20 @@ def streamed_window_statistics(
         As `recording_blocks`, or if the recording lacks a channel.
     """
     require_positive(window_duration=window_duration)
-    parts: list[_Moments] = []
+    parts: dict[str, list[Floats]] = {}
     units: dict[str, str] = {}
     origin = None
     for t, signals, units_of_block in _complete_windows(path, channels, mapping, window_duration, block_samples):
         origin = t[0] if origin is None else origin
         units = units_of_block
-        parts.append(_moments(t, signals, origin, window_duration))
+        for name, x in signals.items():
+            parts.setdefault(name, []).append(_moments(x, t, origin, window_duration))
     if origin is None:
         raise InvalidInput(f"{path}: holds no samples")
-    for name in units:
-        if not any(part.channels[name][0].any() for part in parts):
+    for name, moments in parts.items():
+        if not any(part[1].any() for part in moments):
             raise InvalidInput(f"{path}: channel {name!r} holds no value")
-    return {name: _statistics(parts, name, units[name], origin, window_duration) for name in units}
+    return {name: _statistics(own, name, units[name], origin, window_duration) for name, own in parts.items()}
 
 
 def _complete_windows(
@@ -193,32 +194,16 @@ def _complete_windows(
         yield carried_time, carried, units
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Moments:
-    """Numbers of the windows, and for each channel the count, mean and sum of squared deviations in each window."""
-
-    window: NDArray[np.int64]
-    channels: Mapping[str, tuple[NDArray[np.int64], Floats, Floats]]
-
-
 def _window_numbers(t: Floats, origin: float, window: float) -> NDArray[np.int64]:
     """Number of the window of each sample, with a tolerance for rounded times."""
     return np.floor((t - origin) / window + 1e-9).astype(np.int64)
 
 
-def _moments(t: Floats, signals: Signals, origin: float, window: float) -> _Moments:
-    """Moments of signals in each window."""
+def _moments(x: Floats, t: Floats, origin: float, window: float) -> Floats:
+    """Number, count, mean and sum of squared deviations of a signal in each window, without missing values; rows."""
     numbers = _window_numbers(t, origin, window)
     starts = np.concatenate([[0], np.flatnonzero(np.diff(numbers)) + 1])
     sizes = np.diff(np.append(starts, t.size))
-    channels = {name: _channel_moments(x, starts, sizes) for name, x in signals.items()}
-    return _Moments(window=numbers[starts], channels=channels)
-
-
-def _channel_moments(
-    x: Floats, starts: NDArray[np.int64], sizes: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], Floats, Floats]:
-    """Count, mean and sum of squared deviations of one signal in each window, missing values left out."""
     missing = np.isnan(x)
     some_missing = bool(missing.any())
     count = sizes - np.add.reduceat(missing.astype(np.int64), starts) if some_missing else sizes
@@ -228,13 +213,12 @@ def _channel_moments(
     if some_missing:
         residual[missing] = 0.0
     squares = np.add.reduceat(np.square(residual, out=residual), starts)
-    return count, mean, squares
+    return np.stack([numbers[starts], count, mean, squares])
 
 
-def _statistics(parts: list[_Moments], channel: str, unit: str, origin: float, window: float) -> WindowStatistics:
+def _statistics(parts: Sequence[Floats], channel: str, unit: str, origin: float, window: float) -> WindowStatistics:
     """Statistics of one channel from the moments of consecutive parts."""
-    number = np.concatenate([part.window for part in parts])
-    count, mean, squares = (np.concatenate([part.channels[channel][which] for part in parts]) for which in range(3))
+    number, count, mean, squares = np.concatenate(parts, axis=1)
     known = np.where(count > 0, count, np.nan)
     return WindowStatistics(
         time=origin + (number + 0.5) * window,

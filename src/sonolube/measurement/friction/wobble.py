@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput
+from sonolube.measurement.friction.wobble_search import harmonic_columns
 from sonolube.measurement.time_series import require_equal_length
 
 
@@ -84,9 +85,7 @@ def remove_wobble(
     covered = float(np.ptp(n[known]))
     if covered < 1:
         raise InvalidInput(f"revolutions cover {covered:.3g} of a revolution; the wobble needs one")
-    orders = np.arange(1, harmonics + 1)
-    angle = 2 * np.pi * np.multiply.outer(n, orders)
-    waves = np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
+    waves = harmonic_columns(revolutions=n, harmonics=harmonics)
     centre = n[known].min() + covered / 2
     trend = np.polynomial.legendre.legvander(2 * (n - centre) / covered, trend_degree)
     design = np.concatenate([trend, waves], axis=1)

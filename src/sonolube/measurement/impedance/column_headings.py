@@ -21,13 +21,7 @@ _LABELS = {
     "theta_Y": ("theta-y", "phase(y)", "arg(y)"),
     "G": ("g", "re(y)", "real(y)", "conductance"),
     "B": ("b", "im(y)", "imag(y)", "susceptance"),
-    "Ls": ("ls",),
-    "Rs": ("rs",),
-    "Cs": ("cs",),
-    "Lp": ("lp",),
-    "Rp": ("rp",),
-    "Cp": ("cp",),
-}
+} | {symbol: (symbol.lower(),) for symbol in ("Ls", "Rs", "Cs", "Lp", "Rp", "Cp")}
 _SYMBOL = {label: symbol for symbol, labels in _LABELS.items() for label in labels}
 _DIMENSION = MappingProxyType(
     {"f": "Hz", "|Y|": "S", "G": "S", "B": "S", "Ls": "H", "Lp": "H", "Cs": "F", "Cp": "F"}

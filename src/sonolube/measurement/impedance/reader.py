@@ -37,7 +37,8 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     UnknownName
         Naming the file, if it has no such sweep.
     """
-    content, lines = _content_and_lines(path)
+    content = sweep_bytes(path)
+    lines = _lines(content, path)
     formats = tuple(IMPEDANCE_FORMATS.values())
     file_format = detect_format(formats, content[:HEAD_SIZE], path) or formats[-1]
     sweeps = file_format.read(path, lines)
@@ -54,12 +55,16 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     )
 
 
-def _content_and_lines(path: Path) -> tuple[bytes, list[str]]:
-    """Bytes and the lines of a text file of limited size."""
+def sweep_bytes(path: Path) -> bytes:
+    """Bytes of a file of limited size."""
     with refuse_unreadable(path):
         if path.stat().st_size > _LARGEST_FILE:
             raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST_FILE >> 20} MiB, more than any sweep")
-        content = input_bytes(path, most=_LARGEST_FILE)
+        return input_bytes(path, most=_LARGEST_FILE)
+
+
+def _lines(content: bytes, path: Path) -> list[str]:
+    """Lines of a text file."""
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as failure:
@@ -69,7 +74,7 @@ def _content_and_lines(path: Path) -> tuple[bytes, list[str]]:
         raise InvalidInput(f"{path}: is empty")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     require_points(len(lines), path, line=len(lines))
-    return content, lines
+    return lines
 
 
 def _selected_name(path: Path, sweeps: Mapping[str, ImpedanceSweep], requested: str | None) -> str:

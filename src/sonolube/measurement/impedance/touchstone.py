@@ -51,10 +51,8 @@ class Touchstone:
 
     def recognises(self, head: bytes, path: Path) -> bool:
         """Whether the suffix is that of touchstone, of any number of ports, or line 1 states the version."""
-        is_multiport = _MULTIPORT.fullmatch(path.suffix.lower()) is not None
-        return (
-            is_multiport or path.suffix.lower() in self.suffixes or first_lines(head)[0].lower().startswith("[version]")
-        )
+        suffix, first = path.suffix.lower(), first_lines(head)[0].lower()
+        return suffix in self.suffixes or _MULTIPORT.fullmatch(suffix) is not None or first.startswith("[version]")
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
         r"""One sweep of a touchstone file of one port, under an empty name.

@@ -39,10 +39,11 @@ def column_from_attributes(label: str, values: Any, attributes: Mapping[str, Any
 def table_from_attributes(
     columns: list[RawColumn], attributes: Mapping[str, Any], path: Path, format_name: str
 ) -> RawTable:
-    """Table of at least one vector with the provenance that the attributes of its file state."""
+    """Table of at least one vector with the provenance of its first file, as the attributes of the file state it."""
     if not columns:
         raise InvalidInput(f"{path}: holds no vector of numbers")
-    origin = _origin(attributes)
+    stated = {key: attributes.get(f"original_{key}", attributes.get(key)) for key in _ORIGIN_KEYS}
+    origin = {key: _text(value) for key, value in stated.items() if value is not None}
     return RawTable(
         columns=tuple(columns),
         format_name=format_name,
@@ -50,16 +51,6 @@ def table_from_attributes(
         origin=origin,
         caveats=tuple(filter(None, _text(attributes.get("caveats", "")).split("\n"))),
     )
-
-
-def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """Provenance of the original file: the first one of a recording that was written several times."""
-    origin = {}
-    for key in _ORIGIN_KEYS:
-        value = attributes.get(f"original_{key}", attributes.get(key))
-        if value is not None:
-            origin[key] = _text(value)
-    return origin
 
 
 def _text(value: object) -> str:

@@ -61,12 +61,13 @@ def chosen_channels(entries: Sequence[ChannelEntry], selection: Selection, path:
     if selection.channels:
         named = [_index_of(entries, indices, name, path) for name in dict.fromkeys(selection.channels)]
         bases = {(entries[index].group, entries[index].samples) for index in named}
-        along = [i for i in indices if _is_time(entries[i]) and (entries[i].group, entries[i].samples) in bases]
-        indices = sorted({*along, *named})
+        along = [index for index in indices if (entries[index].group, entries[index].samples) in bases]
+        times = [index for index in along if name_and_unit(entries[index].name)[0] in TIME_LABELS]
+        indices = sorted({*times, *named})
     names = [entries[index].name for index in indices]
-    times = Counter(names)
+    counts = Counter(names)
     return [
-        (index, entries[index].label if times[name] > 1 else name) for index, name in zip(indices, names, strict=True)
+        (index, entries[index].label if counts[name] > 1 else name) for index, name in zip(indices, names, strict=True)
     ]
 
 
@@ -91,11 +92,6 @@ def listed_channels(entries: Sequence[ChannelEntry]) -> str:
     text = "; ".join((f"{group}: " if named else "") + ", ".join(names) for group, names in groups.items())
     more = len(entries) - len(listed)
     return " ".join(text.split()) + (f" and {more} more" if more > 0 else "")
-
-
-def _is_time(entry: ChannelEntry) -> bool:
-    """Whether a channel holds the time, by its name."""
-    return name_and_unit(entry.name)[0] in TIME_LABELS
 
 
 def _of_group(entries: Sequence[ChannelEntry], group: str, path: Path) -> list[int]:

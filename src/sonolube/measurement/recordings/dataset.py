@@ -141,16 +141,11 @@ def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
     return name, column.unit if column.unit is not None else unit
 
 
-def _column(table: RawTable, path: Path, label: str) -> RawColumn:
-    """Column of a label; refuse one that is not there, or that several columns have."""
-    return column_of_label(table.by_label, label, path)
-
-
 def _channel(
     name: str, table: RawTable, path: Path, source: ChannelSource, partial: bool
 ) -> tuple[Floats, dict[str, str | float]]:
     """Calibrated values of a channel in SI, and its attributes."""
-    column = _column(table, path, source.column)
+    column = column_of_label(table.by_label, source.column, path)
     values = column.values
     excessive = np.abs(values) > _LARGEST_READING
     if excessive.any():
@@ -188,9 +183,9 @@ def _axis(
     table: RawTable, path: Path, mapping: RecordingMapping | None, sources: dict[str, ChannelSource], quantity: str
 ) -> Floats:
     """Axis in SI: of the mapping's column or sample rate, of a time column, or of stated intervals."""
-    used = [_column(table, path, source.column) for source in sources.values()]
+    used = [column_of_label(table.by_label, source.column, path) for source in sources.values()]
     if mapping is not None and mapping.axis is not None:
-        axis = _column(table, path, mapping.axis.column)
+        axis = column_of_label(table.by_label, mapping.axis.column, path)
         require_common_length(_entries([axis, *used]), path)
         return _axis_column(axis, table, path, quantity, mapping.axis)
     rows = require_common_length(_entries(used), path)

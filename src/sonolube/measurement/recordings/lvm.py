@@ -80,11 +80,7 @@ class _Parser:
         if not after_blank:
             return cells[0] not in _SEGMENT_KEYS
         value = next((cell for cell in cells if cell), "")
-        return parse_number(value, decimal_sign=self._sign_of(value)) is not None
-
-    def _sign_of(self, cell: str) -> str:
-        """Decimal sign of the file, or that of a cell where the file does not state it."""
-        return self.decimal_sign or ("," if "," in cell else ".")
+        return parse_number(value, decimal_sign=self.decimal_sign or ("," if "," in value else ".")) is not None
 
     def _file_header(self) -> None:
         """Read a header of the file; the first one gives separator, decimal sign and start."""
@@ -130,11 +126,8 @@ class _Parser:
         if labels and labels[-1] == _COMMENT:
             labels.pop()
         require_channels(len(labels), self.path, kind="columns")
-        self.segments.append(LvmSegment(header=header, labels=labels, line=number, x_columns=self._x_columns()))
-
-    def _x_columns(self) -> str:
-        """Which times the file holds: No, One or Multi."""
-        return self.header.text("X_Columns", "One").capitalize()
+        times = self.header.text("X_Columns", "One").capitalize()  # that the file holds: No, One or Multi
+        self.segments.append(LvmSegment(header=header, labels=labels, line=number, x_columns=times))
 
 
 @final
@@ -168,14 +161,9 @@ class LabviewText:
         sign = parser.decimal_sign or detected_decimal_sign(
             cell for segment in parser.segments for _, cells in segment.rows for cell in cells[: len(segment.labels)]
         )
-        return joined_segments(
-            parser.segments,
-            path,
-            decimal_sign=sign,
-            mapping=mapping,
-            format_name=self.name,
-            begun=f"{header.text('Date', '')} {header.text('Time', '')}".strip(),
-            caveats=caveats,
+        columns, lines, own = joined_segments(parser.segments, path, decimal_sign=sign, mapping=mapping)
+        return RawTable(
+            columns=columns, format_name=self.name, lines=lines, begun=header.begun, caveats=(*caveats, *own)
         )
 
 

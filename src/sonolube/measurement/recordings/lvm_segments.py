@@ -13,7 +13,7 @@ from sonolube.measurement.numeric_text import parse_numbers
 from sonolube.measurement.recordings.channel_choice import ChannelEntry, chosen_channels
 from sonolube.measurement.recordings.joining import begun_at, time_shifts
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
+from sonolube.measurement.recordings.raw_table import RawColumn
 from sonolube.measurement.recordings.text_columns import NumberedCells, column_values
 from sonolube.measurement.recordings.written_units import convert_to_si
 
@@ -29,6 +29,11 @@ class Header:
 
     keys: dict[str, list[str]]
     line: int
+
+    @property
+    def begun(self) -> str:
+        """Date and time at which the recording or the segment begins, as stated."""
+        return f"{self.text('Date', '')} {self.text('Time', '')}".strip()
 
     def text(self, key: str, default: str) -> str:
         """First cell of a key that is not empty."""
@@ -49,11 +54,6 @@ class LvmSegment:
     def channels(self) -> list[tuple[int, str]]:
         """Index and label of each column that is not a time."""
         return [(index, label) for index, label in enumerate(self.labels) if label and label != _X_LABEL]
-
-    @property
-    def begun(self) -> str:
-        """Date and time at which the segment begins, as the header states it."""
-        return f"{self.header.text('Date', '')} {self.header.text('Time', '')}".strip()
 
     @property
     def stated_samples(self) -> int:
@@ -99,25 +99,15 @@ class _Abscissa:
     def agrees(self, other: "_Abscissa") -> bool:
         """Whether two channels have the same time at each row."""
         if self.written is None or other.written is None:
-            return (self.written is None) == (other.written is None) and (self.start, self.step) == (
-                other.start,
-                other.step,
-            )
+            return self.written is other.written and (self.start, self.step) == (other.start, other.step)
         both = np.isfinite(self.written) & np.isfinite(other.written)
         return bool((self.written[both] == other.written[both]).all())
 
 
 def joined_segments(
-    segments: Sequence[LvmSegment],
-    path: Path,
-    *,
-    decimal_sign: str,
-    mapping: RecordingMapping | None,
-    format_name: str,
-    begun: str,
-    caveats: tuple[str, ...],
-) -> RawTable:
-    """Chosen channels of all segments as one table, with one time."""
+    segments: Sequence[LvmSegment], path: Path, *, decimal_sign: str, mapping: RecordingMapping | None
+) -> tuple[tuple[RawColumn, ...], NDArray[np.int64], tuple[str, ...]]:
+    """Chosen channels of all segments with one time, the line of each row, and caveats."""
     for segment in segments:
         _require_count(segment, path)
         if [label for _, label in segment.channels] != [label for _, label in segments[0].channels]:
@@ -142,25 +132,16 @@ def joined_segments(
             )
         joined = np.concatenate([part[channel] for part in values])
         columns.append(RawColumn(label=labels[channel], values=joined, unit=stated.pop() or None))
+    caveats: tuple[str, ...] = ()
     if len(kept) < len(labels):
         empty = [label for label, holds in zip(labels, filled, strict=True) if not holds]
         caveats += (f"channels without values were left out: {', '.join(empty[:_MAX_LISTED])}",)
     if assumed:
         caveats += ("times restart in later segments, whose headers state no later start: each follows the one before",)
     lines = np.array([line for segment in segments for line, _ in segment.rows], dtype=np.int64)
-    rows = np.concatenate([_rows_of(chosen, own, part.size) for own, part in zip(abscissae, times, strict=True)])
-    return RawTable(
-        columns=tuple(replace(column, values=column.values[rows]) for column in columns),
-        format_name=format_name,
-        lines=lines[rows],
-        begun=begun,
-        caveats=caveats,
-    )
-
-
-def _rows_of(chosen: Sequence[int], abscissae: Sequence[_Abscissa], rows: int) -> NDArray[np.bool_]:
-    """Which rows of a segment hold samples of the chosen channels: all but those behind the last one."""
-    return np.arange(rows) < max(abscissae[channel].samples for channel in chosen)
+    filled_rows = [max(own[channel].samples for channel in chosen) for own in abscissae]
+    rows = np.concatenate([np.arange(part.size) < most for part, most in zip(times, filled_rows, strict=True)])
+    return tuple(replace(column, values=column.values[rows]) for column in columns), lines[rows], caveats
 
 
 def _require_count(segment: LvmSegment, path: Path) -> None:
@@ -266,7 +247,7 @@ def _times(
     filled = [part for part in times if part.size and np.isfinite(part).all()]
     if len(filled) < 2:
         return times, False
-    starts = [begun_at(segment.begun) for segment, part in zip(segments, times, strict=True) if part.size]
+    starts = [begun_at(segment.header.begun) for segment, part in zip(segments, times, strict=True) if part.size]
     if len(filled) != len(starts):
         return times, False
     shifts, assumed = time_shifts(filled, starts)

@@ -19,12 +19,7 @@ AXIS_QUANTITIES = ("time", "revolutions")
 """Quantities that can be the axis of a recording."""
 
 _KEYS = {"title", "recognised_by", "selection", "axis", "text", "channels", "rows"}
-_SELECTION_KEYS = {"group", "channels", "sections", "without"}
 _AXIS_KEYS = {"quantity", "column", "unit", "gain", "offset", "sample_rate"}
-_TEXT_KEYS = {
-    "separator", "decimal_sign", "lines_to_skip", "missing", "encoding", "header", "units_row", "comment", "section",
-    "section_start", "section_start_format", "ends_at_blank_line",
-}  # fmt: skip
 _CHANNEL_KEYS = {"column", "unit", "gain", "offset", "optional"}
 _MAX_PATTERN = 1000  # characters of a regular expression
 
@@ -290,13 +285,13 @@ def read_mapping(path: Path) -> RecordingMapping:
 def _mapping(content: dict[str, Any]) -> RecordingMapping:
     """Mapping of a parsed TOML document."""
     _refuse_unknown(content, _KEYS, "")
-    axis, text = _section(content, "axis", _AXIS_KEYS), _section(content, "text", _TEXT_KEYS)
+    axis, text = _section(content, "axis", _AXIS_KEYS), _section(content, "text", _names_of(TextLayout))
     channels = _section(content, "channels", None)
     axis_quantity = axis.pop("quantity", "time")
     rate = axis.pop("sample_rate", None)
     if "missing" in text:
         text["missing"] = _texts(text["missing"], "text.missing")
-    selection = _section(content, "selection", _SELECTION_KEYS)
+    selection = _section(content, "selection", _names_of(Selection))
     for key in ("channels", "sections", "without"):
         selection[key] = _texts(selection.get(key, []), f"selection.{key}")
     return RecordingMapping(
@@ -320,6 +315,11 @@ def _source(keys: dict[str, Any], name: str) -> ChannelSource:
     if first is None:
         raise InvalidInput(f"{name}.column is missing")
     return ChannelSource(column=first, other_columns=tuple(label for label in others if label), **keys)
+
+
+def _names_of(record: type[Selection | TextLayout]) -> set[str]:
+    """Keys of a section, which are those of its record."""
+    return {each.name for each in fields(record)}
 
 
 def _texts(value: Any, name: str) -> tuple[str, ...]:

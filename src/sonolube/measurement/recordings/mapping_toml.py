@@ -46,5 +46,5 @@ def _source(source: ChannelSource) -> dict[str, Any]:
 
 def _changed(record: Any) -> dict[str, Any]:
     """Entries of a record that are not at their default."""
-    values = {each.name: getattr(record, each.name) for each in fields(record)}
-    return {each.name: values[each.name] for each in fields(record) if values[each.name] != each.default}
+    values = ((each, getattr(record, each.name)) for each in fields(record))
+    return {each.name: value for each, value in values if value != each.default}

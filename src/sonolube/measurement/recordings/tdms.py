@@ -177,7 +177,7 @@ def _selected_channels(file: Any, path: Path, mapping: RecordingMapping | None) 
     entries = {
         ChannelEntry(_label(channel, counts), one_line(channel.group_name), len(channel)): channel
         for channel in channels
-        if _is_numeric(channel) and len(channel) > 0
+        if getattr(channel.dtype, "kind", "O") in "fiub" and len(channel) > 0  # real numbers and booleans
     }
     selection = mapping.selection if mapping is not None else Selection()
     found = list(entries.values())
@@ -196,11 +196,6 @@ def _label(channel: Any, counts: Counter[str]) -> str:
     """Name of a channel, with its group where several channels have the name."""
     name = one_line(channel.name)
     return name if counts[name] == 1 else one_line(f"{channel.group_name}/{name}")
-
-
-def _is_numeric(channel: Any) -> bool:
-    """Whether the samples of a channel are real numbers or booleans."""
-    return getattr(channel.dtype, "kind", "O") in "fiub"
 
 
 def _empty_column(label: str, channel: Any) -> RawColumn:

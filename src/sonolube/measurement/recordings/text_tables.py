@@ -129,9 +129,7 @@ def _table(
     body, unread = _body(rows, len(labels), path, allows_short_rows)
     return TextTable(
         section=name,
-        begun=_begun("".join(lines[first - 1 if layout.section else 0 : header]), layout, path)
-        if layout.section_start
-        else "",
+        begun=_begun("".join(lines[first - 1 if layout.section else 0 : header]), layout, path),
         line=line,
         labels=labels,
         units=units,
@@ -211,7 +209,7 @@ def _body(
 
 def _begun(preamble: str, layout: TextLayout, path: Path) -> str:
     """Start that the lines before a table state, in ISO 8601; empty where they do not."""
-    match = re.search(layout.section_start, preamble)
+    match = re.search(layout.section_start, preamble) if layout.section_start else None
     if match is None or not match.re.groups or not match[1]:
         return ""
     try:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_positive
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 
 _WINDOW = 5.0  # correlation times over which the autocorrelation is summed, the c of Sokal
@@ -118,33 +118,3 @@ def statistical_inefficiency(values: Floats) -> float:
     cumulative = 2 * np.cumsum(covariance / covariance[0]) - 1
     sufficient = np.arange(values.size) >= _WINDOW * cumulative / 2
     return float(max(1.0, cumulative[int(np.argmax(sufficient))] if sufficient.any() else values.size))
-
-
-def correlation_time(values: Floats, *, sample_interval: float) -> float:
-    r"""Integrated autocorrelation time of evenly spaced samples. [s]
-
-    Parameters
-    ----------
-    values : ndarray, shape (samples,)
-        In any unit, without NaN.
-    sample_interval : float
-        Time between samples. [s]
-
-    Returns
-    -------
-    float
-        Half a sample interval for independent samples.
-
-    Raises
-    ------
-    InvalidInput
-        If the interval is not positive.
-
-    Notes
-    -----
-    .. math:: \tau = \tfrac12\, g\, \Delta t
-
-    with the statistical inefficiency g of `statistical_inefficiency`.
-    """
-    require_positive(sample_interval=sample_interval)
-    return statistical_inefficiency(values) / 2 * sample_interval

@@ -1,16 +1,17 @@
 """Least squares over the logarithms of positive parameters, with confidence intervals of derived quantities."""
 
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
-from sonolube.checks import Floats
+from sonolube.checks import Complexes, Floats
 from sonolube.measurement.statistics.autocorrelation import statistical_inefficiency
 
 _ROUNDING = 1e-10  # residuals below which fits do not differ
 _EVALUATIONS = 60  # for each parameter
+_TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
 _STEP = 1e-6  # of central differences, in a logarithm
 
 Quantities = Callable[[Floats], Mapping[str, float]]
@@ -104,6 +105,27 @@ def fit_log_parameters(residuals: Callable[[Floats], Floats], start: Floats) -> 
     )
 
 
+def rational_poles(x: Complexes | Floats, values: Complexes | Floats, *, scale: float) -> list[complex]:
+    """Poles, times a scale, of AAA approximations of few to many terms, as first guesses of resonances."""
+    from scipy.interpolate import AAA
+
+    found: list[complex] = []
+    for terms in _TERMS:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore", RuntimeWarning)  # about the limited number of terms
+            found.extend(complex(pole) for pole in scale * AAA(x, values, max_terms=terms, rtol=1e-10).poles())
+    return found
+
+
+def distinct_modes(ranked: Iterable[tuple[float, Floats]], *, widths: float) -> list[Floats]:
+    """Logarithms of frequency, quality factor and more of candidates by rank, those left out that lie near a better."""
+    distinct: list[Floats] = []
+    for _, candidate in sorted(ranked, key=lambda pair: pair[0]):
+        if all(abs(candidate[0] - other[0]) > widths * np.exp(-other[1]) for other in distinct):
+            distinct.append(candidate)
+    return distinct
+
+
 def residual_inefficiency(fit: LogParameterFit, *, rows: int) -> float:
     """Statistical inefficiency of the residuals of a fit: samples per independent sample, at least 1.
 
@@ -153,6 +175,8 @@ def confidence_intervals(
 
     with Student's t of :math:`\nu = n/g - k` degrees of freedom for n residuals and k parameters.
     """
+    from scipy import stats
+
     p = fit.logarithms
     freedom = max(1.0, fit.residuals.size / correlation - p.size)
     t = float(stats.t.ppf((1 + confidence_level) / 2, freedom))

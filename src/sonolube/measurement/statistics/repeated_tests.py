@@ -1,6 +1,5 @@
-"""Statistics of few repeated tests: Student and Fieller intervals, Welch and permutation tests, ISO 5725."""
+"""Statistics of few repeated tests: Student and Fieller intervals, Welch and permutation tests."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb
@@ -78,38 +77,6 @@ class MeanDifference:
     permutation_p: float
     smallest_permutation_p: float
     confidence_level: float
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Repeatability:
-    """Repeatability and reproducibility of tests in groups (ISO 5725-2), in the unit of the tests.
-
-    Parameters
-    ----------
-    mean : float
-        Over all groups.
-    within : float
-        Repeatability standard deviation, within groups, s_r.
-    between : float
-        Standard deviation between groups, s_L; 0 where the groups differ no more than the variance within explains.
-    reproducibility : float
-        Reproducibility standard deviation, of a test in another group, s_R.
-    repeatability_limit : float
-        Bound of the difference of two tests of one group in 95 % of cases: 2.8 times `within`.
-    reproducibility_limit : float
-        The same for two tests of different groups: 2.8 times `reproducibility`.
-    groups, tests : int
-        Number of groups and of all tests.
-    """
-
-    mean: float
-    within: float
-    between: float
-    reproducibility: float
-    repeatability_limit: float
-    reproducibility_limit: float
-    groups: int
-    tests: int
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -269,63 +236,6 @@ def _permutation(a: Floats, b: Floats) -> tuple[float, float]:
     return float(np.mean(differences >= observed - rounding)), mirrored / permutations
 
 
-def repeatability(groups: Sequence[ArrayLike]) -> Repeatability:
-    r"""Repeatability and reproducibility of groups of tests by one-way analysis of variance (ISO 5725-2).
-
-    Parameters
-    ----------
-    groups : sequence of array_like
-        The tests of each group, such as days, discs or laboratories; groups may differ in size.
-
-    Returns
-    -------
-    Repeatability
-
-    Raises
-    ------
-    InvalidInput
-        If there are fewer than two groups, no group has two tests, or a value is not finite.
-
-    Notes
-    -----
-    With p groups of :math:`n_i` tests, n in all, their means :math:`\bar x_i` and the mean :math:`\bar x`,
-
-    .. math::
-
-        s_r^2 = \frac{\sum_{ij} (x_{ij} - \bar x_i)^2}{n - p} , \quad
-        s_L^2 = \frac{1}{\bar n} \left[ \frac{\sum_i n_i (\bar x_i - \bar x)^2}{p - 1} - s_r^2 \right] , \quad
-        \bar n = \frac{n - \sum n_i^2/n}{p - 1} , \quad
-        s_R^2 = s_r^2 + s_L^2 ,
-
-    with a negative :math:`s_L^2` replaced by 0.
-
-    References
-    ----------
-    .. [1] ISO 5725-2:2019, 7.4.5: one-way analysis of variance.
-    """
-    samples = [np.atleast_1d(require_finite(group=group)) for group in groups]
-    sizes = np.array([sample.size for sample in samples])
-    if sizes.size < 2 or sizes.sum() <= sizes.size or sizes.min() < 1:
-        raise InvalidInput(f"repeatability needs two groups and one with two tests, got sizes {sizes.tolist()}")
-    means = np.array([sample.mean() for sample in samples])
-    mean = float(np.average(means, weights=sizes))
-    squares = sum(float(np.sum((sample - own) ** 2)) for sample, own in zip(samples, means, strict=True))
-    within = squares / (sizes.sum() - sizes.size)
-    between_groups = float(np.sum(sizes * (means - mean) ** 2)) / (sizes.size - 1)
-    tests_per_group = float((sizes.sum() - np.sum(sizes**2) / sizes.sum()) / (sizes.size - 1))
-    between = max(0.0, (between_groups - within) / tests_per_group)
-    return Repeatability(
-        mean=mean,
-        within=within**0.5,
-        between=between**0.5,
-        reproducibility=(within + between) ** 0.5,
-        repeatability_limit=2.8 * within**0.5,
-        reproducibility_limit=2.8 * (within + between) ** 0.5,
-        groups=int(sizes.size),
-        tests=int(sizes.sum()),
-    )
-
-
 def ratio_interval(numerator: ArrayLike, denominator: ArrayLike, *, confidence_level: float = 0.95) -> RatioEstimate:
     r"""Ratio of the means of two independent sets of tests with Fieller's confidence interval.
 
@@ -365,19 +275,14 @@ def ratio_interval(numerator: ArrayLike, denominator: ArrayLike, *, confidence_l
     v_a, v_b, rho = x.var(ddof=1) / x.size, y.var(ddof=1) / y.size, a / b
     t = float(stats.t.ppf((1 + confidence_level) / 2, _welch((v_a, rho**2 * v_b), (x.size, y.size))[1]))
     lead = b * b - t * t * v_b  # leading coefficient of the quadratic in rho
-    if lead <= 0:
-        return RatioEstimate(
-            ratio=rho,
-            lower=-np.inf,
-            upper=np.inf,
-            bounded=False,
-            reason=f"the denominator, {b:.3g} with standard error {v_b**0.5:.2g}, may be zero; make more tests",
-            confidence_level=confidence_level,
-        )
-    half = t * float(np.sqrt(max(0.0, v_a * lead + v_b * a * a))) / lead
-    centre = a * b / lead
+    lower, upper, reason = -np.inf, np.inf, ""
+    if lead > 0:
+        half = t * float(np.sqrt(max(0.0, v_a * lead + v_b * a * a))) / lead
+        lower, upper = a * b / lead - half, a * b / lead + half
+    else:
+        reason = f"the denominator, {b:.3g} with standard error {v_b**0.5:.2g}, may be zero; make more tests"
     return RatioEstimate(
-        ratio=rho, lower=centre - half, upper=centre + half, bounded=True, reason="", confidence_level=confidence_level
+        ratio=rho, lower=lower, upper=upper, bounded=lead > 0, reason=reason, confidence_level=confidence_level
     )
 
 

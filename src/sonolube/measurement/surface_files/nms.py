@@ -1,17 +1,4 @@
-"""NMS files of NanoFocus' usurf confocal microscopes.
-
-The header has 3468 little-endian bytes. The spacing at byte 1376 is in nanometres: in two files of 512 x 512 pixels
-(SurfaceTopography's examples nms-1 and nms-2, both of a field of 160 um) it reads 312.49999, musurf-reader [1]_ and
-surfalize [2]_ divide it by 1000 to have micrometres, and as the millimetres for which SurfaceTopography 1.27.1 takes it
-(``IO/NMS.py``, ``dx_mm``, then times 1000 to micrometres) the field would be 160 m. That library also scales heights by
-the 65534 of an older convention instead of the range at bytes 8 and 12, and takes nms-2 for a MATLAB file; so this
-format is read here.
-
-References
-----------
-.. [1] D. Mendroch, musurf-reader, https://github.com/drocheam/musurf-reader
-.. [2] F. Schell, surfalize, https://github.com/fredericjs/surfalize
-"""
+"""NMS files of NanoFocus' usurf confocal microscopes."""
 
 import math
 import struct
@@ -23,6 +10,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.surface_reading import FIXED_BY_FORMAT, SurfaceReading
+from sonolube.measurement.surface_files.wyko import terminated_text
 
 _SIGNATURE = b"OM_MS_2.0"
 _SIGNATURE_AT = 32
@@ -37,7 +25,20 @@ _TEXT_LENGTH = 64
 
 @final
 class NanoFocusNms:
-    """NMS files of NanoFocus' usurf confocal microscopes."""
+    """NMS files of NanoFocus' usurf confocal microscopes.
+
+    The header has 3468 little-endian bytes. The spacing at byte 1376 is in nanometres: in two files of 512 x 512
+    pixels (SurfaceTopography's examples nms-1 and nms-2, both of a field of 160 um) it reads 312.49999,
+    musurf-reader [1]_ and surfalize [2]_ divide it by 1000 to have micrometres, and as the millimetres for which
+    SurfaceTopography 1.27.1 takes it (``IO/NMS.py``, ``dx_mm``, then times 1000 to micrometres) the field would be
+    160 m. That library also scales heights by the 65534 of an older convention instead of the range at bytes 8 and
+    12, and takes nms-2 for a MATLAB file; so this format is read here.
+
+    References
+    ----------
+    .. [1] D. Mendroch, musurf-reader, https://github.com/drocheam/musurf-reader
+    .. [2] F. Schell, surfalize, https://github.com/fredericjs/surfalize
+    """
 
     name: ClassVar[str] = "NanoFocus NMS"
     suffixes: ClassVar[tuple[str, ...]] = (".nms",)
@@ -83,14 +84,9 @@ class NanoFocusNms:
             spacing_y=1e-9 * step_y,
             lateral_unit="nm",
             unit_origin=FIXED_BY_FORMAT,
-            title=_text(header, _TITLE_AT),
-            measured_at=_measured_at(_text(header, _TIME_AT)),
+            title=terminated_text(header[_TITLE_AT : _TITLE_AT + _TEXT_LENGTH]),
+            measured_at=_measured_at(terminated_text(header[_TIME_AT : _TIME_AT + _TEXT_LENGTH])),
         )
-
-
-def _text(header: bytes, at: int) -> str:
-    """Text at a byte up to its first null."""
-    return header[at : at + _TEXT_LENGTH].split(b"\0", 1)[0].decode("latin-1").strip()
 
 
 def _measured_at(text: str) -> datetime | None:

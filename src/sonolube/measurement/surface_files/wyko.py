@@ -1,10 +1,4 @@
-"""Wyko OPD files of Veeco's and Bruker's Vision software for white-light interferometers.
-
-The file is little-endian: two bytes, a directory of entries of 24 bytes (name, type, length, attribute), the first of
-which describes the directory itself, and then the blocks one after the other in the directory's order. Dialects differ
-in which blocks they have and in the type they declare for a block, so a number is read by its length. Every size that
-the file states is checked against the size it has.
-"""
+"""Wyko OPD files of Veeco's and Bruker's Vision software for white-light interferometers."""
 
 import math
 import struct
@@ -43,7 +37,13 @@ class _Block(NamedTuple):
 
 @final
 class WykoOpd:
-    """Wyko OPD files of Veeco's and Bruker's Vision software, in all its dialects."""
+    """Wyko OPD files of Veeco's and Bruker's Vision software, in all its dialects.
+
+    The file is little-endian: two bytes, a directory of entries of 24 bytes (name, type, length, attribute), the
+    first of which describes the directory itself, and then the blocks one after the other in the directory's order.
+    Dialects differ in which blocks they have and in the type they declare for a block, so a number is read by its
+    length. Every size that the file states is checked against the size it has.
+    """
 
     name: ClassVar[str] = "Wyko OPD"
     suffixes: ClassVar[tuple[str, ...]] = (".opd",)
@@ -94,7 +94,7 @@ def _directory(stream: BinaryIO, path: Path) -> dict[str, _Block]:
     if size == 0:
         raise InvalidInput(f"{path}: byte 0: the file is empty")
     title, _, length, _ = _ENTRY.unpack(_bytes(stream, 2, _ENTRY.size, path, "the directory"))
-    if _terminated(title) != _SIGNATURE.decode():
+    if terminated_text(title) != _SIGNATURE.decode():
         raise InvalidInput(f"{path}: byte 2: not a Wyko OPD file, which has 'Directory' here")
     if not _ENTRY.size <= length <= _LONGEST_DIRECTORY or length % _ENTRY.size:
         raise InvalidInput(f"{path}: byte 20: a directory of {length} bytes has no whole entries of {_ENTRY.size}")
@@ -106,10 +106,10 @@ def _directory(stream: BinaryIO, path: Path) -> dict[str, _Block]:
             continue
         if offset + block_length > size:
             raise InvalidInput(
-                f"{path}: byte {2 + _ENTRY.size * index}: block {_terminated(raw_name)!r} should end at byte"
+                f"{path}: byte {2 + _ENTRY.size * index}: block {terminated_text(raw_name)!r} should end at byte"
                 f" {offset + block_length}, but the file ends at {size}; it is truncated or damaged"
             )
-        blocks.setdefault(_terminated(raw_name), _Block(_terminated(raw_name), kind, offset, block_length))
+        blocks.setdefault(terminated_text(raw_name), _Block(terminated_text(raw_name), kind, offset, block_length))
         offset += block_length
     return blocks
 
@@ -171,7 +171,7 @@ def _text(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: Pa
         if len(content) < 3 or not content.startswith(_STRING_MARK):
             return ""
         content = content[3 : 3 + content[2]]
-    return _terminated(content)
+    return terminated_text(content)
 
 
 def _measured_at(text: str) -> datetime | None:
@@ -184,8 +184,8 @@ def _measured_at(text: str) -> datetime | None:
     return None
 
 
-def _terminated(content: bytes) -> str:
-    """Text up to the first null byte."""
+def terminated_text(content: bytes) -> str:
+    """Text of a binary file up to its first null byte."""
     return content.split(b"\0", 1)[0].decode("latin-1").strip()
 
 

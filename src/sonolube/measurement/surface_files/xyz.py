@@ -40,9 +40,8 @@ class XyzText:
         whole_lines = head.splitlines()[: -1 if len(head) == HEAD_SIZE else None]
         if b"\0" in head or len(whole_lines) <= 3 or _STATES_UNIT.search(head):
             return False
-        return len({_numbers_on(line) for line in whole_lines[-3:]} - {0}) == 1 and all(
-            map(_numbers_on, whole_lines[-3:])
-        )
+        counts = {_numbers_on(line) for line in whole_lines[-3:]}
+        return len(counts) == 1 and 0 not in counts
 
     def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
         """Heights of points x, y, z on their regular grid, or of points x, z along a profile.

@@ -3,7 +3,7 @@
 from typing import Any
 
 from sonolube.identification import DecayLengthDecision, Interval, SwitchConditions, SwitchTable
-from sonolube.identification.decay_length.verdict import HYPOTHESES
+from sonolube.identification.decay_length.posterior import HYPOTHESES
 from sonolube.text.units import format_si
 
 _FEW_DRAWS = 30.0  # effective, below which probabilities are coarse
