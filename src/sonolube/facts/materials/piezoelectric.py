@@ -234,9 +234,9 @@ def piezo_ceramic(name: str) -> PiezoCeramic:
 
     Examples
     --------
-    >>> from sonolube.facts.materials import coupling_factors, piezo_ceramic
-    >>> round(coupling_factors(piezo_ceramic("pzt4"))["coupling_factor_33"], 2)
-    0.68
+    >>> from sonolube.facts.materials import piezo_ceramic
+    >>> piezo_ceramic("pzt4").charge_constants[2, 2].item()  # C/N
+    2.89e-10
     """
     table = read_property_file("piezo.toml")
     try:
@@ -258,46 +258,6 @@ def piezo_ceramic_names() -> tuple[str, ...]:
     return tuple(
         sorted(name for name, entry in read_property_file("piezo.toml").entries.items() if "constants" in entry)
     )
-
-
-def coupling_factors(ceramic: PiezoCeramic) -> dict[str, float]:
-    r"""Electromechanical coupling factors of a ceramic from its constants, as magnitudes.
-
-    Parameters
-    ----------
-    ceramic : PiezoCeramic
-
-    Returns
-    -------
-    dict of str to float
-        By the vocabulary names under which the catalogue holds manufacturers' values: transverse, longitudinal, shear,
-        thickness and planar.
-
-    Notes
-    -----
-    .. math::
-
-        k_{31}^2 &= \frac{d_{31}^2}{s_{11}^E \varepsilon_{33}^T} , \quad
-        k_{33}^2 = \frac{d_{33}^2}{s_{33}^E \varepsilon_{33}^T} , \quad
-        k_{15}^2 = \frac{d_{15}^2}{s_{44}^E \varepsilon_{11}^T} \\
-        k_t^2 &= \frac{e_{33}^2}{c_{33}^E \varepsilon_{33}^S + e_{33}^2} , \quad
-        k_p^2 = \frac{2 d_{31}^2}{(s_{11}^E + s_{12}^E)\, \varepsilon_{33}^T}
-
-    References
-    ----------
-    .. [1] ANSI/IEEE Std 176-1987, IEEE Standard on Piezoelectricity. doi:10.1109/IEEESTD.1988.79638
-    """
-    s, d, eps_t = ceramic.compliance_short_circuit, ceramic.charge_constants, ceramic.permittivity_free
-    e33 = ceramic.stress_constants[2, 2]
-    c33_eps_s33 = ceramic.stiffness_short_circuit[2, 2] * ceramic.permittivity_clamped[2]
-    squares = {
-        "coupling_factor_31": d[2, 0] ** 2 / (s[0, 0] * eps_t[2]),
-        "coupling_factor_33": d[2, 2] ** 2 / (s[2, 2] * eps_t[2]),
-        "coupling_factor_15": d[0, 4] ** 2 / (s[4, 4] * eps_t[0]),
-        "coupling_factor_thickness": e33**2 / (c33_eps_s33 + e33**2),
-        "coupling_factor_planar": 2 * d[2, 0] ** 2 / ((s[0, 0] + s[0, 1]) * eps_t[2]),
-    }
-    return {name: float(np.sqrt(square)) for name, square in squares.items()}
 
 
 def _constants(kind: str, constants: Mapping[str, float], *indices: str) -> list[float]:

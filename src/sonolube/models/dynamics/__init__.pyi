@@ -39,7 +39,6 @@ from .linear import (
     equivalent_circuit as equivalent_circuit,
     modes as modes,
     poles as poles,
-    resonance_frequencies as resonance_frequencies,
     static_contact as static_contact,
 )
 from .long_time_response import (
@@ -52,7 +51,6 @@ from .sensitivities import (
     StructureChange as StructureChange,
     steady_state_sensitivities as steady_state_sensitivities,
 )
-from .stability import floquet_multipliers as floquet_multipliers
 from .steady_state_response import steady_state as steady_state
 from .steady_states import Status as Status, SteadyStates as SteadyStates, contact_motion as contact_motion
 from .structure import (
@@ -69,7 +67,6 @@ from .trajectories import (
     State as State,
     Trajectories as Trajectories,
     Trajectory as Trajectory,
-    displacement_harmonics as displacement_harmonics,
 )
 from .transient import march as march, trajectory as trajectory
 from .waveform import (

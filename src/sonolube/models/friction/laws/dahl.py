@@ -49,49 +49,6 @@ class DahlFriction:
     def __post_init__(self) -> None:
         require_positive(contact_stiffness=self.contact_stiffness, coulomb_friction_force=self.coulomb_friction_force)
 
-    @property
-    def steady_deformation(self) -> float:
-        """Deformation of steady sliding, F_c/K. [m]"""
-        return self.coulomb_friction_force / self.contact_stiffness
-
-
-def dahl_friction(law: DahlFriction, *, displacement: ArrayLike, deformation: ArrayLike = 0.0) -> Floats:
-    r"""Friction force after a monotonic slide by Dahl's law. [N]
-
-    Parameters
-    ----------
-    law : DahlFriction
-    displacement : array_like
-        Distance of a slide in one direction, negative for the other direction. [m]
-    deformation : array_like, broadcast against `displacement`
-        Tangential deformation of the contact at the start. [m]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    Raises
-    ------
-    InvalidInput
-        If a value is not finite.
-
-    Notes
-    -----
-    .. math:: F = K \delta_0\, e^{-K |x|/F_c} + F_c\, \mathrm{sgn}(x) \left( 1 - e^{-K |x|/F_c} \right)
-
-    D 1.3 integrated over the distance x from the deformation delta_0. A deformation beyond F_c/K, as after a reduction
-    of the load, decays to that value.
-
-    References
-    ----------
-    .. [1] D 1.3.
-    """
-    distance = require_finite(displacement=displacement)
-    start = require_finite(deformation=deformation)
-    K, F_c = law.contact_stiffness, law.coulomb_friction_force
-    decay = -K * np.abs(distance) / F_c
-    return K * start * np.exp(decay) - F_c * np.sign(distance) * np.expm1(decay)  # D 1.3 integrated for one sign of v
-
 
 def dahl_friction_history(
     law: DahlFriction, *, time: ArrayLike, relative_velocity: ArrayLike, deformation: ArrayLike = 0.0
@@ -124,7 +81,6 @@ def dahl_friction_history(
 
     See Also
     --------
-    dahl_friction : Closed form for a slide in one direction.
     dahl_under_vibration : Mean force over the steady period of a vibration.
 
     References
