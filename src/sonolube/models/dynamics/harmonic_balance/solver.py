@@ -119,15 +119,13 @@ def _newton_on_cpu(
     problem: BatchProblem, iterates: Iterates, truncation: Truncation, pending: Integers, steps: int, outcome: Integers
 ) -> None:
     """Solve the pending points by the compiled kernel; write their iterates and outcomes."""
-    variant, law = kernel_law(problem.gap_law)
     finest = [int(values[pending].max()) for values in truncation]
     sampled = pending.size * (_POINT + finest[0] * finest[2])
     chosen = uniform_blocks(pending, *truncation, lanes=newton_solve.lanes(sampled, LANES, **_FEW))
     newton_solve.for_points(sampled, **_FEW)(
-        *variant,
+        kernel_law(problem.gap_law),
         problem.model.contact_poles(),
         problem.model.static_stiffness,
-        law,
         iterates,
         np.array(truncation),
         chosen,

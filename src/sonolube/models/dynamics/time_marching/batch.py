@@ -164,7 +164,7 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
     step_response = np.empty((2, count))
     pairs = (0,) * (m // 2)
     state = row_layout(pairs).state
-    variant, law = kernel_law(gap_law)
+    law = kernel_law(gap_law)
     law_rows = problem.law_rows()
 
     def march_chunk(
@@ -174,8 +174,7 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
         drive, table = _drive_rows(problem, integrator, which, points), _aligned(np.empty((steps + 4) * m * LANES))
         march_lanes(
             pairs,
-            *variant,
-            law.cells,
+            law,
             numbers,
             drive,
             table,
