@@ -132,17 +132,8 @@ def piezo_ceramic_from_strain_charge(
     eps_t = _permittivities(relative_permittivity)
     c = _inverse(s)
     e = d @ c
-    return PiezoCeramic(
-        material=material,
-        stiffness_short_circuit=c,
-        compliance_short_circuit=s,
-        stress_constants=e,
-        charge_constants=d,
-        permittivity_clamped=eps_t - np.diag(d @ e.T),
-        permittivity_free=eps_t,
-        source=source,
-        note=note,
-    )
+    described = {"material": material, "source": source, "note": note}
+    return _ceramic(c, s, e, d, clamped=eps_t - np.diag(d @ e.T), free=eps_t, **described)
 
 
 def piezo_ceramic_from_stress_charge(
@@ -196,16 +187,22 @@ def piezo_ceramic_from_stress_charge(
     eps_s = _permittivities(relative_permittivity)
     s = _inverse(c)
     d = e @ s
+    described = {"material": material, "source": source, "note": note}
+    return _ceramic(c, s, e, d, clamped=eps_s, free=eps_s + np.diag(d @ e.T), **described)
+
+
+def _ceramic(
+    c: Floats, s: Floats, e: Floats, d: Floats, *, clamped: Floats, free: Floats, **described: Any
+) -> PiezoCeramic:
+    """Ceramic of its matrices in both forms, with its material, source and note."""
     return PiezoCeramic(
-        material=material,
         stiffness_short_circuit=c,
         compliance_short_circuit=s,
         stress_constants=e,
         charge_constants=d,
-        permittivity_clamped=eps_s,
-        permittivity_free=eps_s + np.diag(d @ e.T),
-        source=source,
-        note=note,
+        permittivity_clamped=clamped,
+        permittivity_free=free,
+        **described,
     )
 
 
