@@ -28,6 +28,11 @@ _HEADS = (
 )
 
 
+def variable(dimensions: Any, values: Iterable[Any], long_name: str, units: str = "1") -> Any:
+    """Numbers with their dimensions and attributes as a variable of a dataset; NaN for None."""
+    return dimensions, np.array([*values], dtype=np.float64), {"units": units, "long_name": long_name}
+
+
 def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPrediction, ...] = ()) -> "xr.Dataset":
     """Measured, fitted and cross-validated friction ratios over models and tests, with error statistics.
 
@@ -37,9 +42,6 @@ def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPred
 
     tests = [one.test for one in fits[0].predictions]
     grid = ("model", "test")
-
-    def variable(dimensions: Any, values: Iterable[Any], long_name: str) -> tuple[Any, Any, dict[str, str]]:
-        return dimensions, np.array([*values], dtype=np.float64), {"units": "1", "long_name": long_name}
 
     rig_variables: dict[str, Any] = {}
     of_model = {one.model.name: one for one in predictions}

@@ -228,8 +228,8 @@ def _averages(states: SteadyStates, speeds: Floats, workers: int) -> tuple[Float
 
         map_chunks(average, alike.size, workers)
     for point in np.flatnonzero(~has_two_extrema):
-        own = harmonics[point, : count[point]]
-        averages[:, point] = _piecewise_linear_averages(gap_law, load[point], omega[point], mean[point], own, speeds)
+        motion = harmonics[point, : count[point]]
+        averages[:, point] = _piecewise_linear_averages(gap_law, load[point], omega[point], mean[point], motion, speeds)
     return averages[0], averages[1]
 
 

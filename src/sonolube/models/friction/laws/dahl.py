@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
+from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import kernel
-from sonolube.models.friction.laws.sampled_motion import integrate_rows, require_increasing
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,11 +87,34 @@ def dahl_friction_history(
     ----------
     .. [1] D 1.3.
     """
-    times = require_increasing(time=time)
-    velocities = require_finite(relative_velocity=relative_velocity)
+    times, velocities = _increasing(time), require_finite(relative_velocity=relative_velocity)
     start = require_finite(deformation=deformation)
     K, F_c = law.contact_stiffness, law.coulomb_friction_force
-    return K * integrate_rows(_deformation_history, times, velocities, start, K / F_c)
+    if velocities.ndim == 0 or velocities.shape[-1] != times.size:
+        raise InvalidInput(
+            f"relative_velocity must have one value for each of {times.size} times along its last axis,"
+            f" got shape {velocities.shape}"
+        )
+    try:
+        rows = np.broadcast_shapes(velocities.shape[:-1], start.shape)
+    except ValueError:
+        raise InvalidInput(f"{start.shape} starting values do not match {velocities.shape[:-1]} motions") from None
+    motions = np.broadcast_to(velocities, (*rows, times.size)).reshape(-1, times.size)
+    starts = np.broadcast_to(start, rows).ravel()
+    found = [_deformation_history(times, motion, one, K / F_c) for motion, one in zip(motions, starts, strict=True)]
+    return K * np.reshape(found, (*rows, times.size))
+
+
+def _increasing(time: ArrayLike) -> Floats:
+    """Sample times as an array; refuse times that do not increase; shape (n,)."""
+    times = require_finite(time=time)
+    if times.ndim != 1 or times.size < 2:
+        raise InvalidInput(f"time must be one-dimensional with at least two samples, got shape {times.shape}")
+    steps = np.diff(times)
+    if not np.all(steps > 0):
+        first = int(np.argmin(steps > 0))
+        raise InvalidInput(f"time must increase, got {times[first + 1]!s} s after {times[first]!s} s")
+    return times
 
 
 @kernel(cache=True)
