@@ -28,11 +28,7 @@ from .gap_laws.linear import LinearGap as LinearGap
 from .gap_laws.protocol import GapLaw as GapLaw, force_decay_length as force_decay_length
 from .gap_laws.table import GAP_LAWS as GAP_LAWS
 from .gap_laws.tabulated import TabulatedGap as TabulatedGap
-from .kinematic_friction import (
-    FrictionAverages as FrictionAverages,
-    friction_averages as friction_averages,
-    steady_friction as steady_friction,
-)
+from .kinematic_friction import FrictionAverages as FrictionAverages, friction_averages as friction_averages
 from .linear import (
     Modes as Modes,
     StaticContact as StaticContact,

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Complexes, Floats, Integers, require_non_negative
 from sonolube.errors import InvalidInput
 from sonolube.execution.threads import map_chunks
-from sonolube.models.dynamics.backend import Backend
 from sonolube.models.dynamics.friction_average.elliptic_kernel import (
     elliptic_averages,
     friction_workspace,
@@ -29,9 +28,7 @@ from sonolube.models.dynamics.friction_average.elliptic_quadrature import (
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw, damped_force, force_decay_length
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.solver import MAX_HARMONICS
-from sonolube.models.dynamics.steady_state_response import steady_state
 from sonolube.models.dynamics.steady_states import Status, SteadyStates
-from sonolube.models.dynamics.structure import Structure
 
 # Additional nodes for a steep force: per decay length of amplitude, at least for laws with corners, and the choices.
 _NODES_PER_DECAY_LENGTH, _NODES_FOR_CORNERS = 2.0, 1024.0
@@ -62,85 +59,6 @@ class FrictionAverages:
     force_weighted: Floats
 
 
-def steady_friction(
-    structure: Structure,
-    gap_law: GapLaw,
-    *,
-    sliding_speed: ArrayLike,
-    normal_load: ArrayLike,
-    frequency: ArrayLike,
-    voltage_amplitude: ArrayLike | None = None,
-    voltage_harmonics: ArrayLike | None = None,
-    voltage_offset: ArrayLike = 0.0,
-    relative_tolerance: float = 1e-6,
-    stability: bool = True,
-    workers: int = 1,
-    backend: Backend = "cpu",
-) -> tuple[SteadyStates, FrictionAverages]:
-    """Steady states and their kinematic friction factors.
-
-    Parameters
-    ----------
-    structure : Structure
-    gap_law : GapLaw
-    sliding_speed : array_like, shape (speeds,)
-        Sliding speeds, each combined with every state. [m/s]
-    normal_load : array_like
-        Dead load on the contact. [N]
-    frequency : array_like
-        Frequency of the drive. [Hz]
-    voltage_amplitude : array_like, optional
-        Amplitude of a sinusoidal drive. [V]
-    voltage_harmonics : array_like of complex, shape (..., K), optional
-        Harmonics of any other periodic drive, in V.
-    voltage_offset : array_like
-        Mean of the drive. [V]
-    relative_tolerance : float
-        Largest error of amplitude and mean force.
-    stability : bool
-        Whether to compute stability.
-    workers : int
-        Number of threads of the CPU.
-    backend : {"cpu", "gpu"}
-        As in `steady_state`; the CPU averages friction.
-
-    Returns
-    -------
-    SteadyStates
-        As from `steady_state`.
-    FrictionAverages
-        As from `friction_averages`.
-
-    Raises
-    ------
-    InvalidInput
-        As `steady_state` and `friction_averages`.
-
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
-
-    See Also
-    --------
-    steady_state, friction_averages
-    """
-    states = steady_state(
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_amplitude=voltage_amplitude,
-        voltage_harmonics=voltage_harmonics,
-        voltage_offset=voltage_offset,
-        relative_tolerance=relative_tolerance,
-        stability=stability,
-        workers=workers,
-        backend=backend,
-    )
-    return states, friction_averages(states, sliding_speed=sliding_speed, workers=workers)
-
-
 def friction_averages(states: SteadyStates, *, sliding_speed: ArrayLike, workers: int = 1) -> FrictionAverages:
     r"""Kinematic friction factors of every steady state at every sliding speed.
 
@@ -164,7 +82,7 @@ def friction_averages(states: SteadyStates, *, sliding_speed: ArrayLike, workers
 
     See Also
     --------
-    steady_friction
+    steady_state
 
     Notes
     -----

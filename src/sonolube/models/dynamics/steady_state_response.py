@@ -97,7 +97,7 @@ def steady_state(
 
     See Also
     --------
-    steady_friction, response_curve, march
+    friction_averages, response_curve, march
 
     Notes
     -----
