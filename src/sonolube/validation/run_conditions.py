@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
@@ -156,7 +157,7 @@ def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
             raise InvalidInput(f"{title}: {name} of run {int(np.argmax(inputs[name] <= 0)) + 1} must be positive")
     group, first = _groups(inputs)
     stated = setting(runs, "friction_reduction_uncertainty", np.nan)
-    scatter = _scatter(ratio, group)
+    scatter = pooled_scatter(ratio, group)
     conditions = []
     for index, run in enumerate(first):
         members = group == index
@@ -210,11 +211,17 @@ def _amplitudes(runs: "xr.Dataset", rig: Rig | None) -> Floats:
                 "the runs state voltages: add a column vibration_amplitude [um], or a rig file that scales them (--rig)"
             )
         return amplitude
-    by_voltage = unknown & np.isfinite(voltage)
     if not np.any(unknown):
         return amplitude
-    own = steady_vibration(rig).vibration_amplitude
     volts = None if rig.drive is None else rig.drive.voltage_peak_to_peak
+    return known_amplitudes(amplitude, voltage, unknown, own=steady_vibration(rig).vibration_amplitude, volts=volts)
+
+
+def known_amplitudes(
+    amplitude: Floats, voltage: Floats, unknown: NDArray[np.bool_], *, own: float, volts: float | None
+) -> Floats:
+    """Amplitudes, unknown ones by their voltage in proportion to the rig's own, else the rig's own. [m]"""
+    by_voltage = unknown & np.isfinite(voltage)
     if np.any(by_voltage):
         if volts is None:
             raise InvalidInput(
@@ -237,7 +244,7 @@ def _groups(inputs: dict[str, Floats]) -> tuple[np.ndarray, np.ndarray]:
     return group, np.array(first)
 
 
-def _scatter(ratio: Floats, group: np.ndarray) -> float | None:
+def pooled_scatter(ratio: Floats, group: np.ndarray) -> float | None:
     """Pooled standard deviation of repeats."""
     counts = np.bincount(group)
     free = ratio.size - counts.size
