@@ -1,9 +1,7 @@
 """Own measured runs as conditions of model variants: repeats averaged, what they do not state taken from a rig."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import cos, isfinite, pi
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -26,23 +24,6 @@ _FIRST_LETTER: Final = 0x4E00  # of the groups of conditions; no published set h
 _MAX_GROUPS: Final = 12
 _IN_PLANE: Final = 1e-6  # cosine of an angle that counts as across the sliding
 _SETTINGS: Final = ("vibration_amplitude", "vibration_velocity", "vibration_direction", "frequency", "sliding_speed")
-
-REMEDIES: Final[Mapping[str, str]] = MappingProxyType(
-    {
-        "contact": "a rig file (roughness and materials)",
-        "normal_load": "normal_load [N], or a rig file",
-        "friction_coefficient": "intrinsic_friction_force [N] with normal_load [N], or a rig file",
-        "sliding_speed": "sliding_speed [mm/s], or a rig file",
-        "vibration_amplitude": "vibration_amplitude [um], or a rig file, of a vibration along the normal",
-        "frequency": "frequency [kHz], or a rig file",
-        "in_plane_amplitude": "vibration_direction [deg] of 0, for a vibration along the sliding",
-        "vibration_velocity": "vibration_direction [deg], for a vibration in the contact plane",
-        "vibration_direction": "vibration_direction [deg], for a vibration in the contact plane",
-        "holder_stiffness": "friction.holder_stiffness of a rig file",
-        "holder_mass": "a mass that moves with the holder, which no rig file states",
-    }
-)
-"""Entry to add for a missing input of a model, by its name in `REQUIRED_INPUTS`."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from pytest import approx, raises
-from scipy.optimize import minimize_scalar
 
 from sonolube.errors import InvalidInput
 from sonolube.models.friction import (
@@ -27,13 +26,6 @@ pressures = st.floats(1e6, 199e6)
 def test_the_stribeck_curve_has_the_limits_of_boundary_and_film_friction() -> None:
     assert stribeck_coefficient(CURVE, hersey_number=0.0) == approx(0.12)
     assert stribeck_coefficient(CURVE, hersey_number=1e-7) == approx(1e6 * 1e-7)
-
-
-def test_the_film_is_full_where_friction_is_lowest() -> None:
-    found = minimize_scalar(
-        lambda number: float(stribeck_coefficient(CURVE, hersey_number=1e-9 * number)), bounds=(0, 50), method="bounded"
-    )
-    assert CURVE.hersey_number_at_minimum == approx(1e-9 * found.x, rel=1e-4)
 
 
 def test_the_hersey_number_is_hand_computed() -> None:

@@ -59,12 +59,6 @@ class StribeckCurve:
         if self.film_slope * self.transition_hersey_number >= self.boundary_coefficient:
             raise InvalidInput("film_slope times transition_hersey_number must be smaller than boundary_coefficient")
 
-    @property
-    def hersey_number_at_minimum(self) -> float:
-        """Hersey number of the minimum of the curve, where the film becomes full, in m."""
-        ratio = self.boundary_coefficient / (self.film_slope * self.transition_hersey_number)
-        return float(self.transition_hersey_number * np.log(ratio))
-
 
 def hersey_number(*, dynamic_viscosity: ArrayLike, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> Floats:
     r"""Hersey number: viscosity times speed over pressure. [m]

@@ -22,9 +22,9 @@ from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.harmonic_balance.newton_kernel import newton_step
 from sonolube.models.dynamics.harmonic_balance.receptance import contact_receptances
 from sonolube.models.dynamics.kernels.contact_kernel import (
+    EXPONENTIAL,
     KernelLaw,
     contact_force_rows,
-    stiffness_follows_force,
     velocity_over_omega,
 )
 from sonolube.models.dynamics.kernels.simd import (
@@ -133,7 +133,8 @@ def newton_solve(
         if count != work.tabulated[0]:
             _tabulate_waves(count, waves)
             work.tabulated[0] = count
-        quantities = 3 if len(law.damped) == 1 else (1 if stiffness_follows_force(law) else 2)
+        # stiffness is proportional to an exponential force, so that one Fourier transform serves both
+        quantities = 3 if len(law.damped) == 1 else (1 if len(law.kind) == EXPONENTIAL else 2)
         for _ in range(iterations):
             velocity_over_omega(law, unknown, h, velocity)
             for j in range(count // 2 + 1):

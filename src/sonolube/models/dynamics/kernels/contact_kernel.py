@@ -34,12 +34,6 @@ class KernelLaw(NamedTuple):
 
 
 @kernel(**INNER)
-def stiffness_follows_force(law: KernelLaw) -> bool:
-    """Whether the stiffness is proportional to the force, so that one Fourier transform serves both."""
-    return len(law.kind) == EXPONENTIAL and len(law.damped) == 0
-
-
-@kernel(**INNER)
 def velocity_over_omega(law: KernelLaw, motion: Floats, h: int, velocity: Floats) -> None:
     """Write the harmonics i k X_k of the velocity over omega, in the rows of a motion; nothing without damping."""
     if len(law.damped) == 1:
