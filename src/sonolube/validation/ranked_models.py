@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.stats import t as student
 
 from sonolube.checks import Floats
 from sonolube.validation.assessment import InformationCriteria, gaussian_criteria, leave_one_set_out_fits
@@ -89,6 +88,8 @@ def ranked_model(variant: ModelVariant, conditions: tuple[RunConditions, ...]) -
     unseen = tuple(left_out[one.set_name].predict(one) for one in conditions)
     rms = root_mean_square(_errors(fitted, conditions))
     within, count, free = None not in fitted, len(conditions), len(conditions) - len(fit.values)
+    from scipy.stats import t as student
+
     quantile = count * float(np.log1p(student.ppf(0.975, free) ** 2 / free)) if within and free > 0 else None
     return RankedModel(
         fit=fit,
@@ -135,4 +136,6 @@ def _probability_of_equal_errors(first: Floats, second: Floats) -> float:
     if abs(correlation) == 1:
         return 0.0
     value = correlation / np.sqrt((1 - correlation**2) / (first.size - 1))
+    from scipy.stats import t as student
+
     return float(2 * student.sf(abs(value), first.size - 1))
