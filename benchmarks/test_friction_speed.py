@@ -3,18 +3,15 @@
 import timeit
 
 import numpy as np
-import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import quad
 
 from sonolube.models.contact import ASPERITY_LAWS, ContactPair, RoughContact, separation
 from sonolube.models.friction import (
     DahlFriction,
-    LuGreFriction,
     dahl_friction_history,
     dahl_under_vibration,
     dong_2015_half_period_ratio,
-    lugre_friction_history,
 )
 from sonolube.models.surfaces import Roughness
 from sonolube.models.wear import vibrating_cube_wear_rate
@@ -103,22 +100,13 @@ def test_ten_thousand_steady_periods_of_dahls_law(benchmark: BenchmarkFixture) -
     benchmark.extra_info["us_a_point"] = 1e6 * seconds_a_point(benchmark, 10_000)
 
 
-@pytest.mark.parametrize("law", ["dahl", "lugre"])
-def test_a_million_samples_of_a_history(benchmark: BenchmarkFixture, law: str) -> None:
+def test_a_million_samples_of_a_history(benchmark: BenchmarkFixture) -> None:
     t = np.linspace(0, 1, POINTS)
     motion = {"time": t, "relative_velocity": 0.01 + 0.1 * np.cos(2 * np.pi * 1000 * t)}
     dahl = DahlFriction(contact_stiffness=1e6, coulomb_friction_force=1.0)
-    lugre = LuGreFriction(
-        coulomb_friction_force=1.0,
-        static_friction_force=1.5,
-        stribeck_velocity=1e-3,
-        bristle_stiffness=1e5,
-        bristle_damping=300.0,
-        viscous_coefficient=0.4,
-    )
 
     def run() -> object:
-        return dahl_friction_history(dahl, **motion) if law == "dahl" else lugre_friction_history(lugre, **motion)
+        return dahl_friction_history(dahl, **motion)
 
     run()
     benchmark(run)

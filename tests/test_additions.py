@@ -34,8 +34,8 @@ class ConstantRatio(FrictionModel):
 
     damping_reference: float = parameter(0.5, positive=True, unit="kg/s", meaning="Reference of the damping")
 
-    def ratio(self, contact, motion, *, sliding_speed, friction_coefficient=None):
-        return np.full(np.shape(sliding_speed), self.damping_reference)
+    def _ratios(self, contact, motion, v_r, mu):
+        return np.full(v_r.shape, self.damping_reference)
 
     def batched_ratio(self, contact, motions, *, sliding_speed, motion, friction_coefficient, tolerance=1e-7):
         return np.full(sliding_speed.shape, self.damping_reference)

@@ -21,7 +21,7 @@ from sonolube.identification import (
     reference_parameters,
     structure_model,
 )
-from sonolube.models.actuator import PiezoStack
+from sonolube.models.actuator import PiezoStack, circuit_resonances
 from sonolube.models.dynamics import (
     GROUND,
     Damper,
@@ -30,10 +30,10 @@ from sonolube.models.dynamics import (
     chain_structure,
     drive_receptance,
     electrical_admittance,
+    equivalent_circuit,
     modal_structure,
     modes,
     pin_on_disc_chain,
-    resonance_frequencies,
     static_contact,
     with_contact_spring,
 )
@@ -99,7 +99,7 @@ def test_resonance_and_antiresonance_are_those_of_the_strongest_branch(
     build: StructureBuilder, values: dict[str, float]
 ) -> None:
     # the equivalent circuit has the exact resonances of one mode, those of several to the coupling between them
-    circuit = resonance_frequencies(build(values))
+    circuit = circuit_resonances(equivalent_circuit(build(values)))
     strongest = int(np.argmax(circuit.coupling_factor))
     resonance = observed("electrical_resonance", build, values)
     antiresonance = observed("electrical_antiresonance", build, values)

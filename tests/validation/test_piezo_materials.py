@@ -5,8 +5,9 @@ import pytest
 from pytest import approx
 from scipy.optimize import brentq
 from scipy.special import j0, j1
+from tests.facts.materials.coupling_factors import coupling_factors
 
-from sonolube.facts.materials import coupling_factors, material, piezo_ceramic
+from sonolube.facts.materials import material, piezo_ceramic
 
 VACUUM = 8.8541878128e-12
 

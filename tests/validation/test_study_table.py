@@ -8,8 +8,8 @@ from pytest import approx
 from sonolube.charts import Note, Points
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.measurement.measured_runs import read_runs
-from sonolube.validation.previous_study_map import study_chart
-from sonolube.validation.study_table import STUDY_COLUMNS, read_studies, study_table
+from sonolube.validation.previous_study_map import StudyPoint, study_chart
+from sonolube.validation.study_table import STUDY_COLUMNS, studies_of_runs, study_table
 
 OWN = "study,direction,sliding_speed [mm/s],normal_load [N],nominal_area [mm2],friction_ratio,source\n{}\n"
 
@@ -18,6 +18,10 @@ def written(folder: Path, text: str) -> Path:
     path = folder / "studies.csv"
     path.write_text(text)
     return path
+
+
+def read_studies(path: Path) -> tuple[tuple[StudyPoint, ...], tuple[str, ...]]:
+    return studies_of_runs(read_runs(path), title=str(path))
 
 
 def test_the_table_of_the_package_reads_as_runs_with_a_source_for_each_point(tmp_path: Path) -> None:

@@ -6,8 +6,6 @@ from functools import cache
 from typing import Final
 
 import numpy as np
-from scipy.optimize import minimize_scalar
-from scipy.stats import binomtest
 
 from sonolube.checks import Floats
 from sonolube.prediction.closures import CLOSURES
@@ -40,6 +38,7 @@ _RESAMPLED: Final = 10_000  # sets, of the bootstrap
 _MEMORY_LENGTHS: Final = (1e-6, 2e-6)  # m, uniform: as examples/rigs/tribometer_uncertain.toml has it
 _ROUGHNESS_SPREAD: Final = 0.1  # likewise
 _STICK_SLIP: Final = CLOSURES[0]
+_Rival = Callable[[Sequence[TestedRig], TestedRig, np.random.Generator], Floats]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -91,6 +90,8 @@ class Calibration:
 
     def p_value(self, probability: float) -> float:
         """Two-sided probability of such a coverage or a worse one, if the intervals are right."""
+        from scipy.stats import binomtest
+
         return float(binomtest(self.covered(probability), len(self.predictions), probability).pvalue)
 
     @property
@@ -150,7 +151,7 @@ def calibrations() -> tuple[Calibration, ...]:
         leave-one-rig-out residual, and the uncertainty of the inputs alone.
     """
     records = rigs_by_records()
-    rivals: Mapping[str, Callable[[Sequence[TestedRig], TestedRig, np.random.Generator], Floats]] = {
+    rivals: Mapping[str, _Rival] = {
         "one model by records, its residual": _single_model,
         "uncertain inputs by records alone": _inputs_alone,
     }
@@ -187,11 +188,7 @@ def population_calibration(
 
 
 def _rival_calibration(
-    name: str,
-    rival: Callable[[Sequence[TestedRig], TestedRig, np.random.Generator], Floats],
-    rigs: Sequence[TestedRig],
-    *,
-    groups: tuple[tuple[str, ...], ...] = (),
+    name: str, rival: _Rival, rigs: Sequence[TestedRig], *, groups: tuple[tuple[str, ...], ...] = ()
 ) -> Calibration:
     """Calibration of a simpler way."""
     predictions: list[UnseenPrediction] = []
@@ -247,6 +244,8 @@ def _fitted(rigs: Sequence[TestedRig]) -> float:
 
     def squares(log_length: float) -> float:
         return float(sum(np.sum((_stick_slip(rig, log_length) - rig.friction_ratio) ** 2) for rig in rigs))
+
+    from scipy.optimize import minimize_scalar
 
     middle = float(np.log(_STICK_SLIP.median))
     return float(minimize_scalar(squares, bounds=(middle - 2, middle + 2), method="bounded").x)

@@ -70,7 +70,7 @@ class Prior:
         return means, np.array([own, *(deviation for _, deviation in others)])
 
 
-POPULATION_PRIOR: Final = Prior()
+POPULATION_PRIOR: Final[Prior] = Prior()
 """Prior with decay lengths unknown: weak, and the same for every way that was compared."""
 
 

@@ -17,7 +17,7 @@ from sonolube.prediction.laboratory import Laboratory, laboratory
 from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, RigPrediction, rig_prediction
-from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, OwnLogarithms, Target, measures, own_logarithms
+from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, Target, measures, own_logarithms
 from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
 from sonolube.prediction.scores import LEVELS
 from sonolube.prediction.stiffness_probes import Probe, probe_sentences, stiffness_probes, told_probes
@@ -301,7 +301,7 @@ def _frictional(ratio: Floats, intrinsic: Floats, rig: Rig, heating: float | str
 
 
 def _shares_left(
-    uncertain: Sequence[Input], logs: OwnLogarithms, drawn: Mapping[str, Floats]
+    uncertain: Sequence[Input], logs: Mapping[str, Floats], drawn: Mapping[str, Floats]
 ) -> dict[str, NDArray[Any]]:
     """Shares of the 80 % intervals of friction ratio and force that are left if one input were known well."""
     found = {}
@@ -313,7 +313,7 @@ def _shares_left(
             [
                 1.0
                 if each.spread <= KNOWN_WELL[each.name] or (each.name, share) == _NOT_IN_THE_RATIO
-                else target.share_left(observed=logs.of(each.name), noise=KNOWN_WELL[each.name])
+                else target.share_left(observed=logs[each.name], noise=KNOWN_WELL[each.name])
                 for each in uncertain
             ]
         )
@@ -346,14 +346,9 @@ def _measured(own: OwnRuns, found: RigPrediction, inputs: RigInputs) -> dict[str
 
 def _described(uncertain: Sequence[Input]) -> dict[str, NDArray[Any]]:
     """Values and texts of uncertain inputs, by the names that they have in a prediction."""
-    return {
-        "input_value": np.array([each.value for each in uncertain]),
-        "input_spread": np.array([each.spread for each in uncertain]),
-        "input_label": np.array([each.label for each in uncertain]),
-        "input_text": np.array([each.text for each in uncertain]),
-        "reason": np.array([each.reason for each in uncertain]),
-        "remedy": np.array([each.remedy for each in uncertain]),
-    }
+    columns = {"input_value": "value", "input_spread": "spread", "input_label": "label", "input_text": "text"}
+    columns |= {"reason": "reason", "remedy": "remedy"}
+    return {name: np.array([getattr(each, field) for each in uncertain]) for name, field in columns.items()}
 
 
 def _measures(better: Sequence[Measure]) -> dict[str, NDArray[Any]]:

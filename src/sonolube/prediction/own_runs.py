@@ -11,6 +11,7 @@ from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting
 from sonolube.prediction.evidence import TestedRig
 from sonolube.prediction.inputs import Input, RigInputs
+from sonolube.validation.run_conditions import known_amplitudes, pooled_scatter
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,16 +76,9 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
 
 def _amplitudes(runs: "xr.Dataset", inputs: RigInputs) -> Floats:
     """Amplitude of each run; by its voltage in proportion to the rig's, where only that is stated."""
-    amplitude = setting(runs, "vibration_amplitude", np.nan)
-    voltage = setting(runs, "voltage_peak_to_peak", np.nan)
-    by_voltage = np.isnan(amplitude) & np.isfinite(voltage)
-    if np.any(by_voltage):
-        if inputs.voltage_peak_to_peak is None:
-            raise InvalidInput(
-                "the runs state voltages, but the rig has no drive.voltage_peak_to_peak to scale them by"
-            )
-        amplitude = np.where(by_voltage, inputs.amplitude.value * voltage / inputs.voltage_peak_to_peak, amplitude)
-    return np.where(np.isnan(amplitude), inputs.amplitude.value, amplitude)
+    amplitude, voltage = (setting(runs, name, np.nan) for name in ("vibration_amplitude", "voltage_peak_to_peak"))
+    own, volts = inputs.amplitude.value, inputs.voltage_peak_to_peak
+    return known_amplitudes(amplitude, voltage, np.isnan(amplitude), own=own, volts=volts)
 
 
 def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Floats) -> tuple[Floats, tuple[str, ...]]:
@@ -96,10 +90,8 @@ def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Fl
         return stated, ()
     keys = np.round(np.log(np.stack([amplitude, speed])), 2)
     _, group, counts = np.unique(keys, axis=1, return_inverse=True, return_counts=True)
-    free = ratio.size - counts.size
-    if free + 1 >= _MIN_REPEATS:
-        means = np.bincount(group.ravel(), weights=ratio) / counts
-        scatter = float(np.sqrt(np.sum((ratio - means[group.ravel()]) ** 2) / free))
+    scatter = pooled_scatter(ratio, group.ravel())
+    if scatter is not None and ratio.size - counts.size + 1 >= _MIN_REPEATS:
         return np.where(np.isnan(stated), scatter, stated), ()
     return np.where(np.isnan(stated), _USUAL_UNCERTAINTY, stated), (
         f"the runs state no uncertainty and hold too few repeats; {_USUAL_UNCERTAINTY:g} is taken for each ratio",

@@ -44,34 +44,11 @@ class Measure:
     share_left: float
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class OwnLogarithms:
-    """Draws of the uncertain inputs of a rig as logarithms, row by row those of the friction ratio.
+def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> dict[str, Floats]:
+    """Draws of the uncertain inputs of a rig as logarithms by their names, row by row those of the friction ratio.
 
-    Parameters
-    ----------
-    log_length, log_amplitude : ndarray, shape (draws,)
-        Of factors on the medians of decay length and amplitude.
-    log_friction : ndarray, shape (draws,)
-        Of the coefficient without vibration.
+    Decay length and amplitude, as factors on their medians, are split from their ratio, on which friction depends.
     """
-
-    log_length: Floats
-    log_amplitude: Floats
-    log_friction: Floats
-
-    def of(self, name: str) -> Floats:
-        """Logarithms of an input by its name."""
-        known = {
-            "decay_length": self.log_length,
-            "vibration_amplitude": self.log_amplitude,
-            "friction_coefficient": self.log_friction,
-        }
-        return known[name]
-
-
-def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> OwnLogarithms:
-    """Draws of decay length and amplitude of a rig, split from those of their ratio on which friction depends."""
     draws = found.draws
     at, rows = draws.at, np.arange(found.count) % draws.rows.size
     if at.decay_length_spread is None:
@@ -82,9 +59,8 @@ def own_logarithms(found: RigPrediction, *, intrinsic: Floats, seed: int) -> Own
     deviate = draws.deviates[rows, 1]
     fresh = np.random.default_rng(seed + 7).standard_normal(found.count)
     amplitude = at.amplitude_spread / both * (-at.amplitude_spread * deviate + scatter * fresh)
-    return OwnLogarithms(
-        log_length=middle + both * deviate + amplitude, log_amplitude=amplitude, log_friction=np.log(intrinsic)
-    )
+    length = middle + both * deviate + amplitude
+    return {"decay_length": length, "vibration_amplitude": amplitude, "friction_coefficient": np.log(intrinsic)}
 
 
 class Target:
@@ -136,7 +112,7 @@ def measures(
         ),
     ]
     if not inputs.measured_length:
-        length = own_logarithms(found, intrinsic=np.ones(found.count), seed=seed).log_length
+        length = own_logarithms(found, intrinsic=np.ones(found.count), seed=seed)["decay_length"]
         made += _stiffness_measures(ratio, length, probes)
     return tuple(made)
 

@@ -20,7 +20,7 @@ from sonolube.validation.assessment import (
 )
 from sonolube.validation.coulomb_and_spring_variants import COULOMB_AND_SPRING_VARIANTS
 from sonolube.validation.dahl_and_lugre_variants import DAHL_AND_LUGRE_VARIANTS
-from sonolube.validation.fitting import Fit, profile_likelihood_interval, select_tests
+from sonolube.validation.fitting import CHI_SQUARED_95, Fit, profile_likelihood_interval, select_tests
 from sonolube.validation.free_parameters import FreeParameter
 from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
 from sonolube.validation.model_variant import ModelVariant
@@ -244,15 +244,20 @@ def _compared_fit(model: ModelVariant, tests: Tests | None) -> ComparedFit:
         model=model,
         sets=sets,
         assessment=assessment,
-        parameters=_fitted_parameters(assessment.fit, left_out, tests),
+        parameters=fitted_parameters(assessment.fit, left_out, tests),
         predictions=tuple(
             _prediction(test, assessment.fit, left_out.get(test.set_name, assessment.fit)) for test in selected
         ),
     )
 
 
-def _fitted_parameters(fit: Fit, left_out: dict[str, Fit], tests: Tests | None) -> tuple[FittedParameter, ...]:
-    """Fitted parameters with intervals and ranges over the fits with one set left out."""
+def fitted_parameters(
+    fit: Fit, left_out: dict[str, Fit], tests: Tests | None, *, largest_excess: float | None = CHI_SQUARED_95
+) -> tuple[FittedParameter, ...]:
+    """Fitted parameters with ranges over the fits with one set left out, and with intervals of an excess of deviance.
+
+    Without intervals where no excess is given, or where each of their points would take a long fit.
+    """
     parameters, found = fit.variant.parameters, []
     for index, (parameter, value) in enumerate(zip(parameters, fit.values, strict=True)):
         others = [
@@ -260,15 +265,11 @@ def _fitted_parameters(fit: Fit, left_out: dict[str, Fit], tests: Tests | None) 
             for letter, other in left_out.items()
             if parameter.applies_to("".join(left_out).replace(letter, ""))
         ]
-        profiled = len(parameters) <= _MAX_PROFILED
-        found.append(
-            FittedParameter(
-                parameter=parameter,
-                value=value,
-                interval=profile_likelihood_interval(fit, index, tests=tests) if profiled else None,
-                leave_one_out_range=(min(others), max(others)) if others else None,
-            )
-        )
+        interval = None
+        if largest_excess is not None and len(parameters) <= _MAX_PROFILED:
+            interval = profile_likelihood_interval(fit, index, tests=tests, largest_excess=largest_excess)
+        span = (min(others), max(others)) if others else None
+        found.append(FittedParameter(parameter=parameter, value=value, interval=interval, leave_one_out_range=span))
     return tuple(found)
 
 

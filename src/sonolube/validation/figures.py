@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 _PANELS: Final = 12  # variants with a panel of predicted against measured ratios
 _CURVES: Final = 6  # variants drawn over speed and amplitude
-_POINTS: Final = 40
+CURVE_POINTS: Final = 40
 _LOW, _HIGH = -0.1, 1.15  # limits of the ratios drawn
 _HIGHEST_OF_RIG: Final = 1.5
-_RATIO: Final = "Friction with over without vibration"
+RATIO_LABEL: Final = "Friction with over without vibration"
 _PAGE: Final = 6.85  # inches
-_NONE: Final = np.array([])
+NOWHERE: Final = np.array([])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -88,7 +88,7 @@ def rig_chart(result: "xr.Dataset") -> Chart:
         if ratio > _HIGHEST_OF_RIG
     ]
     panel = Panel(
-        x=Axis(label=_RATIO, lowest=-0.1, highest=1.6),
+        x=Axis(label=RATIO_LABEL, lowest=-0.1, highest=1.6),
         y=Axis(lowest=-0.7, highest=names.size - 0.3, words=tuple(name.replace("-", " ") for name in names)),
         parts=(points, Rule(value=1.0, colour="0.5", dash=1), *beyond),
         title=f"{result.attrs.get('rig', '')}\nbars: rms error of the cross-validation",
@@ -103,7 +103,7 @@ def speed_and_amplitude_panels(
     speeds = _measured("A", lambda test: 1e3 * test.sliding_speed)
     amplitudes = _measured("B", lambda test: 1e6 * test.vibration_amplitude)
     ticks = (5, 10, 20, 50, 100, 200) if logarithmic else ()
-    ratio = Axis(label=_RATIO, lowest=-0.12, highest=1.1)
+    ratio = Axis(label=RATIO_LABEL, lowest=-0.12, highest=1.1)
     return (
         Panel(
             x=Axis(label="Sliding speed", unit="mm/s", logarithmic=logarithmic, ticks=ticks),
@@ -167,8 +167,8 @@ def _panel(one: "xr.Dataset", letters: list[str]) -> Panel:
     hollow = [_ratios_of_set(one, letter, sets == letter, "cross_validated_ratio") for letter in every]
     line = np.array([0.0, _HIGH])
     meaning = (
-        Points(x=_NONE, y=_NONE, label="filled: fitted, k free parameters, rms error", colour="0.3"),
-        Points(x=_NONE, y=_NONE, label="open: its set left out, rms error CV", colour="0.3", is_hollow=True),
+        Points(x=NOWHERE, y=NOWHERE, label="filled: fitted, k free parameters, rms error", colour="0.3"),
+        Points(x=NOWHERE, y=NOWHERE, label="open: its set left out, rms error CV", colour="0.3", is_hollow=True),
         Line(x=line, y=line, label="predicted as measured", colour="0.5", weight=0.6),
     )
     errors = f"rms {float(one['rms']):.2f}, CV {float(one['rms_cross_validated']):.2f}"
@@ -200,7 +200,7 @@ def _ratios_of_set(one: "xr.Dataset", letter: str, members: "np.ndarray", name: 
 def _over_speed_and_amplitude(fits: list[ComparedFit]) -> Chart:
     """Fitted models over sliding speed and amplitude with the measured ratios of Tables 2.3 and 4.2."""
     tribometer, power_map = friction_tests("A")[0], friction_tests("B")[0]
-    speed, amplitude = np.geomspace(5e-3, 0.2, _POINTS), np.linspace(0.05e-6, 2.6e-6, _POINTS)
+    speed, amplitude = np.geomspace(5e-3, 0.2, CURVE_POINTS), np.linspace(0.05e-6, 2.6e-6, CURVE_POINTS)
     over_speed, over_amplitude = [], []
     for index, one in enumerate(fits):
         by_speed = _ratios(one, [replace(tribometer, sliding_speed=float(v)) for v in speed])

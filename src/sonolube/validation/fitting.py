@@ -15,8 +15,10 @@ from sonolube.validation.model_variant import ModelVariant
 from sonolube.validation.published_tests import Conditions, Tests, friction_tests, in_plane_tests
 
 _OUT_OF_RANGE_RESIDUAL: Final = 1.0  # residual of a test outside the range of the model, in fits only
-_SMALLEST_RMS: Final = 1e-6  # of ratios that a model reproduces exactly
-_CHI_SQUARED_95: Final = 3.841  # 95 % quantile of chi squared with one degree of freedom
+SMALLEST_RMS: Final = 1e-6
+"""Root mean square error of ratios that a model reproduces exactly. []"""
+CHI_SQUARED_95: Final = 3.841
+"""95 % quantile of chi squared with one degree of freedom."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,7 +73,7 @@ def fit_variant(
 
 
 def profile_likelihood_interval(
-    fit: Fit, index: int, *, tests: Tests | None = None, largest_excess: float = _CHI_SQUARED_95
+    fit: Fit, index: int, *, tests: Tests | None = None, largest_excess: float = CHI_SQUARED_95
 ) -> tuple[float, float]:
     r"""95 % profile likelihood interval of one parameter, truncated at its bounds.
 
@@ -85,13 +87,13 @@ def profile_likelihood_interval(
     variant, best, selected = fit.variant, fit.values[index], select_tests(fit.sets, tests)
     parameter = variant.parameters[index]
     others = [other for other, one in enumerate(variant.parameters) if other != index and one.applies_to(fit.sets)]
-    least = max(root_mean_square(_residuals(variant, selected, fit.values)), _SMALLEST_RMS)
+    least = max(root_mean_square(_residuals(variant, selected, fit.values)), SMALLEST_RMS)
 
     def excess(value: float) -> float:
         values = np.array(fit.values)
         values[index] = value
         values = _minimise(variant, selected, others, values)
-        rms = max(root_mean_square(_residuals(variant, selected, values)), _SMALLEST_RMS)
+        rms = max(root_mean_square(_residuals(variant, selected, values)), SMALLEST_RMS)
         return 2 * len(selected) * float(np.log(rms / least)) - largest_excess
 
     reach = np.pi if parameter.is_angle else np.inf

@@ -3,11 +3,13 @@
 Contact and vibration are as the experiments state them. Only what was not measured on a rig may vary: nominal area and
 yield strength, which only shift the gap at rest so that one factor stands for both; the coefficient of friction within
 its scatter; the compliance of the holder; and in-plane motion along the sliding direction. Memory length and amplitude
-fraction belong to the friction model and are the same for all rigs, as is the decay length Rq/lambda.
+fraction belong to the friction model and are the same for all rigs, as is the decay length Rq/lambda. Defaults, initial
+values and bounds with their reasons are in free_parameters.toml.
 """
 
+import tomllib
 from dataclasses import dataclass, replace
-from math import pi
+from pathlib import Path
 from typing import Final
 
 RIGS: Final = {"tribometer": "ACDEF", "power map": "B", "welder": "G", "flextensional": "H"}
@@ -63,139 +65,26 @@ def per_rig(parameters: tuple[FreeParameter, ...], *rigs: str) -> tuple[FreePara
     return tuple(replace(parameter, applicable_sets=RIGS[rig]) for rig in rigs for parameter in parameters)
 
 
-NOMINAL_AREA_FACTOR: Final = FreeParameter(
-    name="nominal_area_factor",
-    default=1.0,
-    initial_values=(0.5, 2.0),
-    low=0.1,
-    high=10.0,
-    reason="The pin runs in: its worn area grows from the Hertzian one to the stated one. Yield strength at most "
-    "doubles by work hardening. Together they stay within a factor of ten.",
-)
-FRICTION_COEFFICIENT_FACTOR: Final = FreeParameter(
-    name="friction_coefficient_factor",
-    default=1.0,
-    initial_values=(0.9, 1.1),
-    low=0.8,
-    high=1.25,
-    reason="Forces scatter by up to 10 % (Table 2.3) and the load is set to as much; two standard deviations.",
-)
-AMPLITUDE_FRACTION: Final = FreeParameter(
-    name="amplitude_fraction",
-    default=1.0,
-    initial_values=(0.3,),
-    low=0.05,
-    high=1.0,
-    reason="At most the whole motion contributes.",
-)
-MEMORY_LENGTH: Final = FreeParameter(
-    name="memory_length",
-    unit="m",
-    default=1.5e-6,
-    initial_values=(1.5e-6,),
-    low=0.1e-6,
-    high=10e-6,
-    reason="From a tenth of the length of Mindlin at the lowest coefficient to the size of a contact spot.",
-)
-DECAY_CONSTANT: Final = FreeParameter(
-    name="decay_constant",
-    default=3.0,
-    initial_values=(2.0, 3.0),
-    low=1.0,
-    high=6.0,
-    reason="R_q over decay length: from exponential heights, whose deviation is their decay length, to Gaussian ones "
-    "far out in their tail. D takes 3.",
-)
-SLIP_LENGTH: Final = FreeParameter(
-    name="slip_length",
-    unit="m",
-    default=1.5e-6,
-    initial_values=(1.5e-6, 4e-6),
-    low=0.1e-6,
-    high=10e-6,
-    reason="As the memory length.",
-)
-APPROACH_RATIO: Final = FreeParameter(
-    name="approach_ratio",
-    default=1 / 3,
-    initial_values=(0.3, 0.6),
-    low=0.05,
-    high=3.0,
-    reason="Approach over R_q: from a smooth contact to one flattened through all of its roughness.",
-)
-HOLDER_COMPLIANCE: Final = FreeParameter(
-    name="holder_compliance",
-    unit="m/N",
-    default=0.0,
-    initial_values=(1e-8, 1e-7, 5e-7),
-    low=1e-9,
-    high=2e-6,
-    reason="From a spot of a millimetre on solid steel to the tip of a bending steel pin, 5 mm thick and 5 cm long.",
-)
-IN_PLANE_MOTION: Final = (
-    FreeParameter(
-        name="in_plane_fraction",
-        default=0.0,
-        initial_values=(0.1, 0.3),
-        low=0.0,
-        high=0.5,
-        reason="Misalignment by 5 degrees gives 0.09, an eccentric tip some tenths; beyond one half the pin would be "
-        "the stator of an ultrasonic motor, whose in-plane and normal motions are alike.",
-    ),
-    FreeParameter(
-        name="in_plane_phase",
-        unit="rad",
-        default=0.0,
-        initial_values=(0.0, pi / 2, pi, 3 * pi / 2),
-        low=-2 * pi,
-        high=4 * pi,
-        reason="Any: mode and drive determine it. The bounds limit the search.",
-    ),
-)
-VIBRATION_DIRECTION: Final = FreeParameter(
-    name="vibration_direction",
-    unit="rad",
-    default=0.0,
-    initial_values=(0.3, 1.2),
-    low=0.0,
-    high=pi / 2,
-    reason="Any, from along to across the sliding.",
-)
-APPROACH: Final = FreeParameter(
-    name="approach",
-    unit="m",
-    default=2e-6,
-    initial_values=(1e-6, 4e-6),
-    low=0.1e-6,
-    high=20e-6,
-    reason="Load over normal stiffness: from a smooth Hertzian contact to ten times that of exponential heights.",
-)
-MINDLIN_RATIO: Final = FreeParameter(
-    name="mindlin_ratio",
-    default=0.82,
-    initial_values=(0.1, 0.4, 0.82),
-    low=0.02,
-    high=1.0,
-    reason="The ratio of Mindlin for like bodies is 0.67 to 1; a holder in series lowers the tangential stiffness, as "
-    "does roughness in measured contacts.",
-)
-STRIBECK_CURVE: Final = (
-    FreeParameter(
-        name="static_friction_ratio",
-        default=1.0,
-        initial_values=(1.2, 2.0),
-        low=1.0,
-        high=3.0,
-        reason="Static friction of metals is up to some three times their sliding friction; below one the curve "
-        "would not be that of Stribeck.",
-    ),
-    FreeParameter(
-        name="stribeck_velocity",
-        unit="m/s",
-        default=0.1,
-        initial_values=(0.03, 0.3),
-        low=1e-3,
-        high=1.0,
-        reason="From creep to the peak velocity of the strongest vibration.",
-    ),
-)
+def _parameters() -> dict[str, FreeParameter]:
+    """Parameters of the file beside this one, by name."""
+    content = tomllib.loads(Path(__file__).with_name("free_parameters.toml").read_text(encoding="utf-8"))
+    return {
+        name: FreeParameter(name=name, **entry | {"initial_values": tuple(entry["initial_values"])})
+        for name, entry in content.items()
+    }
+
+
+_PARAMETERS: Final = _parameters()
+NOMINAL_AREA_FACTOR: Final = _PARAMETERS["nominal_area_factor"]
+FRICTION_COEFFICIENT_FACTOR: Final = _PARAMETERS["friction_coefficient_factor"]
+AMPLITUDE_FRACTION: Final = _PARAMETERS["amplitude_fraction"]
+MEMORY_LENGTH: Final = _PARAMETERS["memory_length"]
+DECAY_CONSTANT: Final = _PARAMETERS["decay_constant"]
+SLIP_LENGTH: Final = _PARAMETERS["slip_length"]
+APPROACH_RATIO: Final = _PARAMETERS["approach_ratio"]
+HOLDER_COMPLIANCE: Final = _PARAMETERS["holder_compliance"]
+IN_PLANE_MOTION: Final = (_PARAMETERS["in_plane_fraction"], _PARAMETERS["in_plane_phase"])
+VIBRATION_DIRECTION: Final = _PARAMETERS["vibration_direction"]
+APPROACH: Final = _PARAMETERS["approach"]
+MINDLIN_RATIO: Final = _PARAMETERS["mindlin_ratio"]
+STRIBECK_CURVE: Final = (_PARAMETERS["static_friction_ratio"], _PARAMETERS["stribeck_velocity"])

@@ -1,8 +1,10 @@
 """Model variants: a model of friction under vibration with its free parameters, required inputs and source."""
 
-from collections.abc import Callable, Sequence
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final, SupportsFloat
 
@@ -16,22 +18,10 @@ from sonolube.validation.condition_columns import condition_columns
 from sonolube.validation.free_parameters import FreeParameter
 from sonolube.validation.published_tests import Conditions
 
-REQUIRED_INPUTS: Final = MappingProxyType(
-    {
-        "contact": "roughness and materials of the bodies",
-        "normal_load": "the normal load",
-        "friction_coefficient": "the friction coefficient without vibration",
-        "sliding_speed": "the sliding speed",
-        "vibration_amplitude": "the amplitude along the normal",
-        "frequency": "the frequency",
-        "in_plane_amplitude": "the amplitude along the sliding",
-        "vibration_velocity": "the velocity of a vibration within the plane",
-        "vibration_direction": "the direction of a vibration within the plane",
-        "holder_stiffness": "the stiffness of the holder",
-        "holder_mass": "the mass that moves with the holder",
-    }
+REQUIRED_INPUTS: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
+    tomllib.loads(Path(__file__).with_name("required_inputs.toml").read_text(encoding="utf-8"))
 )
-"""Inputs that a model may require of the conditions, in words."""
+"""Inputs that a model may require of the conditions: `meaning` in words, and `remedy` where own runs lack one."""
 
 SINUSOIDAL_VIBRATION: Final = ("vibration_amplitude", "frequency", "sliding_speed")
 """Inputs of a model without contact."""
@@ -104,7 +94,9 @@ class ModelVariant:
 
     def inapplicability(self, conditions: Conditions) -> str | None:
         """Required inputs that the conditions lack, as a sentence; None if they lack none."""
-        missing = [REQUIRED_INPUTS[name] for name in self.required_inputs if getattr(conditions, name, None) is None]
+        missing = [
+            REQUIRED_INPUTS[name]["meaning"] for name in self.required_inputs if getattr(conditions, name, None) is None
+        ]
         return f"needs {', '.join(missing)}: not known here" if missing else None
 
     def predict(self, conditions: Conditions, *values: float) -> float | None:

@@ -1,10 +1,12 @@
 """Published friction tests under vibration as records: conditions, measured friction ratio and its uncertainty."""
 
-from collections.abc import Iterable
+import tomllib
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from math import hypot
-from typing import Final, Protocol
+from pathlib import Path
+from typing import Any, Final, Protocol
 
 from sonolube.facts.published import PublishedValue, published_number, published_value, si_value
 from sonolube.models.contact import RoughContact
@@ -33,7 +35,6 @@ FLEXTENSIONAL_GAINS: Final = (1.0, 20.0)
 """Limits of that gain: none, and one beyond the strength of the ceramic at the printed voltage. []"""
 
 _STEEL_COEFFICIENT: Final = 0.26  # of steel on steel in D 3.1.4; for set H it is only drawn
-_TITANIUM_COEFFICIENT: Final = 0.4  # forces of titanium on titanium are only drawn; steel on titanium has 0.44
 _FLEXTENSIONAL_AREA: Final = 50e-6  # flats of the actuator, 10.5 mm by about 5 mm
 
 
@@ -191,116 +192,45 @@ def in_plane_tests() -> tuple[InPlaneTest, ...]:
 @cache
 def _normal_vibration_tests() -> tuple[FrictionTest, ...]:
     """All tests with vibration along the normal."""
-    return (*_tribometer(), *_power_map(), *_material_pairs(), *_welder(), *_flextensional())
+    content = tomllib.loads(Path(__file__).with_name("published_tests.toml").read_text(encoding="utf-8"))
+    tests = [_test(rig | test) for rig in content["rig"] for test in rig["tests"]]
+    return (*sorted(tests, key=lambda test: test.label), *_flextensional())
 
 
-def _tribometer() -> list[FrictionTest]:
-    """Set A; rows of Table 2.3 alternate between friction without and with vibration."""
-    return [
-        _tribometer_test(
-            f"A-{number}",
-            speed=f"table-2.3-sliding_speed-{2 * number - 1}",
-            off=f"table-2.3-friction_force-{2 * number - 1}",
-            on=f"table-2.3-friction_force-{2 * number}",
-            published=f"table-2.5-friction_reduction-{number}",
-        )
-        for number in (1, 2, 3)
-    ]
-
-
-def _power_map() -> list[FrictionTest]:
-    """Set B: rows 2 to 6 of Table 4.2 at the amplitudes of rows 11 to 15 of Table 4.1."""
-    load, off = si_value("4.1.2-normal-load"), "table-4.2-friction_force-1"
-    return [
-        FrictionTest(
-            label=f"B-{level}",
-            contact=uncoated_plate_contact(),
-            roughness_spread=roughness_spread(f"B-{level}"),
-            sliding_speed=si_value("4.1.2-sliding-speed"),
-            vibration_amplitude=si_value(f"table-4.1-vibration_amplitude-{10 + level}"),
-            frequency=si_value("table-4.1-frequency-1"),
-            normal_load=load,
-            friction_coefficient=si_value(off) / load,
-            friction_ratio=si_value(f"table-4.2-friction_force-{1 + level}") / si_value(off),
-            uncertainty=_ratio_uncertainty(off, f"table-4.2-friction_force-{1 + level}"),
-            published=published_value(f"table-4.2-friction_reduction-{1 + level}"),
-        )
-        for level in range(1, 6)
-    ]
-
-
-def _material_pairs() -> list[FrictionTest]:
-    """Sets C to F; for titanium only reductions are printed, for M50 on M50 one force twice (erratum E11)."""
-    steel_on_titanium, ceramic = (
-        _tribometer_test(
-            label,
-            speed=speed,
-            off=f"{section}-friction-{pair}-off",
-            on=f"{section}-friction-{pair}-on",
-            published=f"{section}-friction-reduction",
-        )
-        for label, section, pair, speed in (
-            ("C-1", "2.5.2", "titanium", "table-2.11-sliding_speed-1"),
-            ("E-1", "2.5.4", "ceramic", "table-2.13-sliding_speed-1"),
-        )
+def _test(ids: Mapping[str, Any]) -> FrictionTest:
+    """Test from the ids of its published numbers."""
+    load = si_value(ids["normal_load"])
+    ratio, uncertainty = _measured_ratio(ids)
+    return FrictionTest(
+        label=ids["label"],
+        contact=_contact(ids),
+        roughness_spread=roughness_spread(ids["label"]),
+        **{name: si_value(ids[name]) for name in ("sliding_speed", "vibration_amplitude", "frequency")},
+        normal_load=load,
+        friction_coefficient=si_value(ids["off"]) / load if "off" in ids else ids["friction_coefficient"],
+        friction_ratio=ratio,
+        uncertainty=uncertainty,
+        published=published_value(ids["published"]),
     )
-    titanium_on_titanium = [
-        FrictionTest(
-            label=f"D-{number}",
-            contact=wear_contact(),
-            roughness_spread=roughness_spread(f"D-{number}"),
-            sliding_speed=si_value("table-2.12-sliding_speed-1"),
-            vibration_amplitude=si_value(f"table-2.12-{size}_amplitude-1"),
-            frequency=si_value("table-2.12-frequency-1"),
-            normal_load=si_value("table-2.12-normal_load-1"),
-            friction_coefficient=_TITANIUM_COEFFICIENT,
-            friction_ratio=1 - si_value(reduction),
-            uncertainty=None,
-            published=published_value(reduction),
-        )
-        for number, size, reduction in (
-            (1, "larger", "2.5.3-friction-reduction-2.5um"),
-            (2, "smaller", "2.5.3-friction-reduction-1um"),
-        )
-    ]
-    m50 = replace(
-        _tribometer_test(
-            "F-1",
-            speed="table-2.13-sliding_speed-1",
-            off="2.5.5-friction-m50-off",
-            on="2.5.5-friction-m50-on",
-            published="2.5.5-friction-reduction",
-        ),
-        friction_ratio=1 - si_value("2.5.5-friction-reduction"),
-        uncertainty=None,
-    )
-    return [steel_on_titanium, *titanium_on_titanium, ceramic, m50]
 
 
-def _welder() -> list[FrictionTest]:
-    """Set G: mean of the ratios of the lower and of the upper forces; the disc is faster during vibration."""
-    tests = []
-    for tip in (1, 2):
-        off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
+def _contact(ids: Mapping[str, Any]) -> RoughContact:
+    """Contact of a test."""
+    if ids["contact"] == "steel":
+        return steel_on_steel_contact(nominal_area=si_value(ids["nominal_area"]))
+    return uncoated_plate_contact() if ids["contact"] == "plate" else wear_contact()
+
+
+def _measured_ratio(ids: Mapping[str, Any]) -> tuple[float, float | None]:
+    """Friction ratio of a test, and its uncertainty from the scatter of forces, taken as independent. []"""
+    if "on" not in ids:
+        return 1 - si_value(ids["published"]), None
+    off, on = published_number(ids["off"]), published_number(ids["on"])
+    if "ranges" in ids:
         low, high = on.low / off.low, on.high / off.high
-        vibrating = 2 * tip  # row of Table 2.8
-        load = si_value(f"table-2.8-normal_load-{vibrating}")
-        tests.append(
-            FrictionTest(
-                label=f"G-{tip}",
-                contact=steel_on_steel_contact(nominal_area=si_value(f"table-2.8-nominal_area-{vibrating}")),
-                roughness_spread=roughness_spread(f"G-{tip}"),
-                sliding_speed=si_value(f"table-2.8-sliding_speed-{vibrating}"),
-                vibration_amplitude=si_value(f"table-2.8-vibration_amplitude-{vibrating}"),
-                frequency=si_value(f"table-2.8-frequency-{vibrating}"),
-                normal_load=load,
-                friction_coefficient=off.value / load,
-                friction_ratio=(low + high) / 2,
-                uncertainty=abs(high - low) / 2,
-                published=published_value(f"table-2.9-friction_reduction-{tip}"),
-            )
-        )
-    return tests
+        return (low + high) / 2, abs(high - low) / 2
+    ratio = on.value / off.value
+    return ratio, ratio * hypot(*((force.high - force.low) / 2 / force.value for force in (off, on)))
 
 
 def _flextensional() -> list[FrictionTest]:
@@ -321,30 +251,6 @@ def _flextensional() -> list[FrictionTest]:
     )
     fast = si_value("2.2.5-speed-of-no-reduction")
     return [slow, replace(slow, label="H-2", sliding_speed=fast, friction_ratio=1.0, published=None)]
-
-
-def _tribometer_test(label: str, *, speed: str, off: str, on: str, published: str) -> FrictionTest:
-    """Test on the modified tribometer of D 2.3 from the ids of its published numbers."""
-    load = si_value("table-2.2-normal_load-1")
-    return FrictionTest(
-        label=label,
-        contact=wear_contact(),
-        roughness_spread=roughness_spread(label),
-        sliding_speed=si_value(speed),
-        vibration_amplitude=si_value("2.3.1-amplitude"),
-        frequency=si_value("2.3.1-frequency"),
-        normal_load=load,
-        friction_coefficient=si_value(off) / load,
-        friction_ratio=si_value(on) / si_value(off),
-        uncertainty=_ratio_uncertainty(off, on),
-        published=published_value(published),
-    )
-
-
-def _ratio_uncertainty(off: str, on: str) -> float:
-    """Uncertainty of a ratio of published forces from their scatter, taken as independent. []"""
-    relative = [(n.high - n.low) / 2 / n.value for n in (published_number(off), published_number(on))]
-    return si_value(on) / si_value(off) * hypot(*relative)
 
 
 def _with_rms_height(test: FrictionTest, rms_height: float | None) -> FrictionTest:

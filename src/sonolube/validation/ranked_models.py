@@ -5,17 +5,14 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.stats import t as student
 
 from sonolube.checks import Floats
 from sonolube.validation.assessment import InformationCriteria, gaussian_criteria, leave_one_set_out_fits
-from sonolube.validation.comparison import FittedParameter
-from sonolube.validation.fitting import Fit, fit_variant, profile_likelihood_interval, root_mean_square
+from sonolube.validation.comparison import FittedParameter, fitted_parameters
+from sonolube.validation.fitting import SMALLEST_RMS, Fit, fit_variant, root_mean_square
 from sonolube.validation.model_variant import ModelVariant
 from sonolube.validation.run_conditions import RunConditions
 
-_SMALLEST_RMS: Final = 1e-6  # of ratios that a model reproduces exactly
-_MAX_PROFILED: Final = 2  # parameters of a variant whose intervals are computed, as in a comparison
 _SMALLEST_ERROR: Final = 1e-3  # of a friction ratio, below which no rig tells models apart
 _LEVEL: Final = 0.05  # of the test of equal errors
 
@@ -90,42 +87,20 @@ def ranked_model(variant: ModelVariant, conditions: tuple[RunConditions, ...]) -
     fitted = tuple(fit.predict(one) for one in conditions)
     unseen = tuple(left_out[one.set_name].predict(one) for one in conditions)
     rms = root_mean_square(_errors(fitted, conditions))
-    within = None not in fitted
-    profiled = within and len(fit.values) <= _MAX_PROFILED
+    within, count, free = None not in fitted, len(conditions), len(conditions) - len(fit.values)
+    from scipy.stats import t as student
+
+    quantile = count * float(np.log1p(student.ppf(0.975, free) ** 2 / free)) if within and free > 0 else None
     return RankedModel(
         fit=fit,
-        parameters=_parameters(fit, tuple(left_out.values()), conditions, with_interval=profiled),
+        parameters=fitted_parameters(fit, left_out, conditions, largest_excess=quantile),
         fitted=fitted,
         unseen=unseen,
         rms_fit=rms,
         rms_unseen=root_mean_square(_errors(unseen, conditions)),
-        information=gaussian_criteria(
-            max(rms, _SMALLEST_RMS), count=len(conditions), parameter_count=len(variant.parameters)
-        )
+        information=gaussian_criteria(max(rms, SMALLEST_RMS), count=count, parameter_count=len(variant.parameters))
         if within
         else None,
-    )
-
-
-def _parameters(
-    fit: Fit, left_out: tuple[Fit, ...], conditions: tuple[RunConditions, ...], *, with_interval: bool
-) -> tuple[FittedParameter, ...]:
-    """Fitted parameters with their intervals."""
-    count, free = len(conditions), len(conditions) - len(fit.values)
-    quantile = count * float(np.log1p(student.ppf(0.975, free) ** 2 / free)) if free > 0 else None
-    return tuple(
-        FittedParameter(
-            parameter=parameter,
-            value=value,
-            interval=profile_likelihood_interval(fit, index, tests=conditions, largest_excess=quantile)
-            if with_interval and quantile is not None
-            else None,
-            leave_one_out_range=(
-                min(other.values[index] for other in left_out),
-                max(other.values[index] for other in left_out),
-            ),
-        )
-        for index, (parameter, value) in enumerate(zip(fit.variant.parameters, fit.values, strict=True))
     )
 
 
@@ -161,4 +136,6 @@ def _probability_of_equal_errors(first: Floats, second: Floats) -> float:
     if abs(correlation) == 1:
         return 0.0
     value = correlation / np.sqrt((1 - correlation**2) / (first.size - 1))
+    from scipy.stats import t as student
+
     return float(2 * student.sf(abs(value), first.size - 1))

@@ -1,12 +1,11 @@
 """Own measured runs as conditions of model variants: repeats averaged, what they do not state taken from a rig."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import cos, isfinite, pi
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
@@ -25,23 +24,6 @@ _FIRST_LETTER: Final = 0x4E00  # of the groups of conditions; no published set h
 _MAX_GROUPS: Final = 12
 _IN_PLANE: Final = 1e-6  # cosine of an angle that counts as across the sliding
 _SETTINGS: Final = ("vibration_amplitude", "vibration_velocity", "vibration_direction", "frequency", "sliding_speed")
-
-REMEDIES: Final[Mapping[str, str]] = MappingProxyType(
-    {
-        "contact": "a rig file (roughness and materials)",
-        "normal_load": "normal_load [N], or a rig file",
-        "friction_coefficient": "intrinsic_friction_force [N] with normal_load [N], or a rig file",
-        "sliding_speed": "sliding_speed [mm/s], or a rig file",
-        "vibration_amplitude": "vibration_amplitude [um], or a rig file, of a vibration along the normal",
-        "frequency": "frequency [kHz], or a rig file",
-        "in_plane_amplitude": "vibration_direction [deg] of 0, for a vibration along the sliding",
-        "vibration_velocity": "vibration_direction [deg], for a vibration in the contact plane",
-        "vibration_direction": "vibration_direction [deg], for a vibration in the contact plane",
-        "holder_stiffness": "friction.holder_stiffness of a rig file",
-        "holder_mass": "a mass that moves with the holder, which no rig file states",
-    }
-)
-"""Entry to add for a missing input of a model, by its name in `REQUIRED_INPUTS`."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -156,7 +138,7 @@ def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
             raise InvalidInput(f"{title}: {name} of run {int(np.argmax(inputs[name] <= 0)) + 1} must be positive")
     group, first = _groups(inputs)
     stated = setting(runs, "friction_reduction_uncertainty", np.nan)
-    scatter = _scatter(ratio, group)
+    scatter = pooled_scatter(ratio, group)
     conditions = []
     for index, run in enumerate(first):
         members = group == index
@@ -210,11 +192,17 @@ def _amplitudes(runs: "xr.Dataset", rig: Rig | None) -> Floats:
                 "the runs state voltages: add a column vibration_amplitude [um], or a rig file that scales them (--rig)"
             )
         return amplitude
-    by_voltage = unknown & np.isfinite(voltage)
     if not np.any(unknown):
         return amplitude
-    own = steady_vibration(rig).vibration_amplitude
     volts = None if rig.drive is None else rig.drive.voltage_peak_to_peak
+    return known_amplitudes(amplitude, voltage, unknown, own=steady_vibration(rig).vibration_amplitude, volts=volts)
+
+
+def known_amplitudes(
+    amplitude: Floats, voltage: Floats, unknown: NDArray[np.bool_], *, own: float, volts: float | None
+) -> Floats:
+    """Amplitudes, unknown ones by their voltage in proportion to the rig's own, else the rig's own. [m]"""
+    by_voltage = unknown & np.isfinite(voltage)
     if np.any(by_voltage):
         if volts is None:
             raise InvalidInput(
@@ -237,7 +225,7 @@ def _groups(inputs: dict[str, Floats]) -> tuple[np.ndarray, np.ndarray]:
     return group, np.array(first)
 
 
-def _scatter(ratio: Floats, group: np.ndarray) -> float | None:
+def pooled_scatter(ratio: Floats, group: np.ndarray) -> float | None:
     """Pooled standard deviation of repeats."""
     counts = np.bincount(group)
     free = ratio.size - counts.size

@@ -6,14 +6,14 @@ import numpy as np
 
 from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule
 from sonolube.checks import Floats
+from sonolube.validation.figures import CURVE_POINTS, NOWHERE, RATIO_LABEL
 from sonolube.validation.ranked_models import RankedModel
 from sonolube.validation.run_conditions import RunConditions, RunsTable
 from sonolube.validation.runs_comparison import RunsPrediction
 from sonolube.validation.runs_fit import RunsFit
 
-_CURVES: Final = 3  # models drawn as curves
+_LEADERS: Final = 3  # models drawn as curves
 _SERIES: Final = 4  # of measured points, each at one value of what does not run along the abscissa
-_POINTS: Final = 40
 _ROWS: Final = 15  # models of a dot chart
 _WORST: Final = 0.6  # error beyond which a model is drawn at the edge
 _LABELS: Final = {
@@ -22,14 +22,12 @@ _LABELS: Final = {
     "sliding_speed": ("Sliding speed", 1e3, "mm/s"),
 }
 _LOWEST, _HIGHEST = -0.05, 1.3  # ratios drawn
-_RATIO: Final = "Friction with over without vibration"
 _MAX_PREDICTIONS: Final = 6
-_NONE: Final = np.array([])
 
 
 def runs_fit_chart(result: RunsFit) -> Chart:
     """Own runs over amplitude or speed with the best models as curves, and the unseen errors of all models."""
-    panels = (_runs(result.table, result.models[:_CURVES]), _ranking(result))
+    panels = (_runs(result.table, result.models[:_LEADERS]), _ranking(result))
     return Chart(panels=panels, size=(8.4, 4.2), columns=2, widths=(1.25, 1), legend="bottom")
 
 
@@ -50,7 +48,7 @@ def runs_prediction_chart(predictions: tuple[RunsPrediction, ...], table: RunsTa
         )
         parts.append(points)
     panel = Panel(
-        x=Axis(label=f"Measured: {_RATIO[0].lower()}{_RATIO[1:]}", lowest=_LOWEST, highest=_HIGHEST),
+        x=Axis(label=f"Measured: {RATIO_LABEL[0].lower()}{RATIO_LABEL[1:]}", lowest=_LOWEST, highest=_HIGHEST),
         y=Axis(label="Predicted, at the edge beyond it", lowest=_LOWEST, highest=_HIGHEST),
         parts=tuple(parts),
         title=f"{table.title}: models as published tests fitted them",
@@ -82,12 +80,12 @@ def _runs(table: RunsTable, models: tuple[RankedModel, ...]) -> Panel:
             for dash, model in enumerate(models)
         ]
     names = [
-        Line(x=_NONE, y=_NONE, label=model.name.replace("-", " "), colour="0.3", dash=dash)
+        Line(x=NOWHERE, y=NOWHERE, label=model.name.replace("-", " "), colour="0.3", dash=dash)
         for dash, model in enumerate(models)
     ]
     lowest = min((float(np.nanmin(each.y)) for each in curves if np.isfinite(each.y).any()), default=0.0)
     lowest = min(lowest, *(one.friction_ratio - (one.uncertainty or 0.0) for one in table.conditions))
-    y = Axis(label=_RATIO, lowest=None if lowest < 0 else 0.0)
+    y = Axis(label=RATIO_LABEL, lowest=None if lowest < 0 else 0.0)
     return Panel(x=Axis(label=label, unit=unit), y=y, parts=(*measured, *curves, *names))
 
 
@@ -152,7 +150,7 @@ def _places(conditions: tuple[RunConditions, ...], name: str) -> Floats:
     if not values:
         return np.array([np.nan])
     low, high = min(values), max(values)
-    return np.linspace(0.8 * low, 1.1 * high, _POINTS)
+    return np.linspace(0.8 * low, 1.1 * high, CURVE_POINTS)
 
 
 def _curve(model: RankedModel, condition: RunConditions, name: str, places: Floats) -> Floats:

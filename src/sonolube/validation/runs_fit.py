@@ -13,9 +13,9 @@ import numpy as np
 from sonolube.errors import InvalidInput
 from sonolube.validation.comparison import COMPARED_MODELS
 from sonolube.validation.fitting import root_mean_square
-from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.model_variant import REQUIRED_INPUTS, ModelVariant
 from sonolube.validation.ranked_models import RankedModel, own_rig_variants, ranked_model, with_probabilities
-from sonolube.validation.run_conditions import REMEDIES, RunsTable, run_conditions
+from sonolube.validation.run_conditions import RunsTable, run_conditions
 from sonolube.validation.separating_condition import NextCondition, next_conditions
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def _inapplicability(variant: ModelVariant, table: RunsTable) -> str | None:
     lacking = {name for one in table.conditions for name in variant.required_inputs if getattr(one, name, None) is None}
     if lacking:
         return "needs " + "; ".join(
-            dict.fromkeys(REMEDIES[name] for name in variant.required_inputs if name in lacking)
+            dict.fromkeys(REQUIRED_INPUTS[name]["remedy"] for name in variant.required_inputs if name in lacking)
         )
     least = len(variant.parameters) + 2 if variant.parameters else 2
     if len(table.conditions) < least:

@@ -1,12 +1,12 @@
 """Fit of own runs as a labelled dataset."""
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sonolube import __version__
 from sonolube.validation.runs_fit import RunsFit
+from sonolube.validation.tables import variable
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -26,9 +26,6 @@ def runs_fit_dataset(result: RunsFit) -> "xr.Dataset":
     names = list(dict.fromkeys(fitted.parameter.name for model in models for fitted in model.parameters))
     known = [{fitted.parameter.name: fitted for fitted in model.parameters} for model in models]
     grid, fitted_grid = ("model", "condition"), ("model", "parameter")
-
-    def variable(dimensions: Any, values: Iterable[Any], long_name: str, units: str = "1") -> Any:
-        return dimensions, np.array([*values], dtype=np.float64), {"units": units, "long_name": long_name}
 
     def over_parameters(value: Any, long_name: str) -> Any:
         rows = [[value(one[name]) if name in one else None for name in names] for one in known]

@@ -3,14 +3,13 @@
 import csv
 import io
 from math import isfinite
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.published import PreviousStudy, previous_studies
-from sonolube.measurement.measured_runs import read_runs, run_caveats
+from sonolube.measurement.measured_runs import run_caveats
 from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.run_selection import checked_ratios, setting
 from sonolube.text.units import convert
@@ -50,11 +49,6 @@ def study_table() -> str:
     for row in _rows():
         writer.writerow([_cell(row.get(column.name), column.name, column.unit) for column in STUDY_COLUMNS])
     return text.getvalue()
-
-
-def read_studies(path: Path) -> tuple[tuple[StudyPoint, ...], tuple[str, ...]]:
-    """Points of a user's table of studies that are not among those of the package, and caveats."""
-    return studies_of_runs(read_runs(path), title=str(path))
 
 
 def studies_of_runs(runs: "xr.Dataset", *, title: str) -> tuple[tuple[StudyPoint, ...], tuple[str, ...]]:

@@ -28,6 +28,11 @@ _HEADS = (
 )
 
 
+def variable(dimensions: Any, values: Iterable[Any], long_name: str, units: str = "1") -> Any:
+    """Numbers with their dimensions and attributes as a variable of a dataset; NaN for None."""
+    return dimensions, np.array([*values], dtype=np.float64), {"units": units, "long_name": long_name}
+
+
 def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPrediction, ...] = ()) -> "xr.Dataset":
     """Measured, fitted and cross-validated friction ratios over models and tests, with error statistics.
 
@@ -36,10 +41,7 @@ def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPred
     import xarray as xr
 
     tests = [one.test for one in fits[0].predictions]
-    grid = ("model", "test")
-
-    def variable(dimensions: Any, values: Iterable[Any], long_name: str) -> tuple[Any, Any, dict[str, str]]:
-        return dimensions, np.array([*values], dtype=np.float64), {"units": "1", "long_name": long_name}
+    grid, assessments = ("model", "test"), [one.assessment for one in fits]
 
     rig_variables: dict[str, Any] = {}
     of_model = {one.model.name: one for one in predictions}
@@ -76,13 +78,11 @@ def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPred
                 {"long_name": "Reason why a model does not apply"},
             ),
             "rms": variable(
-                "model",
-                (one.assessment.fit_errors.rms if one.assessment else None for one in fits),
-                "Root mean square error of the fit",
+                "model", (one and one.fit_errors.rms for one in assessments), "Root mean square error of the fit"
             ),
             "rms_cross_validated": variable(
                 "model",
-                (one.assessment.cross_validation_errors.rms if one.assessment else None for one in fits),
+                (one and one.cross_validation_errors.rms for one in assessments),
                 "Root mean square error with each set predicted by a fit that has not seen it",
             ),
             "fitted_parameters": ("model", [len(one.parameters) for one in fits], {"long_name": "Fitted parameters"}),

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from pytest import approx, raises
+from tests.facts.materials.coupling_factors import coupling_factors
 
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
 from sonolube.facts.materials import (
     PiezoCeramic,
-    coupling_factors,
     material,
     piezo_ceramic,
     piezo_ceramic_from_strain_charge,

@@ -6,7 +6,7 @@ from pytest import approx, raises
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.models.actuator import PiezoStack, circuit_admittance
+from sonolube.models.actuator import PiezoStack, circuit_admittance, circuit_resonances
 from sonolube.models.dynamics.chain import (
     GROUND,
     LumpedChain,
@@ -15,7 +15,7 @@ from sonolube.models.dynamics.chain import (
     modal_structure,
     pin_on_disc_chain,
 )
-from sonolube.models.dynamics.linear import equivalent_circuit, modes, poles, resonance_frequencies, static_contact
+from sonolube.models.dynamics.linear import equivalent_circuit, modes, poles, static_contact
 from sonolube.models.dynamics.structure import (
     Structure,
     contact_receptance,
@@ -193,7 +193,7 @@ def test_the_impedance_of_the_rig_has_its_minimum_at_22_kilohertz_and_its_maximu
     dip, peak = f[size.argmin()], f[size.argmax()]
     assert dip == approx(22e3, rel=0.002)
     assert peak == approx(dip / np.sqrt(1 - STACK.derived_coupling_factor**2), rel=0.002)
-    found = resonance_frequencies(RIG)
+    found = circuit_resonances(equivalent_circuit(RIG))
     assert found.series_frequency[-1] == approx(dip, rel=1e-4)
     assert found.parallel_frequency[-1] == approx(peak, rel=1e-4)
     assert found.mechanical_quality_factor[-1] == approx(1 / (2 * modes(RIG).damping_ratio[-1]))
@@ -208,7 +208,9 @@ def test_parallel_resonances_are_those_of_the_open_circuited_stack() -> None:
             ),
         )
     )
-    assert resonance_frequencies(RIG).parallel_frequency == approx(modes(opened).natural_frequency[1:], rel=1e-6)
+    assert circuit_resonances(equivalent_circuit(RIG)).parallel_frequency == approx(
+        modes(opened).natural_frequency[1:], rel=1e-6
+    )
 
 
 def shape_at(index: int) -> Floats:
@@ -231,7 +233,7 @@ def test_a_mode_with_a_node_at_the_stack_has_no_motional_branch() -> None:
         clamped_capacitance=1e-9,
     )
     assert len(equivalent_circuit(silent).branches) == 1
-    assert resonance_frequencies(silent).series_frequency == approx(2e3)
+    assert circuit_resonances(equivalent_circuit(silent)).series_frequency == approx(2e3)
 
 
 def test_a_structure_without_capacitance_has_no_equivalent_circuit() -> None:

@@ -5,14 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from pytest import approx, raises
+from pytest import approx
 from scipy.integrate import solve_ivp
+from tests.models.dynamics.floquet_multipliers import floquet_multipliers
 from tests.models.dynamics.tribometer_chain import TRIBOMETER
 
-from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, Status, SteadyStates, steady_state
 from sonolube.models.dynamics.linear import poles
-from sonolube.models.dynamics.stability import floquet_multipliers
 from sonolube.models.dynamics.structure import drive_receptance, with_contact_spring
 
 ROUGH = ExponentialGap(decay_length=2e-6)
@@ -114,8 +113,3 @@ def test_the_reason_of_an_unstable_vibration_names_a_remedy() -> None:
     assert states.status == Status.UNSTABLE
     assert "march the point in time" in states.reason(())
     assert np.abs(floquet_multipliers(states)[0]) > 1.001
-
-
-def test_too_few_kicks_are_refused() -> None:
-    with raises(InvalidInput, match="kicks must be at least 8, got 4"):
-        floquet_multipliers(states_at(ROUGH, 3.0, 22e3, 1e-6), kicks=4)

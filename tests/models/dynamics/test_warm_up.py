@@ -5,15 +5,16 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from numba.core.event import Event, EventStatus, broadcast
 
 from sonolube.models.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms
 from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import newton_solve
-from sonolube.models.dynamics.kernels.contact_kernel import KernelVariant
+from sonolube.models.dynamics.kernels.contact_kernel import KernelLaw
 from sonolube.models.dynamics.warm_up import compile_in_parallel
 
-UNDAMPED = KernelVariant(kind=(), damped=())
+UNDAMPED = KernelLaw((), (), 2e-6, 0.0, np.empty((0, 4)))
 CALL = """
 from sonolube.models.dynamics import ExponentialGap, Structure, friction_averages, steady_state
 from sonolube.models.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms

@@ -4,19 +4,16 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from pytest import approx, raises
-from scipy.optimize import minimize_scalar
 
 from sonolube.errors import InvalidInput
 from sonolube.models.friction import (
     BoundaryLubricant,
     LubricationMethod,
-    LubricationRegime,
     StribeckCurve,
     asperity_load_fraction,
     best_lubrication_method,
     hersey_number,
     lubrication_coefficients,
-    lubrication_regime,
     stribeck_coefficient,
 )
 
@@ -29,21 +26,6 @@ pressures = st.floats(1e6, 199e6)
 def test_the_stribeck_curve_has_the_limits_of_boundary_and_film_friction() -> None:
     assert stribeck_coefficient(CURVE, hersey_number=0.0) == approx(0.12)
     assert stribeck_coefficient(CURVE, hersey_number=1e-7) == approx(1e6 * 1e-7)
-
-
-def test_the_film_is_full_where_friction_is_lowest() -> None:
-    found = minimize_scalar(
-        lambda number: float(stribeck_coefficient(CURVE, hersey_number=1e-9 * number)), bounds=(0, 50), method="bounded"
-    )
-    assert CURVE.hersey_number_at_minimum == approx(1e-9 * found.x, rel=1e-4)
-
-
-def test_regimes_succeed_each_other_along_the_curve() -> None:
-    numbers = np.geomspace(1e-11, 1e-7, 200)
-    regimes = lubrication_regime(CURVE, hersey_number=numbers)
-    changes = [str(name) for index, name in enumerate(regimes) if index == 0 or regimes[index - 1] != name]
-    assert changes == [LubricationRegime.BOUNDARY, LubricationRegime.MIXED, LubricationRegime.HYDRODYNAMIC]
-    assert np.all(np.diff(stribeck_coefficient(CURVE, hersey_number=numbers[regimes == LubricationRegime.MIXED])) < 0)
 
 
 def test_the_hersey_number_is_hand_computed() -> None:

@@ -17,7 +17,6 @@ from .pair_friction import (
 )
 from .piezoelectric import (
     PiezoCeramic as PiezoCeramic,
-    coupling_factors as coupling_factors,
     piezo_ceramic as piezo_ceramic,
     piezo_ceramic_from_strain_charge as piezo_ceramic_from_strain_charge,
     piezo_ceramic_from_stress_charge as piezo_ceramic_from_stress_charge,

@@ -132,17 +132,8 @@ def piezo_ceramic_from_strain_charge(
     eps_t = _permittivities(relative_permittivity)
     c = _inverse(s)
     e = d @ c
-    return PiezoCeramic(
-        material=material,
-        stiffness_short_circuit=c,
-        compliance_short_circuit=s,
-        stress_constants=e,
-        charge_constants=d,
-        permittivity_clamped=eps_t - np.diag(d @ e.T),
-        permittivity_free=eps_t,
-        source=source,
-        note=note,
-    )
+    described = {"material": material, "source": source, "note": note}
+    return _ceramic(c, s, e, d, clamped=eps_t - np.diag(d @ e.T), free=eps_t, **described)
 
 
 def piezo_ceramic_from_stress_charge(
@@ -196,16 +187,22 @@ def piezo_ceramic_from_stress_charge(
     eps_s = _permittivities(relative_permittivity)
     s = _inverse(c)
     d = e @ s
+    described = {"material": material, "source": source, "note": note}
+    return _ceramic(c, s, e, d, clamped=eps_s, free=eps_s + np.diag(d @ e.T), **described)
+
+
+def _ceramic(
+    c: Floats, s: Floats, e: Floats, d: Floats, *, clamped: Floats, free: Floats, **described: Any
+) -> PiezoCeramic:
+    """Ceramic of its matrices in both forms, with its material, source and note."""
     return PiezoCeramic(
-        material=material,
         stiffness_short_circuit=c,
         compliance_short_circuit=s,
         stress_constants=e,
         charge_constants=d,
-        permittivity_clamped=eps_s,
-        permittivity_free=eps_s + np.diag(d @ e.T),
-        source=source,
-        note=note,
+        permittivity_clamped=clamped,
+        permittivity_free=free,
+        **described,
     )
 
 
@@ -234,9 +231,9 @@ def piezo_ceramic(name: str) -> PiezoCeramic:
 
     Examples
     --------
-    >>> from sonolube.facts.materials import coupling_factors, piezo_ceramic
-    >>> round(coupling_factors(piezo_ceramic("pzt4"))["coupling_factor_33"], 2)
-    0.68
+    >>> from sonolube.facts.materials import piezo_ceramic
+    >>> piezo_ceramic("pzt4").charge_constants[2, 2].item()  # C/N
+    2.89e-10
     """
     table = read_property_file("piezo.toml")
     try:
@@ -258,46 +255,6 @@ def piezo_ceramic_names() -> tuple[str, ...]:
     return tuple(
         sorted(name for name, entry in read_property_file("piezo.toml").entries.items() if "constants" in entry)
     )
-
-
-def coupling_factors(ceramic: PiezoCeramic) -> dict[str, float]:
-    r"""Electromechanical coupling factors of a ceramic from its constants, as magnitudes.
-
-    Parameters
-    ----------
-    ceramic : PiezoCeramic
-
-    Returns
-    -------
-    dict of str to float
-        By the vocabulary names under which the catalogue holds manufacturers' values: transverse, longitudinal, shear,
-        thickness and planar.
-
-    Notes
-    -----
-    .. math::
-
-        k_{31}^2 &= \frac{d_{31}^2}{s_{11}^E \varepsilon_{33}^T} , \quad
-        k_{33}^2 = \frac{d_{33}^2}{s_{33}^E \varepsilon_{33}^T} , \quad
-        k_{15}^2 = \frac{d_{15}^2}{s_{44}^E \varepsilon_{11}^T} \\
-        k_t^2 &= \frac{e_{33}^2}{c_{33}^E \varepsilon_{33}^S + e_{33}^2} , \quad
-        k_p^2 = \frac{2 d_{31}^2}{(s_{11}^E + s_{12}^E)\, \varepsilon_{33}^T}
-
-    References
-    ----------
-    .. [1] ANSI/IEEE Std 176-1987, IEEE Standard on Piezoelectricity. doi:10.1109/IEEESTD.1988.79638
-    """
-    s, d, eps_t = ceramic.compliance_short_circuit, ceramic.charge_constants, ceramic.permittivity_free
-    e33 = ceramic.stress_constants[2, 2]
-    c33_eps_s33 = ceramic.stiffness_short_circuit[2, 2] * ceramic.permittivity_clamped[2]
-    squares = {
-        "coupling_factor_31": d[2, 0] ** 2 / (s[0, 0] * eps_t[2]),
-        "coupling_factor_33": d[2, 2] ** 2 / (s[2, 2] * eps_t[2]),
-        "coupling_factor_15": d[0, 4] ** 2 / (s[4, 4] * eps_t[0]),
-        "coupling_factor_thickness": e33**2 / (c33_eps_s33 + e33**2),
-        "coupling_factor_planar": 2 * d[2, 0] ** 2 / ((s[0, 0] + s[0, 1]) * eps_t[2]),
-    }
-    return {name: float(np.sqrt(square)) for name, square in squares.items()}
 
 
 def _constants(kind: str, constants: Mapping[str, float], *indices: str) -> list[float]:

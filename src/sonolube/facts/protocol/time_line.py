@@ -213,12 +213,8 @@ def _single(step: Step, place: str) -> _Move:
             speeds = {"sliding_speed": step.sliding_speed, "rotation_speed": step.rotation_speed}
             return _Move(place, step.kind, 0.0, speeds)
         case Drive():
-            changes = {
-                "voltage_peak_to_peak": step.voltage_peak_to_peak,
-                "voltage_offset": step.voltage_offset,
-                "frequency": step.frequency if step.voltage_peak_to_peak > 0 else None,
-                "waveform": step.waveform,
-            }
+            voltage, frequency = step.voltage_peak_to_peak, step.frequency
+            changes = _driven(step, voltage, step.voltage_offset, frequency if voltage > 0 else None)
             return _Move(place, step.kind, 0.0, changes)
         case Acquire():
             return _Move(place, step.kind, 0.0, {"channels": step.channels}, step)
@@ -228,15 +224,23 @@ def _single(step: Step, place: str) -> _Move:
     return _Move(place, step.kind, 0.0, {})
 
 
+def _driven(
+    step: Drive | VoltageSteps | Sweep, voltage: float, offset: float, frequency: float | None
+) -> dict[str, Any]:
+    """Changes of the set points of the drive."""
+    return {
+        "voltage_peak_to_peak": voltage,
+        "voltage_offset": offset,
+        "frequency": frequency,
+        "waveform": step.waveform,
+    }
+
+
 def _voltages(step: VoltageSteps, place: str) -> Iterator[_Move]:
     """Changes of set points by voltages in turn."""
     for voltage in step.voltages:
-        changes = {
-            "voltage_peak_to_peak": voltage,
-            "voltage_offset": voltage / 2 if step.unipolar else 0.0,
-            "frequency": step.frequency if voltage > 0 else None,
-            "waveform": step.waveform,
-        }
+        offset = voltage / 2 if step.unipolar else 0.0
+        changes = _driven(step, voltage, offset, step.frequency if voltage > 0 else None)
         yield _Move(place, step.kind, step.step_duration, changes)
 
 
@@ -246,10 +250,5 @@ def _frequencies(step: Sweep, place: str) -> Iterator[_Move]:
     for index in range(step.points):
         share = index / (step.points - 1)
         frequency = first * (last / first) ** share if step.scale == "log" else first + (last - first) * share
-        changes = {
-            "voltage_peak_to_peak": step.voltage_peak_to_peak,
-            "voltage_offset": step.voltage_offset,
-            "frequency": frequency,
-            "waveform": step.waveform,
-        }
+        changes = _driven(step, step.voltage_peak_to_peak, step.voltage_offset, frequency)
         yield _Move(place, step.kind, step.duration / step.points, changes)

@@ -1,11 +1,10 @@
 """Figure captions of the dissertation, with the statements of the running text on each figure."""
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
 from sonolube.errors import UnknownName
+from sonolube.facts.published.printed_number import published_content
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,10 +38,9 @@ class FigureCaption:
 @cache
 def figures() -> tuple[FigureCaption, ...]:
     """Captions of all figures, in the order of D."""
-    text = files("sonolube.facts.published").joinpath("figures.toml").read_text(encoding="utf-8")
     return tuple(
         FigureCaption(**entry | {name: tuple(entry.get(name, ())) for name in ("remarks", "statements")})
-        for entry in tomllib.loads(text)["figures"]
+        for entry in published_content("figures.toml")["figures"]
     )
 
 

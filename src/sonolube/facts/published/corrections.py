@@ -1,11 +1,10 @@
 """Errata of the dissertation and corrections of single table cells, each with its evidence."""
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
 from sonolube.errors import UnknownName
+from sonolube.facts.published.printed_number import published_content
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -64,8 +63,7 @@ class Correction:
 @cache
 def errata() -> tuple[Erratum, ...]:
     """All errata of D, in the order of their numbers."""
-    text = files("sonolube.facts.published").joinpath("errata.toml").read_text(encoding="utf-8")
-    return tuple(Erratum(**entry) for entry in tomllib.loads(text)["errata"])
+    return tuple(Erratum(**entry) for entry in published_content("errata.toml")["errata"])
 
 
 def erratum(id: str) -> Erratum:  # noqa: A002 - the field's own word

@@ -1,11 +1,9 @@
 """Experiments of other authors that the dissertation reviews, with the numbers that its text quotes of them."""
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
-from sonolube.facts.published.printed_number import PrintedNumber
+from sonolube.facts.published.printed_number import PrintedNumber, published_content
 from sonolube.facts.published.running_text import Statement, statement
 
 
@@ -58,7 +56,6 @@ class PreviousStudy:
 @cache
 def previous_studies() -> tuple[PreviousStudy, ...]:
     """Reviewed experiments, in the order of the review in D 1.3.1 and 1.3.2."""
-    text = files("sonolube.facts.published").joinpath("previous_studies.toml").read_text(encoding="utf-8")
     return tuple(
         PreviousStudy(
             **entry
@@ -67,5 +64,5 @@ def previous_studies() -> tuple[PreviousStudy, ...]:
                 "numbers": tuple(statement(name) for name in entry.get("numbers", ())),
             }
         )
-        for entry in tomllib.loads(text)["studies"]
+        for entry in published_content("previous_studies.toml")["studies"]
     )

@@ -1,12 +1,22 @@
 """Printed numbers: digits with their rounding interval, stated scatter or stated range, converted to SI."""
 
 import re
+import tomllib
 from dataclasses import dataclass, replace
 from functools import cache
+from importlib.resources import files
+from typing import Any
 
 from sonolube.errors import InvalidInput
 from sonolube.text.units import convert
 from sonolube.vocabulary import unit_of
+
+
+@cache
+def published_content(*path: str) -> dict[str, Any]:
+    """Content of a TOML file of this package."""
+    return tomllib.loads(files("sonolube.facts.published").joinpath(*path).read_text(encoding="utf-8"))
+
 
 _DIGITS = r"(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d+)?"
 _PRINTED = re.compile(rf"(?P<first>[-+]?{_DIGITS})(?:±(?P<scatter>{_DIGITS})|-(?P<last>{_DIGITS}))?")

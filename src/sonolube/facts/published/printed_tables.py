@@ -1,6 +1,5 @@
 """Tables of the dissertation as tidy data: one row for each condition, one column for each quantity."""
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.published.corrections import Correction
-from sonolube.facts.published.printed_number import PrintedNumber, parse_printed
+from sonolube.facts.published.printed_number import PrintedNumber, parse_printed, published_content
 from sonolube.vocabulary import unit_of
 
 if TYPE_CHECKING:
@@ -144,8 +143,7 @@ def table(id: str) -> Table:  # noqa: A002 - the field's own word
 @cache
 def _read(number: str) -> Table:
     """Table from its file, its cells parsed and converted to SI."""
-    text = files("sonolube.facts.published").joinpath("tables", f"{number}.toml").read_text(encoding="utf-8")
-    entry = tomllib.loads(text)
+    entry = published_content("tables", f"{number}.toml")
     headings, cells = entry["columns"], zip(*entry["rows"], strict=True)
     columns = (_column(printed, **heading) for heading, printed in zip(headings, cells, strict=True))
     return Table(

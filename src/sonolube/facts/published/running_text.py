@@ -1,13 +1,11 @@
 """Numbers that the running text of the dissertation states: quoted numbers with relation, meaning and erratum."""
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from sonolube.errors import UnknownName
-from sonolube.facts.published.printed_number import PrintedNumber, parse_printed
+from sonolube.facts.published.printed_number import PrintedNumber, parse_printed, published_content
 
 _PARTS = ("abstract", "chapter1", "chapter2", "chapter3", "chapter4", "chapter5", "appendix")
 
@@ -114,8 +112,7 @@ def _by_id() -> dict[str, Statement]:
 @cache
 def _read(part: str) -> tuple[Statement, ...]:
     """Statements of one part of D from its file."""
-    text = files("sonolube.facts.published").joinpath("statements", f"{part}.toml").read_text(encoding="utf-8")
-    return tuple(_statement(**entry) for entry in tomllib.loads(text)["statements"])
+    return tuple(_statement(**entry) for entry in published_content("statements", f"{part}.toml")["statements"])
 
 
 def _statement(*, printed: str, quantity: str, unit: str = "", relation: str = "=", **entry: Any) -> Statement:

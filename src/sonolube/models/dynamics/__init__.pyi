@@ -28,18 +28,13 @@ from .gap_laws.linear import LinearGap as LinearGap
 from .gap_laws.protocol import GapLaw as GapLaw, force_decay_length as force_decay_length
 from .gap_laws.table import GAP_LAWS as GAP_LAWS
 from .gap_laws.tabulated import TabulatedGap as TabulatedGap
-from .kinematic_friction import (
-    FrictionAverages as FrictionAverages,
-    friction_averages as friction_averages,
-    steady_friction as steady_friction,
-)
+from .kinematic_friction import FrictionAverages as FrictionAverages, friction_averages as friction_averages
 from .linear import (
     Modes as Modes,
     StaticContact as StaticContact,
     equivalent_circuit as equivalent_circuit,
     modes as modes,
     poles as poles,
-    resonance_frequencies as resonance_frequencies,
     static_contact as static_contact,
 )
 from .long_time_response import (
@@ -52,7 +47,6 @@ from .sensitivities import (
     StructureChange as StructureChange,
     steady_state_sensitivities as steady_state_sensitivities,
 )
-from .stability import floquet_multipliers as floquet_multipliers
 from .steady_state_response import steady_state as steady_state
 from .steady_states import Status as Status, SteadyStates as SteadyStates, contact_motion as contact_motion
 from .structure import (
@@ -69,7 +63,6 @@ from .trajectories import (
     State as State,
     Trajectories as Trajectories,
     Trajectory as Trajectory,
-    displacement_harmonics as displacement_harmonics,
 )
 from .transient import march as march, trajectory as trajectory
 from .waveform import (

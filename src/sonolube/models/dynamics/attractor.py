@@ -128,7 +128,7 @@ def classify_attractor(
 
     See Also
     --------
-    march, march_until_settled, floquet_multipliers
+    march, march_until_settled
 
     Notes
     -----

@@ -262,11 +262,11 @@ def modal_structure(
 
     Examples
     --------
-    >>> from sonolube.models.dynamics import modal_structure, resonance_frequencies
+    >>> from sonolube.models.dynamics import modal_structure, modes
     >>> mode = {"frequencies": [20e3], "damping_ratios": [0.01], "drive_participation": [10.0]}
     >>> transducer = modal_structure(**mode, contact_participation=[1.0], clamped_capacitance=4e-9)
-    >>> resonance_frequencies(transducer).mechanical_quality_factor.round(3).tolist()  # 1/(2 zeta)
-    [50.0]
+    >>> modes(transducer).natural_frequency.round(3).tolist()
+    [20000.0]
     """
     omega = 2 * np.pi * require_non_negative(frequencies=frequencies)
     if omega.ndim != 1:

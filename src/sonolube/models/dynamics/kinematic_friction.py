@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, Integers, require_non_negative
+from sonolube.checks import Complexes, Floats, Integers, require_non_negative
 from sonolube.errors import InvalidInput
 from sonolube.execution.threads import map_chunks
-from sonolube.models.dynamics.backend import Backend
 from sonolube.models.dynamics.friction_average.elliptic_kernel import (
     elliptic_averages,
     friction_workspace,
@@ -26,16 +25,15 @@ from sonolube.models.dynamics.friction_average.elliptic_quadrature import (
     node_count_factor,
     node_table_row,
 )
-from sonolube.models.dynamics.friction_average.piecewise_linear_kernel import piecewise_linear_averages
-from sonolube.models.dynamics.gap_laws.protocol import GapLaw, force_decay_length
+from sonolube.models.dynamics.gap_laws.protocol import GapLaw, damped_force, force_decay_length
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.solver import MAX_HARMONICS
-from sonolube.models.dynamics.steady_state_response import steady_state
 from sonolube.models.dynamics.steady_states import Status, SteadyStates
-from sonolube.models.dynamics.structure import Structure
 
 # Additional nodes for a steep force: per decay length of amplitude, at least for laws with corners, and the choices.
 _NODES_PER_DECAY_LENGTH, _NODES_FOR_CORNERS = 2.0, 1024.0
+_CELLS_PER_HARMONIC, _MIN_CELLS = 256, 4096  # of a period, for motions with more than two extrema
+_LEVEL = 1e-6  # rise of the velocity in a cell over the sliding speed below which it is constant but for rounding
 _EXTRA_NODES = np.array([0, 4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 1024])
 
 
@@ -61,85 +59,6 @@ class FrictionAverages:
     force_weighted: Floats
 
 
-def steady_friction(
-    structure: Structure,
-    gap_law: GapLaw,
-    *,
-    sliding_speed: ArrayLike,
-    normal_load: ArrayLike,
-    frequency: ArrayLike,
-    voltage_amplitude: ArrayLike | None = None,
-    voltage_harmonics: ArrayLike | None = None,
-    voltage_offset: ArrayLike = 0.0,
-    relative_tolerance: float = 1e-6,
-    stability: bool = True,
-    workers: int = 1,
-    backend: Backend = "cpu",
-) -> tuple[SteadyStates, FrictionAverages]:
-    """Steady states and their kinematic friction factors.
-
-    Parameters
-    ----------
-    structure : Structure
-    gap_law : GapLaw
-    sliding_speed : array_like, shape (speeds,)
-        Sliding speeds, each combined with every state. [m/s]
-    normal_load : array_like
-        Dead load on the contact. [N]
-    frequency : array_like
-        Frequency of the drive. [Hz]
-    voltage_amplitude : array_like, optional
-        Amplitude of a sinusoidal drive. [V]
-    voltage_harmonics : array_like of complex, shape (..., K), optional
-        Harmonics of any other periodic drive, in V.
-    voltage_offset : array_like
-        Mean of the drive. [V]
-    relative_tolerance : float
-        Largest error of amplitude and mean force.
-    stability : bool
-        Whether to compute stability.
-    workers : int
-        Number of threads of the CPU.
-    backend : {"cpu", "gpu"}
-        As in `steady_state`; the CPU averages friction.
-
-    Returns
-    -------
-    SteadyStates
-        As from `steady_state`.
-    FrictionAverages
-        As from `friction_averages`.
-
-    Raises
-    ------
-    InvalidInput
-        As `steady_state` and `friction_averages`.
-
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
-
-    See Also
-    --------
-    steady_state, friction_averages
-    """
-    states = steady_state(
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_amplitude=voltage_amplitude,
-        voltage_harmonics=voltage_harmonics,
-        voltage_offset=voltage_offset,
-        relative_tolerance=relative_tolerance,
-        stability=stability,
-        workers=workers,
-        backend=backend,
-    )
-    return states, friction_averages(states, sliding_speed=sliding_speed, workers=workers)
-
-
 def friction_averages(states: SteadyStates, *, sliding_speed: ArrayLike, workers: int = 1) -> FrictionAverages:
     r"""Kinematic friction factors of every steady state at every sliding speed.
 
@@ -163,7 +82,7 @@ def friction_averages(states: SteadyStates, *, sliding_speed: ArrayLike, workers
 
     See Also
     --------
-    steady_friction
+    steady_state
 
     Notes
     -----
@@ -202,7 +121,7 @@ def _averages(states: SteadyStates, speeds: Floats, workers: int) -> tuple[Float
     parts, count = harmonics.view(np.float64), states.harmonic_count.reshape(-1)
     load, mean = states.normal_load.reshape(-1), states.mean_displacement.reshape(-1)
     settings = np.stack([*moebius_parameters(phases), omega, load, mean, gap_law.equilibrium_coordinate(load)], axis=1)
-    (variant, law), has_two_extrema = kernel_law(gap_law), np.isfinite(phases[:, 0])
+    law, has_two_extrema = kernel_law(gap_law), np.isfinite(phases[:, 0])
     averages = np.zeros((2, omega.size, speeds.size))
     ratio = speeds.min() / (omega * np.abs(harmonics[:, 0]) + 1e-300)
     rows, factor = node_table_row(ratio), node_count_factor(harmonics)
@@ -223,10 +142,33 @@ def _averages(states: SteadyStates, speeds: Floats, workers: int) -> tuple[Float
             work = friction_workspace(int(count[alike].max()), precise)
             chosen = alike[chunk]
             averages_of = elliptic_averages.for_points(chosen.size * speeds.size)
-            averages_of(*variant, law, settings, parts, count, rows, chosen, precise, nodes, work, averages)
+            averages_of(law, settings, parts, count, rows, chosen, precise, nodes, work, averages)
 
         map_chunks(average, alike.size, workers)
-    if not has_two_extrema.all():
-        others = np.flatnonzero(~has_two_extrema)
-        piecewise_linear_averages(*variant, law, settings, harmonics, count, others, speeds, averages)
+    for point in np.flatnonzero(~has_two_extrema):
+        motion = harmonics[point, : count[point]]
+        averages[:, point] = _piecewise_linear_averages(gap_law, load[point], omega[point], mean[point], motion, speeds)
     return averages[0], averages[1]
+
+
+def _piecewise_linear_averages(
+    gap_law: GapLaw, load: float, omega: float, mean: float, harmonics: Complexes, speeds: Floats
+) -> tuple[Floats, Floats]:
+    r"""Plain and force-weighted averages of a motion with any number of extrema, each of shape (s,).
+
+    Over a cell in which the velocity changes linearly from :math:`v_1` to :math:`v_2`, the mean is
+
+    .. math::
+        \left\langle\frac{v_r}{\sqrt{v_r^2 + v^2}}\right\rangle
+        = \frac{v_r}{v_2 - v_1} \left(\mathrm{arsinh}\frac{v_2}{v_r} - \mathrm{arsinh}\frac{v_1}{v_r}\right) .
+    """
+    cells, orders = max(_CELLS_PER_HARMONIC * harmonics.size, _MIN_CELLS), np.arange(1, harmonics.size + 1)
+    spectra = np.zeros((2, cells // 2 + 1), dtype=np.complex128)
+    spectra[:, 1 : harmonics.size + 1] = harmonics * (cells / 2), 1j * omega * orders * harmonics * (cells / 2)
+    x, v = np.fft.irfft(spectra, cells)
+    force = damped_force(gap_law, mean + x, v, load) / load
+    rise, rapidity = np.roll(v, -1) - v, np.arcsinh(v / speeds[:, np.newaxis])
+    nearly_level = np.abs(rise) <= _LEVEL * speeds[:, np.newaxis]
+    steep = speeds[:, np.newaxis] * (np.roll(rapidity, -1, axis=1) - rapidity) / np.where(nearly_level, 1.0, rise)
+    ratio = np.where(nearly_level, 1 / np.hypot(1.0, np.roll(v, -1) / speeds[:, np.newaxis]), steep)
+    return ratio.mean(axis=1), ratio @ (force + np.roll(force, -1)) / (2 * cells)

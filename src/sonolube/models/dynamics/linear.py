@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
-from sonolube.models.actuator import ButterworthVanDyke, CircuitResonances, MotionalBranch, circuit_resonances
+from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch
 from sonolube.models.dynamics.structure import Structure
 
 _RIGID = 1e-12  # omega^2 over that of the highest mode below which a mode is rigid but for rounding
@@ -201,31 +201,3 @@ def equivalent_circuit(structure: Structure) -> ButterworthVanDyke:
         if participation[i] ** 2 > _UNDRIVEN * omega[i] ** 2 * structure.clamped_capacitance
     ]
     return ButterworthVanDyke(parallel_capacitance=structure.clamped_capacitance, branches=tuple(branches))
-
-
-def resonance_frequencies(structure: Structure) -> CircuitResonances:
-    """Series and parallel resonance frequencies of the electrical admittance with the contact free.
-
-    Parameters
-    ----------
-    structure : Structure
-
-    Returns
-    -------
-    CircuitResonances
-        Of the modes that the stack drives; frequencies without damping, which enters the quality factors.
-
-    Raises
-    ------
-    InvalidInput
-        If the clamped capacitance is zero.
-
-    Examples
-    --------
-    >>> from sonolube.models.dynamics import resonance_frequencies
-    >>> from sonolube.rig import read_rig
-    >>> found = resonance_frequencies(read_rig("examples/rigs/tribometer.toml").structure)
-    >>> found.series_frequency.round().tolist(), found.parallel_frequency.round().tolist()
-    ([154.0, 21998.0], [154.0, 28850.0])
-    """
-    return circuit_resonances(equivalent_circuit(structure))

@@ -97,7 +97,7 @@ def steady_state(
 
     See Also
     --------
-    steady_friction, response_curve, march
+    friction_averages, response_curve, march
 
     Notes
     -----
@@ -179,8 +179,7 @@ _SHARED_FIELDS = {field.name for field in fields(SteadyStates)} & set(BatchSolut
 
 def _solve(problem: BatchProblem, workers: int) -> BatchSolution:
     """Solution of a batch, in chunks."""
-    variant, _ = kernel_law(problem.gap_law)
-    with compile_in_parallel(variant, stability=problem.stability, tolerance=problem.tolerance):
+    with compile_in_parallel(kernel_law(problem.gap_law), stability=problem.stability, tolerance=problem.tolerance):
         return concatenate(map_chunks(lambda own: solve(problem.select(own)), problem.omega.size, workers))
 
 

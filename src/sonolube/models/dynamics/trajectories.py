@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.checks import Complexes, Floats
-from sonolube.errors import InvalidInput
+from sonolube.checks import Floats
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -133,38 +132,3 @@ class Trajectory:
     states: State
     status: str
     advice: str
-
-
-def displacement_harmonics(motion: ContactSamples, *, steps_per_period: int, count: int) -> tuple[Floats, Complexes]:
-    r"""Mean and harmonics of the contact's displacement over the last period, by discrete Fourier transform.
-
-    Parameters
-    ----------
-    motion : ContactSamples
-        Recorded periods of `march`, which end at phase zero.
-    steps_per_period : int
-        Time steps per drive period of that march.
-    count : int
-        Highest harmonic, less than half the steps per period.
-
-    Returns
-    -------
-    mean : ndarray, shape (...)
-        Mean displacement, in m.
-    harmonics : ndarray of complex, shape (..., count)
-        Complex amplitudes X_k, in m.
-
-    Raises
-    ------
-    InvalidInput
-        If the count is not positive or too high.
-
-    Notes
-    -----
-    .. math:: x(t) = \bar x + \mathrm{Re}\sum_{k\ge1} X_k e^{2\pi i k f t}
-    """
-    if not 1 <= count < steps_per_period / 2:
-        raise InvalidInput(f"count must lie between 1 and {(steps_per_period - 1) // 2}, got {count!r}")
-    period = np.roll(motion.displacement[..., -steps_per_period:], 1, axis=-1)
-    coefficients = np.fft.rfft(period) / steps_per_period
-    return coefficients[..., 0].real, 2 * coefficients[..., 1 : count + 1]

@@ -115,11 +115,11 @@ def march(
         ),
     )
     solution = march_on_cpu(problem, workers)
-    assessment = assess_steps(problem, solution)
+    status, advice, step_error = assess_steps(problem, solution)
     return Trajectories(
-        status=assessment.status.reshape(shape),
-        advice=assessment.advice.reshape(shape),
-        step_error=assessment.step_error.reshape(shape),
+        status=status.reshape(shape),
+        advice=advice.reshape(shape),
+        step_error=step_error.reshape(shape),
         envelope=_envelope(problem, solution, shape),
         last_periods=_contact_motion(problem, solution.recorded[:, :-1], shape),
         strobed=_contact_motion(problem, solution.strobed, shape),
@@ -188,7 +188,7 @@ def trajectory(
     if shape:
         raise InvalidInput(f"trajectory takes one point, got {problem.frequency.size}; march takes many")
     solution = march_on_cpu(problem, workers=1)
-    assessment = assess_steps(problem, solution)
+    status, advice, _ = assess_steps(problem, solution)
     states = np.concatenate([problem.start[np.newaxis, :, :1], solution.recorded[:, :-1]])
     time = np.arange(states.shape[0]) / (frequency * steps_per_period)
     drive = {"voltage_offset": voltage_offset, "voltage_peak_to_peak": voltage_peak_to_peak, "frequency": frequency}
@@ -197,8 +197,8 @@ def trajectory(
         voltage=ramp_factor(ramp, time=time) * drive_voltage(shaped, **drive, time=time),
         contact=_contact_motion(problem, states, shape),
         states=_state(problem.modes, states[..., 0].T, (time.size,)),
-        status=str(assessment.status[0]),
-        advice=str(assessment.advice[0]),
+        status=str(status[0]),
+        advice=str(advice[0]),
     )
 
 

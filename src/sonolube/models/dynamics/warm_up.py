@@ -26,7 +26,7 @@ from sonolube.models.dynamics.friction_average.elliptic_kernel import (
 from sonolube.models.dynamics.friction_average.elliptic_quadrature import elliptic_nodes
 from sonolube.models.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms, period_workspace
 from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import newton_solve
-from sonolube.models.dynamics.kernels.contact_kernel import KernelVariant, LawParameters
+from sonolube.models.dynamics.kernels.contact_kernel import KernelLaw
 from sonolube.storage.interruption import undone_at_signal
 
 _KERNELS = (newton_solve, monodromy_power_norms, elliptic_averages)
@@ -48,15 +48,15 @@ class CompileProcess:
 
     Parameters
     ----------
-    variant : KernelVariant
+    law : KernelLaw
     stability : bool
         Whether stability is to be computed.
     tolerance : float
         Relative error of the steady states.
     """
 
-    def __init__(self, variant: KernelVariant, stability: bool, tolerance: float) -> None:
-        arguments = len(variant.kind), len(variant.damped), stability, tolerance
+    def __init__(self, law: KernelLaw, stability: bool, tolerance: float) -> None:
+        arguments = len(law.kind), len(law.damped), stability, tolerance
         call = f"from {__name__} import compile_remaining_kernels; compile_remaining_kernels{arguments}"
         self._code = f"import gc; gc.disable(); {call}"  # numba makes many objects, of which little is garbage
         self._process: subprocess.Popen[bytes] | None = None
@@ -85,12 +85,12 @@ class CompileProcess:
 
 
 @contextmanager
-def compile_in_parallel(variant: KernelVariant, *, stability: bool, tolerance: float) -> Iterator[CompileProcess]:
+def compile_in_parallel(law: KernelLaw, *, stability: bool, tolerance: float) -> Iterator[CompileProcess]:
     """Compile the kernels for stability and friction in a second process if `newton_solve` has to be compiled within.
 
     It has ended when the context has.
     """
-    process = CompileProcess(variant, stability, tolerance)
+    process = CompileProcess(law, stability, tolerance)
     if runs_plain(1) or (os.cpu_count() or 1) == 1 or not sys.executable or getattr(sys, "frozen", False):
         yield process  # not listening, and hence never started
         return
@@ -107,12 +107,12 @@ def compile_in_parallel(variant: KernelVariant, *, stability: bool, tolerance: f
 
 def compile_remaining_kernels(kind: int, damped: int, stability: bool, tolerance: float) -> None:
     """Compile, and so cache, the kernels that follow `newton_solve`, by calling them with empty batches."""
-    variant, law = KernelVariant((0,) * kind, (0,) * damped), LawParameters(0.0, 0.0, np.empty((0, 4)))
+    law = KernelLaw((0,) * kind, (0,) * damped, 0.0, 0.0, np.empty((0, 4)))
     empty, points = np.empty((0, 0)), np.empty(0, dtype=np.int64)
     speeds = np.ones(1, dtype=sum_precision(tolerance))
     if stability:
         work, norms = period_workspace(0, 0), np.empty(0)
-        monodromy_power_norms(*variant, law, empty, empty, empty, empty, points, points, points, work, norms, norms)
+        monodromy_power_norms(law, empty, empty, empty, empty, points, points, points, work, norms, norms)
     averages, nodes = np.empty((2, 0, 1)), elliptic_nodes(0)
     workspace = friction_workspace(0, speeds)
-    elliptic_averages(*variant, law, empty, empty, points, points, points, speeds, nodes, workspace, averages)
+    elliptic_averages(law, empty, empty, points, points, points, speeds, nodes, workspace, averages)

@@ -3,28 +3,15 @@ from .elliptical_motion import (
     contact_time_fraction as contact_time_fraction,
     elliptical_traction_ratio as elliptical_traction_ratio,
 )
-from .laws.coulomb import (
-    CoulombFriction as CoulombFriction,
-    coulomb_friction as coulomb_friction,
-    friction_coefficient as friction_coefficient,
-)
+from .laws.coulomb import friction_coefficient as friction_coefficient
 from .laws.coulomb_under_vibration import (
     oblique_vibration_ratio as oblique_vibration_ratio,
     parallel_vibration_ratio as parallel_vibration_ratio,
     transverse_vibration_ratio as transverse_vibration_ratio,
 )
-from .laws.dahl import (
-    DahlFriction as DahlFriction,
-    dahl_friction as dahl_friction,
-    dahl_friction_history as dahl_friction_history,
-)
+from .laws.dahl import DahlFriction as DahlFriction, dahl_friction_history as dahl_friction_history
 from .laws.dahl_under_vibration import dahl_under_vibration as dahl_under_vibration
-from .laws.lugre import (
-    LuGreFriction as LuGreFriction,
-    LuGreHistory as LuGreHistory,
-    lugre_friction_history as lugre_friction_history,
-    lugre_steady_friction as lugre_steady_friction,
-)
+from .laws.lugre import LuGreFriction as LuGreFriction
 from .laws.lugre_stick_slip import (
     SlidingKind as SlidingKind,
     StickSlipHistory as StickSlipHistory,
@@ -39,13 +26,11 @@ from .lubrication import (
     BoundaryLubricant as BoundaryLubricant,
     LubricationCoefficients as LubricationCoefficients,
     LubricationMethod as LubricationMethod,
-    LubricationRegime as LubricationRegime,
     StribeckCurve as StribeckCurve,
     asperity_load_fraction as asperity_load_fraction,
     best_lubrication_method as best_lubrication_method,
     hersey_number as hersey_number,
     lubrication_coefficients as lubrication_coefficients,
-    lubrication_regime as lubrication_regime,
     stribeck_coefficient as stribeck_coefficient,
 )
 from .metal_forming import (
@@ -82,7 +67,6 @@ from .models.dong_2015 import (
 from .models.dong_2015_sine import (
     dong_2015_deformation_ratio as dong_2015_deformation_ratio,
     dong_2015_half_period_ratio as dong_2015_half_period_ratio,
-    steady_deformation as steady_deformation,
 )
 from .models.kinematic import Kinematic as Kinematic
 from .models.range_check import (

@@ -25,6 +25,10 @@ MAXIMUM_PERIODS = 4000
 _MAXIMUM_ITERATIONS = 60  # of Newton's method
 
 
+Propagators = tuple[Floats, Floats, Floats]
+"""Matrices of one time step of a holder: of its state, and of the force at the start and at the end of the step."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Holder:
     """Spring, mass and damper that hold a slider along the sliding direction.
@@ -63,7 +67,7 @@ RIGID = Holder()
 """Rigid holder: infinite stiffness, without mass and damping."""
 
 
-def holder_propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Floats]:
+def holder_propagators(holder: Holder, step: float) -> Propagators:
     r"""Matrices of one exact time step of a holder with mass under a force linear in time.
 
     `transition`: Matrix of the state (y, dy/dt). `by_first, by_last`: Response of the state to the force at the start
@@ -127,9 +131,7 @@ def mean_force_inertial_holder(
     steady: Floats,
     step: float,
     exponent: float,
-    transition: Floats,
-    by_first: Floats,
-    by_last: Floats,
+    propagators: Propagators,
     deflection: Floats,
 ) -> tuple[Floats, bool]:
     """Mean force of a bristle on a holder with mass over its steady period, for each sliding speed.
@@ -143,7 +145,7 @@ def mean_force_inertial_holder(
         state = np.array([limit[0], deflection[i], 0.0])  # force, y, dy/dt
         converged = False
         for _ in range(_MAXIMUM_ITERATIONS):
-            end, jacobian, mean = _period(state, k, limit, slides, steady[i], exponent, transition, by_first, by_last)
+            end, jacobian, mean = _period(state, k, limit, slides, steady[i], exponent, propagators)
             residual = end - state
             # the velocity of a stiff holder may be rounding error beside the sliding speed, to which it adds
             scale = np.abs(end) + np.array([limit.max(), 1e-12, 1e-3 * steady[i] / step])
@@ -155,9 +157,7 @@ def mean_force_inertial_holder(
         if not converged:
             total, averaged = 0.0, MAXIMUM_PERIODS // 4
             for period in range(MAXIMUM_PERIODS):
-                state, jacobian, mean = _period(
-                    state, k, limit, slides, steady[i], exponent, transition, by_first, by_last
-                )
+                state, jacobian, mean = _period(state, k, limit, slides, steady[i], exponent, propagators)
                 if period >= MAXIMUM_PERIODS - averaged:
                     total += mean
             means[i], settled = total / averaged, False
@@ -166,19 +166,12 @@ def mean_force_inertial_holder(
 
 @kernel(cache=True, no_cfunc_wrapper=True)
 def _period(
-    state: Floats,
-    k: Floats,
-    limit: Floats,
-    slides: Floats,
-    steady: float,
-    exponent: float,
-    transition: Floats,
-    by_first: Floats,
-    by_last: Floats,
+    state: Floats, k: Floats, limit: Floats, slides: Floats, steady: float, exponent: float, propagators: Propagators
 ) -> tuple[Floats, Floats, float]:
     """State after one period, its derivative with respect to the state before, and the mean force."""
     n = k.size
     force, y, w = state
+    transition, by_first, by_last = propagators
     jacobian = np.eye(3)
     total = 0.0
     for j in range(n):

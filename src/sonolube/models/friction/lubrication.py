@@ -10,16 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput
 
-_BOUNDARY_FILM_FRACTION = 0.1  # fraction of the load on films at the end of boundary lubrication
-
-
-class LubricationRegime(StrEnum):
-    """Lubrication regime of a contact."""
-
-    BOUNDARY = "boundary"
-    MIXED = "mixed"
-    HYDRODYNAMIC = "hydrodynamic"
-
 
 class LubricationMethod(StrEnum):
     """Lubrication method of a contact: none, vibration, a lubricant, or both."""
@@ -68,12 +58,6 @@ class StribeckCurve:
         require_positive(**asdict(self))
         if self.film_slope * self.transition_hersey_number >= self.boundary_coefficient:
             raise InvalidInput("film_slope times transition_hersey_number must be smaller than boundary_coefficient")
-
-    @property
-    def hersey_number_at_minimum(self) -> float:
-        """Hersey number of the minimum of the curve, where the film becomes full, in m."""
-        ratio = self.boundary_coefficient / (self.film_slope * self.transition_hersey_number)
-        return float(self.transition_hersey_number * np.log(ratio))
 
 
 def hersey_number(*, dynamic_viscosity: ArrayLike, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> Floats:
@@ -133,36 +117,6 @@ def stribeck_coefficient(curve: StribeckCurve, *, hersey_number: ArrayLike) -> F
     he = require_non_negative(hersey_number=hersey_number)
     asperities = curve.boundary_coefficient * np.exp(-he / curve.transition_hersey_number)
     return asperities + curve.film_slope * he
-
-
-def lubrication_regime(curve: StribeckCurve, *, hersey_number: ArrayLike) -> NDArray[np.str_]:
-    """Lubrication regime on a Stribeck curve, as values of `LubricationRegime`.
-
-    Parameters
-    ----------
-    curve : StribeckCurve
-    hersey_number : array_like, any shape
-        Viscosity times speed over pressure. [m]
-
-    Returns
-    -------
-    ndarray of str, shape of `hersey_number`
-
-    Raises
-    ------
-    InvalidInput
-        If a number is negative or not finite.
-
-    Notes
-    -----
-    By convention boundary lubrication ends where films carry a tenth of the load, and hydrodynamic lubrication begins
-    at the minimum of the curve.
-    """
-    he = require_non_negative(hersey_number=hersey_number)
-    mixed_from = -np.log1p(-_BOUNDARY_FILM_FRACTION) * curve.transition_hersey_number
-    below, full = he < mixed_from, he >= curve.hersey_number_at_minimum
-    partial = np.where(below, str(LubricationRegime.BOUNDARY), str(LubricationRegime.MIXED))
-    return np.where(full, str(LubricationRegime.HYDRODYNAMIC), partial)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,6 +1,7 @@
 """Cubic splines on uniform grids of one or two axes, for tables of friction ratios."""
 
 from collections.abc import Callable
+from typing import Any, cast
 
 import numpy as np
 
@@ -39,7 +40,7 @@ def spline_values(coefficients: Floats, *places: Floats) -> Floats:
     `coefficients` has shape (n + 2,). Shape (p,).
     """
     below = [np.minimum(p.astype(np.int64), n - 4) for p, n in zip(places, coefficients.shape, strict=True)]
-    weights = [_weights(p - i) for p, i in zip(places, below, strict=True)]
+    weights = [_weights_of_many(p - i) for p, i in zip(places, below, strict=True)]
     table = coefficients.ravel()
     if len(places) == 1:
         return _row_values(table, below[0], weights[0])
@@ -75,21 +76,13 @@ def _row_values(table: Floats, first: Integers, weights: tuple[Floats, ...]) -> 
     return total
 
 
-def _weights(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Values of four neighbouring cubic B-splines at the share t of a step behind a node."""
-    left = 1 - t
-    first, last = left * left * left / 6, t * t * t / 6
-    second = 2 / 3 - t * t * (0.5 + 0.5 * left)
-    return first, second, 1 - first - second - last, last
-
-
 @kernel(error_model="numpy", _nrt=False, **INNER)
 def bicubic_value(coefficients: Floats, row: float, column: float) -> float:
     """Value of a spline of two axes at one place, which `spline_values` gives for arrays."""
     rows, columns = coefficients.shape
     i, j = min(int(row), rows - 4), min(int(column), columns - 4)
-    a, b, c, d = _weights_of_one(row - i)
-    e, f, g, h = _weights_of_one(column - j)
+    a, b, c, d = _weights(row - i)
+    e, f, g, h = _weights(column - j)
     total = 0.0
     for k, weight in enumerate((a, b, c, d)):
         line = coefficients[i + k]
@@ -98,9 +91,12 @@ def bicubic_value(coefficients: Floats, row: float, column: float) -> float:
 
 
 @kernel(error_model="numpy", _nrt=False, **INNER)
-def _weights_of_one(t: float) -> tuple[float, float, float, float]:
-    """Values of four neighbouring cubic B-splines, as of `_weights`."""
+def _weights(t: float) -> tuple[float, float, float, float]:
+    """Values of four neighbouring cubic B-splines at the share t of a step behind a node."""
     left = 1 - t
     first, last = left * left * left / 6, t * t * t / 6
     second = 2 / 3 - t * t * (0.5 + 0.5 * left)
     return first, second, 1 - first - second - last, last
+
+
+_weights_of_many: Callable[[Floats], tuple[Floats, ...]] = cast("Any", _weights.py_func)

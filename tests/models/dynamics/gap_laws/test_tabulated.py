@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pytest import approx, fixture, mark, raises
 from scipy.integrate import solve_ivp
+from tests.models.dynamics.floquet_multipliers import floquet_multipliers
 
 from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import few_points
@@ -33,7 +34,6 @@ from sonolube.models.dynamics import (
 )
 from sonolube.models.dynamics.continuation import response_curve
 from sonolube.models.dynamics.sensitivities import steady_state_sensitivities
-from sonolube.models.dynamics.stability import floquet_multipliers
 from sonolube.models.dynamics.structure import drive_receptance
 from sonolube.models.surfaces import Roughness
 

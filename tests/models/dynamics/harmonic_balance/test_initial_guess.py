@@ -5,6 +5,7 @@ import pytest
 from scipy.special import ive
 
 from sonolube.models.dynamics import ExponentialGap, Structure
+from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem
 from sonolube.models.dynamics.harmonic_balance.initial_guess import initial_guess
 from sonolube.models.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, pole_residue_model, receptance
 
@@ -26,16 +27,20 @@ def test_mean_and_amplitude_on_a_grounded_structure_satisfy_the_equations_of_a_s
     model = pole_residue_model(structure)
     omega, static_displacement = np.full(4, 2 * np.pi * 15e3), np.array([0.0, 3e-7, -4e-7, 0.0])
     free = np.array([[0.1e-6], [1e-6], [4e-6], [12e-6]], dtype=complex)
-    guess = initial_guess(
-        model,
-        ExponentialGap(decay_length=LENGTH),
-        omega,
-        load,
-        static_displacement,
-        free,
-        tolerance=1e-6,
+    problem = BatchProblem(
+        model=model,
+        gap_law=ExponentialGap(decay_length=LENGTH),
+        omega=omega,
+        load=load,
+        voltage=np.ones((4, 1), dtype=complex),
+        static_displacement=static_displacement,
+        minimum_harmonics=1,
         upper_branch=False,
+        stability=False,
+        tolerance=1e-6,
+        on_gpu=False,
     )
+    guess = initial_guess(problem, free, upper_branch=False)
     amplitude, mean = np.abs(guess.harmonic), guess.mean
     beta = amplitude / LENGTH
     force = load + model.static_stiffness * (mean - static_displacement)

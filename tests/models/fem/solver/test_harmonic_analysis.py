@@ -5,10 +5,11 @@ import pytest
 from pytest import approx, raises
 from scipy.sparse import block_array
 from scipy.sparse.linalg import splu
+from tests.facts.materials.coupling_factors import coupling_factors
 from tests.models.fem.direct_response import direct_response
 
 from sonolube.errors import InvalidInput
-from sonolube.facts.materials import coupling_factors, piezo_ceramic
+from sonolube.facts.materials import piezo_ceramic
 from sonolube.models.fem import (
     Electrodes,
     FixedSupport,

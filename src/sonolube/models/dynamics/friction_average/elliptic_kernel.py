@@ -10,8 +10,8 @@ import numpy as np
 from sonolube.checks import Floats, Integers
 from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.friction_average.elliptic_quadrature import NODES_PER_PASS, EllipticNodes
-from sonolube.models.dynamics.kernels.contact_kernel import CompileTimeInt, LawParameters, contact_force_rows
-from sonolube.models.dynamics.kernels.simd import INLINED, INNER, KERNEL, LANES, block_maximum, gather
+from sonolube.models.dynamics.kernels.contact_kernel import KernelLaw, contact_force_rows
+from sonolube.models.dynamics.kernels.simd import INNER, KERNEL, LANES, block_maximum, gather
 
 # Rows of a block: Moebius parameters, angular frequency, dead load, mean displacement and equilibrium coordinate of
 # each motion (columns of `settings`); then at a node: mapped node and its powers, displacement, velocity, weight, and
@@ -44,9 +44,7 @@ def friction_workspace(harmonics: int, speeds: Floats) -> FrictionWorkspace:
 
 @kernel(**KERNEL)
 def elliptic_averages(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
-    law: LawParameters,
+    law: KernelLaw,
     settings: Floats,
     harmonics: Floats,
     count: Integers,
@@ -65,45 +63,23 @@ def elliptic_averages(
         \left\langle\frac{v_r}{\sqrt{v_r^2 + v^2}}\right\rangle, \qquad
         \left\langle\frac{F_n}{F_N}\,\frac{v_r}{\sqrt{v_r^2 + v^2}}\right\rangle
     """
+    rows, motion, at_nodes, sums = work.rows, work.motion, work.nodes, work.sums
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
-        _average_block(kind, damped, law, settings, harmonics, count, table_row, block, speeds, nodes, work, averages)
-
-
-@kernel(**INLINED)
-def _average_block(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
-    law: LawParameters,
-    settings: Floats,
-    harmonics: Floats,
-    count: Integers,
-    table_row: Integers,
-    block: Integers,
-    speeds: Floats,
-    nodes: EllipticNodes,
-    work: FrictionWorkspace,
-    averages: Floats,
-) -> None:
-    """Average the motions of one block."""
-    rows, motion, at_nodes, sums = work.rows, work.motion, work.nodes, work.sums
-    h, row = block_maximum(count, block), block_maximum(table_row, block)
-    gather(settings, block, rows)
-    gather(harmonics, block, motion[: 2 * h])
-    sums[:] = 0.0
-    for j in range(nodes.count[row]):
-        _motion_at(nodes.cosine[row, j], nodes.sine[row, j], nodes.weight[row, j], motion, h, rows)
-        results = rows[FORCE:]
-        contact_force_rows(
-            kind, damped, law, rows[LOAD], rows[EQUILIBRIUM], rows[DISPLACEMENT], rows[VELOCITY], results
-        )
-        _store_node(rows, at_nodes[j % NODES_PER_PASS])
-        if j % NODES_PER_PASS == NODES_PER_PASS - 1:
-            _accumulate(speeds, at_nodes, sums)
-    for lane in range(block.size):
-        for s in range(speeds.size):
-            for which in range(2):
-                averages[which, block[lane], s] = sums[which, s, lane]
+        h, row = block_maximum(count, block), block_maximum(table_row, block)
+        gather(settings, block, rows)
+        gather(harmonics, block, motion[: 2 * h])
+        sums[:] = 0.0
+        for j in range(nodes.count[row]):
+            _motion_at(nodes.cosine[row, j], nodes.sine[row, j], nodes.weight[row, j], motion, h, rows)
+            contact_force_rows(law, rows[LOAD], rows[EQUILIBRIUM], rows[DISPLACEMENT], rows[VELOCITY], rows[FORCE:])
+            _store_node(rows, at_nodes[j % NODES_PER_PASS])
+            if j % NODES_PER_PASS == NODES_PER_PASS - 1:
+                _accumulate(speeds, at_nodes, sums)
+        for lane in range(block.size):
+            for s in range(speeds.size):
+                for which in range(2):
+                    averages[which, block[lane], s] = sums[which, s, lane]
 
 
 @kernel(**INNER)

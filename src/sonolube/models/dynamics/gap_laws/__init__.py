@@ -1,1 +1,1 @@
-"""Contact laws for dynamics: normal contact force against displacement, one law per file."""
+"""Contact laws for dynamics: normal contact force against displacement."""

@@ -36,7 +36,7 @@ class GapLaw(Protocol):
 
     @property
     def kernel_parameter(self) -> float:
-        """The one parameter that the compiled kernels take: see `LawParameters`."""
+        """The one parameter that the compiled kernels take: see `KernelLaw`."""
 
     def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Elastic contact force F, never negative. [N]"""

@@ -11,7 +11,7 @@ from sonolube.models.dynamics.gap_laws.hertz import HertzGap
 from sonolube.models.dynamics.gap_laws.linear import LinearGap
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw
 from sonolube.models.dynamics.gap_laws.tabulated import TabulatedGap
-from sonolube.models.dynamics.kernels.contact_kernel import KernelVariant, LawParameters
+from sonolube.models.dynamics.kernels.contact_kernel import KernelLaw
 
 _NO_CELLS = np.empty((0, 4))
 
@@ -22,7 +22,7 @@ GAP_LAWS: Mapping[str, type[GapLaw]] = MappingProxyType(
 """The contact laws that the compiled kernels evaluate, by name."""
 
 
-def kernel_law(gap_law: GapLaw) -> tuple[KernelVariant, LawParameters]:
+def kernel_law(gap_law: GapLaw) -> KernelLaw:
     """Contact law in the form that the compiled kernels take.
 
     What kernels are compiled for. Numbers that they take at run time.
@@ -33,8 +33,8 @@ def kernel_law(gap_law: GapLaw) -> tuple[KernelVariant, LawParameters]:
             " tabulate any other law as a TabulatedGap"
         )
     cells = gap_law.cells if isinstance(gap_law, TabulatedGap) else _NO_CELLS
-    variant = KernelVariant((0,) * gap_law.kind, (0,) * (gap_law.force_damping > 0))
-    return variant, LawParameters(gap_law.kernel_parameter, gap_law.force_damping, cells)
+    kind, damped = (0,) * gap_law.kind, (0,) * (gap_law.force_damping > 0)
+    return KernelLaw(kind, damped, gap_law.kernel_parameter, gap_law.force_damping, cells)
 
 
 def is_compiled(gap_law: GapLaw) -> bool:

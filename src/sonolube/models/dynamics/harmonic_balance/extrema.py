@@ -54,14 +54,19 @@ def response_measures(
     motions = _Motions(omega, load, mean, rows)
     size = np.abs(rows[0])
     weak = _acceleration(rows[1:], first=2) < _WEAK_HARMONICS * size
-    points = omega.size
-    measures = ResponseMeasures(*(np.full((points, 2) if i == 1 else points, np.nan) for i in range(6)))
     maximum = np.conj(rows[0]) / (size + 1e-300)  # exp(i phase), of the first harmonic
     minimum = -maximum
     for own, samples in _chunks(np.flatnonzero(~weak), count):
         maximum[own], minimum[own] = _extremum_estimates(motions.select(own), samples)
     has_two_extrema = ~np.isnan(maximum)
-    _measure_between_extrema(gap_law, motions, maximum, minimum, has_two_extrema, measures)
+    if has_two_extrema.all():
+        measures = _between_extrema(gap_law, motions, maximum, minimum)
+    else:
+        measures = ResponseMeasures(*(np.full((omega.size, 2) if i == 1 else omega.size, np.nan) for i in range(6)))
+        clear = np.flatnonzero(has_two_extrema)
+        part = _between_extrema(gap_law, motions.select(clear), maximum[clear], minimum[clear])
+        for values, results in zip(measures, part, strict=True):
+            values[clear] = results
     for own, samples in _chunks(np.flatnonzero(~has_two_extrema | (gap_law.force_damping > 0.0)), count):
         _measure_by_samples(gap_law, motions.select(own), samples, own, has_two_extrema[own], measures)
     return measures
@@ -111,39 +116,25 @@ def _displacement_and_slope(harmonics: Complexes, z: Complexes) -> tuple[Floats,
     return value.real, -slope.imag
 
 
-def _measure_between_extrema(
-    gap_law: GapLaw,
-    motions: _Motions,
-    maximum: Complexes,
-    minimum: Complexes,
-    has_two_extrema: NDArray[np.bool_],
-    measures: ResponseMeasures,
-) -> None:
-    """Write the measures of motions with two extrema, from estimates exp(i phase) of these."""
-    if not has_two_extrema.all():
-        own = np.flatnonzero(has_two_extrema)
-        part = ResponseMeasures(*(values[own] for values in measures))
-        selected = motions.select(own)
-        _measure_between_extrema(gap_law, selected, maximum[own], minimum[own], has_two_extrema[own], part)
-        for values, results in zip(measures, part, strict=True):
-            values[own] = results
-        return
+def _between_extrema(gap_law: GapLaw, motions: _Motions, maximum: Complexes, minimum: Complexes) -> ResponseMeasures:
+    """Measures of motions with two extrema, from estimates exp(i phase) of these."""
     upper, high = _extremum(motions.harmonics, maximum)
     lower, low = _extremum(motions.harmonics, minimum)
     high, low = motions.mean + high, motions.mean + low
-    measures.extremum_phases[:, 0], measures.extremum_phases[:, 1] = upper, lower
-    measures.highest_normal_force[:] = gap_law.force(low, motions.load)
-    measures.lowest_normal_force[:] = gap_law.force(high, motions.load)
-    measures.vibration_amplitude[:] = 0.5 * (high - low)
-    measures.lowest_displacement[:] = low
     loss = gap_law.loss_displacement(motions.load)
-    measures.contact_loss_fraction[:] = low >= loss
+    lost = (low >= loss).astype(np.float64)
     partial = np.flatnonzero((low < loss) & (loss < high))
     if partial.size:
-        own_motions = motions.select(partial)
-        level = loss[partial] - own_motions.mean
-        fraction = _fraction_above(own_motions.harmonics, level, upper[partial], lower[partial])
-        measures.contact_loss_fraction[partial] = fraction
+        own = motions.select(partial)
+        lost[partial] = _fraction_above(own.harmonics, loss[partial] - own.mean, upper[partial], lower[partial])
+    return ResponseMeasures(
+        vibration_amplitude=0.5 * (high - low),
+        extremum_phases=np.stack([upper, lower], axis=1),
+        lowest_displacement=low,
+        highest_normal_force=gap_law.force(low, motions.load),
+        lowest_normal_force=gap_law.force(high, motions.load),
+        contact_loss_fraction=lost,
+    )
 
 
 def _extremum(harmonics: Complexes, near: Complexes) -> tuple[Floats, Floats]:

@@ -51,7 +51,7 @@ def floquet_exponents(
     whatever the eigenvectors; here 2n = 2^22. The norm of :math:`M^n` enters to within a factor of two, by the powers
     of two that scale the squarings.
     """
-    variant, law = kernel_law(gap_law)
+    law = kernel_law(gap_law)
     needed = np.where(stability_undetermined(model, omega), 0.0, np.ceil(_KICKS_PER_RADIAN * _fastest(model) / omega))
     kicks = np.maximum(samples, needed.astype(np.int64))
     kicks, count = _rounded_up(kicks), -(-count // _HARMONICS_STEP) * _HARMONICS_STEP  # so that few are alone
@@ -76,7 +76,7 @@ def floquet_exponents(
         work = period_workspace(2 * model.trace.size, int(count.max(initial=0)))
         parts = np.ascontiguousarray(harmonics).view(np.float64)
         power_norms = monodromy_power_norms.compiled
-        power_norms(*variant, law, pairs, settings, drift, parts, count, kicks, chosen, work, powers, norms)
+        power_norms(law, pairs, settings, drift, parts, count, kicks, chosen, work, powers, norms)
     return np.asarray((powers * np.log(2.0) + 0.5 * np.log(norms)) / 2.0 ** (SQUARINGS - 1))
 
 

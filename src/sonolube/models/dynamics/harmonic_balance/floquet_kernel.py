@@ -16,12 +16,7 @@ import numpy as np
 
 from sonolube.checks import Floats, Integers
 from sonolube.execution.compilation import kernel
-from sonolube.models.dynamics.kernels.contact_kernel import (
-    CompileTimeInt,
-    LawParameters,
-    contact_force_rows,
-    velocity_over_omega,
-)
+from sonolube.models.dynamics.kernels.contact_kernel import KernelLaw, contact_force_rows, velocity_over_omega
 from sonolube.models.dynamics.kernels.simd import (
     INLINED,
     INNER,
@@ -72,9 +67,7 @@ def period_workspace(states: int, harmonics: int) -> PeriodWorkspace:
 
 @kernel(**KERNEL)
 def monodromy_power_norms(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
-    law: LawParameters,
+    law: KernelLaw,
     pairs: Floats,
     settings: Floats,
     drift: Floats,
@@ -99,23 +92,15 @@ def monodromy_power_norms(
         gather(harmonics, block, work.motion[0, 1 : 2 * h + 1])
         for lane in range(LANES):
             work.motion[0, 0, lane] = work.rows[MEAN, lane]
-        velocity_over_omega(damped, work.motion[0], h, work.motion[1])
-        _monodromy_matrix(kind, damped, law, pairs, h, kicks[block[0]], work)
+        velocity_over_omega(law, work.motion[0], h, work.motion[1])
+        _monodromy_matrix(law, pairs, h, kicks[block[0]], work)
         _square_repeatedly(work.matrix, work.square, work.size)
         for lane in range(block.size):
             powers[block[lane]], norms[block[lane]] = work.size[0, lane], work.size[1, lane]
 
 
 @kernel(**INLINED)
-def _monodromy_matrix(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
-    law: LawParameters,
-    pairs: Floats,
-    h: int,
-    kicks: int,
-    work: PeriodWorkspace,
-) -> None:
+def _monodromy_matrix(law: KernelLaw, pairs: Floats, h: int, kicks: int, work: PeriodWorkspace) -> None:
     """Write the monodromy matrix: one period of alternating kicks and drifts of every unit disturbance."""
     rows, matrix, contact = work.rows, work.matrix, work.contact
     size, gain = matrix.shape[0], 0.0
@@ -129,20 +114,17 @@ def _monodromy_matrix(
             contact[0, j, lane] = pairs[j // 2, DISPLACEMENT_OUTPUT + j % 2]
             contact[1, j, lane] = pairs[j // 2, VELOCITY_OUTPUT + j % 2]
     for kick in range(kicks):
-        _motion_at(damped, 2 * np.pi / kicks * kick, h, work.motion, work.wave, rows)
-        results = rows[FORCE:]
-        contact_force_rows(
-            kind, damped, law, rows[LOAD], rows[EQUILIBRIUM], rows[DISPLACEMENT], rows[VELOCITY], results
-        )
-        _impulses(damped, gain, kicks, rows)
+        _motion_at(law, 2 * np.pi / kicks * kick, h, work.motion, work.wave, rows)
+        contact_force_rows(law, rows[LOAD], rows[EQUILIBRIUM], rows[DISPLACEMENT], rows[VELOCITY], rows[FORCE:])
+        _impulses(law, gain, kicks, rows)
         for j in range(size):
-            _kick(damped, rows, contact, j)
+            _kick(law, rows, contact, j)
             for pair in range(pairs.shape[0]):
-                _drift(damped, pairs, pair, work.drift, matrix, contact, j)
+                _drift(law, pairs, pair, work.drift, matrix, contact, j)
 
 
 @kernel(**INNER)
-def _motion_at(damped: CompileTimeInt, phase: float, h: int, motion: Floats, wave: Floats, rows: Floats) -> None:
+def _motion_at(law: KernelLaw, phase: float, h: int, motion: Floats, wave: Floats, rows: Floats) -> None:
     """Write the displacement and, with damping, the velocity at a phase; force and stiffness serve as scratch."""
     for k in range(h + 1):
         wave[0, k], wave[1, k] = np.cos(phase * k), -np.sin(phase * k)
@@ -150,7 +132,7 @@ def _motion_at(damped: CompileTimeInt, phase: float, h: int, motion: Floats, wav
         weighted_row_sum(rows[FORCE + part], wave[part], motion[0], part, h)
     for lane in range(LANES):
         rows[DISPLACEMENT, lane] = rows[FORCE, lane] + rows[STIFFNESS, lane]
-    if len(damped) == 1:
+    if len(law.damped) == 1:
         for part in range(2):
             weighted_row_sum(rows[FORCE + part], wave[part], motion[1], part, h)
         for lane in range(LANES):
@@ -158,7 +140,7 @@ def _motion_at(damped: CompileTimeInt, phase: float, h: int, motion: Floats, wav
 
 
 @kernel(**INNER)
-def _impulses(damped: CompileTimeInt, gain: float, kicks: int, rows: Floats) -> None:
+def _impulses(law: KernelLaw, gain: float, kicks: int, rows: Floats) -> None:
     r"""Replace stiffness and damping by the impulses of one kick per displacement and per velocity.
 
     Notes
@@ -170,7 +152,7 @@ def _impulses(damped: CompileTimeInt, gain: float, kicks: int, rows: Floats) -> 
     """
     for lane in range(LANES):
         rows[STIFFNESS, lane] *= -2 * np.pi / (kicks * rows[OMEGA, lane])
-    if len(damped) == 1:
+    if len(law.damped) == 1:
         for lane in range(LANES):
             duration = 2 * np.pi / (kicks * rows[OMEGA, lane])
             decay = gain * rows[DAMPING, lane] * duration
@@ -180,21 +162,19 @@ def _impulses(damped: CompileTimeInt, gain: float, kicks: int, rows: Floats) -> 
 
 
 @kernel(**INNER)
-def _kick(damped: CompileTimeInt, rows: Floats, contact: Floats, j: int) -> None:
+def _kick(law: KernelLaw, rows: Floats, contact: Floats, j: int) -> None:
     """Write the impulse on the j-th disturbance, and reset its displacement and velocity at the contact."""
     for lane in range(LANES):
         contact[2, j, lane] = rows[STIFFNESS, lane] * contact[0, j, lane]
         contact[0, j, lane] = 0.0
-    if len(damped) == 1:
+    if len(law.damped) == 1:
         for lane in range(LANES):
             contact[2, j, lane] += rows[DAMPING, lane] * contact[1, j, lane]
             contact[1, j, lane] = 0.0
 
 
 @kernel(**INNER)
-def _drift(
-    damped: CompileTimeInt, pairs: Floats, pair: int, drift: Floats, matrix: Floats, contact: Floats, j: int
-) -> None:
+def _drift(law: KernelLaw, pairs: Floats, pair: int, drift: Floats, matrix: Floats, contact: Floats, j: int) -> None:
     """Apply the impulse to one pair of states of the j-th disturbance, then its free motion up to the next kick."""
     row, i = 4 * pair, 2 * pair
     for lane in range(LANES):
@@ -204,7 +184,7 @@ def _drift(
         second = drift[row + 2, lane] * one + drift[row + 3, lane] * two
         matrix[i, j, lane], matrix[i + 1, j, lane] = first, second
         contact[0, j, lane] += pairs[pair, DISPLACEMENT_OUTPUT] * first + pairs[pair, DISPLACEMENT_OUTPUT + 1] * second
-        if len(damped) == 1:
+        if len(law.damped) == 1:
             contact[1, j, lane] += pairs[pair, VELOCITY_OUTPUT] * first + pairs[pair, VELOCITY_OUTPUT + 1] * second
 
 

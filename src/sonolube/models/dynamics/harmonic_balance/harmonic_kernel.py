@@ -22,14 +22,12 @@ from sonolube.execution.compilation import kernel
 from sonolube.models.dynamics.harmonic_balance.newton_kernel import newton_step
 from sonolube.models.dynamics.harmonic_balance.receptance import contact_receptances
 from sonolube.models.dynamics.kernels.contact_kernel import (
-    CompileTimeInt,
-    LawParameters,
+    EXPONENTIAL,
+    KernelLaw,
     contact_force_rows,
-    stiffness_follows_force,
     velocity_over_omega,
 )
 from sonolube.models.dynamics.kernels.simd import (
-    INLINED,
     INNER,
     KERNEL,
     LANES,
@@ -105,11 +103,9 @@ def harmonic_workspace(harmonics: int, coupled: int, samples: int) -> HarmonicWo
 
 @kernel(**KERNEL)
 def newton_solve(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
+    law: KernelLaw,
     poles: Floats,
     static_stiffness: float,
-    law: LawParameters,
     iterates: Iterates,
     truncation: Integers,
     chosen: Integers,
@@ -122,71 +118,40 @@ def newton_solve(
 
     `poles` has shape (4, m). `truncation` has shape (3, p).
     """
-    for start in range(0, chosen.size, LANES):
-        block = chosen[start : start + LANES]
-        _solve_block(
-            kind,
-            damped,
-            poles,
-            static_stiffness,
-            law,
-            iterates,
-            truncation,
-            block,
-            tolerance,
-            iterations,
-            outcome,
-            work,
-        )
-
-
-@kernel(**INLINED)
-def _solve_block(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
-    poles: Floats,
-    static_stiffness: float,
-    law: LawParameters,
-    iterates: Iterates,
-    truncation: Integers,
-    block: Integers,
-    tolerance: float,
-    iterations: int,
-    outcome: Integers,
-    work: HarmonicWorkspace,
-) -> None:
-    """Solve the points of one block."""
     lanes, receptances, motions, waves = work.lanes, work.receptances, work.motions, work.waves
     sums, spectra, scratch = work.sums, work.spectra, work.scratch
     unknown, step, free, velocity = motions[0], motions[1], motions[2], motions[3]
-    h, n, count = truncation[0, block[0]], truncation[1, block[0]], truncation[2, block[0]]
-    gather(iterates.settings, block, lanes)
-    gather(iterates.mean, block, unknown[:1])
-    gather(iterates.harmonics, block, unknown[1 : 2 * h + 1])
-    gather(iterates.free_harmonics, block, free[1 : 2 * h + 1])
-    for k in range(1, h + 1):
-        contact_receptances(poles, lanes[OMEGA], float(k), receptances[k])
-    if count != work.tabulated[0]:
-        _tabulate_waves(count, waves)
-        work.tabulated[0] = count
-    quantities = 3 if len(damped) == 1 else (1 if stiffness_follows_force(kind, damped) else 2)
-    for _ in range(iterations):
-        velocity_over_omega(damped, unknown, h, velocity)
-        for j in range(count // 2 + 1):
-            weight = (0.5 if j == 0 or j == count // 2 else 1.0) / count
-            _sample_pair(kind, damped, law, lanes, unknown, velocity, waves, h, j, weight, quantities, scratch, sums)
-        _transform(waves, sums, count // 2, quantities, 2 * (h + n) + 1, spectra)
-        if quantities == 1:
-            _stiffness_from_force(law.parameter, 2 * (h + n) + 1, spectra)
-        _residual(static_stiffness, unknown, receptances, free, spectra[0], lanes, h, step)
-        newton_step(damped, static_stiffness, receptances, spectra, lanes[OMEGA], h, n, work.matrix, step)
-        if _update(unknown, step, 2 * h + 1, lanes, scratch[0], FINAL_STEP * tolerance):
-            break
-    # Aliasing: the samples add harmonic count - h to harmonic h. The harmonics of an exponential force decay ever
-    # faster, which bounds that one by the highest one that is resolved: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
-    aliased = tolerance ** ((0.5 * count - 1) / (count - h)) if quantities == 1 else tolerance
-    _assess(poles, block, h, count, waves, sums[0], spectra[0, 0], lanes, tolerance, aliased, scratch, outcome)
-    _scatter(iterates, block, h, unknown, spectra[0], outcome)
+    for start in range(0, chosen.size, LANES):
+        block = chosen[start : start + LANES]
+        h, n, count = truncation[0, block[0]], truncation[1, block[0]], truncation[2, block[0]]
+        gather(iterates.settings, block, lanes)
+        gather(iterates.mean, block, unknown[:1])
+        gather(iterates.harmonics, block, unknown[1 : 2 * h + 1])
+        gather(iterates.free_harmonics, block, free[1 : 2 * h + 1])
+        for k in range(1, h + 1):
+            contact_receptances(poles, lanes[OMEGA], float(k), receptances[k])
+        if count != work.tabulated[0]:
+            _tabulate_waves(count, waves)
+            work.tabulated[0] = count
+        # stiffness is proportional to an exponential force, so that one Fourier transform serves both
+        quantities = 3 if len(law.damped) == 1 else (1 if len(law.kind) == EXPONENTIAL else 2)
+        for _ in range(iterations):
+            velocity_over_omega(law, unknown, h, velocity)
+            for j in range(count // 2 + 1):
+                weight = (0.5 if j == 0 or j == count // 2 else 1.0) / count
+                _sample_pair(law, work, h, j, weight, quantities)
+            _transform(waves, sums, count // 2, quantities, 2 * (h + n) + 1, spectra)
+            if quantities == 1:
+                _stiffness_from_force(law.parameter, 2 * (h + n) + 1, spectra)
+            _residual(static_stiffness, work, h)
+            newton_step(law, static_stiffness, receptances, spectra, lanes[OMEGA], h, n, work.matrix, step)
+            if _update(unknown, step, 2 * h + 1, lanes, scratch[0], FINAL_STEP * tolerance):
+                break
+        # Aliasing: the samples add harmonic count - h to harmonic h. The harmonics of an exponential force decay ever
+        # faster, which bounds that one by the highest that is resolved: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
+        aliased = tolerance ** ((0.5 * count - 1) / (count - h)) if quantities == 1 else tolerance
+        _assess(poles, block, h, count, work, tolerance, aliased, outcome)
+        _scatter(iterates, block, h, unknown, spectra[0], outcome)
 
 
 @kernel(**INNER)
@@ -199,36 +164,24 @@ def _tabulate_waves(count: int, waves: Floats) -> None:
 
 
 @kernel(**INNER)
-def _sample_pair(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
-    law: LawParameters,
-    lanes: Floats,
-    unknown: Floats,
-    velocity: Floats,
-    waves: Floats,
-    h: int,
-    j: int,
-    weight: float,
-    quantities: int,
-    scratch: Floats,
-    sums: Floats,
-) -> None:
+def _sample_pair(law: KernelLaw, work: HarmonicWorkspace, h: int, j: int, weight: float, quantities: int) -> None:
     """Write weighted sums and differences of force, stiffness and damping at the j-th sample and its mirror image."""
+    lanes, waves, sums, scratch = work.lanes, work.waves, work.sums, work.scratch
+    unknown, velocity = work.motions[0], work.motions[3]
     for part in range(2):
         weighted_row_sum(scratch[part], waves[part, j], unknown, part, h)
-        if len(damped) == 1:
+        if len(law.damped) == 1:
             weighted_row_sum(scratch[2 + part], waves[part, j], velocity, part, h)
     x, v = scratch[4], scratch[5]
     for side in range(2):
         sign = 2.0 * side - 1.0
         linear_combination(scratch[0], 1.0, scratch[1], sign, x)
-        if len(damped) == 1:
+        if len(law.damped) == 1:
             linear_combination(scratch[2], 1.0, scratch[3], sign, v)
             for lane in range(LANES):
                 v[lane] *= lanes[OMEGA, lane]
         results = scratch[6 + 3 * side : 9 + 3 * side]
-        contact_force_rows(kind, damped, law, lanes[LOAD], lanes[EQUILIBRIUM], x, v, results)
+        contact_force_rows(law, lanes[LOAD], lanes[EQUILIBRIUM], x, v, results)
     for quantity in range(quantities):
         here, mirrored = scratch[9 + quantity], scratch[6 + quantity]
         if j > 0:
@@ -259,17 +212,10 @@ def _stiffness_from_force(length: float, rows: int, spectra: Floats) -> None:
 
 
 @kernel(**INNER)
-def _residual(
-    static_stiffness: float,
-    unknown: Floats,
-    receptances: Floats,
-    free: Floats,
-    force: Floats,
-    lanes: Floats,
-    h: int,
-    residual: Floats,
-) -> None:
-    """Write the residual of every equation of harmonic balance."""
+def _residual(static_stiffness: float, work: HarmonicWorkspace, h: int) -> None:
+    """Write the residual of every equation of harmonic balance in place of the Newton step."""
+    lanes, receptances, force = work.lanes, work.receptances, work.spectra[0]
+    unknown, residual, free = work.motions[0], work.motions[1], work.motions[2]
     for lane in range(LANES):
         static = static_stiffness * (unknown[0, lane] - lanes[STATIC_DISPLACEMENT, lane])
         residual[0, lane] = static + lanes[LOAD, lane] - force[0, lane]
@@ -313,16 +259,13 @@ def _assess(
     block: Integers,
     h: int,
     count: int,
-    waves: Floats,
-    force: Floats,
-    mean_force: Floats,
-    lanes: Floats,
+    work: HarmonicWorkspace,
     tolerance: float,
     aliased: float,
-    scratch: Floats,
     outcome: Integers,
 ) -> None:
     """Write the outcome of each point: convergence, then the error of aliasing, then that of truncation."""
+    lanes, waves, force, mean_force, scratch = work.lanes, work.waves, work.sums[0], work.spectra[0, 0], work.scratch
     real, imaginary, square, tail, receptance = scratch[0], scratch[1], scratch[2], scratch[3], scratch[4:6]
     for lane in range(LANES):
         tail[lane] = 0.0

@@ -13,9 +13,10 @@ import numpy as np
 from sonolube.checks import Complexes, Floats, Integers
 from sonolube.models.dynamics.gap_laws.exponential import ExponentialGap
 from sonolube.models.dynamics.gap_laws.protocol import GapLaw, force_decay_length
+from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem
 from sonolube.models.dynamics.harmonic_balance.bessel import bessel_ratio, log_bessel_i0, wright_omega
-from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import Truncation
-from sonolube.models.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, PoleResidueModel, receptance
+from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import TAIL, Truncation
+from sonolube.models.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, receptance
 from sonolube.models.dynamics.harmonic_balance.truncation import default_truncation, sinusoidal_truncation
 
 WEAK = 0.2
@@ -53,24 +54,15 @@ class _SinusoidalMotions(NamedTuple):
         return self._replace(**{name: getattr(self, name)[chosen] for name in self._fields[2:]})
 
 
-def initial_guess(
-    model: PoleResidueModel,
-    gap_law: GapLaw,
-    omega: Floats,
-    load: Floats,
-    static_displacement: Floats,
-    free_harmonics: Complexes,
-    *,
-    tolerance: float,
-    upper_branch: bool,
-) -> InitialGuess:
+def initial_guess(problem: BatchProblem, free_harmonics: Complexes, *, upper_branch: bool) -> InitialGuess:
     """Steady states of a batch with a single harmonic, and the truncation that the full ones require.
 
     `free_harmonics` has shape (p, K).
     """
+    model, gap_law, omega, load = problem.model, problem.gap_law, problem.omega, problem.load
     decay_lengths, own = np.minimum(force_decay_length(gap_law, load), _LONGEST), free_harmonics[:, 0]
     response = receptance(model, CONTACT_PER_FORCE, omega)
-    columns = (load, static_displacement, decay_lengths, response, np.abs(own))
+    columns = (load, problem.static_displacement, decay_lengths, response, np.abs(own))
     motions = _SinusoidalMotions(gap_law, model.static_stiffness, *columns)
     smallest, largest = _amplitudes(motions)
     amplitude = largest if upper_branch else smallest
@@ -78,7 +70,9 @@ def initial_guess(
     harmonic = own * amplitude / (amplitude + response * force + _TINY)
     if not gap_law.has_corner and free_harmonics.shape[1] == 1:
         follows_force = isinstance(gap_law, ExponentialGap) and gap_law.force_damping == 0.0
-        truncation = sinusoidal_truncation(model, omega, load, decay_lengths, largest, tolerance, follows_force)
+        truncation = sinusoidal_truncation(
+            model, omega, load, decay_lengths, largest, TAIL * problem.tolerance, follows_force
+        )
     else:
         truncation = default_truncation(omega.size, free_harmonics.shape[1])
     return InitialGuess(mean, harmonic, smallest, largest, truncation)

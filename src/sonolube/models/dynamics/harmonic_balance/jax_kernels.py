@@ -54,11 +54,11 @@ def newton_solve(
 
     CONVERGED, DIVERGED, NEEDS_HARMONICS or NEEDS_SAMPLES.
     """
-    (kind, damped), law = kernel_law(problem.gap_law)
-    shared = problem.model.contact_poles(), problem.model.static_stiffness, tuple(law), problem.tolerance, steps
+    law = kernel_law(problem.gap_law)
+    shared = problem.model.contact_poles(), problem.model.static_stiffness, law[2:], problem.tolerance, steps
     sizes = np.searchsorted(_HARMONICS, truncation.harmonics), np.searchsorted(_SAMPLES, truncation.samples)
     finest = (0.5 * truncation.samples - 1) / (truncation.samples - truncation.harmonics)
-    aliased = problem.tolerance ** (finest if len(kind) == EXPONENTIAL and not damped else np.ones_like(finest))
+    aliased = problem.tolerance ** (finest if len(law.kind) == EXPONENTIAL and not law.damped else np.ones_like(finest))
     free, found, force = (each.view(np.complex128) for each in (iterates[1], *iterates[3:]))
     outcome = np.empty(iterates.mean.size, dtype=np.int64)
     for size, samples in {*zip(*(each[chosen].tolist() for each in sizes), strict=True)}:
@@ -67,7 +67,7 @@ def newton_solve(
         motions = _resized(free, width), iterates.mean[:, 0], _resized(found, width)
         given = iterates.settings, *motions, *truncation, aliased
         for own in _parts(alike, count * (2 * width + 1)):
-            mean, harmonics, forces, outcome[own] = _mapped(_solved, (len(kind), count), shared, given, own)
+            mean, harmonics, forces, outcome[own] = _mapped(_solved, (len(law.kind), count), shared, given, own)
             kept = outcome[own] != DIVERGED
             iterates.mean[own[kept], 0] = mean[kept]
             found[own[kept], :width] = _resized(harmonics[kept], min(width, found.shape[1]))
@@ -79,12 +79,12 @@ def monodromy_power_norms(
     gap_law: GapLaw, pairs: Floats, settings: Floats, drift: Floats, harmonics: Complexes, kicks: Integers
 ) -> tuple[Floats, Floats]:
     """Norms of the monodromy matrices to the power 2^22, in two parts, as `floquet_kernel` writes them; shape (p,)."""
-    (kind, _), law = kernel_law(gap_law)
+    law = kernel_law(gap_law)
     powers, norms = np.empty((2, kicks.size))
     wide = _resized(harmonics, next(size for size in _HARMONICS if harmonics.shape[1] <= size))
     given = settings, drift, wide, kicks
     for own in _parts(np.argsort(kicks, kind="stable"), drift.shape[1] ** 2):
-        powers[own], norms[own] = _mapped(_power_norms, (len(kind),), (pairs, tuple(law)), given, own)
+        powers[own], norms[own] = _mapped(_power_norms, (len(law.kind),), (pairs, law[2:]), given, own)
     return powers, norms
 
 
@@ -111,11 +111,11 @@ def _mapped(function: Callable[..., Any], static: Any, shared: Any, given: Any, 
 @partial(jax.jit, static_argnums=(0, 1))
 def _batch(function: Callable[..., Any], static: Any, shared: Any, given: Any) -> Any:
     """Results of a function of one point for a batch, compiled."""
-    return jax.vmap(lambda *own: function(*static, *shared, *own))(*given)
+    return jax.vmap(lambda own: function(*static, shared, own))(given)
 
 
 def _force(kind: int, law: Any, load: Array, equilibrium: Array, x: Array, v: Array) -> Array:
-    """Contact force of a law of `LawParameters`, in N."""
+    """Contact force of a law, given the numbers of its `KernelLaw`, in N."""
     parameter, damping, cells = law
     if kind == EXPONENTIAL:
         elastic = load * jnp.exp(jnp.clip(-x / parameter, -LARGEST_LOG_FORCE, LARGEST_LOG_FORCE))
@@ -152,24 +152,10 @@ def _magnitude(values: Array) -> Array:
     return jnp.sum(jnp.abs(values.real) + jnp.abs(values.imag))
 
 
-def _solved(
-    kind: int,
-    samples: int,
-    poles: Array,
-    static_stiffness: Array,
-    law: Any,
-    tolerance: Array,
-    steps: Array,
-    setting: Array,
-    free: Array,
-    mean: Array,
-    harmonics: Array,
-    h: Array,
-    n: Array,
-    count: Array,
-    aliased: Array,
-) -> tuple[Array, Array, Array, Array]:
+def _solved(kind: int, samples: int, shared: Any, given: Any) -> tuple[Array, Array, Array, Array]:
     """Mean, harmonics, spectrum of the force and outcome of one point, by Newton's method."""
+    poles, static_stiffness, law, tolerance, steps = shared
+    setting, free, mean, harmonics, h, n, count, aliased = given
     omega, load, length, equilibrium, static_displacement = setting
     size = harmonics.size
     orders, instants = jnp.arange(1, 2 * size + 1), jnp.arange(samples)
@@ -240,10 +226,9 @@ def _newton_step(
     return solved[0], substituted.at[top].set(jax.lax.complex(real, imaginary))
 
 
-def _power_norms(
-    kind: int, pairs: Array, law: Any, setting: Array, drift: Array, harmonics: Array, kicks: Array
-) -> tuple[Array, Array]:
+def _power_norms(kind: int, shared: Any, given: Any) -> tuple[Array, Array]:
     """Powers of two taken out of the monodromy matrix of one point while it is squared, and what is left."""
+    (pairs, law), (setting, drift, harmonics, kicks) = shared, given
     omega, load, equilibrium, mean = setting
     into, displacement, velocity = (
         pairs[:, at : at + 2].ravel() for at in (INPUT, DISPLACEMENT_OUTPUT, VELOCITY_OUTPUT)

@@ -4,13 +4,13 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.execution.compilation import kernel
-from sonolube.models.dynamics.kernels.contact_kernel import CompileTimeInt
+from sonolube.models.dynamics.kernels.contact_kernel import KernelLaw
 from sonolube.models.dynamics.kernels.simd import INLINED, INNER, LANES, subtract_product
 
 
 @kernel(**INLINED)
 def newton_step(
-    damped: CompileTimeInt,
+    law: KernelLaw,
     static_stiffness: float,
     receptances: Floats,
     spectra: Floats,
@@ -25,29 +25,27 @@ def newton_step(
     The mean and n harmonics are solved for by elimination, the harmonics n + 1 to h by substitution.
     """
     rows = 2 * n + 1
-    _mean_row(damped, static_stiffness, spectra, omega, n, matrix[0])
+    _mean_row(law, static_stiffness, spectra, omega, n, matrix[0])
     for k in range(1, n + 1):
-        _harmonic_rows(damped, receptances[k], spectra, omega, k, n, matrix[2 * k - 1 : 2 * k + 1])
+        _harmonic_rows(law, receptances[k], spectra, omega, k, n, matrix[2 * k - 1 : 2 * k + 1])
     _eliminate(matrix, rows, step)
     spare = matrix[matrix.shape[0] - 2 :]
     for k in range(n + 1, h + 1):
-        _harmonic_rows(damped, receptances[k], spectra, omega, k, n, spare)
+        _harmonic_rows(law, receptances[k], spectra, omega, k, n, spare)
         for part in range(2):
             for j in range(rows):
                 subtract_product(spare[part, j], step[j], step[2 * k - 1 + part])
 
 
 @kernel(**INNER)
-def _mean_row(
-    damped: CompileTimeInt, static_stiffness: float, spectra: Floats, omega: Floats, n: int, row: Floats
-) -> None:
+def _mean_row(law: KernelLaw, static_stiffness: float, spectra: Floats, omega: Floats, n: int, row: Floats) -> None:
     """Write the derivatives of the static equation's residual by the mean and n harmonics."""
     slope, drag = spectra[1], spectra[2]
     for j in range(2 * n + 1):
         static = static_stiffness if j == 0 else 0.0
         for lane in range(LANES):
             row[j, lane] = slope[j, lane] + static
-    if len(damped) == 1:
+    if len(law.damped) == 1:
         for j in range(1, n + 1):
             for lane in range(LANES):
                 row[2 * j - 1, lane] += j * omega[lane] * drag[2 * j, lane]
@@ -56,7 +54,7 @@ def _mean_row(
 
 @kernel(**INNER)
 def _harmonic_rows(
-    damped: CompileTimeInt, receptance: Floats, spectra: Floats, omega: Floats, k: int, n: int, rows: Floats
+    law: KernelLaw, receptance: Floats, spectra: Floats, omega: Floats, k: int, n: int, rows: Floats
 ) -> None:
     r"""Write the derivatives of the residual of harmonic k by the mean and by n harmonics.
 
@@ -82,7 +80,7 @@ def _harmonic_rows(
         for lane in range(LANES):
             p_re, p_im = slope[max(p - 1, 0), lane], sign * slope[p, lane]
             q_re, q_im = slope[q - 1, lane], slope[q, lane]
-            if len(damped) == 1:
+            if len(law.damped) == 1:
                 speed = j * omega[lane]
                 p_re -= speed * sign * drag[p, lane]
                 p_im += speed * drag[max(p - 1, 0), lane]

@@ -20,7 +20,6 @@ from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import (
     DIVERGED,
     NEEDS_HARMONICS,
     NEEDS_SAMPLES,
-    TAIL,
     Iterates,
     Truncation,
     harmonic_workspace,
@@ -43,7 +42,7 @@ _DISTINCT = 1e-4  # relative difference of amplitude above which two solutions a
 def solve(problem: BatchProblem) -> BatchSolution:
     """Steady states of a batch, one chunk of points solved together."""
     free = _receptances(problem, CONTACT_PER_VOLT) * problem.voltage
-    guess = _guess(problem, free, upper_branch=problem.upper_branch)
+    guess = initial_guess(problem, free, upper_branch=problem.upper_branch)
     truncation = guess.truncation
     if problem.minimum_harmonics > 1:
         _raise_truncation(truncation, problem.minimum_harmonics)
@@ -61,20 +60,6 @@ def _receptances(problem: BatchProblem, response: int) -> Complexes:
     """Receptance at every harmonic of the drive of every point, shape (p, K)."""
     orders = np.arange(1, problem.voltage.shape[1] + 1)
     return receptance(problem.model, response, problem.omega[:, np.newaxis] * orders)
-
-
-def _guess(problem: BatchProblem, free: Complexes, *, upper_branch: bool) -> InitialGuess:
-    """Steady states with a single harmonic, for some harmonics of the free motion."""
-    return initial_guess(
-        problem.model,
-        problem.gap_law,
-        problem.omega,
-        problem.load,
-        problem.static_displacement,
-        free,
-        tolerance=TAIL * problem.tolerance,
-        upper_branch=upper_branch,
-    )
 
 
 def _iterates(problem: BatchProblem, free: Complexes, guess: InitialGuess) -> Iterates:
@@ -119,15 +104,13 @@ def _newton_on_cpu(
     problem: BatchProblem, iterates: Iterates, truncation: Truncation, pending: Integers, steps: int, outcome: Integers
 ) -> None:
     """Solve the pending points by the compiled kernel; write their iterates and outcomes."""
-    variant, law = kernel_law(problem.gap_law)
     finest = [int(values[pending].max()) for values in truncation]
     sampled = pending.size * (_POINT + finest[0] * finest[2])
     chosen = uniform_blocks(pending, *truncation, lanes=newton_solve.lanes(sampled, LANES, **_FEW))
     newton_solve.for_points(sampled, **_FEW)(
-        *variant,
+        kernel_law(problem.gap_law),
         problem.model.contact_poles(),
         problem.model.static_stiffness,
-        law,
         iterates,
         np.array(truncation),
         chosen,
@@ -175,7 +158,7 @@ def _continue_in_voltage(
     """Solve the remaining points by continuation from a low voltage in small steps; update what is solved."""
     remaining = np.flatnonzero(~solved)
     own_problem, own_free = problem.select(remaining), free[remaining]
-    guess = _guess(own_problem, own_free / _VOLTAGE_STEPS, upper_branch=False)
+    guess = initial_guess(own_problem, own_free / _VOLTAGE_STEPS, upper_branch=False)
     own, own_truncation = _iterates(own_problem, own_free / _VOLTAGE_STEPS, guess), guess.truncation
     good = np.zeros(remaining.size, dtype=bool)
     for step in range(1, _VOLTAGE_STEPS + 1):
@@ -231,7 +214,7 @@ _NAN_WHERE_UNSOLVED = BatchSolution._fields[: BatchSolution._fields.index("unsta
 
 def _find_coexisting(problem: BatchProblem, free: Complexes, points: NDArray[np.intp], solution: BatchSolution) -> None:
     """Write the amplitude of the other solution of points whose initial guess has several, if it is stable."""
-    guess = _guess(problem, free, upper_branch=not problem.upper_branch)
+    guess = initial_guess(problem, free, upper_branch=not problem.upper_branch)
     iterates, solved = _refine(problem, _iterates(problem, free, guess), guess.truncation)
     other = _measured(problem, iterates, guess.truncation, solved)
     own = solution.vibration_amplitude[points]

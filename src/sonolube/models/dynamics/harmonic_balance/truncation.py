@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from sonolube.checks import Floats, Integers
+from sonolube.checks import Floats
 from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import Truncation
 from sonolube.models.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, PoleResidueModel
 
@@ -73,11 +73,8 @@ def _bessel_ratio_bound(beta: Floats, order: int) -> Floats:
 def default_truncation(points: int, drive_harmonics: int) -> Truncation:
     """Truncation to start with where no estimate exists: non-smooth forces and periodic drives."""
     harmonics = max(8, drive_harmonics)
-
-    def uniform(value: int) -> Integers:
-        return np.full(points, value, dtype=np.int64)
-
-    return Truncation(uniform(harmonics), uniform(min(harmonics, 8)), uniform(max(64, 4 * harmonics)))
+    sizes = harmonics, min(harmonics, 8), max(64, 4 * harmonics)
+    return Truncation(*(np.full(points, size, dtype=np.int64) for size in sizes))
 
 
 def _receptance_bound(model: PoleResidueModel, first: int, highest: float) -> Floats:

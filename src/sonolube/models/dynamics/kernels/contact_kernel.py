@@ -1,7 +1,7 @@
 """Contact force laws on SIMD rows: force, stiffness and damping of every point of a block at once.
 
-`kind` selects the branch at compile time: a kernel compiles one law only, and the laws that a user never calls are
-never compiled. The classes behind the numbers are those of `sonolube.models.dynamics.gap_laws`.
+`KernelLaw.kind` selects the branch at compile time: a kernel compiles one law only, and the laws that a user never
+calls are never compiled. The classes behind the numbers are those of `sonolube.models.dynamics.gap_laws`.
 """
 
 from typing import NamedTuple
@@ -23,31 +23,20 @@ CompileTimeInt = tuple[int, ...]
 """An integer that a kernel is compiled for, passed as the length of a tuple."""
 
 
-class LawParameters(NamedTuple):
-    """Numbers of a contact law at run time."""
+class KernelLaw(NamedTuple):
+    """A contact law as kernels take it; they are compiled for its kind and for whether it is damped."""
 
+    kind: CompileTimeInt  # EXPONENTIAL to TABULATED
+    damped: CompileTimeInt  # 1 with damping, 0 without
     parameter: float  # decay length, in m; Hertz coefficient, in N/m^1.5; stiffness, in N/m; or table cells per metre
     damping: float  # tau of F (1 - tau v), in s/m
     cells: Floats  # coefficients of the force table, empty for any other law
 
 
-class KernelVariant(NamedTuple):
-    """Properties of a contact law that kernels are compiled for."""
-
-    kind: CompileTimeInt  # EXPONENTIAL to TABULATED
-    damped: CompileTimeInt  # 1 with damping, 0 without
-
-
 @kernel(**INNER)
-def stiffness_follows_force(kind: CompileTimeInt, damped: CompileTimeInt) -> bool:
-    """Whether the stiffness is proportional to the force, so that one Fourier transform serves both."""
-    return len(kind) == EXPONENTIAL and len(damped) == 0
-
-
-@kernel(**INNER)
-def velocity_over_omega(damped: CompileTimeInt, motion: Floats, h: int, velocity: Floats) -> None:
+def velocity_over_omega(law: KernelLaw, motion: Floats, h: int, velocity: Floats) -> None:
     """Write the harmonics i k X_k of the velocity over omega, in the rows of a motion; nothing without damping."""
-    if len(damped) == 1:
+    if len(law.damped) == 1:
         for k in range(1, h + 1):
             for lane in range(LANES):
                 velocity[2 * k - 1, lane] = -k * motion[2 * k, lane]
@@ -56,14 +45,7 @@ def velocity_over_omega(damped: CompileTimeInt, motion: Floats, h: int, velocity
 
 @kernel(**INNER)
 def contact_force_rows(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
-    law: LawParameters,
-    load: Floats,
-    equilibrium: Floats,
-    x: Floats,
-    v: Floats,
-    results: Floats,
+    law: KernelLaw, load: Floats, equilibrium: Floats, x: Floats, v: Floats, results: Floats
 ) -> None:
     r"""Write the contact force, the stiffness -dF/dx and the damping -dF/dv.
 
@@ -72,26 +54,26 @@ def contact_force_rows(
     .. math:: F_n = F(x)\,\max(1 - \tau v,\, 0), \qquad -\partial F_n/\partial x, \qquad -\partial F_n/\partial v
     """
     force, slope, drag = results[0], results[1], results[2]
-    if len(kind) == EXPONENTIAL:
+    if len(law.kind) == EXPONENTIAL:
         for lane in range(LANES):
             slope[lane] = -x[lane] / law.parameter
         exponentials(slope, force)
         for lane in range(LANES):
             force[lane] *= load[lane]
             slope[lane] = force[lane] / law.parameter
-    elif len(kind) == HERTZ:
+    elif len(law.kind) == HERTZ:
         for lane in range(LANES):
             approach = max(equilibrium[lane] - x[lane], 0.0)
             slope[lane] = 1.5 * law.parameter * np.sqrt(approach)
             force[lane] = slope[lane] * approach / 1.5
-    elif len(kind) == TABULATED:
+    elif len(law.kind) == TABULATED:
         _tabulated_rows(law, equilibrium, x, force, slope, drag)
     else:
         for lane in range(LANES):
             touching = load[lane] - law.parameter * x[lane]
             force[lane] = max(touching, 0.0)
             slope[lane] = law.parameter if touching > 0 else 0.0
-    if len(damped) == 1:
+    if len(law.damped) == 1:
         for lane in range(LANES):
             factor = 1 - law.damping * v[lane]
             drag[lane] = law.damping * force[lane] if factor > 0 else 0.0
@@ -102,7 +84,7 @@ def contact_force_rows(
 
 @kernel(**INNER)
 def _tabulated_rows(
-    law: LawParameters, equilibrium: Floats, x: Floats, force: Floats, slope: Floats, scratch: Floats
+    law: KernelLaw, equilibrium: Floats, x: Floats, force: Floats, slope: Floats, scratch: Floats
 ) -> None:
     """Write force and stiffness of a tabulated law, whose position on the table starts from equilibrium."""
     for lane in range(LANES):
@@ -110,28 +92,3 @@ def _tabulated_rows(
     exponentials(slope, force)
     for lane in range(LANES):
         slope[lane] = -law.parameter * scratch[lane] * force[lane]
-
-
-@kernel(**INNER)
-def contact_force(
-    kind: CompileTimeInt,
-    damped: CompileTimeInt,
-    law: LawParameters,
-    load: float,
-    equilibrium: float,
-    x: float,
-    v: float,
-) -> float:
-    """Contact force of a single point, in N; arguments as of `contact_force_rows`."""
-    if len(kind) == EXPONENTIAL:
-        force = load * np.exp(min(-x / law.parameter, LARGEST_LOG_FORCE))
-    elif len(kind) == HERTZ:
-        force = law.parameter * max(equilibrium - x, 0.0) ** 1.5
-    elif len(kind) == TABULATED:
-        log_force = log_force_at(law.cells, equilibrium + law.parameter * x)[0]
-        force = np.exp(min(max(log_force, -LARGEST_LOG_FORCE), LARGEST_LOG_FORCE))
-    else:
-        force = max(load - law.parameter * x, 0.0)
-    if len(damped) == 1:
-        force *= max(1 - law.damping * v, 0.0)
-    return float(force)

@@ -29,7 +29,6 @@ KERNEL: dict[str, Any] = {
     "_nrt": False,
     "plain": {"LANES": 1},  # points run one by one as plain Python
 }
-ALLOCATING_KERNEL: dict[str, Any] = KERNEL | {"_nrt": True}
 INNER: dict[str, Any] = {  # functions that only kernels call, compiled without any Python interface
     "fastmath": KERNEL["fastmath"],
     "error_model": "numpy",

@@ -164,7 +164,7 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
     step_response = np.empty((2, count))
     pairs = (0,) * (m // 2)
     state = row_layout(pairs).state
-    variant, law = kernel_law(gap_law)
+    law = kernel_law(gap_law)
     law_rows = problem.law_rows()
 
     def march_chunk(
@@ -174,8 +174,7 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
         drive, table = _drive_rows(problem, integrator, which, points), _aligned(np.empty((steps + 4) * m * LANES))
         march_lanes(
             pairs,
-            *variant,
-            law.cells,
+            law,
             numbers,
             drive,
             table,
@@ -205,26 +204,17 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
             ]
             for job in jobs:
                 job.result()
+    found = _points_last(statistics, count)  # shape (windows, 8, points)
+    if gap_law.force_damping == 0:  # the extremes of the force are those at the extremes of the displacement
+        found[:, 6] = gap_law.force(found[:, 1], problem.normal_load)
+        found[:, 7] = gap_law.force(found[:, 0], problem.normal_load)
     return MarchingSolution(
-        statistics=with_force_extremes(_points_last(statistics, count), gap_law, problem.normal_load),
+        statistics=found,
         recorded=_points_last(recorded, count),
         strobed=_points_last(strobed, count),
         final=_points_last(final, count)[0],
         step_response=step_response,
     )
-
-
-def with_force_extremes(statistics: Floats, gap_law: GapLaw, load: Floats) -> Floats:
-    """Write the extremes of an undamped contact force into the statistics: those at the extremes of displacement.
-
-    `statistics` has shape (windows, 8, points).
-
-    The same statistics.
-    """
-    if gap_law.force_damping == 0:
-        statistics[:, 6] = gap_law.force(statistics[:, 1], load)
-        statistics[:, 7] = gap_law.force(statistics[:, 0], load)
-    return statistics
 
 
 def _within_steps(jumps: Floats, steps: int) -> bool:

@@ -12,7 +12,6 @@ linear recursive filter of these values.
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -73,35 +72,6 @@ class ExponentialIntegrator:
     offset: Floats
 
 
-class ForceWeights(NamedTuple):
-    """Interpolation weights of samples of the force at the nodes of a step, times the weights of the quadrature."""
-
-    corrected: Floats  # (nodes, 6): samples at the end of the step and up to five before
-    predicted: Floats  # (nodes, 5): samples at its start and up to four before
-    ahead: Floats  # (4, nodes, 5): samples now and at the next four steps, in each of these
-
-
-def force_weights(nodes: Floats, weights: Floats, steps: int) -> ForceWeights:
-    """Weights of force samples at the nodes of a step."""
-    theta = 2 * np.pi / steps
-
-    def weighted(sampled_at: Floats, first: int = 0) -> Floats:
-        return _interpolation(first + nodes, sampled_at, theta) * weights[:, np.newaxis]
-
-    back, ahead = 1.0 - np.arange(PAST + 1, dtype=np.float64), np.arange(PAST, dtype=np.float64)
-    later = np.stack([weighted(ahead, first) for first in range(PAST - 1)])
-    return ForceWeights(weighted(back), weighted(back[1:]), later)
-
-
-def start_history(steps: int) -> Floats:
-    """Extrapolation to the past of the forces now and at the next four steps.
-
-    Shape (5, 5). Row j for the force j steps ago.
-    """
-    ahead = np.arange(PAST, dtype=np.float64)
-    return _interpolation(-ahead, ahead, 2 * np.pi / steps)
-
-
 def step_quadrature(modes: FirstOrderModes, *, steps: int, slowest: float) -> tuple[Floats, Floats]:
     """Gauss-Legendre nodes and weights from 0 to 1 that resolve the free motion over a step; shape (nodes,)."""
     phase = _fastest(modes) / (steps * slowest)
@@ -130,29 +100,30 @@ def exponential_integrator(
     """
     h = 1 / (frequency * steps)
     nodes, weights = step_quadrature(modes, steps=steps, slowest=float(frequency.min()))
-    of_force = force_weights(nodes, weights, steps)
+    theta, back, ahead = 2 * np.pi / steps, 1.0 - np.arange(PAST + 1.0), np.arange(float(PAST))  # samples, in steps
     moved = _propagated(modes.state_matrix, modes.contact_input, np.multiply.outer(h, 1 - nodes))  # exp(A h (1 - s)) c
     moved *= h[:, np.newaxis, np.newaxis, np.newaxis]
 
-    def added(sample_weights: Floats) -> Floats:
-        """State that each sample of the force adds over a step."""
+    def added(sampled_at: Floats, first: int = 0) -> Floats:
+        """State that each sample of the force adds over a step, by its interpolation at the nodes."""
+        sample_weights = _interpolation(first + nodes, sampled_at, theta) * weights[:, np.newaxis]
         return np.asarray(np.einsum("fmqa,qj->fjma", moved, sample_weights))
 
     units = [np.broadcast_to(row, modes.contact_input.shape) for row in np.eye(2)]
     columns = [_propagated(modes.state_matrix, unit, h[:, np.newaxis])[:, :, 0] for unit in units]
     propagator = np.stack(columns, axis=-1)
-    corrected = added(of_force.corrected)
+    corrected = added(back)
     recent = corrected[:, :PAST].copy()
     for j in range(1, PAST):  # filter W(q) = (1 - E q) V(q) + q^5 U, with the delay operator q
         recent[:, j] += _apply(propagator, recent[:, j - 1])
     oldest = corrected[:, PAST] + _apply(propagator, recent[:, PAST - 1])
-    predictor = _at_contact(contact_output, added(of_force.predicted))
+    predictor = _at_contact(contact_output, added(back[1:]))
     predictor += _at_contact(contact_output, np.stack([_apply(propagator, recent[:, j]) for j in range(PAST)], axis=1))
     predictor[..., PAST - 1] -= np.einsum("kma,fma->fk", contact_output, oldest)
     later, reached = [], np.zeros_like(recent)
-    for sample_weights in of_force.ahead:
+    for first in range(PAST - 1):
         reached = np.stack([_apply(propagator, reached[:, j]) for j in range(PAST)], axis=1)
-        reached += added(sample_weights)
+        reached += added(ahead, first)
         later.append(_at_contact(contact_output, reached))
     wave, offset = _drive_contributions(modes, h, steps, waveform, nodes, weights)
     return ExponentialIntegrator(
@@ -161,7 +132,7 @@ def exponential_integrator(
         recent=recent,
         predictor=predictor,
         ahead=np.stack(later, axis=2),
-        backward=start_history(steps),
+        backward=_interpolation(-ahead, ahead, theta),
         wave=wave,
         offset=offset,
     )

@@ -11,7 +11,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.execution.compilation import kernel
-from sonolube.models.dynamics.kernels.contact_kernel import EXPONENTIAL, HERTZ, LINEAR
+from sonolube.models.dynamics.kernels.contact_kernel import EXPONENTIAL, HERTZ, LINEAR, KernelLaw
 from sonolube.models.dynamics.kernels.force_table import log_force_at
 from sonolube.models.dynamics.time_marching.row_layout import LANES, STATISTICS, row_layout
 
@@ -42,40 +42,29 @@ def exponential(argument: float) -> float:
 
 
 @kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def _contact_force(
-    kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, x: float, v: float, lanes: Floats, law: int
-) -> Any:
+def _contact_force(law: KernelLaw, x: float, v: float, lanes: Floats, row: int) -> Any:
     """Contact force of one lane, in N; the rows of the law are those of `MarchingProblem.law_rows`."""
-    load, first, second = lanes[law], lanes[law + LANES], lanes[law + 2 * LANES]
-    if len(kind) == EXPONENTIAL:
+    load, first, second = lanes[row], lanes[row + LANES], lanes[row + 2 * LANES]
+    if len(law.kind) == EXPONENTIAL:
         force = load * exponential(-x * first)
-    elif len(kind) == HERTZ:
+    elif len(law.kind) == HERTZ:
         approach = max(second - x, 0.0)
         force = first * approach * np.sqrt(approach)
-    elif len(kind) == LINEAR:
+    elif len(law.kind) == LINEAR:
         force = max(load - first * x, 0.0)
     else:
-        force = load * exponential(log_force_at(cells, second + first * x)[0] - lanes[law + 3 * LANES])
-    if len(damped):
-        force *= max(1.0 - lanes[law + 4 * LANES] * v, 0.0)
+        force = load * exponential(log_force_at(law.cells, second + first * x)[0] - lanes[row + 3 * LANES])
+    if len(law.damped):
+        force *= max(1.0 - lanes[row + 4 * LANES] * v, 0.0)
     return force
 
 
 @kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def _step(
-    pairs: tuple[int, ...],
-    kind: tuple[int, ...],
-    damped: tuple[int, ...],
-    cells: Floats,
-    lanes: Floats,
-    drive: Floats,
-    cosine: float,
-    sine: float,
-) -> None:
+def _step(pairs: tuple[int, ...], law: KernelLaw, lanes: Floats, drive: Floats, cosine: float, sine: float) -> None:
     """March all lanes by one step: predict the contact's motion, evaluate its force, update the statistics."""
     at = row_layout(pairs)
     for lane in range(LANES):
-        forces, law, statistics = at.forces + lane, at.law + lane, at.statistics + lane
+        forces, load, statistics = at.forces + lane, at.law + lane, at.statistics + lane
         newest, second = lanes[forces], lanes[forces + LANES]
         third, fourth, oldest = lanes[forces + 2 * LANES], lanes[forces + 3 * LANES], lanes[forces + 4 * LANES]
         x, v = 0.0, 0.0
@@ -87,25 +76,25 @@ def _step(
             new_b += lanes[at.oldest + two] * oldest + drive[two]
             lanes[at.y + one], lanes[at.y + two] = new_a, new_b
             x += lanes[at.x_output + one] * new_a + lanes[at.x_output + two] * new_b
-            if len(damped):
+            if len(law.damped):
                 v += lanes[at.v_output + one] * new_a + lanes[at.v_output + two] * new_b
         p = at.x_predictor + lane
         from_forces = lanes[p] * newest + lanes[p + LANES] * second + lanes[p + 2 * LANES] * third
         x += from_forces + lanes[p + 3 * LANES] * fourth + lanes[p + 4 * LANES] * oldest
-        if len(damped):
+        if len(law.damped):
             p = at.v_predictor + lane
             from_forces = lanes[p] * newest + lanes[p + LANES] * second + lanes[p + 2 * LANES] * third
             v += from_forces + lanes[p + 3 * LANES] * fourth + lanes[p + 4 * LANES] * oldest
-        force = _contact_force(kind, damped, cells, x, v, lanes, law)
+        force = _contact_force(law, x, v, lanes, load)
         lanes[forces + 4 * LANES], lanes[forces + 3 * LANES], lanes[forces + 2 * LANES] = fourth, third, second
-        lanes[forces + LANES], lanes[forces] = newest, force - lanes[law]
+        lanes[forces + LANES], lanes[forces] = newest, force - lanes[load]
         lanes[statistics] = max(lanes[statistics], x)
         lanes[statistics + LANES] = min(lanes[statistics + LANES], x)
         lanes[statistics + 2 * LANES] += x
         lanes[statistics + 3 * LANES] += cosine * x
         lanes[statistics + 4 * LANES] += sine * x
         lanes[statistics + 5 * LANES] += force
-        if len(damped):  # otherwise the extremes of the force are those of the displacement
+        if len(law.damped):  # otherwise the extremes of the force are those of the displacement
             lanes[statistics + 6 * LANES] = max(lanes[statistics + 6 * LANES], force)
             lanes[statistics + 7 * LANES] = min(lanes[statistics + 7 * LANES], force)
 
@@ -143,42 +132,31 @@ def _free_motion(pairs: tuple[int, ...], lanes: Floats, table: Floats, step: int
 
 
 @kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def _collocate(
-    pairs: tuple[int, ...], kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, lanes: Floats
-) -> None:
+def _collocate(pairs: tuple[int, ...], law: KernelLaw, lanes: Floats) -> None:
     """Write the forces now and at the next four steps, consistent with the motion under them, by fixed-point sweeps."""
     at = row_layout(pairs)
     for lane in range(LANES):
-        law = at.law + lane
-        force = _contact_force(kind, damped, cells, lanes[at.x_free + lane], lanes[at.v_free + lane], lanes, law)
+        load = at.law + lane
+        force = _contact_force(law, lanes[at.x_free + lane], lanes[at.v_free + lane], lanes, load)
         for j in range(5):
-            lanes[at.forces_ahead + j * LANES + lane] = force - lanes[law]
+            lanes[at.forces_ahead + j * LANES + lane] = force - lanes[load]
     for _ in range(SWEEPS):
         for lane in range(LANES):
-            law = at.law + lane
+            load = at.law + lane
             for i in range(4):
                 ahead = (i + 1) * LANES + lane
                 x, v = lanes[at.x_free + ahead], lanes[at.v_free + ahead]
                 for j in range(5):
                     force = lanes[at.forces_ahead + j * LANES + lane]
                     x += lanes[at.x_ahead + (5 * i + j) * LANES + lane] * force
-                    if len(damped):
+                    if len(law.damped):
                         v += lanes[at.v_ahead + (5 * i + j) * LANES + lane] * force
-                force = _contact_force(kind, damped, cells, x, v, lanes, law)
-                lanes[at.forces_ahead + ahead] = force - lanes[law]
+                force = _contact_force(law, x, v, lanes, load)
+                lanes[at.forces_ahead + ahead] = force - lanes[load]
 
 
 @kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def _restart(
-    pairs: tuple[int, ...],
-    kind: tuple[int, ...],
-    damped: tuple[int, ...],
-    cells: Floats,
-    lanes: Floats,
-    table: Floats,
-    step: int,
-    backward: Floats,
-) -> None:
+def _restart(pairs: tuple[int, ...], law: KernelLaw, lanes: Floats, table: Floats, step: int, backward: Floats) -> None:
     """Replace the force history of marked lanes by the smooth continuation of the next four steps into the past.
 
     After a jump of the voltage the past forces no longer predict those to come. The state is unchanged.
@@ -186,7 +164,7 @@ def _restart(
     at = row_layout(pairs)
     _complete_state(pairs, lanes)
     _free_motion(pairs, lanes, table, step)
-    _collocate(pairs, kind, damped, cells, lanes)
+    _collocate(pairs, law, lanes)
     for j in range(5):
         for lane in range(LANES):
             past = 0.0
@@ -280,9 +258,7 @@ def _copy(lanes: Floats, first: int, target: Floats) -> None:
 @kernel(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
 def march_lanes(
     pairs: tuple[int, ...],
-    kind: tuple[int, ...],
-    damped: tuple[int, ...],
-    cells: Floats,
+    law: KernelLaw,
     lanes: Floats,
     drive: Floats,
     table: Floats,
@@ -318,8 +294,8 @@ def march_lanes(
             now = first + step
             may_restart = now == 0 or first_ramp_end - 1 <= now <= last_ramp_end + 1 or jumps.size > 0
             if may_restart and _mark_restarts(lanes, at.mark, now, step, ramp_steps, jumps):
-                _restart(pairs, kind, damped, cells, lanes, table, step, backward)
-            _step(pairs, kind, damped, cells, lanes, table[step * row : (step + 1) * row], cosines[step], sines[step])
+                _restart(pairs, law, lanes, table, step, backward)
+            _step(pairs, law, lanes, table[step * row : (step + 1) * row], cosines[step], sines[step])
             if now >= unrecorded:
                 _complete_state(pairs, lanes)
                 _copy(lanes, at.state, recorded[now - unrecorded, :-1])

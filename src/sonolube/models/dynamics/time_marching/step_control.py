@@ -1,7 +1,5 @@
 """Accuracy and stability of the time steps of a march, with advice on the number of steps."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,27 +13,10 @@ _LARGEST_ERROR = 1e-3  # of the force in a step, over the largest force, beyond 
 _LARGEST_FEEDBACK = 0.1  # relative change of the force by its own effect in a step, above which it may be unstable
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class StepAssessment:
-    """Assessment of the time steps of each point.
-
-    Parameters
-    ----------
-    status : ndarray of str, shape (points,)
-        "marched", "coarse" or "diverged".
-    advice : ndarray of str, shape (points,)
-        Remedy for a status other than "marched", and limits of the accuracy; often empty.
-    step_error : ndarray, shape (points,)
-        Estimated error of the contact force over its largest value; infinite where diverged.
-    """
-
-    status: NDArray[np.str_]
-    advice: NDArray[np.str_]
-    step_error: Floats
-
-
-def assess_steps(problem: MarchingProblem, solution: MarchingSolution) -> StepAssessment:
-    """Assess the steps by two errors of the force in the last period and by the feedback of the force on itself.
+def assess_steps(
+    problem: MarchingProblem, solution: MarchingSolution
+) -> tuple[NDArray[np.str_], NDArray[np.str_], Floats]:
+    """Status, advice and error of the steps of each point, by two errors of the force and by its feedback on itself.
 
     One error is the difference of the predicted force and the force of the corrected state; the other is the effect on
     the mean of aliased harmonics beyond half the steps per period, if these decay like those of a pulse. The feedback
@@ -64,11 +45,7 @@ def assess_steps(problem: MarchingProblem, solution: MarchingSolution) -> StepAs
     advice = [""] * load.size
     for i in np.flatnonzero(diverged | unstable | coarse | corner):
         advice[i] = _advice(diverged[i], unstable[i], coarse[i], corner[i], finer[i], steps)
-    return StepAssessment(
-        status=np.where(diverged, "diverged", np.where(unstable | coarse, "coarse", "marched")),
-        advice=np.array(advice),
-        step_error=error,
-    )
+    return np.where(diverged, "diverged", np.where(unstable | coarse, "coarse", "marched")), np.array(advice), error
 
 
 def _advice(diverged: bool, unstable: bool, coarse: bool, corner: bool, finer: float, steps: int) -> str:

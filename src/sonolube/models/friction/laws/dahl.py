@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
+from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import kernel
-from sonolube.models.friction.laws.sampled_motion import integrate_rows, require_increasing
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,49 +49,6 @@ class DahlFriction:
     def __post_init__(self) -> None:
         require_positive(contact_stiffness=self.contact_stiffness, coulomb_friction_force=self.coulomb_friction_force)
 
-    @property
-    def steady_deformation(self) -> float:
-        """Deformation of steady sliding, F_c/K. [m]"""
-        return self.coulomb_friction_force / self.contact_stiffness
-
-
-def dahl_friction(law: DahlFriction, *, displacement: ArrayLike, deformation: ArrayLike = 0.0) -> Floats:
-    r"""Friction force after a monotonic slide by Dahl's law. [N]
-
-    Parameters
-    ----------
-    law : DahlFriction
-    displacement : array_like
-        Distance of a slide in one direction, negative for the other direction. [m]
-    deformation : array_like, broadcast against `displacement`
-        Tangential deformation of the contact at the start. [m]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    Raises
-    ------
-    InvalidInput
-        If a value is not finite.
-
-    Notes
-    -----
-    .. math:: F = K \delta_0\, e^{-K |x|/F_c} + F_c\, \mathrm{sgn}(x) \left( 1 - e^{-K |x|/F_c} \right)
-
-    D 1.3 integrated over the distance x from the deformation delta_0. A deformation beyond F_c/K, as after a reduction
-    of the load, decays to that value.
-
-    References
-    ----------
-    .. [1] D 1.3.
-    """
-    distance = require_finite(displacement=displacement)
-    start = require_finite(deformation=deformation)
-    K, F_c = law.contact_stiffness, law.coulomb_friction_force
-    decay = -K * np.abs(distance) / F_c
-    return K * start * np.exp(decay) - F_c * np.sign(distance) * np.expm1(decay)  # D 1.3 integrated for one sign of v
-
 
 def dahl_friction_history(
     law: DahlFriction, *, time: ArrayLike, relative_velocity: ArrayLike, deformation: ArrayLike = 0.0
@@ -124,18 +81,40 @@ def dahl_friction_history(
 
     See Also
     --------
-    dahl_friction : Closed form for a slide in one direction.
     dahl_under_vibration : Mean force over the steady period of a vibration.
 
     References
     ----------
     .. [1] D 1.3.
     """
-    times = require_increasing(time=time)
-    velocities = require_finite(relative_velocity=relative_velocity)
+    times, velocities = _increasing(time), require_finite(relative_velocity=relative_velocity)
     start = require_finite(deformation=deformation)
     K, F_c = law.contact_stiffness, law.coulomb_friction_force
-    return K * integrate_rows(_deformation_history, times, velocities, start, K / F_c)
+    if velocities.ndim == 0 or velocities.shape[-1] != times.size:
+        raise InvalidInput(
+            f"relative_velocity must have one value for each of {times.size} times along its last axis,"
+            f" got shape {velocities.shape}"
+        )
+    try:
+        rows = np.broadcast_shapes(velocities.shape[:-1], start.shape)
+    except ValueError:
+        raise InvalidInput(f"{start.shape} starting values do not match {velocities.shape[:-1]} motions") from None
+    motions = np.broadcast_to(velocities, (*rows, times.size)).reshape(-1, times.size)
+    starts = np.broadcast_to(start, rows).ravel()
+    found = [_deformation_history(times, motion, one, K / F_c) for motion, one in zip(motions, starts, strict=True)]
+    return K * np.reshape(found, (*rows, times.size))
+
+
+def _increasing(time: ArrayLike) -> Floats:
+    """Sample times as an array; refuse times that do not increase; shape (n,)."""
+    times = require_finite(time=time)
+    if times.ndim != 1 or times.size < 2:
+        raise InvalidInput(f"time must be one-dimensional with at least two samples, got shape {times.shape}")
+    steps = np.diff(times)
+    if not np.all(steps > 0):
+        first = int(np.argmin(steps > 0))
+        raise InvalidInput(f"time must increase, got {times[first + 1]!s} s after {times[first]!s} s")
+    return times
 
 
 @kernel(cache=True)

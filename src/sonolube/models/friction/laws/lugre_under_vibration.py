@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_finite, require_non_negative, require_positive
 from sonolube.models.contact.contact_motion import ContactMotion, delayed_oscillation
-from sonolube.models.contact.period_mean import richardson_period_mean, richardson_period_means
-from sonolube.models.friction.laws.lugre import LuGreFriction, lugre_steady_friction
+from sonolube.models.contact.period_mean import richardson_period_means
+from sonolube.models.friction.laws.lugre import LuGreFriction
 from sonolube.models.friction.laws.steady_period_kernel import steady_period_mean_force
 
 _TOLERANCE = 1e-4
@@ -70,19 +70,8 @@ def lugre_under_vibration(
        doi:10.1109/9.376053
     """
     v_r = require_positive(sliding_speed=sliding_speed)
-    fraction = float(require_non_negative(in_plane_fraction=in_plane_fraction))
-    lag = float(require_finite(in_plane_phase=in_plane_phase))
-    speeds, own = v_r.reshape(-1, 1), _Columns.of([law])
-
-    def mean_force(sampled: ContactMotion) -> Floats:
-        oscillation = _in_plane(sampled.displacement, fraction, lag)
-        load = _mid_load(sampled.normal_force, motion.normal_load)
-        bristle_force = _mean_force(own, load, oscillation, speeds, motion.frequency)
-        return bristle_force + law.viscous_coefficient * speeds[:, 0]
-
-    steady = lugre_steady_friction(law, relative_velocity=speeds[:, 0])
-    ratio = richardson_period_mean(lambda sampled: mean_force(sampled) / steady, motion, tolerance=_TOLERANCE)
-    return ratio.reshape(v_r.shape)
+    points, motion_along = v_r.size, {"in_plane_fraction": in_plane_fraction, "in_plane_phase": in_plane_phase}
+    return lugre_ratios([law] * points, [motion] * points, sliding_speed=v_r.ravel(), **motion_along).reshape(v_r.shape)
 
 
 def lugre_ratios(
@@ -90,8 +79,8 @@ def lugre_ratios(
     motions: Sequence[ContactMotion],
     *,
     sliding_speed: Floats,
-    in_plane_fraction: float = 0.0,
-    in_plane_phase: float = 0.0,
+    in_plane_fraction: ArrayLike = 0.0,
+    in_plane_phase: ArrayLike = 0.0,
 ) -> Floats:
     """Friction ratios of `lugre_under_vibration` for many pairs of law and motion at once. []
 
@@ -127,12 +116,15 @@ def lugre_ratios(
     steady = law.limit(v_r[:, np.newaxis]) + law.viscous_coefficient * v_r[:, np.newaxis]
 
     def mean_ratio(rows: Integers, displacement: Floats, normal_force: Floats) -> Floats:
-        oscillation = _in_plane(displacement, fraction, lag)
-        speeds, load = v_r[rows, np.newaxis], _mid_load(normal_force, loads[rows])
-        own = law.rows(rows)
-        bristle_force = _mean_force(own, load, oscillation, speeds, frequencies[rows])
-        force: Floats = bristle_force + (own.viscous_coefficient * speeds)[:, 0]
-        return np.asarray(force / steady[rows, 0])
+        n, own, speeds, frequency = displacement.shape[-1], law.rows(rows), v_r[rows, np.newaxis], frequencies[rows]
+        along = fraction * delayed_oscillation(displacement, phase=lag) if fraction else np.zeros(displacement.shape)
+        slides = np.roll(along, -1, axis=-1) - along + speeds / (frequency * n)
+        load = (normal_force + np.roll(normal_force, -1, axis=-1)) / (2 * loads[rows])  # amid successive samples
+        # where contact is lost the limit is the least number
+        limit = np.maximum(load * own.limit(slides * frequency * n), np.finfo(np.float64).tiny)
+        stiffness = np.broadcast_to(own.bristle_stiffness, limit.shape).copy()
+        bristle_force = steady_period_mean_force(stiffness, limit, slides, np.full(limit.shape, 1 / n))
+        return np.asarray((bristle_force + (own.viscous_coefficient * speeds)[:, 0]) / steady[rows, 0])
 
     return richardson_period_means(mean_ratio, motions, tolerance=_TOLERANCE)
 
@@ -159,23 +151,3 @@ class _Columns(NamedTuple):
         """Limit of the bristle force under the dead load at relative velocities. [N]"""
         F_c, F_s = self.coulomb_friction_force, self.static_friction_force
         return np.asarray(F_c + (F_s - F_c) * np.exp(-((v / self.stribeck_velocity) ** 2)))
-
-
-def _in_plane(displacement: Floats, fraction: float, lag: float) -> Floats:
-    """Motion along the sliding that goes with samples of that along the normal. [m]"""
-    return fraction * delayed_oscillation(displacement, phase=lag) if fraction else np.zeros(displacement.shape)
-
-
-def _mid_load(normal_force: Floats, normal_load: float | Floats) -> Floats:
-    """Normal force amid successive samples over the dead load. []"""
-    return (normal_force + np.roll(normal_force, -1, axis=-1)) / (2 * normal_load)
-
-
-def _mean_force(law: _Columns, load: Floats, oscillation: Floats, speeds: Floats, frequency: float | Floats) -> Floats:
-    """Mean bristle force of each row of samples. [N]"""
-    n = oscillation.shape[-1]
-    slides = np.roll(oscillation, -1, axis=-1) - oscillation + speeds / (frequency * n)
-    # where contact is lost the limit is the least number
-    limit = np.maximum(load * law.limit(slides * frequency * n), np.finfo(np.float64).tiny)
-    stiffness = np.broadcast_to(law.bristle_stiffness, limit.shape).copy()
-    return steady_period_mean_force(stiffness, limit, slides, np.full(limit.shape, 1 / n))

@@ -8,7 +8,7 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Complexes, Floats, Integers, require_positive
+from sonolube.checks import Complexes, Floats, Integers
 from sonolube.execution.compilation import kernel
 from sonolube.models.contact.contact_motion import ContactMotion, GapMotionBatch, gap_harmonics
 from sonolube.models.contact.height_distribution import ExponentialHeights
@@ -85,35 +85,8 @@ class AsperityStickSlip(FrictionModel):
     in_plane_fraction: float = parameter(0.0, lowest=0.0)
     in_plane_phase: float = parameter(0.0)
 
-    def ratio(
-        self,
-        contact: RoughContact,
-        motion: ContactMotion,
-        *,
-        sliding_speed: ArrayLike,
-        friction_coefficient: ArrayLike | None = None,
-    ) -> Floats:
-        """Mean friction under a motion of the gap over friction without vibration. []
-
-        Parameters
-        ----------
-        contact : RoughContact
-        motion : ContactMotion
-        sliding_speed : array_like, any shape
-            Mean sliding speed. [m/s]
-        friction_coefficient : float, optional
-            Without effect in this model. []
-
-        Returns
-        -------
-        ndarray, shape of `sliding_speed`
-
-        Raises
-        ------
-        InvalidInput
-            If a speed is not positive.
-        """
-        v_r = require_positive(sliding_speed=sliding_speed)
+    def _ratios(self, contact: RoughContact, motion: ContactMotion, v_r: Floats, mu: ArrayLike | None) -> Floats:
+        """Ratio at positive speeds, shape (n,)."""
         length = float(decay_length(contact, separation=separation(contact, normal_load=motion.normal_load)))
 
         def mean_over_limit(sampled: ContactMotion) -> Floats:
@@ -124,19 +97,19 @@ class AsperityStickSlip(FrictionModel):
             else:
                 along = np.roll(sampled.along, -int(np.argmax(sampled.displacement)))
                 slides = (np.roll(along, -1) - along) / self.memory_length
-            steady = v_r.ravel() / (self.memory_length * motion.frequency * gap.size)
+            steady = v_r / (self.memory_length * motion.frequency * gap.size)
             return _sampled_ratio(gap / length, slides, steady)
 
         is_normal = motion.along is None and not self.in_plane_fraction
         if is_normal and motion.displacement.size <= _LONGEST_PERIOD:
             every = np.zeros(v_r.size, dtype=np.int64)
             closed = self.batched_ratio(
-                contact, gap_harmonics(motion), sliding_speed=v_r.ravel(), motion=every, friction_coefficient=np.nan
+                contact, gap_harmonics(motion), sliding_speed=v_r, motion=every, friction_coefficient=np.nan
             )
             if np.isfinite(closed).all():
-                return closed.reshape(v_r.shape)
+                return closed
         mean_force_ratio = float(np.mean(motion.normal_force)) / motion.normal_load
-        return mean_force_ratio * richardson_period_mean(mean_over_limit, motion).reshape(v_r.shape)
+        return mean_force_ratio * richardson_period_mean(mean_over_limit, motion)
 
     def batched_ratio(
         self,

@@ -16,11 +16,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.models.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
+from sonolube.models.friction.models.asperity_stick_slip_sine import (
+    EMPIRICAL_MEMORY_LENGTH,
+    mindlin_memory_length,
+    sine_stick_slip_ratio,
+)
 from sonolube.models.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.models.friction.uniform_spline import in_chunks, spline_coefficients, spline_values
 
-__all__ = ["tabulated_stick_slip_ratio"]  # the rest serves this package only
+__all__ = [  # the rest serves this package only
+    "EMPIRICAL_MEMORY_LENGTH",
+    "mindlin_memory_length",
+    "sine_stick_slip_ratio",
+    "tabulated_stick_slip_ratio",
+]
 
 LOG_BETA = (float(np.log(1e-4)), float(np.log(1e6)))
 """Range of the table. Below it the reduction is proportional to beta, to 1e-8."""
@@ -28,7 +37,7 @@ LOG_BETA = (float(np.log(1e-4)), float(np.log(1e6)))
 ROWS, COLUMNS = 225, 177
 _NODES = np.polynomial.legendre.leggauss(40)
 _BAND = 12  # rows that share the nodes of the quadrature
-_NEGLIGIBLE = 45.0  # exponent beyond which the load of elements is negligible
+_NEGLIGIBLE_IN_TABLE = 45.0  # exponent beyond which the load of elements is negligible
 _LAST_SPEED = 1 - 1e-6  # in place of 1, where the tabulated function is a limit
 
 
@@ -124,7 +133,7 @@ def _deficits(beta: Floats, v: Floats) -> Floats:
     deficits = np.empty((beta.size, v.size))
     for start in range(0, beta.size, _BAND):
         b = beta[start : start + _BAND]
-        cut = 1 - last + _NEGLIGIBLE / b[0]
+        cut = 1 - last + _NEGLIGIBLE_IN_TABLE / b[0]
         end = _bisected(lambda h, cut=cut: _motion(h, v)[2] > cut, longest)  # type: ignore[misc]
         h = end[:, None] * (1 - distance**2)  # graded to where slow sliding makes the integrand steep
         s, c, exponent = _motion(h, speed)

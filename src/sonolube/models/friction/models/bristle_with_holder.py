@@ -98,66 +98,33 @@ class BristleWithHolder(FrictionModel):
         """Holder of the slider along the sliding direction."""
         return Holder(**{field.name: getattr(self, field.name) for field in fields(Holder)})
 
-    def ratio(
-        self,
-        contact: RoughContact,
-        motion: ContactMotion,
-        *,
-        sliding_speed: ArrayLike,
-        friction_coefficient: ArrayLike | None = None,
-    ) -> Floats:
-        """Mean friction under a motion of the gap over friction without vibration. []
-
-        Parameters
-        ----------
-        contact : RoughContact
-        motion : ContactMotion
-        sliding_speed : array_like, any shape
-            Mean sliding speed. [m/s]
-        friction_coefficient : float, optional
-            Coefficient of friction of steady sliding, which limits the force at every instantaneous normal force. []
-
-        Returns
-        -------
-        ndarray, shape of `sliding_speed`
-
-        Raises
-        ------
-        InvalidInput
-            If a speed or the coefficient is not positive, or the coefficient missing.
-        OutsideRange
-            If the motion closes the gap.
-
-        Warns
-        -----
-        ModelRangeWarning
-            If slider and holder reach no steady period; the mean over the last of many periods is returned.
-        """
-        v_r = require_positive(sliding_speed=sliding_speed)
-        if friction_coefficient is None:
+    def _ratios(self, contact: RoughContact, motion: ContactMotion, v_r: Floats, mu: ArrayLike | None) -> Floats:
+        """Ratio at positive speeds, shape (n,)."""
+        if mu is None:
             raise InvalidInput(f"{self.name} requires a friction_coefficient, which limits the force of the bristle")
-        mu = float(require_positive(friction_coefficient=friction_coefficient))
+        coefficient = float(require_positive(friction_coefficient=mu))
         d = require_open_gap(contact, motion)
         settled = True
 
         def normalized_friction(sampled: ContactMotion) -> Floats:
             nonlocal settled
             order = np.roll(np.arange(sampled.displacement.size), -int(np.argmin(sampled.normal_force)))
-            limit = mu * sampled.normal_force[order]
+            limit = coefficient * sampled.normal_force[order]
             k = mindlin_tangential_stiffness(contact, separation=d + sampled.displacement[order])
             u = self._along(sampled)[order]
             step = 1 / (motion.frequency * order.size)
-            slides = np.roll(u, -1) - u, v_r.ravel() * step
+            slides = np.roll(u, -1) - u, v_r * step
             forces, settled = self._mean_force(k, limit, slides, step)
-            return forces / (mu * motion.normal_load)
+            return forces / (coefficient * motion.normal_load)
 
         ratio = richardson_period_mean(normalized_friction, motion)
         if not settled:
             warn_of_range(
                 f"slider and holder reach no steady period within {MAXIMUM_PERIODS}; the mean over the last ones is"
-                " returned. Increase holder_damping"
+                " returned. Increase holder_damping",
+                stacklevel=3,
             )
-        return ratio.reshape(v_r.shape)
+        return ratio
 
     def _along(self, motion: ContactMotion) -> Floats:
         """Displacement along the sliding: that of the motion, else the fraction of its normal part. [m]"""
@@ -172,5 +139,5 @@ class BristleWithHolder(FrictionModel):
             return mean_force_massless_holder(k / (1 + k / stiffness), limit, *slides, exponent), True
         deflection = mean_force_massless_holder(k, limit, *slides, exponent) / stiffness
         matrices = holder_propagators(self.holder, step)
-        forces, settled = mean_force_inertial_holder(k, limit, *slides, step, exponent, *matrices, deflection)
+        forces, settled = mean_force_inertial_holder(k, limit, *slides, step, exponent, matrices, deflection)
         return forces, bool(settled)

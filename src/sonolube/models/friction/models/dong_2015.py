@@ -7,7 +7,7 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_positive
+from sonolube.checks import Floats
 from sonolube.models.contact.contact_motion import ContactMotion, load_balanced_motion, require_open_gap
 from sonolube.models.contact.cube import cube_tangential_stiffness
 from sonolube.models.contact.period_mean import richardson_period_mean
@@ -70,37 +70,9 @@ class Dong2015FullPeriod(_CubeModel):
     citation: ClassVar[str] = "D 3.46 to 3.48, about the mean at rest as printed"
     mean_gap: ClassVar[MeanGap] = MeanGap.AT_REST
 
-    def ratio(
-        self,
-        contact: RoughContact,
-        motion: ContactMotion,
-        *,
-        sliding_speed: ArrayLike,
-        friction_coefficient: ArrayLike | None = None,
-    ) -> Floats:
-        """Mean friction under a motion of the gap over friction without vibration. []
-
-        Parameters
-        ----------
-        contact : RoughContact
-        motion : ContactMotion
-        sliding_speed : array_like, any shape
-            Mean sliding speed. [m/s]
-        friction_coefficient : float, optional
-            Without effect in this model. []
-
-        Returns
-        -------
-        ndarray, shape of `sliding_speed`
-
-        Raises
-        ------
-        InvalidInput
-            If a speed is not positive.
-        OutsideRange
-            If the motion closes the gap or leaves the range of the height distribution.
-        """
-        return _full_period(contact, motion, sliding_speed)
+    def _ratios(self, contact: RoughContact, motion: ContactMotion, v_r: Floats, mu: ArrayLike | None) -> Floats:
+        """Ratio at positive speeds, shape (n,)."""
+        return _full_period(contact, motion, v_r)
 
 
 @final
@@ -129,44 +101,14 @@ class Dong2015HalfPeriod(_CubeModel):
     mean_gap: ClassVar[MeanGap] = MeanGap.AT_REST
     rate_dependent: ClassVar[bool] = False
 
-    def ratio(
-        self,
-        contact: RoughContact,
-        motion: ContactMotion,
-        *,
-        sliding_speed: ArrayLike,
-        friction_coefficient: ArrayLike | None = None,
-    ) -> Floats:
-        """Mean friction under a motion of the gap over friction without vibration. []
-
-        Parameters
-        ----------
-        contact : RoughContact
-        motion : ContactMotion
-        sliding_speed : array_like, any shape
-            Mean sliding speed, which has no effect in this model. [m/s]
-        friction_coefficient : float, optional
-            Without effect in this model. []
-
-        Returns
-        -------
-        ndarray, shape of `sliding_speed`
-
-        Raises
-        ------
-        InvalidInput
-            If a speed is not positive.
-        OutsideRange
-            If the motion leaves the range of the height distribution.
-        """
-        v_r = require_positive(sliding_speed=sliding_speed)
+    def _ratios(self, contact: RoughContact, motion: ContactMotion, v_r: Floats, mu: ArrayLike | None) -> Floats:
+        """Ratio at positive speeds, shape (n,)."""
         k_ratio = _stiffness_ratio(contact, separation(contact, normal_load=motion.normal_load))
 
         def mean(sampled: ContactMotion) -> Floats:
             return sampled_separating_mean(k_ratio, displacement=sampled.displacement)
 
-        ratio = richardson_period_mean(mean, motion)
-        return np.broadcast_to(ratio, v_r.shape).copy()
+        return np.full(v_r.shape, richardson_period_mean(mean, motion))
 
 
 @final
@@ -192,43 +134,15 @@ class Dong2015LoadBalanced(_CubeModel):
     citation: ClassVar[str] = "D 3.46 to 3.48, about the mean gap that balances the load"
     needs_open_gap: ClassVar[bool] = False  # of the motion given; `ratio` refuses one that closes the balanced gap
 
-    def ratio(
-        self,
-        contact: RoughContact,
-        motion: ContactMotion,
-        *,
-        sliding_speed: ArrayLike,
-        friction_coefficient: ArrayLike | None = None,
-    ) -> Floats:
-        """Mean friction under a motion of the gap over friction without vibration. []
-
-        Parameters
-        ----------
-        contact : RoughContact
-        motion : ContactMotion
-        sliding_speed : array_like, any shape
-            Mean sliding speed. [m/s]
-        friction_coefficient : float, optional
-            Without effect in this model. []
-
-        Returns
-        -------
-        ndarray, shape of `sliding_speed`
-
-        Raises
-        ------
-        InvalidInput
-            If a speed is not positive.
-        OutsideRange
-            If the motion closes the gap or leaves the range of the height distribution.
-        """
-        return _full_period(contact, load_balanced_motion(contact, motion), sliding_speed)
+    def _ratios(self, contact: RoughContact, motion: ContactMotion, v_r: Floats, mu: ArrayLike | None) -> Floats:
+        """Ratio at positive speeds, shape (n,)."""
+        return _full_period(contact, load_balanced_motion(contact, motion), v_r)
 
 
-def _full_period(contact: RoughContact, motion: ContactMotion, sliding_speed: ArrayLike) -> Floats:
+def _full_period(contact: RoughContact, motion: ContactMotion, v_r: Floats) -> Floats:
     """Mean of the stiffness ratio of the cube times the kinematic factor over the full period. []"""
     k_ratio = _stiffness_ratio(contact, require_open_gap(contact, motion))
-    return kinematic_mean(k_ratio, motion, sliding_speed=sliding_speed)
+    return kinematic_mean(k_ratio, motion, v_r)
 
 
 def _stiffness_ratio(contact: RoughContact, d: Floats) -> Callable[[Floats], Floats]:

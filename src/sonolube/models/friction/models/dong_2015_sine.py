@@ -68,39 +68,6 @@ def dong_2015_half_period_ratio(
     return mean / at_rest
 
 
-def steady_deformation(contact: RoughContact, *, normal_load: ArrayLike, friction_force: ArrayLike) -> Floats:
-    r"""Tangential deformation of the cube in steady sliding. [m]
-
-    Parameters
-    ----------
-    contact : RoughContact
-    normal_load : array_like
-        Force pressing the bodies together. [N]
-    friction_force : array_like, broadcast against `normal_load`
-        Friction force of steady sliding. [N]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-        About half a nanometre for the contacts of D at 40 N.
-
-    Raises
-    ------
-    InvalidInput
-        If a load is not positive, or a force not finite.
-
-    Notes
-    -----
-    .. math:: \delta = \frac{F_t}{k_t} \tag{D 3.11}
-
-    References
-    ----------
-    .. [1] D 3.10 at rest, and 3.11.
-    """
-    d = separation(contact, normal_load=normal_load)
-    return require_finite(friction_force=friction_force) / cube_tangential_stiffness(contact, separation=d)  # D 3.11
-
-
 def dong_2015_deformation_ratio(
     contact: RoughContact,
     *,
@@ -122,7 +89,7 @@ def dong_2015_deformation_ratio(
     in_plane_amplitude : array_like
         Amplitude of the vibration along the sliding direction. [m]
     deformation : array_like
-        Tangential deformation of the contact in steady sliding, as by `steady_deformation`. [m]
+        Tangential deformation of the contact in steady sliding, by D 3.11 the friction force over the stiffness. [m]
     phase : array_like
         Lag of the normal motion behind the in-plane one; pi/2 as D prints it. [rad]
 

@@ -7,7 +7,7 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_positive
+from sonolube.checks import Floats
 from sonolube.execution.compilation import kernel
 from sonolube.models.contact.contact_motion import ContactMotion
 from sonolube.models.contact.period_mean import richardson_period_mean
@@ -55,57 +55,23 @@ class Kinematic(FrictionModel):
 
     amplitude_fraction: float = parameter(1.0, positive=True)
 
-    def ratio(
-        self,
-        contact: RoughContact,
-        motion: ContactMotion,
-        *,
-        sliding_speed: ArrayLike,
-        friction_coefficient: ArrayLike | None = None,
-    ) -> Floats:
-        """Mean friction under a motion of the gap over friction without vibration. []
-
-        Parameters
-        ----------
-        contact : RoughContact
-            Without effect in this model.
-        motion : ContactMotion
-        sliding_speed : array_like, any shape
-            Mean sliding speed. [m/s]
-        friction_coefficient : float, optional
-            Without effect in this model. []
-
-        Returns
-        -------
-        ndarray, shape of `sliding_speed`
-
-        Raises
-        ------
-        InvalidInput
-            If a speed is not positive.
-        """
-        return kinematic_mean(
-            np.ones_like, motion, sliding_speed=sliding_speed, amplitude_fraction=self.amplitude_fraction
-        )
+    def _ratios(self, contact: RoughContact, motion: ContactMotion, v_r: Floats, mu: ArrayLike | None) -> Floats:
+        """Ratio at positive speeds, shape (n,)."""
+        return kinematic_mean(np.ones_like, motion, v_r, amplitude_fraction=self.amplitude_fraction)
 
 
 def kinematic_mean(
-    weight: Callable[[Floats], Floats],
-    motion: ContactMotion,
-    *,
-    sliding_speed: ArrayLike,
-    amplitude_fraction: float = 1.0,
+    weight: Callable[[Floats], Floats], motion: ContactMotion, v_r: Floats, *, amplitude_fraction: float = 1.0
 ) -> Floats:
-    r"""Period average of a weight times the kinematic factor. []
+    r"""Period average of a weight times the kinematic factor at each speed, shape (n,). []
 
     .. math:: \langle w(x) \cos\theta \rangle, \qquad \cos\theta = \frac{v_r}{\sqrt{v_r^2 + v_1^2}}
     """
-    v_r = require_positive(sliding_speed=sliding_speed)
 
     def mean(sampled: ContactMotion) -> Floats:
-        return _weighted_cosine(weight(sampled.displacement), amplitude_fraction * sampled.velocity, v_r.ravel())
+        return _weighted_cosine(weight(sampled.displacement), amplitude_fraction * sampled.velocity, v_r)
 
-    return richardson_period_mean(mean, motion).reshape(v_r.shape)
+    return richardson_period_mean(mean, motion)
 
 
 @kernel(cache=True, no_cfunc_wrapper=True)

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, Integers
+from sonolube.checks import Floats, Integers, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.contact.contact_motion import ContactMotion, GapMotionBatch
 from sonolube.models.contact.rough import RoughContact
@@ -163,7 +163,6 @@ class FrictionModel(ABC):
             )
         return tuple(found)
 
-    @abstractmethod
     def ratio(
         self,
         contact: RoughContact,
@@ -195,6 +194,12 @@ class FrictionModel(ABC):
         OutsideRange
             If the model does not hold for the motion.
         """
+        v_r = require_positive(sliding_speed=sliding_speed)
+        return self._ratios(contact, motion, v_r.ravel(), friction_coefficient).reshape(v_r.shape)
+
+    @abstractmethod
+    def _ratios(self, contact: RoughContact, motion: ContactMotion, v_r: Floats, mu: ArrayLike | None) -> Floats:
+        """Ratio at positive speeds, shape (n,)."""
 
     def ratio_bounds(self, *, mean_force_ratio: Floats) -> tuple[Floats, Floats]:
         r"""Lowest and the highest friction ratio that the model can mean. []

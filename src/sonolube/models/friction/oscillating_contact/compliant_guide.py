@@ -91,7 +91,7 @@ def guided_oscillation_ratio(
     step = 1 / (f * _STEPS)
     deflection = np.full(v_r.size, np.mean(limit) / holder.holder_stiffness)
     slides, matrices = (np.zeros(_STEPS), v_r.ravel() * step), holder_propagators(holder, step)
-    forces, settled = mean_force_inertial_holder(k_x, limit, *slides, step, 0.0, *matrices, deflection)
+    forces, settled = mean_force_inertial_holder(k_x, limit, *slides, step, 0.0, matrices, deflection)
     if not settled:
         warn_of_range(
             "no steady period of slider and guide was found; the mean over the last of many periods is returned."

@@ -18,8 +18,6 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.friction.oscillating_contact.stick_slip_phases import balanced_approaches, profile_mean_limits
 
-__all__ = ["SpringContact", "critical_speed", "load_balanced_approach"]  # the rest serves this package only
-
 NODES = np.polynomial.legendre.leggauss(48)
 """Gauss-Legendre rule over the springs of a parabolic profile."""
 

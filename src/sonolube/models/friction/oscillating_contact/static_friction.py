@@ -6,14 +6,22 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.models.friction.oscillating_contact.spring_contact import (
     SpringContact,
+    critical_speed,
+    load_balanced_approach,
     mean_normal_forces,
     require_contact,
 )
 
-# `slip_length_fraction` serves this package only
-__all__ = ["longitudinal_static_ratio", "normal_static_ratio", "transverse_static_ratio"]
+__all__ = [  # the rest serves this package only
+    "SpringContact",
+    "critical_speed",
+    "load_balanced_approach",
+    "longitudinal_static_ratio",
+    "normal_static_ratio",
+    "transverse_static_ratio",
+]
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
+_SLIP_NODES, _SLIP_WEIGHTS = np.polynomial.legendre.leggauss(32)
 
 
 def normal_static_ratio(contact: SpringContact, *, approach: ArrayLike, normal_amplitude: ArrayLike) -> Floats:
@@ -147,7 +155,7 @@ def transverse_static_ratio(contact: SpringContact, *, approach: ArrayLike, tran
         return np.sqrt((1 - s) * (1 + s))
     # springs that stick, at distances sqrt(1 - s) sin t
     sticking = np.zeros_like(s)
-    for node, weight in zip(np.pi / 4 * (1 + _NODES), np.pi / 4 * _WEIGHTS, strict=True):
+    for node, weight in zip(np.pi / 4 * (1 + _SLIP_NODES), np.pi / 4 * _SLIP_WEIGHTS, strict=True):
         sticking += weight * np.cos(node) ** 2 * np.sqrt(1 + s - (1 - s) * np.sin(node) ** 2)
     return 1.5 * (1 - s) * sticking
 

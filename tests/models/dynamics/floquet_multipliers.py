@@ -1,49 +1,18 @@
-"""Stability of periodic vibrations: Floquet multipliers of the linearised motion."""
+"""Floquet multipliers of periodic vibrations, all of them, by eigenvalues of the monodromy matrix."""
 
 import numpy as np
+from scipy.linalg import block_diag, expm
 
 from sonolube.checks import Complexes, Floats
-from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.harmonic_balance.receptance import PoleResidueModel, pole_residue_model
-from sonolube.models.dynamics.steady_states import Status, SteadyStates, contact_motion
+from sonolube.models.dynamics.steady_states import SteadyStates, contact_motion
 
 
 def floquet_multipliers(states: SteadyStates, *, kicks: int = 512) -> Complexes:
-    r"""Floquet multipliers of steady states: factors by which small disturbances grow in one period.
+    """Floquet multipliers of steady states, largest modulus first, by kick-drift splitting; shape (..., 2 m).
 
-    Parameters
-    ----------
-    states : SteadyStates
-    kicks : int
-        Instants per period at which the contact acts on the disturbance; errors fall with its fourth power.
-
-    Returns
-    -------
-    ndarray of complex, shape (..., 2m)
-        Two for each of the m pairs of states that drive or contact excite, largest modulus first. The vibration is
-        stable where all moduli are below one.
-
-    Raises
-    ------
-    InvalidInput
-        If a state did not converge or kicks are fewer than 8.
-
-    Notes
-    -----
-    A disturbance s of the pairs of states, with the displacement :math:`x(s)` and the velocity :math:`v(s)` of the
-    contact, obeys
-
-    .. math:: \dot s = A s - c\,\left[k(t)\,x(s) + d(t)\,v(s)\right]
-
-    with the momentary stiffness k and damping d of the contact. The multipliers are the eigenvalues of the monodromy
-    matrix, from kick-drift splitting: between instants the structure moves exactly, and at each instant the contact
-    acts as an impulse. The splitting is of second order; monodromy matrices with n and 2n kicks are extrapolated.
-    Where the force has corners, as at the loss of a linear contact, the order is lower.
+    The splitting is of second order; monodromy matrices with n and 2n kicks are extrapolated.
     """
-    if kicks < 8:
-        raise InvalidInput(f"kicks must be at least 8, got {kicks!r}")
-    if np.any(states.status == Status.NOT_CONVERGED):
-        raise InvalidInput("states must have converged: a point without a vibration has no stability")
     model = pole_residue_model(states.structure)
     shape = states.frequency.shape
     multipliers = np.empty((states.frequency.size, 2 * model.trace.size), dtype=np.complex128)
@@ -56,8 +25,6 @@ def floquet_multipliers(states: SteadyStates, *, kicks: int = 512) -> Complexes:
 
 def _monodromy_matrix(model: PoleResidueModel, states: SteadyStates, index: tuple[int, ...], kicks: int) -> Floats:
     """Monodromy matrix of one steady state on the pairs of states, from mid-kick to mid-kick."""
-    from scipy.linalg import block_diag, expm
-
     pairs = model.trace.size
     step = 1 / states.frequency[index] / kicks
     drift = block_diag(*(expm(step * matrix) for matrix in model.state_matrix))
