@@ -16,7 +16,7 @@ from sonolube.facts.published import si_value
 from sonolube.models.actuator import linear_amplifier_power
 from sonolube.models.contact import decay_length, separation
 from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
-from sonolube.reproduction.row import Row, RowKind, comparison_row, undetermined_row
+from sonolube.reproduction.row import Row, RowKind, default_model_row, published_formula_row, undetermined_row
 from sonolube.validation.published_tests import FLEXTENSIONAL_GAINS, FrictionTest, friction_tests
 
 _EQUAL_SPEEDS: Final = (
@@ -70,9 +70,7 @@ def _pulling_force() -> Row:
         "Balance of forces: either plate presses with the same load and rubs with the same coefficient; the actuator's "
         "own weight is left out."
     )
-    return comparison_row(
-        "2.2.2-pulling-force-factor", (friction + friction) / friction, note, kind=RowKind.PUBLISHED_FORMULA
-    )
+    return published_formula_row("2.2.2-pulling-force-factor", (friction + friction) / friction, note)
 
 
 def _powers() -> Iterator[Row]:
@@ -85,7 +83,7 @@ def _powers() -> Iterator[Row]:
             frequency=si_value("2.2.2-resonance"),
         )
         note = "D 1.9: capacitance times both voltages times frequency."
-        yield comparison_row(f"2.2.5-power-{level}", float(power), note, kind=RowKind.PUBLISHED_FORMULA)
+        yield published_formula_row(f"2.2.5-power-{level}", float(power), note)
 
 
 def _velocities() -> Iterator[Row]:
@@ -96,13 +94,12 @@ def _velocities() -> Iterator[Row]:
         for amplitude in (test.vibration_amplitude, 2 * test.vibration_amplitude)
     )
     note = f"2 pi f a, a half the stroke at this voltage; the whole stroke gives {1e3 * of_stroke:.0f} mm/s."
-    yield comparison_row("2.2.5-vibration-velocity", of_amplitude, note, kind=RowKind.PUBLISHED_FORMULA)
+    yield published_formula_row("2.2.5-vibration-velocity", of_amplitude, note)
     note = f"{_EQUAL_SPEEDS} Possible: gains up to {FLEXTENSIONAL_GAINS[1]:g}."
-    yield comparison_row(
+    yield published_formula_row(
         "2.2.5-speed-of-no-reduction",
         of_amplitude,
         note,
-        kind=RowKind.PUBLISHED_FORMULA,
         possible=(of_amplitude, FLEXTENSIONAL_GAINS[1] * of_amplitude),
     )
 
@@ -119,9 +116,7 @@ def _saturation() -> Iterator[Row]:
         "measured reduction."
     )
     at_largest = 1 - _ratio(test, FLEXTENSIONAL_GAINS[1])
-    yield comparison_row(
-        "2.2.6-reduction", 1 - _ratio(test), note, kind=RowKind.DEFAULT_MODEL, possible=(1 - _ratio(test), at_largest)
-    )
+    yield default_model_row("2.2.6-reduction", 1 - _ratio(test), note, possible=(1 - _ratio(test), at_largest))
 
 
 def _vanishing_reduction() -> Iterator[Row]:
@@ -131,16 +126,13 @@ def _vanishing_reduction() -> Iterator[Row]:
     reduction = 1 - _ratio(fast, gain)
     velocity_ratio = EMPIRICAL_MEMORY_LENGTH / _decay_length(test)  # the friction ratio is 1 from omega a D_c/l on
     velocity = 2 * pi * test.frequency * test.vibration_amplitude
-    yield comparison_row(
+    yield default_model_row(
         "2.2.5-speed-of-no-reduction",
         gain * velocity_ratio * velocity,
         f"Asperity stick-slip, speed from which it has no reduction, with the gain at resonance of {gain:.2g} of its "
         f"reduction at {1e3 * test.sliding_speed:g} mm/s, with which it still has {100 * reduction:.0f} % at "
         f"{1e3 * fast.sliding_speed:g} mm/s; without gain {1e3 * velocity_ratio * velocity:.0f} mm/s.",
         suffix="asperity-stick-slip",
-        kind=RowKind.DEFAULT_MODEL,
     )
     note = "Asperity stick-slip: memory length over decay length, at any amplitude and frequency."
-    yield comparison_row(
-        "2.2.5-littmann-ratio", velocity_ratio, note, suffix="asperity-stick-slip", kind=RowKind.DEFAULT_MODEL
-    )
+    yield default_model_row("2.2.5-littmann-ratio", velocity_ratio, note, suffix="asperity-stick-slip")

@@ -13,7 +13,7 @@ from typing import Final
 
 from sonolube.facts import metrics
 from sonolube.facts.published import si_value
-from sonolube.reproduction.row import Row, RowKind, comparison_row
+from sonolube.reproduction.row import Row, default_model_row
 
 _TIPS: Final = {1: "round", 2: "flat"}
 """Tips by their rows in Table 2.9."""
@@ -65,17 +65,11 @@ def _rows_of_tip(tip: int) -> Iterator[Row]:
     note = f"DC motor at {voltage:g} V, {constant:.3f} N m/A at the disc from the test with the {_TIPS[other]} tip; "
     fall = f"friction falls by {off - on:.2f} N (middles of Table 2.9)."
     reduced_speed = float(metrics.motor_speed(motor, motor_current=reduced_current))
-    yield comparison_row(
-        "2.4.2-rotation-on", reduced_speed, note + fall, suffix=f"{name}-motor", kind=RowKind.DEFAULT_MODEL
-    )
-    yield comparison_row(
-        "2.4.4-current-drop", current - reduced_current, note + fall, suffix=f"{name}-motor", kind=RowKind.DEFAULT_MODEL
-    )
+    yield default_model_row("2.4.2-rotation-on", reduced_speed, note + fall, suffix=f"{name}-motor")
+    yield default_model_row("2.4.4-current-drop", current - reduced_current, note + fall, suffix=f"{name}-motor")
     drop = friction_drop_from_current(tip)
     note = f"{note}the drop of the current corresponds to {drop:.2f} N of {off:.2f} N."
-    yield comparison_row(
-        f"table-2.9-friction_reduction-{tip}", drop / off, note, suffix="motor", kind=RowKind.DEFAULT_MODEL
-    )
+    yield default_model_row(f"table-2.9-friction_reduction-{tip}", drop / off, note, suffix="motor")
 
 
 def _currents(tip: int) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from sonolube.facts.materials import material
 from sonolube.facts.published import column_numbers, si_value
 from sonolube.models import thermal
 from sonolube.reproduction.chapter4 import temperature_tests as tests
-from sonolube.reproduction.row import Row, RowKind, comparison_row, undetermined_row
+from sonolube.reproduction.row import Row, RowKind, comparison_row, default_model_row, undetermined_row
 
 _FRICTION_NOTE: Final = (
     f"Friction kept at {tests.EXAMPLE_FRICTION_RATIO:g} of its dry value at every voltage: in the text it falls "
@@ -41,7 +41,7 @@ def _slopes() -> Row:
         f"the rise per speed falls by {100 * (1 - per_speed[-1] / per_speed[0]):.0f} % from the lowest to the highest "
         f"speed, nearly a straight line. {tests.ASSUMED}."
     )
-    return comparison_row("4.3.4-slope-ratio", low / high, note, kind=RowKind.DEFAULT_MODEL)
+    return default_model_row("4.3.4-slope-ratio", low / high, note)
 
 
 def _at_vibration_start(load: float, speed: float) -> float:
@@ -111,9 +111,7 @@ def _low_speed() -> Row:
         "heat of vibration by the fraction from the example at 220 mm/s; rises with vibration over those without, from "
         f"5.1 to 25.9 V: {listed}. Possible: over the fractions that the example leaves open"
     )
-    return comparison_row(
-        "4.3.4-low-speed-warmer", float(np.max(1 / ratios)), note, kind=RowKind.DEFAULT_MODEL, possible=(least, most)
-    )
+    return default_model_row("4.3.4-low-speed-warmer", float(np.max(1 / ratios)), note, possible=(least, most))
 
 
 def _tribometer_peak() -> Row:
@@ -131,9 +129,7 @@ def _tribometer_peak() -> Row:
         f"insulating adhesive of the thermocouple, the coating alone would give {insulated - 273.15:.0f} degC: the "
         "measured peak lies between, depending on the bond of the thermocouple, which is not printed"
     )
-    return comparison_row(
-        "4.3.5-tribometer-temperature-peak", peak, note, kind=RowKind.DEFAULT_MODEL, possible=(peak, insulated)
-    )
+    return default_model_row("4.3.5-tribometer-temperature-peak", peak, note, possible=(peak, insulated))
 
 
 def _waveguide_peak() -> Row:
