@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule, Zone
+from sonolube.charts import Axis, Chart, Line, Part, Points, Rule, Zone, one_panel
 from sonolube.checks import Floats
 from sonolube.measurement.wear_track import WearTrack
 from sonolube.models.surfaces import HeightMap
@@ -70,8 +70,7 @@ def sections(groove: Groove) -> Chart:
         Rule(value=0.0, along="y", label="unworn surface", colour=1, dash=1),
         Points(x=edges, y=np.zeros(2), label="edges", colour=1, marker=1),
     )
-    panel = Panel(x=Axis(label="Distance from the track", unit="mm"), y=Axis(label="Height", unit="µm"), parts=parts)
-    return Chart(panels=(panel,), size=(6.4, 3.2), legend="top")
+    return one_panel(Axis("Distance from the track", "mm"), Axis("Height", "µm"), parts, size=(6.4, 3.2), legend="top")
 
 
 def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> Chart:
@@ -106,8 +105,7 @@ def ring(worn: WearTrack) -> Chart:
         Rule(value=float(area.mean()), along="y", label="mean", colour=0, dash=0),
         Points(x=place, y=area, label="scans", colour=1, marker=1),
     )
-    panel = Panel(x=Axis(label="Scan", ticks=tuple(place)), y=Axis(label="Section", unit="µm²"), parts=parts)
-    return Chart(panels=(panel,), size=(4.6, 3.0), legend="top")
+    return one_panel(Axis("Scan", ticks=tuple(place)), Axis("Section", "µm²"), parts, size=(4.6, 3.0), legend="top")
 
 
 @captioned(
@@ -125,8 +123,8 @@ def marks(track: TrackMarks) -> Chart:
         Line(x=k, y=background, label="background", colour=1, dash=1),
         *peak,
     )
-    density = Axis(label="Power spectral density", unit="m³", logarithmic=True)
-    return Chart(panels=(Panel(x=WAVENUMBER, y=density, parts=parts),), size=(4.6, 3.0))
+    density = Axis("Power spectral density", "m³", logarithmic=True)
+    return one_panel(WAVENUMBER, density, parts, size=(4.6, 3.0))
 
 
 def _block_means(height: Floats, size: int) -> Floats:

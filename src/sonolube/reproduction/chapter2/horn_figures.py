@@ -150,8 +150,8 @@ def face_friction_chart(horn: Horn, friction: FaceFriction) -> Chart:
         Rule(value=1e3 * friction.node, label="node of the axial motion", colour="0"),
     )
     end = 1e3 * FACE_END
-    x = Axis(label="Position along the face, from its centre", unit="mm", lowest=-end, highest=end)
-    panel = Panel(x=x, y=Axis(label="Friction over that at rest", unit="%"), parts=parts)
+    x = Axis("Position along the face, from its centre", "mm", lowest=-end, highest=end)
+    panel = Panel(x=x, y=Axis("Friction over that at rest", "%"), parts=parts)
     title = f"{horn} horn; below zero the face drives the block"
     return Chart(panels=(panel,), size=(5.0, 3.2), title=title, legend="bottom")
 
