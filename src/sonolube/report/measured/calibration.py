@@ -75,11 +75,8 @@ def _applied_force(recording: "xr.Dataset") -> Floats:
 def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> PreisachCalibration:
     """Preisach model of a force gauge, fitted to recorded loops."""
     recording = read_recording(path, mapping=settings.mapping)
-    return fit_preisach(
-        displacement=channel_values(recording, "displacement"),
-        applied_force=_applied_force(recording),
-        levels=settings.levels,
-    )
+    x, force = channel_values(recording, "displacement"), _applied_force(recording)
+    return fit_preisach(displacement=x, applied_force=force, levels=settings.levels)
 
 
 def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: CalibrationSettings) -> sheet.Sheet:
@@ -106,10 +103,8 @@ def _branches(x: Floats, force: Floats, degree: int) -> sheet.Sheet:
     """Polynomials of loading and unloading with the deviations about them."""
     branches = fit_branches(displacement=x, applied_force=force, degree=degree)
     values = (
-        sheet.Value("loading_deviation", "Deviation about the polynomial of loading", branches.loading_deviation, "N"),
-        sheet.Value(
-            "unloading_deviation", "Deviation about the polynomial of unloading", branches.unloading_deviation, "N"
-        ),
+        sheet.field_value(branches, "loading_deviation", "Deviation about the polynomial of loading", "N"),
+        sheet.field_value(branches, "unloading_deviation", "Deviation about the polynomial of unloading", "N"),
     )
     return sheet.Sheet(values=values, tables=(_coefficients(branches),))
 

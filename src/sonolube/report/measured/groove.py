@@ -49,37 +49,18 @@ def groove_sheet(
     groove = measure_groove(file.height_map, track_number=track_number)
     values = [
         sheet.Value("track_count", "Wear tracks in the field", groove.track_count, ""),
-        sheet.quantity_value(
-            "wear_volume",
-            groove.wear_volume,
-            uncertainty=groove.wear_volume_uncertainty,
-            interval=groove.wear_volume_interval,
-        ),
-        sheet.Value("pile_up_volume", "Volume of ridges and projections", groove.pile_up_volume, "m3"),
-        sheet.Value("net_volume", "Net volume lost in the field", groove.net_volume, "m3"),
-        sheet.quantity_value("groove_width", groove.groove_width, interval=groove.groove_width_interval),
-        sheet.Value(
-            "groove_depth",
-            "Greatest depth of the mean section",
-            groove.groove_depth,
-            "m",
-            interval=groove.groove_depth_interval,
-        ),
-        sheet.Value(
-            "cross_section_area",
-            "Area of the mean section",
-            groove.cross_section_area,
-            "m2",
-            interval=groove.cross_section_area_interval,
-        ),
-        sheet.Value("track_length", "Length of track in the field", groove.track_length, "m"),
+        sheet.field_value(groove, "wear_volume"),
+        sheet.field_value(groove, "pile_up_volume", "Volume of ridges and projections", "m3"),
+        sheet.field_value(groove, "net_volume", "Net volume lost in the field", "m3"),
+        sheet.field_value(groove, "groove_width"),
+        sheet.field_value(groove, "groove_depth", "Greatest depth of the mean section", "m"),
+        sheet.field_value(groove, "cross_section_area", "Area of the mean section", "m2"),
+        sheet.field_value(groove, "track_length", "Length of track in the field", "m"),
     ]
     if groove.track_count > 1:
         values.insert(1, sheet.Value("track_number", "The one measured", groove.track_number, ""))
     if groove.track.groove_diameter < _STRAIGHT * groove.track_length:
-        values.append(
-            sheet.quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
-        )
+        values.append(sheet.field_value(groove.track, "groove_diameter", "Diameter of the track's arc"))
     caveats = (*file.caveats, *((groove.caveat,) if groove.caveat else ()))
     sections = [
         sheet.Sheet(values=tuple(values), figures=_figures(groove), caveats=caveats),
@@ -126,11 +107,8 @@ def ring_sheet(
 def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> sheet.Sheet:
     """Wear reduction by vibration from worn rings, with its interval."""
     reduction: WearReduction = wear_reduction_between_tracks(without, with_vibration)
-    caveats: tuple[str, ...] = ()
-    if not reduction.between_specimens:
-        caveats = (
-            "the interval covers the scatter along each ring only, not that between specimens: test more specimens",
-        )
+    caveat = "the interval covers the scatter along each ring only, not that between specimens: test more specimens"
+    caveats = () if reduction.between_specimens else (caveat,)
     value = sheet.quantity_value("wear_reduction", reduction.wear_reduction, interval=reduction.interval)
     title = f"{len(with_vibration)} ring with vibration against {len(without)} without"
     return sheet.joined([sheet.Sheet(values=(value,), caveats=caveats)], title=title, source={})

@@ -52,7 +52,8 @@ def profile_sheet(
         sheet.Sheet(figures=(figures.profile(found, spacing=spacing),)),
         sheet.attempted(partial(_spectrum, found, spacing), what="spectrum"),
     ]
-    return sheet.joined(parts, title=file.path.name, source=source | {"setting class": _setting_class(found)})
+    setting_class = f"{found.setting_class} of ISO 21920-3" if found.setting_class else "none of ISO 21920-3"
+    return sheet.joined(parts, title=file.path.name, source=source | {"setting class": setting_class})
 
 
 def _parameters(found: ProfileEvaluation) -> sheet.Sheet:
@@ -84,11 +85,6 @@ def _settings(found: ProfileEvaluation, spacing: float) -> sheet.Sheet:
             sheet.Value(name, label, length, "m") for name, (length, label) in lengths.items() if length is not None
         )
     )
-
-
-def _setting_class(found: ProfileEvaluation) -> str:
-    """Setting class of ISO 21920-3, or that its defaults do not apply."""
-    return f"{found.setting_class} of ISO 21920-3" if found.setting_class else "none of ISO 21920-3"
 
 
 def _spectrum(found: ProfileEvaluation, spacing: float) -> sheet.Sheet:

@@ -194,11 +194,10 @@ def _proportion(found_in: Sequence[tuple[str, float, float]]) -> sheet.Sheet:
     fit = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
     values = (
         sheet.quantity_value("amplitude_per_volt", fit.amplitude_per_volt, interval=(fit.lower, fit.upper)),
-        sheet.quantity_value("amplitude_deviation", fit.amplitude_deviation),
-        sheet.Value("curvature_p_value", "p value of the curvature", fit.curvature_p_value, ""),
+        sheet.field_value(fit, "amplitude_deviation"),
+        sheet.field_value(fit, "curvature_p_value", "p value of the curvature"),
     )
-    caveats: tuple[str, ...] = ()
-    if not fit.proportional:
-        caveats = (f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}",)
+    caveat = f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}"
+    caveats = () if fit.proportional else (caveat,)
     figure = figures.proportion([name for name, *_ in found_in], volts, amplitudes, fit)
     return sheet.Sheet(values=values, figures=(figure,), caveats=caveats)
