@@ -11,10 +11,9 @@ from sonolube.models.fem import generate_mesh, natural_modes
 from sonolube.reproduction import SECTIONS
 from sonolube.reproduction.chapter4.coated_plate_figures import coated_plate_rig, coated_power_maps
 from sonolube.reproduction.chapter4.cutter_head_figures import cutter_head_figures, head_mode
-from sonolube.reproduction.chapter4.dry_temperature_figures import dry_rises
 from sonolube.reproduction.chapter4.lubrication_method_figures import coefficients, friction_in_time, load_scatter
 from sonolube.reproduction.chapter4.maps import power_maps
-from sonolube.reproduction.chapter4.temperature_tests import speeds
+from sonolube.reproduction.chapter4.temperature_tests import dry_rises, speeds
 
 
 def test_the_sections_have_the_figures_of_the_dissertation() -> None:

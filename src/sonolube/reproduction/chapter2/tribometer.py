@@ -53,11 +53,8 @@ def _settings_of_first_study() -> Iterator[Row]:
     """Yield the rows of Table 2.2 from distance, revolutions and rotation speed."""
     turns = as_setting("table-2.2-revolutions-1")
     printed = formulas.sliding_distance(turns.value, si_value("table-2.2-groove_diameter-1"))
-    yield published_formula_row(
-        "table-2.2-groove_diameter-1",
-        propagate_rounding(formulas.groove_diameter, _DISTANCE, turns),
-        f"Distance over pi times turns; with the printed diameter the distance is {printed:.1f} m.",
-    )
+    note = f"Distance over pi times turns; with the printed diameter the distance is {printed:.1f} m."
+    yield formula_row("table-2.2-groove_diameter-1", note, formulas.groove_diameter, _DISTANCE, turns)
 
     def speed(rotation: float, distance: float, turns: float) -> float:
         return formulas.sliding_speed(rotation, formulas.groove_diameter(distance, turns))
@@ -71,10 +68,9 @@ def _settings_of_first_study() -> Iterator[Row]:
 def _protocol() -> Iterator[Row]:
     """Yield the rows of appendix A from the settings of Table 2.2."""
     turns = as_setting("table-2.2-revolutions-1")
-    yield published_formula_row(
-        "A.1.3.6-groove-radius",
-        propagate_rounding(lambda *settings: formulas.groove_diameter(*settings) / 2, _DISTANCE, turns),
-        "Half the diameter that follows from distance and turns of Table 2.2.",
+    note = "Half the diameter that follows from distance and turns of Table 2.2."
+    yield formula_row(
+        "A.1.3.6-groove-radius", note, lambda *each: formulas.groove_diameter(*each) / 2, _DISTANCE, turns
     )
     for row, rotation in enumerate(_ROTATIONS, start=1):
         time = as_setting(f"table-2.2-running_time-{row}")
@@ -158,14 +154,11 @@ def _marks() -> Iterator[Row]:
     yield published_formula_row("2.3.4-dots-measured", dots, note)
     for row, printed in enumerate(_SPEEDS, start=1):
         needed = si_value(f"2.3.4-indentation-{printed}") / si_value(f"table-2.2-sliding_speed-{row}")
-        yield published_formula_row(
-            f"2.3.4-indentation-{printed}",
-            propagate_rounding(formulas.indentation_spacing, f"table-2.2-sliding_speed-{row}", period),
-            f"D 2.4 with {1e3 * period.value:g} ms; the print corresponds to {1e3 * needed:.1f} ms.",
-        )
-    at_highest_speed = propagate_rounding(formulas.indentation_spacing, _HIGHEST_SPEED, period)
-    yield published_formula_row("2.3.4-indentation-measured", at_highest_speed, "D 2.4.")
-    yield published_formula_row("2.3.7-indentations", at_highest_speed, "D 2.4.")
+        note = f"D 2.4 with {1e3 * period.value:g} ms; the print corresponds to {1e3 * needed:.1f} ms."
+        inputs = f"table-2.2-sliding_speed-{row}", period
+        yield formula_row(f"2.3.4-indentation-{printed}", note, formulas.indentation_spacing, *inputs)
+    for published in ("2.3.4-indentation-measured", "2.3.7-indentations"):
+        yield formula_row(published, "D 2.4.", formulas.indentation_spacing, _HIGHEST_SPEED, period)
     note = "v over the measured distance of indentations."
     yield formula_row("2.3.7-stick-slip-frequency", note, truediv, _HIGHEST_SPEED, "2.3.4-indentation-measured")
 

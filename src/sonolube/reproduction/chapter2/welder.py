@@ -4,7 +4,15 @@ from collections.abc import Iterator
 from operator import sub, truediv
 from typing import Final
 
-from sonolube.facts.published import ComputedValue, as_exact, as_setting, propagate_rounding, published_number, si_value
+from sonolube.facts.published import (
+    ComputedValue,
+    PrintedNumber,
+    as_exact,
+    as_setting,
+    propagate_rounding,
+    published_number,
+    si_value,
+)
 from sonolube.models.contact import SphereOnFlat, hertz_mean_pressure, hertz_peak_pressure, tip_radius_for_pressure
 from sonolube.reproduction import formulas
 from sonolube.reproduction.row import (
@@ -33,10 +41,14 @@ def welder_rows() -> Iterator[Row]:
 
 def welder_friction_reductions(tip: int) -> list[ComputedValue]:
     """Reductions of the lower and of the upper forces of a tip, row 1 or 2 of Table 2.9. []"""
+    limits = zip(*(number.limits() for number in printed_forces(tip)), strict=True)
+    return [propagate_rounding(formulas.friction_reduction, *pair) for pair in limits]
+
+
+def printed_forces(tip: int) -> tuple[PrintedNumber, PrintedNumber]:
+    """Friction without and with vibration with a tip, row 1 or 2 of Table 2.9."""
     off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
-    return [
-        propagate_rounding(formulas.friction_reduction, *pair) for pair in zip(off.limits(), on.limits(), strict=True)
-    ]
+    return off, on
 
 
 def _stresses() -> Iterator[Row]:
@@ -78,12 +90,8 @@ def _peak_stress() -> Row:
 
 def _motion() -> Iterator[Row]:
     """Yield sliding speeds and distances from rotation, revolutions and groove diameter."""
-    speeds = [
-        propagate_rounding(
-            formulas.sliding_speed, f"table-2.8-rotation_speed-{row}", f"table-2.8-groove_diameter-{row}"
-        )
-        for row in (1, 2, 3, 4)
-    ]
+    settings = [(f"table-2.8-rotation_speed-{row}", f"table-2.8-groove_diameter-{row}") for row in (1, 2, 3, 4)]
+    speeds = [propagate_rounding(formulas.sliding_speed, *pair) for pair in settings]
     for row, speed in enumerate(speeds, start=1):
         yield published_formula_row(f"table-2.8-sliding_speed-{row}", speed, "Pi times rotation times groove diameter.")
     yield published_formula_row("2.4.6-sliding-speed", max(speeds), "The largest speed of Table 2.8.")

@@ -13,6 +13,7 @@ from typing import Final
 
 from sonolube.facts import metrics
 from sonolube.facts.published import si_value
+from sonolube.reproduction.chapter2.welder import printed_forces
 from sonolube.reproduction.row import Row, default_model_row
 
 _TIPS: Final = {1: "round", 2: "flat"}
@@ -51,7 +52,7 @@ def _rows_of_tip(tip: int) -> Iterator[Row]:
     """Yield rotation speed and current drop from the drop of friction, and friction reduction from that of current."""
     name, other = _TIPS[tip], 3 - tip
     current, _ = _currents(tip)
-    off, on = (si_value(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
+    off, on = (number.value for number in printed_forces(tip))
     voltage, constant = si_value("2.4.2-motor-voltage"), welder_motor(other).torque_constant
     speed = si_value(f"table-2.8-rotation_speed-{2 * tip - 1}")
     motor = metrics.DCMotor(

@@ -33,7 +33,7 @@ def contact_temperature_rows() -> Iterator[Row]:
 
 def _slopes() -> Row:
     """Slope of the temperature over speed at 26 MPa over that at 52 MPa."""
-    rises = np.array([[_at_vibration_start(load, speed) for speed in tests.speeds()] for load in tests.loads()])
+    rises = tests.dry_rises()
     low, high = (float(np.polyfit(tests.speeds(), rise, 1)[0]) for rise in rises)
     per_speed = rises[0] / tests.speeds()
     note = (
@@ -42,12 +42,6 @@ def _slopes() -> Row:
         f"speed, nearly a straight line. {tests.ASSUMED}."
     )
     return default_model_row("4.3.4-slope-ratio", low / high, note)
-
-
-def _at_vibration_start(load: float, speed: float) -> float:
-    """Temperature rise at the start of the vibration. [K]"""
-    record = tests.history(tests.TemperatureTest(normal_load=load, sliding_speed=speed, vibrated=False))
-    return float(np.interp(si_value("4.3.3-vibration-start"), record.time, record.temperature_rise))
 
 
 def _example_by_superimposed_speed() -> Iterator[Row]:
@@ -63,14 +57,14 @@ def _example_by_superimposed_speed() -> Iterator[Row]:
 
 def _example_by_vibration_heat() -> Iterator[Row]:
     """Yield the temperatures of the example by frictional heat and a fraction of the actuator's power."""
-    low, high = tests.vibration_heat_window()
+    (low, high), loss_tangent = tests.vibration_heat_window(), material(_CERAMIC).value("loss_tangent")
     note = (
         "Heat of friction and a fraction of the actuator's power (D 1.9) in the contact. The fraction is not printed: "
         f"these four statements limit it to {1e2 * low:.2f} to {1e2 * high:.2f} %, and "
         f"{1e2 * tests.vibration_heat_fraction():.2f} %, their geometric mean, is taken: the rows show its existence, "
         f"not its value. {_FRICTION_NOTE}; a fall by more than "
         f"{100 * (1 - tests.EXAMPLE_FRICTION_RATIO) * high / low:.0f} % at 20.7 V would leave none. A stack of "
-        f"{_CERAMIC} would lose {100 * np.pi / 4 * _loss_tangent():.1f} % of that power in its ceramic"
+        f"{_CERAMIC} would lose {100 * np.pi / 4 * loss_tangent:.1f} % of that power in its ceramic"
     )
     yield from _example(
         tests.EXAMPLE_FRICTION_RATIO + tests.vibration_heat() / tests.example_heat(),
@@ -79,11 +73,6 @@ def _example_by_vibration_heat() -> Iterator[Row]:
         kind=RowKind.DEFAULT_MODEL,
         fitted="the fraction of the power, with the other three statements",
     )
-
-
-def _loss_tangent() -> float:
-    """Loss tangent of the ceramic. []"""
-    return material(_CERAMIC).value("loss_tangent")
 
 
 def _example(ratios: Floats, suffix: str, note: str, *, kind: RowKind, fitted: str) -> Iterator[Row]:
