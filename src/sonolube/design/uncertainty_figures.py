@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.charts import Axis, Band, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule, one_panel
+from sonolube.charts import Axis, Band as Shade, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule, one_panel
 from sonolube.checks import Floats
 from sonolube.design.figure_axes import contour_levels, scaled_axis
 from sonolube.design.sobol import SobolIndices
@@ -70,7 +70,7 @@ def _quantiles(statistics: SampleStatistics, scale: float, top: float) -> list[P
         label = "quantile with 95 % interval" if probability == QUANTILES[len(QUANTILES) // 2] else ""
         ends = np.array([lower, upper])
         parts += [
-            Band(x=ends, low=np.zeros(2), high=np.full(2, top), opacity=0.18),
+            Shade(x=ends, low=np.zeros(2), high=np.full(2, top), opacity=0.18),
             Rule(value=value, label=label, colour=0, dash=_DASHES[probability]),
             Note(x=value, y=top, text=f"{100 * probability:.0f} %", side="above"),
         ]
@@ -171,8 +171,8 @@ def _band_curves(propagated: "xr.Dataset", name: str) -> Chart:
     scale, y_axis = scaled_axis(propagated.attrs["outcome"], quantiles)
     low, lower, median, upper, high = scale * quantiles
     parts = (
-        Band(x=x, low=low, high=high, label="90 % of the samples", opacity=0.18),
-        Band(x=x, low=lower, high=upper, label="50 %", opacity=0.32),
+        Shade(x=x, low=low, high=high, label="90 % of the samples", opacity=0.18),
+        Shade(x=x, low=lower, high=upper, label="50 %", opacity=0.32),
         Line(x=x, y=median, label="median"),
     )
     x_axis = replace(x_axis, lowest=float(x.min()), highest=float(x.max()))

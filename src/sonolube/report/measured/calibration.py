@@ -60,7 +60,7 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> sheet.She
         sheet.Value("dissipated_energy", "Energy dissipated in the greatest loop", energy, "J"),
         sheet.Value("mean_stiffness", "Mean stiffness over the whole range", span / float(np.ptp(x)), "N/m"),
     )
-    loop = figures.loops(x, force, hysteresis)
+    loop = figures.loops_figure(x, force, hysteresis)
     branches = sheet.attempted(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
     loops = sheet.Sheet(values=values, figures=(loop,))
     return sheet.joined([loops, branches], title=path.name, source=recording_source(recording))
@@ -94,7 +94,7 @@ def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: Calib
         sheet.quantity_value("applied_force", float(force.mean()), label="Mean force", uncertainty=float(error.mean())),
         sheet.Value("highest_force", "Highest force", float(force[top]), "N", uncertainty=float(error[top])),
     )
-    figure = figures.force(channel_values(recording, "time"), estimate)
+    figure = figures.force_figure(channel_values(recording, "time"), estimate)
     section = sheet.Sheet(values=values, figures=(figure,))
     return sheet.joined([section], title=path.name, source=recording_source(recording))
 

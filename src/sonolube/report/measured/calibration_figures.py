@@ -7,7 +7,7 @@ from sonolube.report.measured.sheet import captioned
 
 
 @captioned("Force over displacement", "Measured loops and those of the Preisach model; below, the residual.")
-def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> Chart:
+def loops_figure(x: Floats, force: Floats, calibration: PreisachCalibration) -> Chart:
     """Force over displacement, measured and by the Preisach model, above the residual."""
     model = force_from_preisach(calibration, displacement=x).applied_force
     um, across = 1e6 * x, Axis("Displacement", "µm")
@@ -24,7 +24,7 @@ def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> Chart:
 
 
 @captioned("Force by the displacement", "With its standard uncertainty as a band.")
-def force(t: Floats, estimate: ForceEstimate) -> Chart:
+def force_figure(t: Floats, estimate: ForceEstimate) -> Chart:
     """Force over time with its standard uncertainty as a band."""
     f, u = estimate.applied_force, estimate.applied_force_uncertainty
     band = Band(x=t, low=f - u, high=f + u, label="standard uncertainty", colour=5, opacity=0.6)

@@ -72,7 +72,7 @@ def contact_stiffness_sheet(
     source = {name: path.name for name, path in names if path is not None}
     section = sheet.Sheet(
         values=_values(one, settings),
-        figures=(figures.resonances(found),),
+        figures=(figures.resonances_figure(found),),
         caveats=found.caveats,
         not_found=one.not_found,
     )

@@ -10,7 +10,7 @@ from sonolube.report.measured.sheet import captioned
 
 
 @captioned("Resonance free and pressed", "Measured (points) and fitted (lines); the marks are the resonances compared.")
-def resonances(found: MeasuredContactStiffness) -> Chart:
+def resonances_figure(found: MeasuredContactStiffness) -> Chart:
     """Spectra free, pressed, free again and at large drive, with fits and the resonances that were compared."""
     fits = _named(found)
     highest = max(fit.spectrum.frequency[-1] for _, fit in fits)

@@ -208,14 +208,14 @@ def _trace(
     """Fluctuation in windows, with the trace of the samples where they are at hand."""
     span = format_si(windows.window_duration, "s")
     caption = f"Samples in grey; mean of each window of {span}, and as a band the root mean square about it."
-    trace = sheet.captioned("Trace with windows", caption)(figures.trace)
+    trace = sheet.captioned("Trace with windows", caption)(figures.trace_chart)
     return sheet.Sheet(values=(_fluctuation(windows),), figures=(trace(t, signal, windows=windows, steady=steady),))
 
 
 def _cycle_figure(recording: "xr.Dataset", name: str) -> sheet.Figure:
     """Figure of a recording with one value a cycle."""
     along = channel_values(recording, "revolutions")
-    return figures.by_cycle(along, channel_values(recording, name), name)
+    return figures.by_cycle_figure(along, channel_values(recording, name), name)
 
 
 def _steady_state_or_none(windows: WindowStatistics, sliding_speed: float) -> SteadyStateOnset | None:
@@ -285,7 +285,9 @@ def _cycles(recording: "xr.Dataset") -> sheet.Sheet:
         error = float(work.std(ddof=1) / work.size**0.5) if work.size > 1 else None
         label = f"Work of friction per cycle, mean of {work.size}"
         values.append(sheet.Value("work_per_cycle", label, float(work.mean()), "J", uncertainty=error))
-    figure = figures.loops(channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force"))
+    figure = figures.loops_figure(
+        channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force")
+    )
     return sheet.Sheet(values=tuple(values), figures=(figure,))
 
 
@@ -306,7 +308,7 @@ def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorCali
     mean = float(trace.friction_force.mean())
     # all windows share the errors of torque constant and idle current, so that averaging does not lower them
     error = float(np.sqrt(np.mean(trace.friction_force_uncertainty**2)))
-    figure = figures.motor_trace(trace)
+    figure = figures.motor_trace_figure(trace)
     return sheet.Sheet(values=(sheet.quantity_value("friction_force", mean, uncertainty=error),), figures=(figure,))
 
 

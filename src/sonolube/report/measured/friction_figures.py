@@ -21,7 +21,7 @@ _TIME: Final = Axis("Time", "s")
 _AXES: Final = {"friction_force": _FORCE, "friction_coefficient": Axis("Coefficient of friction")}
 
 
-def trace(
+def trace_chart(
     t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyStateOnset | None
 ) -> Chart:
     """Samples over time with the means and fluctuations of windows and the begin of the steady state."""
@@ -42,7 +42,7 @@ def trace(
 
 
 @captioned("Trace by cycle", "One value a cycle, as the instrument gives it.")
-def by_cycle(cycles: Floats, signal: Floats, name: str) -> Chart:
+def by_cycle_figure(cycles: Floats, signal: Floats, name: str) -> Chart:
     """Signal with one value a cycle over the number of the cycle."""
     parts = (Line(x=cycles, y=signal, weight=0.6), Points(x=cycles, y=signal, is_faint=True))
     return one_panel(Axis("Cycle"), _axis(name), parts, size=_WIDE)
@@ -52,7 +52,7 @@ def by_cycle(cycles: Floats, signal: Floats, name: str) -> Chart:
     "Friction over voltage",
     "Mean and its standard error at each step, and the reduction of the friction without voltage.",
 )
-def voltage_steps(steps: Sequence[VoltageStep]) -> Chart:
+def voltage_steps_figure(steps: Sequence[VoltageStep]) -> Chart:
     """Friction and its reduction over the voltage."""
     driven = [step for step in steps if step.friction_reduction is not None]
     force = Points(
@@ -85,7 +85,7 @@ def voltage_steps(steps: Sequence[VoltageStep]) -> Chart:
     "Stick-slip at the steps of the voltage",
     "Samples in grey with the bursts of stick-slip shaded; mean fall of the force in a slip with its 95 % interval.",
 )
-def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
+def stick_slip_figure(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
     """Friction over time with the bursts of stick-slip, and the fall in a slip over the voltage."""
     found = [step for step in steps if step.stick_slip.detected]
     bursts = [burst for step in found for burst in step.stick_slip.bursts]
@@ -111,7 +111,7 @@ def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
 @captioned(
     "Friction over velocity", "Every cycle of the recording; the work is the area of the loop over displacement."
 )
-def loops(velocity: Floats, force: Floats) -> Chart:
+def loops_figure(velocity: Floats, force: Floats) -> Chart:
     """Friction over velocity."""
     stride = max(1, velocity.size // _MOST)
     zero = (Rule(value=0.0, along="y", colour="0.5", dash=0), Rule(value=0.0, colour="0.5", dash=0))
@@ -120,7 +120,7 @@ def loops(velocity: Floats, force: Floats) -> Chart:
 
 
 @captioned("Friction by the motor current", "Mean in each window with its standard uncertainty.")
-def motor_trace(motor: MotorFrictionTrace) -> Chart:
+def motor_trace_figure(motor: MotorFrictionTrace) -> Chart:
     """Friction by the motor current over time with its uncertainty."""
     force = motor.friction_force
     points = Points(x=motor.time, y=force, y_error=motor.friction_force_uncertainty)
@@ -128,7 +128,9 @@ def motor_trace(motor: MotorFrictionTrace) -> Chart:
 
 
 @captioned("Tests with and without vibration", "Each test, and the mean of its kind.")
-def comparison(without: Sequence[tuple[str, float]], with_vibration: Sequence[tuple[str, float]], level: str) -> Chart:
+def comparison_figure(
+    without: Sequence[tuple[str, float]], with_vibration: Sequence[tuple[str, float]], level: str
+) -> Chart:
     """Friction of single tests, by name, without and with vibration, and the mean of each kind."""
     parts: list[Part] = []
     for place, (tests, name) in enumerate([(without, "without"), (with_vibration, "with")]):

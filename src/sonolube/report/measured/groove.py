@@ -99,7 +99,7 @@ def ring_sheet(
         columns=(sheet.Column("scan", "Scan"), sheet.Column("cross_section_area", "Area", "m2")),
         rows=tuple(zip(counted, map(float, ring.cross_section_area), strict=True)),
     )
-    figure = figures.ring(ring)
+    figure = figures.ring_figure(ring)
     section = sheet.Sheet(values=tuple(values), tables=(table,), figures=(figure,), caveats=ring.excluded_scans)
     return sheet.joined([section], title=title, source={}), ring
 
@@ -125,7 +125,7 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
         sheet.quantity_value("tip_radius", cap.tip_radius),
     )
     captioned = sheet.captioned("Scar of the pin", "Heights over the ball; the line goes round the scar.")
-    figure = captioned(figures.height_map)(cap.levelled, cap.worn)
+    figure = captioned(figures.worn_map_chart)(cap.levelled, cap.worn)
     part = sheet.Sheet(values=values, figures=(figure,), caveats=file.caveats)
     return sheet.joined([part], title=path.name, source=surface_source(file))
 
@@ -135,9 +135,9 @@ def _figures(groove: Groove) -> tuple[sheet.Figure, ...]:
     map_caption = "Heights over the unworn surface; the line goes round what counts as worn."
     curve_caption = "Of the whole field over the unworn surface; the groove is its tail."
     return (
-        figures.view(groove),
-        figures.sections(groove),
-        sheet.captioned("Map", map_caption)(figures.height_map)(groove.levelled, groove.worn),
+        figures.view_figure(groove),
+        figures.sections_figure(groove),
+        sheet.captioned("Map", map_caption)(figures.worn_map_chart)(groove.levelled, groove.worn),
         sheet.captioned("Abbott curve", curve_caption)(abbott)(material_ratio_curve(groove.levelled)),
     )
 
@@ -147,6 +147,6 @@ def _marks(groove: Groove) -> sheet.Sheet:
     marks = track_marks(groove)
     if marks.dot_spacing is None:
         return sheet.Sheet(not_found=(f"marks along the track: {marks.reason}",))
-    figure = figures.marks(marks)
+    figure = figures.marks_figure(marks)
     value = sheet.quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
     return sheet.Sheet(values=(value,), figures=(figure,))

@@ -10,18 +10,18 @@ from sonolube.models.dynamics.structure import Structure, electrical_admittance
 from sonolube.report.measured.sheet import captioned
 
 
-def circuit(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> Chart:
+def circuit_chart(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> Chart:
     """Impedance measured and of a fitted circuit, above the residual."""
     return _fit(spectrum, circuit_admittance(fitted, frequency=spectrum.frequency))
 
 
-def stack(spectrum: ImpedanceSpectrum, fitted: Structure) -> Chart:
+def stack_chart(spectrum: ImpedanceSpectrum, fitted: Structure) -> Chart:
     """Impedance measured and of a fitted structure, above the residual."""
     return _fit(spectrum, electrical_admittance(fitted, frequency=spectrum.frequency))
 
 
 @captioned("Admittance circle", "Susceptance over conductance; a mode draws a circle.")
-def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> Chart:
+def admittance_circle_figure(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> Chart:
     """Susceptance over conductance, measured and fitted."""
     fine = np.geomspace(spectrum.frequency[0], spectrum.frequency[-1], 4000)
     model = 1e3 * circuit_admittance(fitted, frequency=fine)

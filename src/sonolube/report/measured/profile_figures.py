@@ -11,7 +11,7 @@ _BINS = 5000  # along the page, more than it resolves
 
 
 @captioned("Profile", "Above, the primary profile without form; below, the profile evaluated, with its sections.")
-def profile(found: ProfileEvaluation, *, spacing: float) -> Chart:
+def profile_figure(found: ProfileEvaluation, *, spacing: float) -> Chart:
     """Primary profile above the one evaluated."""
     x = spacing * np.arange(found.primary.size, dtype=np.float64)
     across, per_metre = length_scale(x)
@@ -31,7 +31,7 @@ def profile(found: ProfileEvaluation, *, spacing: float) -> Chart:
 
 
 @captioned("Power spectrum", "Of the primary profile, two-sided; dashed, the cutoff of the L-filter.")
-def spectrum(found: ProfileSpectrum, *, cutoff: float | None) -> Chart:
+def spectrum_figure(found: ProfileSpectrum, *, cutoff: float | None) -> Chart:
     """Power spectral density of a profile."""
     inner = (found.wavenumber > 0) & (found.profile_spectral_density > 0)
     curve = Line(x=found.wavenumber[inner], y=found.profile_spectral_density[inner], weight=0.6)

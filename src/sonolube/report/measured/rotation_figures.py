@@ -12,7 +12,7 @@ _TIME = Axis("Time", "s")
 
 
 @captioned("Speed turn by turn", "Each turn is timed from a magnet to the same magnet; the line is the mean.")
-def speed(rotation: DiscRotation) -> Chart:
+def speed_figure(rotation: DiscRotation) -> Chart:
     """Speed of the disc turn by turn, with the speed at the groove on the right."""
     speeds = rotation.rotation_speed
     begun = rotation.time[: speeds.size]
@@ -27,7 +27,7 @@ def speed(rotation: DiscRotation) -> Chart:
 
 
 @captioned("Pulses of the probe", "The first turns, with the pulses detected and those inserted where one was missing.")
-def pulses(t: Floats, flux_density: Floats, rotation: DiscRotation) -> Chart:
+def pulses_figure(t: Floats, flux_density: Floats, rotation: DiscRotation) -> Chart:
     """Reading of the probe over the first turns, with its pulses."""
     end = float(np.interp(_TURNS_SHOWN, rotation.revolutions, rotation.time))
     shown = t <= end + 0.02 * (end - t[0])

@@ -11,7 +11,7 @@ from sonolube.report.measured.sheet import captioned
 @captioned(
     "Temperature after the step of the heat", "Rise of the samples in grey, with the fitted sum of exponentials."
 )
-def response(t: Floats, temperature: Floats, found: TemperatureResponse) -> Chart:
+def response_figure(t: Floats, temperature: Floats, found: TemperatureResponse) -> Chart:
     """Rise of a temperature over time with its fitted response."""
     known = np.isfinite(temperature)
     initial = found.final_temperature.value - found.temperature_change.value

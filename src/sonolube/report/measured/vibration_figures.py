@@ -13,7 +13,7 @@ _MAX_NUMBERED = 12  # points
 
 
 @captioned("Operating shape", "Motion in phase with the whole, scaled to 1, and the phase of each point.")
-def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> Chart:
+def shape_figure(points: Sequence[str], operating: OperatingDeflectionShape) -> Chart:
     """Operating shape and phase, point by point."""
     place = np.arange(1.0, len(points) + 1)
     across = Axis("Point", ticks=tuple(place) if place.size <= _MAX_NUMBERED else ())
@@ -38,7 +38,7 @@ def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> Chart:
     "Modal assurance with computed modes",
     "Modal assurance criterion of the operating shape with each mode: 1 in proportion, 0 orthogonal.",
 )
-def assurance(assurance_values: Floats) -> Chart:
+def assurance_figure(assurance_values: Floats) -> Chart:
     """Modal assurance criterion with each mode."""
     place = np.arange(1.0, assurance_values.size + 1)
     bars = Bars(places=place, lengths=assurance_values, along="y")
@@ -48,7 +48,7 @@ def assurance(assurance_values: Floats) -> Chart:
 
 
 @captioned("Amplitude over voltage", "Each recording, and the line through the origin with its 95 % interval.")
-def proportion(files: Sequence[str], volts: Floats, amplitudes: Floats, fit: AmplitudePerVolt) -> Chart:
+def proportion_figure(files: Sequence[str], volts: Floats, amplitudes: Floats, fit: AmplitudePerVolt) -> Chart:
     """Amplitude over voltage, a file each, with the line through the origin and its interval."""
     line = np.array([0.0, 1.05 * volts.max()])
     low, middle, high = (1e6 * slope * line for slope in (fit.lower, fit.amplitude_per_volt, fit.upper))

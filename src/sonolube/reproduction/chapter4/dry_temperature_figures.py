@@ -34,14 +34,14 @@ def dry_temperature_figures() -> Iterator[ReportFigure]:
 def _over_speed() -> "Figure":
     """Draw the temperatures of both stresses over speed with their lines."""
     figure, axes = single_axes()
-    speeds, area = tests.speeds(), si_value("table-4.4-nominal_area-1")
+    along, area = tests.speeds(), si_value("table-4.4-nominal_area-1")
     least = _MIN_COEFFICIENT / si_value("4.1.3-friction-coated-last")
     for index, (load, rise) in enumerate(zip(tests.loads(), tests.dry_rises(), strict=True)):
         low = _CELSIUS + rise * least  # heat, and so the rise, is proportional to friction
-        axes.fill_between(1e3 * speeds, low, _CELSIUS + rise, color=COLOURS[index], alpha=0.2, linewidth=0)
+        axes.fill_between(1e3 * along, low, _CELSIUS + rise, color=COLOURS[index], alpha=0.2, linewidth=0)
         label = f"{1e-6 * load / area:.0f} MPa"
-        axes.plot(1e3 * speeds, _CELSIUS + rise, **point_style(index), label=label)
-        slope, intercept = np.polyfit(speeds, rise, 1)
+        axes.plot(1e3 * along, _CELSIUS + rise, **point_style(index), label=label)
+        slope, intercept = np.polyfit(along, rise, 1)
         line = np.array([0.0, 0.24])
         label = f"{1e-3 * slope:.2g} K/(mm/s)"
         axes.plot(
