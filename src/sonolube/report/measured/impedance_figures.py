@@ -6,7 +6,7 @@ from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, one_panel
 from sonolube.checks import Complexes, Floats
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.actuator import ButterworthVanDyke, circuit_admittance
-from sonolube.models.dynamics.structure import Structure, electrical_admittance
+from sonolube.models.dynamics import Structure, electrical_admittance
 from sonolube.report.measured.sheet import captioned
 
 

@@ -8,6 +8,7 @@ from sonolube.reproduction.chapter2 import horn_friction
 from sonolube.reproduction.chapter2.horn_bending import PAD_DISTANCE, bending_line
 from sonolube.reproduction.chapter2.poisson_horn import (
     ASSUMED_SOLIDS,
+    INCH,
     assumed_shape,
     axial_mode,
     printed_shape,
@@ -21,7 +22,6 @@ REGION_ROWS: Final = {"aluminium": 1, "steel": 4}
 """Row of the transition region of each horn in Table 2.1, counted from 1."""
 
 _BENDING_LOAD: Final = 240.0  # N, the largest of D 2.1.2
-_INCH: Final = 0.0254
 _ASSUMED: Final = "ends tapered to 3/4 in over their last inch, handbook moduli and densities"
 
 
@@ -72,7 +72,7 @@ def _transition_limits(horn: Horn, frequency: float, drive: str) -> list[tuple[f
     note = (
         "Position at which the friction of a block at 5 mm/s towards the node reverses: finite elements, "
         f"the horn of the printed mode ({_ASSUMED}), {drive}; springs of the contact of Table 3.1 with "
-        f"Mindlin's ratio. The node lies at {friction.node / _INCH:+.2f} in."
+        f"Mindlin's ratio. The node lies at {friction.node / INCH:+.2f} in."
     )
     return [(float(limit), note) for limit in horn_friction.transition_region(friction)]
 

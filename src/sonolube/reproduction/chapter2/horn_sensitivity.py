@@ -12,7 +12,6 @@ from sonolube.reproduction.chapter2 import poisson_horn as horn
 from sonolube.reproduction.chapter2.horn_bending import PAD_STIFFNESS
 from sonolube.reproduction.chapter2.horn_friction import driven_face
 
-_INCH: Final = 0.0254
 _TIP_MASS: Final = 0.02  # kg, about that of a steel stud of 1/2 in
 _WEDGE: Final = 0.1
 
@@ -35,7 +34,7 @@ def _varied(shape: horn.HornShape, solid: horn.HornSolid) -> Iterator[tuple[str,
         return horn.axial_mode(shape, solid).natural_frequency
 
     yield "ends tapered to 3/4 in over 1 in", of(replace(shape, end_thickness_ratio=0.75))
-    yield "the same over 1/2 in", of(replace(shape, end_thickness_ratio=0.75, taper_length=_INCH / 2))
+    yield "the same over 1/2 in", of(replace(shape, end_thickness_ratio=0.75, taper_length=horn.INCH / 2))
     yield "ends tapered to 1/2 in over 1 in", of(replace(shape, end_thickness_ratio=0.5))
     yield "one end 10 % wider than the other", of(replace(shape, wedge=_WEDGE))
     yield "1 % shorter", of(replace(shape, length=0.99 * shape.length))
