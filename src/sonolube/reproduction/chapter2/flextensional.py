@@ -37,7 +37,7 @@ def flextensional_rows() -> Iterator[Row]:
     yield from _vanishing_reduction()
 
 
-def gain_ofslow_test() -> float:
+def gain_of_slow_test() -> float:
     """Gain at resonance at which asperity stick-slip has the friction measured at 3.5 mm/s. []"""
     test = slow_test()
     return float(brentq(lambda gain: _ratio(test, gain) - test.friction_ratio, 1e-3, FLEXTENSIONAL_GAINS[1]))
@@ -115,7 +115,7 @@ def _saturation() -> Iterator[Row]:
     yield undetermined_row(
         "2.2.4-reduction", "the friction forces, which are only plotted, and the roughness.", kind=RowKind.DEFAULT_MODEL
     )
-    test, gain = slow_test(), gain_ofslow_test()
+    test, gain = slow_test(), gain_of_slow_test()
     note = (
         f"Asperity stick-slip at {1e3 * test.sliding_speed:g} mm/s, without gain at resonance. All three levels have 4 "
         f"V peak to peak and so one stroke: saturation is the only difference. A gain of {gain:.2g} would give the "
@@ -127,7 +127,7 @@ def _saturation() -> Iterator[Row]:
 
 def _vanishing_reduction() -> Iterator[Row]:
     """Yield the speed from which asperity stick-slip has no reduction, absolute and over the vibration velocity."""
-    test, gain = slow_test(), gain_ofslow_test()
+    test, gain = slow_test(), gain_of_slow_test()
     fast = replace(test, sliding_speed=si_value("2.2.5-speed-of-no-reduction"))
     reduction = 1 - _ratio(fast, gain)
     velocity_ratio = EMPIRICAL_MEMORY_LENGTH / _decay_length(test)  # the friction ratio is 1 from omega a D_c/l on
