@@ -64,7 +64,8 @@ class ModelOutcomes:
 def mutual_information(models: Sequence[ModelOutcomes], points: Integers, *, noise: Floats, seed: int = 0) -> float:
     r"""Expected information of a batch of tests about which model holds, in bits.
 
-    From 0 to the entropy of the weights. The outcome y of a batch of tests under model k is a mixture of normal distributions over draws of its parameters,
+    From 0 to the entropy of the weights. The outcome y of a batch of tests under model k is a mixture of normal
+    distributions over draws of its parameters,
 
     .. math:: p(y \mid k) = \frac1J \sum_j N(y;\, m_{kj},\, C_{kj} + D),
 

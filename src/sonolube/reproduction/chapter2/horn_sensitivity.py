@@ -11,8 +11,8 @@ from sonolube.models.fem import FaceSpring, Model
 from sonolube.reproduction.chapter2.horn_bending import PAD_STIFFNESS
 from sonolube.reproduction.chapter2.horn_friction import driven_face
 from sonolube.reproduction.chapter2.poisson_horn import (
-    INCH,
     ASSUMED_SOLIDS,
+    INCH,
     AxialMode,
     HornShape,
     HornSolid,
