@@ -1,8 +1,7 @@
-"""Sections 3.1 to 3.3: rows of contact, friction and wear of the cube, coupling factor and loss of contact."""
+"""Sections 3.1 to 3.3: rows of contact, friction and wear of the cube, and the coupling factor."""
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import Final
@@ -10,22 +9,8 @@ from typing import Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.facts.published import (
-    PrintedNumber,
-    propagate_rounding,
-    published_number,
-    published_value,
-    si_value,
-    table,
-)
-from sonolube.models.contact import (
-    cube_tangential_stiffness,
-    decay_length,
-    normal_force,
-    real_contact_area,
-    separation,
-    sinusoidal_motion,
-)
+from sonolube.facts.published import propagate_rounding, published_number, si_value, table
+from sonolube.models.contact import real_contact_area, separation, sinusoidal_motion
 from sonolube.models.wear import cube_wear_rate, full_period_wear_ratio, vibrating_cube_wear_rate
 from sonolube.reproduction.cube import STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, without_yielding
 from sonolube.reproduction.row import (
@@ -44,9 +29,6 @@ from sonolube.validation.contacts import (
     wear_contact,
 )
 
-LOST_CONTACT: Final = 0.01
-"""Contact force over the load below which an exponentially decaying contact counts as lost. []"""
-
 _REDUCTIONS: Final[tuple[tuple[str, Bodies, Horn, str], ...]] = (
     ("3.1.4-reduction-1-2", "aluminium_steel", "aluminium", ""),
     ("3.1.4-reduction-3", "steel_steel", "steel", f" {STEEL_ON_STEEL_NOTE}."),
@@ -59,7 +41,6 @@ def cube_rows() -> Iterator[Row]:
     yield from _friction()
     yield from _wear()
     yield _coupling_factor()
-    yield _loss_of_contact()
 
 
 def _contact() -> Iterator[Row]:
@@ -193,29 +174,6 @@ def _coupling_factor() -> Row:
         lambda n, d33, k, c: n * d33 * math.sqrt(k / c),
         *(f"table-3.5-{name}-1" for name in ("stack_layers", "charge_constant_33", "stack_stiffness", "capacitance")),
     )
-
-
-def _loss_of_contact() -> Row:
-    """Row of the displacement of "hopping" of section 3.3.5, at which k_t "becomes virtually zero"."""
-    contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
-    printed = published_value("3.3.5-hopping-displacement")
-    at_rest, reach = separation(contact, normal_load=load), printed.number.value
-    apart, rest, nearest = (
-        float(cube_tangential_stiffness(contact, separation=at_rest + x)) for x in (reach, 0.0, -reach)
-    )
-    force = float(normal_force(contact, separation=at_rest + reach) / load)
-    lost = float(decay_length(contact)) * math.log(1 / LOST_CONTACT)
-    note = (
-        f"Tangential stiffness at a displacement of {printed.number.text} um over its peak in such a period, which is "
-        f"virtually zero if below {LOST_CONTACT:.0%}; over its value at rest {apart / rest:.3f}. The surfaces do not "
-        f"part: {force:.0%} of the normal force remain, 1 % at {lost * 1e6:.1f} um, for an exponential height law has "
-        "no end"
-    )
-    zero = PrintedNumber(
-        text=f"{LOST_CONTACT:g}", value=LOST_CONTACT, low=0.0, high=LOST_CONTACT, rounding_half_width=0.0
-    )
-    virtually_zero = replace(printed, quantity="", unit="", number=zero)
-    return published_formula_row(virtually_zero, apart / nearest, note)
 
 
 def _loads() -> Floats:

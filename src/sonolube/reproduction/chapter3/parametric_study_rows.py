@@ -1,17 +1,23 @@
 """Sections 3.3.4 to 3.3.6, the parametric study: rows of the multi-scale model of the identified tribometer."""
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.facts.published import si_value
+from sonolube.facts.published import PrintedNumber, published_value, si_value
+from sonolube.models.contact import cube_tangential_stiffness, decay_length, normal_force, separation
 from sonolube.reproduction.chapter3 import tribometer_response
-from sonolube.reproduction.row import Row, default_model_row, published_model_row
+from sonolube.reproduction.row import Row, default_model_row, published_formula_row, published_model_row
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, tribometer_rig
 from sonolube.rig import operating_points
+from sonolube.validation.contacts import wear_contact
 
+LOST_CONTACT: Final = 0.01
+"""Contact force over the load below which an exponentially decaying contact counts as lost. []"""
 _DECIMALS: Final = 4  # of a friction ratio, the accuracy of the means of the friction models
 _SETTLED: Final = 0.02  # of the amplitude
 _ONE_OF_THE_FACTS: Final = f"{IDENTIFIED_NOTE}, of which this is one."
@@ -21,6 +27,7 @@ _AS_PRINTED: Final = "dong_2015_full_period"  # D 3.46 to 3.48 as printed
 
 def parametric_study_rows() -> Iterator[Row]:
     """Yield the rows of sections 3.3.4 to 3.3.6."""
+    yield _loss_of_contact()
     yield from _start_up()
     yield from _friction_errors()
     yield from _voltage()
@@ -28,6 +35,29 @@ def parametric_study_rows() -> Iterator[Row]:
     yield from _frequency()
     yield _power()
     yield from _waveforms()
+
+
+def _loss_of_contact() -> Row:
+    """Row of the displacement of "hopping" of section 3.3.5, at which k_t "becomes virtually zero"."""
+    contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
+    printed = published_value("3.3.5-hopping-displacement")
+    at_rest, reach = separation(contact, normal_load=load), printed.number.value
+    apart, rest, nearest = (
+        float(cube_tangential_stiffness(contact, separation=at_rest + x)) for x in (reach, 0.0, -reach)
+    )
+    force = float(normal_force(contact, separation=at_rest + reach) / load)
+    lost = float(decay_length(contact)) * math.log(1 / LOST_CONTACT)
+    note = (
+        f"Tangential stiffness at a displacement of {printed.number.text} um over its peak in such a period, which is "
+        f"virtually zero if below {LOST_CONTACT:.0%}; over its value at rest {apart / rest:.3f}. The surfaces do not "
+        f"part: {force:.0%} of the normal force remain, 1 % at {lost * 1e6:.1f} um, for an exponential height law has "
+        "no end"
+    )
+    zero = PrintedNumber(
+        text=f"{LOST_CONTACT:g}", value=LOST_CONTACT, low=0.0, high=LOST_CONTACT, rounding_half_width=0.0
+    )
+    virtually_zero = replace(printed, quantity="", unit="", number=zero)
+    return published_formula_row(virtually_zero, apart / nearest, note)
 
 
 def _start_up() -> Iterator[Row]:
