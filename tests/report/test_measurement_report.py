@@ -25,7 +25,7 @@ from sonolube.report import (
 )
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
 from sonolube.report.measured.friction_comparison import comparison_sheet
-from sonolube.report.measured.groove_figures import height_map
+from sonolube.report.measured.groove_figures import worn_map_chart
 from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
 from sonolube.report.measured.sheet import Sheet, Value, quantity_value
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
@@ -74,7 +74,7 @@ def test_the_map_of_a_groove_runs_downwards_and_its_line_goes_round_the_worn_rec
     worn = np.zeros((200, 1500), dtype=bool)
     worn[50:151, 300:1201] = True
     levelled = HeightMap(height=np.where(worn, -5e-6, 0.0), spacing_x=1e-6, spacing_y=2e-6)
-    (panel,) = height_map(levelled, worn).panels
+    (panel,) = worn_map_chart(levelled, worn).panels
     field, line = panel.parts
     assert isinstance(field, Field)
     assert isinstance(line, Line)

@@ -1,6 +1,6 @@
 """Figures as data: panels with axes, curves, bands and points, drawn by Matplotlib or by a browser."""
 
-from sonolube.charts.chart import Axis, Band, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule, Zone
+from sonolube.charts.chart import Axis, Band, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule, Zone, one_panel
 from sonolube.charts.chart_object import chart_object, chart_tables
 from sonolube.charts.draw import draw_chart
 from sonolube.charts.thinning import envelope
@@ -22,4 +22,5 @@ __all__ = [
     "chart_tables",
     "draw_chart",
     "envelope",
+    "one_panel",
 ]

@@ -1,7 +1,8 @@
 """Types of a figure as data: chart, panels, axes and their parts."""
 
-from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
+from collections.abc import Iterable
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import Any, Literal, TypeAlias
 
 from sonolube.checks import Floats
 
@@ -9,7 +10,7 @@ Colour: TypeAlias = int | str
 """Number of a colour of the palette, or a shade of grey such as "0.5" from black, "0", to white, "1"."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Axis:
     """Axis of a panel.
 
@@ -34,6 +35,7 @@ class Axis:
 
     label: str = ""
     unit: str = ""
+    _: KW_ONLY
     logarithmic: bool = False
     lowest: float | None = None
     highest: float | None = None
@@ -289,6 +291,12 @@ class Chart:
         """Chart with further parts in one of its panels."""
         changed = replace(self.panels[place], parts=(*self.panels[place].parts, *parts))
         return replace(self, panels=(*self.panels[:place], changed, *self.panels[place + 1 :]))
+
+
+def one_panel(x: Axis, y: Axis, parts: Iterable[Part], *, has_equal_scales: bool = False, **layout: Any) -> Chart:
+    """Chart with one panel; `layout` is what `Chart` takes beside its panels, such as the size."""
+    panel = Panel(x=x, y=y, parts=tuple(parts), has_equal_scales=has_equal_scales)
+    return Chart(panels=(panel,), **layout)
 
 
 def _with_unit(label: str, unit: str) -> str:

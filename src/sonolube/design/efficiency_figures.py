@@ -1,6 +1,6 @@
 """Figure of an efficiency calibration: measured coefficients over sliding speed, line and bands."""
 
-from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule
+from sonolube.charts import Axis, Band, Chart, Line, Part, Points, Rule, one_panel
 from sonolube.design.efficiency import EfficiencyCalibration, efficiency_dataset
 
 _PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
@@ -22,9 +22,6 @@ def efficiency_chart(calibration: EfficiencyCalibration) -> Chart:
         Points(x=1e3 * speeds, y=_PRINTED_UNIT * coefficients, label="runs", colour=1),
         Rule(value=0.0, along="y", dash=0),
     )
-    panel = Panel(
-        x=Axis(label="Sliding speed", unit="mm/s"),
-        y=Axis(label="Efficiency coefficient", unit="mW mm²/(N W)"),
-        parts=parts,
+    return one_panel(
+        Axis("Sliding speed", "mm/s"), Axis("Efficiency coefficient", "mW mm²/(N W)"), parts, size=(5.4, 3.5)
     )
-    return Chart(panels=(panel,), size=(5.4, 3.5))

@@ -33,7 +33,7 @@ def scaled_axis(name: str, values: ArrayLike) -> tuple[float, Axis]:
         scale = float(number) / largest
         power = 10.0 ** round(np.log10(scale))
         scale = power if abs(scale / power - 1) < _SCALE_TOLERANCE else scale
-    return scale, Axis(label=label, unit=unit, logarithmic=_is_geometric(array))
+    return scale, Axis(label, unit, logarithmic=_is_geometric(array))
 
 
 def contour_levels(values: Floats, *, steps: int = 18) -> Floats:

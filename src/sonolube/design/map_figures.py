@@ -19,10 +19,10 @@ _MEASURED_LABEL = "measured, reduction in %"
 _MOVED_LABEL = "measured, moved to the panel by the model"
 _SATURATION_LABEL = "above it doubling the power gains less than 5 %"
 _AXES: dict[str, tuple[float, Axis]] = {
-    "sliding_speed": (1e3, Axis(label="Sliding speed", unit="mm/s")),
-    "actuator_power": (1.0, Axis(label="Power of the amplifier", unit="W")),
-    "nominal_pressure": (1e-6, Axis(label="Nominal stress", unit="MPa")),
-    "frequency": (1e-3, Axis(label="Drive frequency", unit="kHz")),
+    "sliding_speed": (1e3, Axis("Sliding speed", "mm/s")),
+    "actuator_power": (1.0, Axis("Power of the amplifier", "W")),
+    "nominal_pressure": (1e-6, Axis("Nominal stress", "MPa")),
+    "frequency": (1e-3, Axis("Drive frequency", "kHz")),
     **{each.name: (each.axis_scale, each.axis) for each in (VOLTAGE, AMPLITUDE)},
 }
 

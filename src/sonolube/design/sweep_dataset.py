@@ -19,6 +19,7 @@ from sonolube.vocabulary import quantities
 if TYPE_CHECKING:
     import xarray as xr
 
+_MEANINGS = {"reason": "Index of the reason in reason_text", "reason_text": "Reason of a status, and remedy"}
 _CODES: dict[str, type[np.signedinteger[Any]]] = {"status": np.int8, "reason": np.int16}
 
 
@@ -205,15 +206,8 @@ def _attributes(plan: SweepPlan, device: str) -> dict[str, str]:
 def _labels(name: str) -> dict[str, Any]:
     """Attributes of a variable: unit and meaning from the vocabulary, or the meaning of codes."""
     if name == "status":
-        return {
-            "long_name": "Status of the point",
-            "flag_values": np.arange(len(STATUSES), dtype=np.int8),
-            "flag_meanings": " ".join(STATUSES),
-        }
-    if name == "reason":
-        return {"long_name": "Index of the reason in reason_text"}
-    if name == "reason_text":
-        return {"long_name": "Reason of a status, and remedy"}
-    if name not in quantities():
-        return {"long_name": name.replace("_", " ")}
-    return labels(name)
+        flags = {"flag_values": np.arange(len(STATUSES), dtype=np.int8), "flag_meanings": " ".join(STATUSES)}
+        return {"long_name": "Status of the point"} | flags
+    if name in quantities():
+        return labels(name)
+    return {"long_name": _MEANINGS.get(name) or name.replace("_", " ")}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.charts import Axis, Band, Chart, Field, Line, Panel, Part, Points
+from sonolube.charts import Axis, Band, Chart, Field, Line, Panel, Part, Points, one_panel
 from sonolube.checks import Floats
 from sonolube.design.figure_axes import contour_levels, scaled_axis
 
@@ -84,7 +84,7 @@ def _curves(swept: "xr.Dataset", name: str) -> Chart:
         part: Part = Line(x=x, y=scale * values, marker=_marker(x, 0))
         if _is_text(swept, name):
             part = Points(x=x, y=scale * values)
-        y_axis = Axis(label=_LABELS[outcome], unit=axis.unit)
+        y_axis = Axis(_LABELS[outcome], axis.unit)
         panels.append(Panel(x=x_axis, y=y_axis, parts=(part,)))
     columns = min(len(known), 2)
     unknown = ", ".join(_LABELS[each].lower() for each in others if each not in known)
@@ -104,8 +104,9 @@ def _family_of_curves(swept: "xr.Dataset", *, x_name: str, family: str) -> Chart
         Line(x=x, y=row, label=label, colour=place, dash=place, marker=_marker(x, place))
         for place, (row, label) in enumerate(zip(ratio, _value_labels(swept, family), strict=True))
     )
-    panel = Panel(x=axis, y=Axis(label=_OUTCOME_LABEL), parts=lines)
-    return Chart(panels=(panel,), size=(5.6, 3.6), legend="right", legend_title=_axis(swept, family)[1].label)
+    return one_panel(
+        axis, Axis(_OUTCOME_LABEL), lines, size=(5.6, 3.6), legend="right", legend_title=_axis(swept, family)[1].label
+    )
 
 
 def _contour_map(swept: "xr.Dataset", x_name: str, y_name: str) -> Chart:
@@ -113,7 +114,7 @@ def _contour_map(swept: "xr.Dataset", x_name: str, y_name: str) -> Chart:
     (x, x_axis), (y, y_axis) = _axis(swept, x_name), _axis(swept, y_name)
     ratio = swept[_OUTCOME].transpose(y_name, x_name).values
     field = Field(x=x, y=y, values=ratio, label=_OUTCOME_LABEL, levels=contour_levels(ratio))
-    return Chart(panels=(Panel(x=x_axis, y=y_axis, parts=(field,)),), size=(5.2, 3.8))
+    return one_panel(x_axis, y_axis, (field,), size=(5.2, 3.8))
 
 
 def _scatter(swept: "xr.Dataset", names: list[str]) -> Chart:
@@ -144,9 +145,9 @@ def _height(ratio: Floats) -> Axis:
     """Axis of the friction ratio with the same ends in all rows."""
     known = ratio[np.isfinite(ratio)]
     if not known.size:
-        return Axis(label="Friction ratio")
+        return Axis("Friction ratio")
     margin = max(_MARGIN * float(np.ptp(known)), 1e-3)
-    return Axis(label="Friction ratio", lowest=float(known.min()) - margin, highest=float(known.max()) + margin)
+    return Axis("Friction ratio", lowest=float(known.min()) - margin, highest=float(known.max()) + margin)
 
 
 def _marker(x: Floats, number: int) -> int | None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.charts import Axis, Band, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule
+from sonolube.charts import Axis, Band as Shade, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule, one_panel
 from sonolube.checks import Floats
 from sonolube.design.figure_axes import contour_levels, scaled_axis
 from sonolube.design.sobol import SobolIndices
@@ -52,12 +52,14 @@ def histogram_chart(propagated: "xr.Dataset") -> Chart:
     mean = Points(
         x=np.array([scale * statistics.mean.value]), y=np.zeros(1), label="mean", colour=1, marker=2, size=1.6
     )
-    panel = Panel(
-        x=axis,
-        y=Axis(label="Fraction of the samples", unit="%", lowest=0.0, highest=top),
-        parts=(bars, *_quantiles(statistics, scale, top), mean),
+    return one_panel(
+        axis,
+        Axis("Fraction of the samples", "%", lowest=0.0, highest=top),
+        (bars, *_quantiles(statistics, scale, top), mean),
+        size=(4.8, 3.4),
+        title=propagated.attrs["rig"],
+        legend="bottom",
     )
-    return Chart(panels=(panel,), size=(4.8, 3.4), title=propagated.attrs["rig"], legend="bottom")
 
 
 def _quantiles(statistics: SampleStatistics, scale: float, top: float) -> list[Part]:
@@ -68,7 +70,7 @@ def _quantiles(statistics: SampleStatistics, scale: float, top: float) -> list[P
         label = "quantile with 95 % interval" if probability == QUANTILES[len(QUANTILES) // 2] else ""
         ends = np.array([lower, upper])
         parts += [
-            Band(x=ends, low=np.zeros(2), high=np.full(2, top), opacity=0.18),
+            Shade(x=ends, low=np.zeros(2), high=np.full(2, top), opacity=0.18),
             Rule(value=value, label=label, colour=0, dash=_DASHES[probability]),
             Note(x=value, y=top, text=f"{100 * probability:.0f} %", side="above"),
         ]
@@ -112,7 +114,7 @@ def sobol_chart(propagated: "xr.Dataset", indices: SobolIndices) -> Chart:
                 label=label,
             )
         )
-    x = Axis(label="Sobol index, fraction of the variance, with 95 % interval", unit="%", lowest=0.0)
+    x = Axis("Sobol index, fraction of the variance, with 95 % interval", "%", lowest=0.0)
     panel = Panel(x=x, y=Axis(words=tuple(keys[place] for place in order)), parts=tuple(bars))
     title = f"{propagated.attrs['rig']}\n{quantity(propagated.attrs['outcome']).meaning}"
     return Chart(panels=(panel,), size=(5.6, 0.9 + 0.42 * len(keys)), title=title)
@@ -169,12 +171,12 @@ def _band_curves(propagated: "xr.Dataset", name: str) -> Chart:
     scale, y_axis = scaled_axis(propagated.attrs["outcome"], quantiles)
     low, lower, median, upper, high = scale * quantiles
     parts = (
-        Band(x=x, low=low, high=high, label="90 % of the samples", opacity=0.18),
-        Band(x=x, low=lower, high=upper, label="50 %", opacity=0.32),
+        Shade(x=x, low=low, high=high, label="90 % of the samples", opacity=0.18),
+        Shade(x=x, low=lower, high=upper, label="50 %", opacity=0.32),
         Line(x=x, y=median, label="median"),
     )
     x_axis = replace(x_axis, lowest=float(x.min()), highest=float(x.max()))
-    return Chart(panels=(Panel(x=x_axis, y=y_axis, parts=parts),), size=(4.8, 3.4), title=propagated.attrs["rig"])
+    return one_panel(x_axis, y_axis, parts, size=(4.8, 3.4), title=propagated.attrs["rig"])
 
 
 def _band_maps(propagated: "xr.Dataset", first: str, second: str) -> Chart:

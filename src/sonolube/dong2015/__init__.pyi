@@ -25,7 +25,6 @@ from .collar_designs import (
 from .collar_transducer import COLLAR_DIMENSIONS as COLLAR_DIMENSIONS, collar_element as collar_element
 from .collar_tuning import (
     Resonance as Resonance,
-    frequency_sensitivities as frequency_sensitivities,
     main_resonance as main_resonance,
     resonances_in_range as resonances_in_range,
     spurious_coupling_ratio as spurious_coupling_ratio,

@@ -1,11 +1,13 @@
 """Collar element of D 4.5 as a transducer: a quarter of the final design, with its electrodes and outputs."""
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 from sonolube.dong2015.collar import collar_geometry, dimension_names
 from sonolube.dong2015.collar_analysis import collar_media
 from sonolube.dong2015.collar_designs import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR
+from sonolube.dong2015.sizes import sized
 from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer
 from sonolube.models.fem.solver.model import Electrodes, FixedSupport
 from sonolube.models.fem.solver.reduction import Output
@@ -22,19 +24,8 @@ COLLAR_DIMENSIONS: Final = tuple(
 """Dimensions of the final collar and their sources; those assumed are fitted to the two measured resonances."""
 
 
-def collar_element(
-    *,
-    frame_length: float = FINAL_COLLAR.frame_length,
-    frame_width: float = FINAL_COLLAR.frame_width,
-    frame_thickness: float = FINAL_COLLAR.frame_thickness,
-    base_thickness: float = FINAL_COLLAR.base_thickness,
-    top_thickness: float = FINAL_COLLAR.top_thickness,
-    pillar_width: float = FINAL_COLLAR.pillar_width,
-    ring_width: float = FINAL_COLLAR.ring_width,
-    ring_thickness: float = FINAL_COLLAR.ring_thickness,
-    bore_diameter: float = FINAL_COLLAR.bore_diameter,
-    bolt_diameter: float = FINAL_COLLAR.bolt_diameter,
-) -> Transducer:
+@sized(COLLAR_DIMENSIONS[:10])  # those of the stack are printed
+def collar_element(sizes: Mapping[str, Any]) -> Transducer:
     """Collar element of D 4.5, final design with the dimensions given.
 
     Parameters
@@ -63,19 +54,7 @@ def collar_element(
     --------
     sonolube.dong2015.reduced_collar_model : The same with other designs and supports.
     """
-    collar = replace(
-        FINAL_COLLAR,
-        frame_length=frame_length,
-        frame_width=frame_width,
-        frame_thickness=frame_thickness,
-        base_thickness=base_thickness,
-        top_thickness=top_thickness,
-        pillar_width=pillar_width,
-        ring_width=ring_width,
-        ring_thickness=ring_thickness,
-        bore_diameter=bore_diameter,
-        bolt_diameter=bolt_diameter,
-    )
+    collar = replace(FINAL_COLLAR, **sizes)
     geometry, media = collar_geometry(collar), collar_media(collar)
     faces = {"crown": "ring.+y", "saddle": "saddle.bore", "base": "frame|stack"}
     return Transducer(

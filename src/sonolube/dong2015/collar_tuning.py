@@ -1,6 +1,6 @@
-"""Model updating of the collar: sensitivities of its resonance to dimensions, and dimensions fitted to resonances."""
+"""Model updating of the collar: its main resonance, and dimensions fitted to resonances."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -96,47 +96,6 @@ def spurious_coupling_ratio(model: ReducedModel) -> float:
     """
     squares = sorted(found.coupling_factor**2 for found in resonances_in_range(model, least_coupling=0.0))
     return float(np.sqrt(sum(squares[:-1]) / squares[-1]))
-
-
-def frequency_sensitivities(
-    collar: Collar,
-    *,
-    dimensions: Sequence[str],
-    open_top: bool = False,
-    element_size: float = ELEMENT_SIZE,
-    order: int = ORDER,
-) -> dict[str, float]:
-    r"""Logarithmic sensitivities of the main resonance to dimensions, by central differences.
-
-    Parameters
-    ----------
-    collar : Collar
-    dimensions : sequence of str
-        Names of the dimensions.
-    open_top : bool
-        Without the removable top.
-    element_size : float
-        Largest edge of an element. [m]
-    order : int
-        Degree of the polynomials in an element, from 2 to 8.
-
-    Returns
-    -------
-    dict of str to float
-        :math:`\partial \ln f/\partial \ln x`, from differences over eight percent; accurate to some 0.01 where the
-        change is uniform over them.
-    """
-
-    def frequency(name: str, factor: float) -> float:
-        changed = _scaled(collar, {name: factor})
-        return main_resonance(
-            reduced_collar_model(changed, open_top=open_top, element_size=element_size, order=order)
-        ).series_frequency
-
-    return {
-        name: float(np.log(frequency(name, 1 + _STEP) / frequency(name, 1 - _STEP)) / np.log((1 + _STEP) / (1 - _STEP)))
-        for name in dimensions
-    }
 
 
 def tuned_collar(

@@ -4,14 +4,16 @@ Its sizes are not printed. With the assumed ones the mode in which the rim of th
 20 kHz.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
-from sonolube.dong2015.tribometer import TRIBOMETER_ACTUATOR_DIMENSIONS
+from sonolube.dong2015.sizes import sized
+from sonolube.dong2015.tribometer import TRIBOMETER_ACTUATOR_DIMENSIONS, stack_with_tip
 from sonolube.models.fem.mesh.cad import cad_kernel
 from sonolube.models.fem.mesh.geometry import bond, single_body
 from sonolube.models.fem.parts.tips import hub_disc
-from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
+from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer
 from sonolube.models.fem.solver.model import FixedSupport
 
 _FAR: Final = 1e3  # mm, beyond all bodies
@@ -28,23 +30,8 @@ CUTTER_HEAD_DIMENSIONS = (
 """Dimensions of the cutter head (D 4.4) and their sources; the text prints none but the number of layers."""
 
 
-def cutter_head(
-    *,
-    outer_radius: float = 9.5e-3,
-    inner_radius: float = 4e-3,
-    length: float = 38.6e-3,
-    stack_layers: float = 62.0,
-    rod_radius: float = 2.7e-3,
-    washer_radius: float = 8e-3,
-    back_length: float = 32e-3,
-    front_length: float = 7.2e-3,
-    hub_radius: float = 4.5e-3,
-    hub_length: float = 6e-3,
-    disc_radius: float = 15e-3,
-    thickness: float = 0.8e-3,
-    ceramic: str = "pic255",
-    metal: str = "stainless_steel_304",
-) -> Transducer:
+@sized((*CUTTER_HEAD_DIMENSIONS[:6], *CUTTER_HEAD_DIMENSIONS[7:5:-1], *CUTTER_HEAD_DIMENSIONS[8:]))  # the back first
+def cutter_head(sizes: Mapping[str, Any], *, ceramic: str = "pic255", metal: str = "stainless_steel_304") -> Transducer:
     """Cutter head of D 4.4: a disc glued to the nut of the stack of the tribometer's actuator.
 
     Parameters
@@ -89,19 +76,9 @@ def cutter_head(
     ----------
     .. [1] D 4.4.2 to 4.4.4.
     """
-    disc = hub_disc(hub_radius=hub_radius, hub_length=hub_length, disc_radius=disc_radius, thickness=thickness)
-    bodies = stack_bodies(
-        outer_radius=outer_radius,
-        inner_radius=inner_radius,
-        length=length,
-        rod_radius=rod_radius,
-        back_length=back_length,
-        front_length=front_length,
-        washer_radius=washer_radius,
-        tip=disc,
-    )
-    transducer = stack_from_bodies(bodies, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
-    return replace(transducer, dimensions=CUTTER_HEAD_DIMENSIONS)
+    disc = hub_disc(**{name: sizes[name] for name in ("hub_radius", "hub_length", "disc_radius", "thickness")})
+    made = stack_with_tip(disc, sizes, ceramic=ceramic, metal=metal)
+    return replace(made, dimensions=CUTTER_HEAD_DIMENSIONS)
 
 
 def cutter_head_quarter() -> Transducer:

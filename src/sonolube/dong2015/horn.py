@@ -11,6 +11,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final
 
+from sonolube.dong2015.sizes import sized
 from sonolube.errors import UnknownName
 from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel
 from sonolube.models.fem.mesh.geometry import Geometry, single_body
@@ -57,23 +58,9 @@ POISSON_HORN_DIMENSIONS: Final = (
 """Sizes of horn and transducer with their sources."""
 
 
+@sized(POISSON_HORN_DIMENSIONS)
 def poisson_horn(
-    *,
-    solid: str,
-    length: float = 127e-3,
-    width: float = 60.96e-3,
-    thickness: float = 25.4e-3,
-    taper_length: float = 25.4e-3,
-    end_thickness: float = 19.05e-3,
-    outer_radius: float = 25e-3,
-    inner_radius: float = 10e-3,
-    stack_length: float = 24e-3,
-    stack_layers: float = 4.0,
-    rod_radius: float = 6e-3,
-    back_length: float = 30e-3,
-    front_length: float = 34.5e-3,
-    ceramic: str = "pzt4",
-    metal: str = "stainless_steel_304",
+    sizes: Mapping[str, Any], *, solid: str, ceramic: str = "pzt4", metal: str = "stainless_steel_304"
 ) -> Transducer:
     """Poisson horn of D 2.1 on a bolted stack between two cylinders, its axis along z.
 
@@ -119,15 +106,12 @@ def poisson_horn(
     """
     if solid not in POISSON_HORN_SOLIDS:
         raise UnknownName.among(POISSON_HORN_SOLIDS, kind="solid of a Poisson horn", name=solid)
-    bodies = stack_bodies(
-        outer_radius=outer_radius,
-        inner_radius=inner_radius,
-        length=stack_length,
-        rod_radius=rod_radius,
-        back_length=back_length,
-        front_length=front_length,
+    names = ("outer_radius", "inner_radius", "rod_radius", "back_length", "front_length")
+    bodies = stack_bodies(**{name: sizes[name] for name in names}, length=sizes["stack_length"])
+    length, width, thickness, taper_length, end_thickness = (
+        sizes[name] for name in ("length", "width", "thickness", "taper_length", "end_thickness")
     )
-    foot = stack_length + front_length
+    foot = sizes["stack_length"] + sizes["front_length"]
     sections = [
         ("entry", 0.0, taper_length, (end_thickness, thickness)),
         ("lower", taper_length, length / 2 - _PAD, (thickness, thickness)),
@@ -141,7 +125,7 @@ def poisson_horn(
     shapes = {name: body.shape for name, body in bodies.items()} | pieces
     made = stack_from_bodies(
         {name: _quarter(shape, name) for name, shape in shapes.items()},
-        stack_layers=stack_layers,
+        stack_layers=sizes["stack_layers"],
         ceramic=ceramic,
         metal=metal,
     )
@@ -156,7 +140,8 @@ def poisson_horn(
         ),
         copies=4,
         dimensions=tuple(
-            replace(size, value=front_length) if size.source == _FITTED else size for size in POISSON_HORN_DIMENSIONS
+            replace(size, value=sizes["front_length"]) if size.source == _FITTED else size
+            for size in POISSON_HORN_DIMENSIONS
         ),
     )
 

@@ -4,11 +4,16 @@ Few of its sizes are printed. The assumed ones are those of common hardware abou
 and capacitance of D Table 3.5.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
+from sonolube.dong2015.sizes import sized
+from sonolube.models.fem.mesh.geometry import Geometry
 from sonolube.models.fem.parts.tips import acorn_nut
 from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
 
+_OF_STACK = ("outer_radius", "inner_radius", "length", "rod_radius", "back_length", "front_length", "washer_radius")
 TRIBOMETER_ACTUATOR_DIMENSIONS = (
     SourcedDimension(name="outer_radius", value=9.5e-3, source="360 nF and 62 layers of D Table 3.5 with PIC255"),
     SourcedDimension(name="inner_radius", value=4e-3, source="bore that a rod of 1/4 in passes"),
@@ -26,22 +31,9 @@ TRIBOMETER_ACTUATOR_DIMENSIONS = (
 """Dimensions of the tribometer's actuator (D 2.3.1, appendix A) and their sources; the text prints few of them."""
 
 
+@sized(TRIBOMETER_ACTUATOR_DIMENSIONS)
 def tribometer_actuator(
-    *,
-    outer_radius: float = 9.5e-3,
-    inner_radius: float = 4e-3,
-    length: float = 38.6e-3,
-    stack_layers: float = 62.0,
-    rod_radius: float = 2.7e-3,
-    washer_radius: float = 8e-3,
-    back_length: float = 18e-3,
-    front_length: float = 7.2e-3,
-    width: float = 11.1e-3,
-    nut_length: float = 6.6e-3,
-    tip_radius: float = 5e-3,
-    contact_radius: float = 0.8e-3,
-    ceramic: str = "pic255",
-    metal: str = "stainless_steel_316",
+    sizes: Mapping[str, Any], *, ceramic: str = "pic255", metal: str = "stainless_steel_316"
 ) -> Transducer:
     """Actuator of the modified pin-on-disc tribometer, D 2.3.1: a bolted stack with an acorn nut as its pin.
 
@@ -88,16 +80,17 @@ def tribometer_actuator(
     ----------
     .. [1] D 2.3.1, Table 3.5, A.1.3.
     """
-    nut = acorn_nut(width=width, length=nut_length, tip_radius=tip_radius, contact_radius=contact_radius)
-    bodies = stack_bodies(
-        outer_radius=outer_radius,
-        inner_radius=inner_radius,
-        length=length,
-        rod_radius=rod_radius,
-        back_length=back_length,
-        front_length=front_length,
-        washer_radius=washer_radius,
-        tip=nut,
+    nut = acorn_nut(
+        width=sizes["width"],
+        length=sizes["nut_length"],
+        tip_radius=sizes["tip_radius"],
+        contact_radius=sizes["contact_radius"],
     )
-    transducer = stack_from_bodies(bodies, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
-    return replace(transducer, dimensions=TRIBOMETER_ACTUATOR_DIMENSIONS)
+    made = stack_with_tip(nut, sizes, ceramic=ceramic, metal=metal)
+    return replace(made, dimensions=TRIBOMETER_ACTUATOR_DIMENSIONS)
+
+
+def stack_with_tip(tip: Geometry, sizes: Mapping[str, Any], *, ceramic: str, metal: str) -> Transducer:
+    """Bolted stack between end masses of washer and nut in one, with a tip."""
+    bodies = stack_bodies(**{name: sizes[name] for name in _OF_STACK}, tip=tip)
+    return stack_from_bodies(bodies, stack_layers=sizes["stack_layers"], ceramic=ceramic, metal=metal)

@@ -9,6 +9,7 @@ from sonolube import __version__
 from sonolube.facts.published import errata
 from sonolube.report.page import Advance, Drawing, drawn, embedded, html
 from sonolube.report.reproduction_text import KIND_NAMES, counts, counts_by_kind
+from sonolube.report.results.record_object import picked
 from sonolube.reproduction import Finding, Reproduction, Row
 from sonolube.storage.files import write_atomically
 
@@ -87,11 +88,8 @@ def _claim_object(one: Finding) -> dict[str, Any]:
     """Claim with its finding and the ids of its rows, for JSON."""
     claim = one.claim
     return {
-        "id": claim.id,
-        "statement": claim.statement,
-        "source": claim.source,
-        "claimed": one.claimed,
-        "found": one.found,
+        **picked(claim, "id", "statement", "source"),
+        **picked(one, "claimed", "found"),
         "verdict": one.verdict.value,
         "judged": claim.judged,
         "decisive_rows": list(claim.decisive),

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from functools import cache, partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from sonolube.charts import Chart, draw_chart
+from sonolube.charts import draw_chart
 from sonolube.errors import UnknownName
 from sonolube.figure import ReportFigure
 from sonolube.prediction.published_figures import published_prediction_figures
@@ -52,9 +52,6 @@ from sonolube.reproduction.section import ChapterFigure, Reproduction, Section
 from sonolube.validation.comparison import ComparedFit, compare_models
 from sonolube.validation.figures import comparison_figures
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 @cache
 def published_comparison() -> tuple[ComparedFit, ...]:
@@ -65,13 +62,8 @@ def published_comparison() -> tuple[ComparedFit, ...]:
 def _comparison_figures() -> Iterator[ReportFigure]:
     """Figures of the comparison of all model variants."""
     for each in comparison_figures(published_comparison):
-        draw = partial(_drawn, each.chart)
+        draw = partial(lambda chart: draw_chart(chart()), each.chart)
         yield ReportFigure(name=each.name, title=each.title, caption=each.caption, draw=draw)
-
-
-def _drawn(chart: "Callable[[], Chart]") -> "Figure":
-    """Draw the data that a function returns."""
-    return draw_chart(chart())
 
 
 SECTIONS: Final = (

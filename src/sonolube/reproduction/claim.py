@@ -23,6 +23,19 @@ class ClaimVerdict(StrEnum):
     NOT_COMPUTED = "not computed"
 
 
+def numbers(rows: Sequence[Row]) -> tuple[str, str]:
+    """Printed and the computed numbers of rows as text, those of one unit together.
+
+    The second says how many of the rows are fitted or met trivially, if any, and gives a number whose inputs are not
+    all printed with its possible values.
+    """
+    found = [_by_unit(rows, _computed)]
+    for verdict, text in ((Verdict.FITTED, "fitted"), (Verdict.TRIVIALLY_MET, "met trivially")):
+        if count := sum(row.verdict is verdict for row in rows):
+            found.append(f"{count} {text}")
+    return _by_unit(rows, _printed), "; ".join(found)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Claim:
     """Result that the dissertation states, with the rows that decide about it.
@@ -50,7 +63,7 @@ class Claim:
     source: str
     judged: str
     decisive: tuple[str, ...]
-    summary: Summary
+    summary: Summary = numbers
     supporting: tuple[str, ...] = ()
 
 
@@ -99,19 +112,6 @@ def verdict_of(rows: Sequence[Row]) -> ClaimVerdict:
     if count[Verdict.REPRODUCED]:
         return ClaimVerdict.REPRODUCED
     return ClaimVerdict.FITTED if count[Verdict.FITTED] else ClaimVerdict.MET_TRIVIALLY
-
-
-def numbers(rows: Sequence[Row]) -> tuple[str, str]:
-    """Printed and the computed numbers of rows as text, those of one unit together.
-
-    The second says how many of the rows are fitted or met trivially, if any, and gives a number whose inputs are not
-    all printed with its possible values.
-    """
-    found = [_by_unit(rows, _computed)]
-    for verdict, text in ((Verdict.FITTED, "fitted"), (Verdict.TRIVIALLY_MET, "met trivially")):
-        if count := sum(row.verdict is verdict for row in rows):
-            found.append(f"{count} {text}")
-    return _by_unit(rows, _printed), "; ".join(found)
 
 
 def counts(rows: Sequence[Row]) -> tuple[str, str]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Final
 
-from sonolube.reproduction.claim import Claim, Finding, counts, finding, numbers
+from sonolube.reproduction.claim import Claim, Finding, counts, finding
 from sonolube.reproduction.row import Row
 
 _DEFAULT: Final = "friction-model-asperity-stick-slip-fitted"
@@ -18,7 +18,6 @@ CLAIMS: Final = (
         "is taken to fall in proportion to the load.",
         decisive=("3.1.5-error-1-2", "3.1.5-error-3"),
         supporting=("3.1.4-reduction-1-2", "3.1.4-reduction-3", "3.1.4-error"),
-        summary=numbers,
     ),
     Claim(
         id="cube-wear",
@@ -27,7 +26,6 @@ CLAIMS: Final = (
         judged="Largest error over Tables 3.3 and 3.4, with the inputs of Table 3.2, nothing fitted.",
         decisive=("3.2.2-error", "3.2.3-error"),
         supporting=(*(f"table-3.3-error-{n}" for n in range(1, 7)), *(f"table-3.4-error-{n}" for n in range(1, 7))),
-        summary=numbers,
     ),
     Claim(
         id="multi-scale-friction",
@@ -37,7 +35,6 @@ CLAIMS: Final = (
         "about no mean gap is it less than 14 %.",
         decisive=("3.3.4-error", "3.3.6-error"),
         supporting=tuple(f"{_DEFAULT}-A-{n}" for n in (1, 2, 3)),
-        summary=numbers,
     ),
     Claim(
         id="friction-over-speed",
@@ -50,7 +47,6 @@ CLAIMS: Final = (
             *(f"table-2.5-friction-reduction-{n}" for n in (1, 2, 3)),
             *(f"table-2.3-friction-force-{n}" for n in (2, 4, 6)),
         ),
-        summary=numbers,
     ),
     Claim(
         id="wear-reduction",
@@ -59,7 +55,6 @@ CLAIMS: Final = (
         judged="Arithmetic of the printed wear rates, and the cube model with the inputs of Table 3.2.",
         decisive=("2.3.5-wear-reduction-from", "2.3.5-wear-reduction-to", "2.3.5-wear-reduction-by-the-cube"),
         supporting=tuple(f"table-2.5-wear-reduction-{n}" for n in (1, 2, 3)),
-        summary=numbers,
     ),
     Claim(
         id="trends",
@@ -87,7 +82,6 @@ CLAIMS: Final = (
             *(f"table-4.2-friction-force-{n}-by-the-cube" for n in range(2, 7)),
             *(f"table-4.2-friction-force-{n}-by-the-line" for n in range(2, 7)),
         ),
-        summary=numbers,
     ),
     Claim(
         id="load",
@@ -98,7 +92,6 @@ CLAIMS: Final = (
         "100 Hz no amplitude below 69 decay lengths reduces friction at this speed.",
         decisive=("4.1.2-arm-extra-reduction", "4.1.2-peak-load-1", "4.1.2-peak-load-2"),
         supporting=("4.1.2-arm-frequency",),
-        summary=numbers,
     ),
     Claim(
         id="temperature",
@@ -108,7 +101,6 @@ CLAIMS: Final = (
         "thermocouple; the rows on waveguide and foil state bounds, for what warmed the thermocouple there is not "
         "printed.",
         decisive=("4.3.5-tribometer-temperature-peak", "4.3.5-temperature-peak", "4.3.5-foil-temperature-peak"),
-        summary=numbers,
     ),
     Claim(
         id="collar",
@@ -118,7 +110,6 @@ CLAIMS: Final = (
         "speed of the rod are assumed, the speed over a range.",
         decisive=("4.5.4-work-reduction",),
         supporting=("4.5.4-reduction-from", "4.5.4-reduction-to", "4.5.3-mode-closed-top", "4.5.3-mode-open-top"),
-        summary=numbers,
     ),
 )
 """Claims in the order of their chapters."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import partial
 from typing import Final
 
 from sonolube.facts.published import ComputedValue, PrintedNumber, PublishedValue, propagate_rounding, published_value
@@ -169,20 +170,26 @@ def comparison_row(
     return replace(row, possible_low=low, possible_high=high)
 
 
+published_formula_row: Final = partial(comparison_row, kind=RowKind.PUBLISHED_FORMULA)
+"""Row of a published formula on published numbers."""
+published_model_row: Final = partial(comparison_row, kind=RowKind.PUBLISHED_MODEL)
+"""Row of a published model against a published test."""
+default_model_row: Final = partial(comparison_row, kind=RowKind.DEFAULT_MODEL)
+"""Row of a default model of this program against a published test."""
+
+
 def formula_row(
     published: PublishedValue | str, note: str, formula: Callable[..., float], *inputs: PrintedNumber | str
 ) -> Row:
     """Row of a published number that follows from others by a formula, with their rounding propagated."""
-    return comparison_row(published, propagate_rounding(formula, *inputs), note, kind=RowKind.PUBLISHED_FORMULA)
+    return published_formula_row(published, propagate_rounding(formula, *inputs), note)
 
 
-def range_rows(
-    published: str, low: Computed, high: Computed, note: str, *, kind: RowKind, high_note: str = ""
-) -> Iterator[Row]:
-    """Yield the rows of the limits of a published range."""
+def range_rows(published: str, low: Computed, high: Computed, note: str, *, high_note: str = "") -> Iterator[Row]:
+    """Yield the rows of the limits of a published range that follow from a published formula."""
     lower, upper = published_value(published).limits()
-    yield comparison_row(lower, low, note, kind=kind)
-    yield comparison_row(upper, high, high_note or note, kind=kind)
+    yield published_formula_row(lower, low, note)
+    yield published_formula_row(upper, high, high_note or note)
 
 
 def undetermined_row(published: str, missing: str, *, kind: RowKind = RowKind.PUBLISHED_FORMULA) -> Row:

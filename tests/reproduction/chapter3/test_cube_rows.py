@@ -62,14 +62,6 @@ def test_steel_on_steel_disagrees_at_the_stated_amplitude() -> None:
     assert "50.0 to 51.1 %" in row.note  # at the other amplitude that is printed for the same welder
 
 
-def test_hopping_is_where_the_stiffness_is_virtually_zero_though_the_surfaces_touch() -> None:
-    # D 3.3.5 names both signs, force and k_t; the force decays over R_q/3 = 2 um: exp(-3.8/2) = 0.15
-    row = ROWS["3.3.5-hopping-displacement"]
-    assert row.verdict is Verdict.REPRODUCED
-    assert "15% of the normal force remain" in row.note
-    assert "over its value at rest 0.012" in row.note
-
-
 def test_every_row_has_a_note_and_a_number_of_its_own() -> None:
     def complete(row: Row) -> bool:
         return bool(row.note) and row.published_low <= row.published <= row.published_high

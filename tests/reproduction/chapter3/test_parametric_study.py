@@ -23,6 +23,14 @@ def test_every_statement_of_the_study_is_computed() -> None:
     assert not [row.id for row in ROWS.values() if row.verdict is Verdict.UNDETERMINED]
 
 
+def test_hopping_is_where_the_stiffness_is_virtually_zero_though_the_surfaces_touch() -> None:
+    # D 3.3.5 names both signs, force and k_t; the force decays over R_q/3 = 2 um: exp(-3.8/2) = 0.15
+    row = ROWS["3.3.5-hopping-displacement"]
+    assert row.verdict is Verdict.REPRODUCED
+    assert "15% of the normal force remain" in row.note
+    assert "over its value at rest 0.012" in row.note
+
+
 def test_the_rig_is_that_of_the_example() -> None:
     example = read_rig(Path(__file__).parents[3] / "examples" / "rigs" / "tribometer.toml")
     own = tribometer_rig()

@@ -11,10 +11,9 @@ from sonolube.models.fem import generate_mesh, natural_modes
 from sonolube.reproduction import SECTIONS
 from sonolube.reproduction.chapter4.coated_plate_figures import coated_plate_rig, coated_power_maps
 from sonolube.reproduction.chapter4.cutter_head_figures import cutter_head_figures, head_mode
-from sonolube.reproduction.chapter4.dry_temperature_figures import dry_rises
-from sonolube.reproduction.chapter4.lubrication_method_figures import coefficients, friction_in_time, load_scatter
+from sonolube.reproduction.chapter4.lubrication_method_figures import friction_in_time, load_scatter, method_coefficients
 from sonolube.reproduction.chapter4.maps import power_maps
-from sonolube.reproduction.chapter4.temperature_tests import speeds
+from sonolube.reproduction.chapter4.temperature_tests import dry_rises, speeds
 
 
 def test_the_sections_have_the_figures_of_the_dissertation() -> None:
@@ -57,7 +56,7 @@ def test_the_load_turns_nine_times_and_friction_scatters_as_in_table_4_2() -> No
 
 def test_vibration_alone_and_both_have_one_friction_at_the_printed_ninety_millimetres_a_second() -> None:
     for load in (3.0, 6.0, 9.0):
-        at = coefficients(sliding_speed=np.array([0.06, 0.09, 0.14]), normal_load=load)
+        at = method_coefficients(sliding_speed=np.array([0.06, 0.09, 0.14]), normal_load=load)
         assert at["ultrasonic"][1] == approx(at["combined"][1])
         assert at["ultrasonic"][0] < min(at["combined"][0], at["lubricant"][0])
         assert at["ultrasonic"][2] > max(at["combined"][2], at["lubricant"][2])

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule, one_panel
 from sonolube.checks import Floats
 from sonolube.design.control.control_design import ControlDesign
 from sonolube.design.control.process import open_loop_response
@@ -36,9 +36,9 @@ def closed_loop_chart(study: ControlDesign) -> Chart:
         Line(x=ms, y=scale * run.level),
         Rule(value=highest, along="y", label=f"{study.limit} limit", colour="0.5", dash=2),
     ]
-    time = Axis(label="Time", unit="ms", lowest=0.0, highest=float(ms[-1]))
+    time = Axis("Time", "ms", lowest=0.0, highest=float(ms[-1]))
     panels = [
-        Panel(x=time, y=Axis(label="Friction force", unit="N", lowest=0.0), parts=tuple(friction)),
+        Panel(x=time, y=Axis("Friction force", "N", lowest=0.0), parts=tuple(friction)),
         Panel(x=time, y=replace(quantity.axis, lowest=0.0, highest=1.12 * highest), parts=tuple(drive)),
     ]
     if run.phase is not None:
@@ -53,7 +53,7 @@ def _frequencies(time: Axis, ms: Floats, drive: Floats, resonance: Floats) -> Pa
     middle = (low + high) / 2
     half = max(0.55 * (high - low), _MIN_SPAN / 2 * middle)
     lines = (Line(x=ms, y=drive, label="drive"), Line(x=ms, y=resonance, label="resonance", colour=2, dash=1))
-    y = Axis(label="Frequency", unit="kHz", lowest=middle - half, highest=middle + half)
+    y = Axis("Frequency", "kHz", lowest=middle - half, highest=middle + half)
     return Panel(x=time, y=y, parts=lines)
 
 
@@ -82,15 +82,11 @@ def control_design_chart(study: ControlDesign) -> Chart:
         Rule(value=peak, along="y", label=f"maximum, {peak:.2f}", colour="0.5", dash=2),
         Rule(value=1.0, along="y", colour="0.5", dash=0),
     )
-    magnitude = Axis(label="Sensitivity, magnitude", lowest=0.0, highest=1.25 * max(peak, 1))
+    magnitude = Axis("Sensitivity, magnitude", lowest=0.0, highest=1.25 * max(peak, 1))
     return Chart(
         panels=(
-            Panel(
-                x=replace(plant.quantity.axis, lowest=0.0),
-                y=Axis(label="Friction force", unit="N", lowest=0.0),
-                parts=lookup,
-            ),
-            Panel(x=Axis(label="Frequency", unit="Hz", logarithmic=True), y=magnitude, parts=loop),
+            Panel(x=replace(plant.quantity.axis, lowest=0.0), y=Axis("Friction force", "N", lowest=0.0), parts=lookup),
+            Panel(x=Axis("Frequency", "Hz", logarithmic=True), y=magnitude, parts=loop),
         ),
         size=(6.4, 3.0),
         columns=2,
@@ -108,9 +104,10 @@ def stick_slip_chart(suppression: StickSlipSuppression) -> Chart:
         Line(x=ms, y=still.friction_force[shown], label="without vibration", colour=1, weight=0.7),
         Line(x=ms, y=vibrating.friction_force[shown], label=label, dash=1),
     )
-    panel = Panel(
-        x=Axis(label="Time", unit="ms", lowest=0.0, highest=float(ms[-1])),
-        y=Axis(label="Force in the holder", unit="N"),
-        parts=lines,
+    return one_panel(
+        Axis("Time", "ms", lowest=0.0, highest=float(ms[-1])),
+        Axis("Force in the holder", "N"),
+        lines,
+        size=(5.6, 2.8),
+        legend="top",
     )
-    return Chart(panels=(panel,), size=(5.6, 2.8), legend="top")

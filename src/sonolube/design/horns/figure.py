@@ -32,11 +32,11 @@ def horn_axis_chart(design: HornDesign) -> Chart:
     motion = Line(x=1e3 * (place - start), y=displacement / tip)
     stress = Line(x=1e3 * (where - start), y=1e-12 * highest, colour=1)
     rows = (
-        (Axis(label="Half width", unit="mm"), (profile, node)),
-        (Axis(label="Axial displacement over the tip's"), (motion, Rule(along="y", value=0.0, dash=0), node)),
-        (Axis(label="Peak stress", unit="MPa per µm", lowest=0.0), (stress, node)),
+        (Axis("Half width", "mm"), (profile, node)),
+        (Axis("Axial displacement over the tip's"), (motion, Rule(along="y", value=0.0, dash=0), node)),
+        (Axis("Peak stress", "MPa per µm", lowest=0.0), (stress, node)),
     )
-    x = Axis(label="Distance from the driven face", unit="mm")
+    x = Axis("Distance from the driven face", "mm")
     return Chart(
         panels=tuple(Panel(x=x, y=y, parts=parts) for y, parts in rows),
         size=(5.6, 5.6),

@@ -25,7 +25,7 @@ from .required_voltage import (
     maximum_swing as maximum_swing,
     refine_swing as refine_swing,
 )
-from .requirements import OBJECTIVES as OBJECTIVES, HalfWaveHorn as HalfWaveHorn, Limits as Limits
+from .requirements import OBJECTIVES as OBJECTIVES, Aim as Aim, HalfWaveHorn as HalfWaveHorn, Limits as Limits
 from .rig_text import design_text as design_text
 from .screening import (
     DesignProblem as DesignProblem,

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sonolube.charts import Axis, Band, Bars, Chart, Line, Note, Panel, Part, Points, Rule
+from sonolube.charts import Axis, Band, Bars, Chart, Line, Note, Part, Points, Rule, one_panel
 from sonolube.checks import Floats
 from sonolube.design.optimisation.drive_electronics import (
     CAPACITANCE_TOLERANCE,
@@ -19,9 +19,9 @@ from sonolube.design.optimisation.space import OWN_ACTUATOR, Candidate
 from sonolube.models.actuator import matched_power_factor
 
 _AXES = {
-    "power": Axis(label="Power of the amplifier", unit="W"),
-    "heat": Axis(label="Heat in the actuator", unit="W"),
-    "voltage": Axis(label="Voltage, peak to peak", unit="V"),
+    "power": Axis("Power of the amplifier", "W"),
+    "heat": Axis("Heat in the actuator", "W"),
+    "voltage": Axis("Voltage, peak to peak", "V"),
 }
 _MAX_CURVES = 6  # actuators drawn over frequency
 _BANDS = 60  # of frequency, in each of which the least objective is drawn
@@ -49,7 +49,7 @@ def front_chart(optimum: Optimum) -> Chart:
     if len(points) > 1:
         parts.append(Note(x=points[-1, 0], y=points[-1, 1], text=_drive(optimum.front[-1]), side="left"))
     across, up = (_front_axis(name, values) for name, values in zip(names, points.T, strict=True))
-    return Chart(panels=(Panel(x=across, y=up, parts=tuple(parts)),), size=(5.8, 3.8), legend="top")
+    return one_panel(across, up, parts, size=(5.8, 3.8), legend="top")
 
 
 def frequency_chart(optimum: Optimum) -> Chart:
@@ -71,10 +71,9 @@ def frequency_chart(optimum: Optimum) -> Chart:
         text = "" if place else best
         markers.append(Points(x=at, y=objective, label=text, colour=place, marker=place, size=1.5))
     low, high = optimum.problem.space.frequencies
-    x = Axis(label="Drive frequency", unit="kHz", lowest=1e-3 * low, highest=1e-3 * high)
+    x = Axis("Drive frequency", "kHz", lowest=1e-3 * low, highest=1e-3 * high)
     y = replace(_AXES[optimum.minimise], logarithmic=True)
-    panel = Panel(x=x, y=y, parts=(*curves, *markers))
-    return Chart(panels=(panel,), size=(5.8, 3.6), legend="top", legend_columns=2)
+    return one_panel(x, y, (*curves, *markers), size=(5.8, 3.6), legend="top", legend_columns=2)
 
 
 def limits_chart(point: DesignPoint) -> Chart:
@@ -87,12 +86,12 @@ def limits_chart(point: DesignPoint) -> Chart:
         lengths=percents,
         texts=tuple(f"{each:.3g} %" for each in percents),
     )
-    panel = Panel(
-        x=Axis(label="Share of the limit used", unit="%", lowest=0.0, highest=118.0),
-        y=Axis(words=tuple(LIMITS[name] for name in used)),
-        parts=(bars, Rule(value=100.0, colour="0", dash=1)),
+    return one_panel(
+        Axis("Share of the limit used", "%", lowest=0.0, highest=118.0),
+        Axis(words=tuple(LIMITS[name] for name in used)),
+        (bars, Rule(value=100.0, colour="0", dash=1)),
+        size=(5.8, 0.9 + 0.3 * max(len(used), 1)),
     )
-    return Chart(panels=(panel,), size=(5.8, 0.9 + 0.3 * max(len(used), 1)))
 
 
 def power_factor_chart(optimum: Optimum, electric: DriveElectronics) -> Chart:
@@ -118,9 +117,10 @@ def power_factor_chart(optimum: Optimum, electric: DriveElectronics) -> Chart:
             Band(x=1e-3 * f, low=low, high=high, label=label, colour=place, opacity=0.13),
         ]
     parts.append(Rule(value=1e-3 * optimum.best.frequency, label="the drive", dash=0))
-    x = Axis(label="Frequency", unit="kHz", lowest=1e-3 * float(f[0]), highest=1e-3 * float(f[-1]))
-    panel = Panel(x=x, y=Axis(label="Power factor", lowest=0.0, highest=1.02), parts=tuple(parts))
-    return Chart(panels=(panel,), size=(5.8, 3.4), legend="top", legend_columns=2)
+    x = Axis("Frequency", "kHz", lowest=1e-3 * float(f[0]), highest=1e-3 * float(f[-1]))
+    return one_panel(
+        x, Axis("Power factor", lowest=0.0, highest=1.02), parts, size=(5.8, 3.4), legend="top", legend_columns=2
+    )
 
 
 def _family(candidate: Candidate) -> str:

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from sonolube.checks import Floats
-from sonolube.design.optimisation.evaluation import Evaluation, evaluate
-from sonolube.design.optimisation.required_voltage import maximum_swing, refine_swing
+from sonolube.design.optimisation.evaluation import Evaluation
+from sonolube.design.optimisation.requirements import Aim
 from sonolube.design.optimisation.screening import DesignProblem
 from sonolube.design.optimisation.space import Candidate, candidate_rig, candidate_stack, candidate_structure
 from sonolube.models.dynamics import Status
@@ -72,18 +72,10 @@ def design_point_at(
     refine_swing
     """
     rig = candidate_rig(problem.space, candidate)
-    volts = refine_swing(
-        rig,
-        frequency=frequency,
-        friction_ratio=problem.friction_ratio,
-        near=near,
-        highest=maximum_swing(rig, problem.limits),
-    )
+    volts = problem.required_swing(rig, frequency=frequency, near=near)
     if not np.isfinite(volts):
         return None
-    evaluation = evaluate(
-        rig, problem.limits, frequency=[frequency], voltage_peak_to_peak=[volts], bolt=problem.space.bolt
-    )
+    evaluation = problem.evaluated(rig, frequency=[frequency], voltage_peak_to_peak=[volts])
     return DesignPoint(candidate=candidate, frequency=frequency, voltage_peak_to_peak=volts, evaluation=evaluation)
 
 
@@ -132,14 +124,7 @@ def swing_sensitivities(problem: DesignProblem, point: DesignPoint) -> dict[str,
     return {name: -slope * values[name] / (by_amplitude * by_swing) for name, slope in change.items()}
 
 
-def local_search(
-    problem: DesignProblem,
-    start: DesignPoint,
-    *,
-    minimise: str,
-    second_objective: str | None = None,
-    bound: float = np.inf,
-) -> DesignPoint:
+def local_search(problem: DesignProblem, start: DesignPoint, aim: Aim) -> DesignPoint:
     r"""Best design point near a feasible one, of the same actuator and waveform, by sequential quadratic programming.
 
     Parameters
@@ -147,12 +132,8 @@ def local_search(
     problem : DesignProblem
         Of which the tolerance is not used.
     start : DesignPoint
-    minimise : str
-        Objective to minimise, of `OBJECTIVES`.
-    second_objective : str, optional
-        Another objective, which is constrained.
-    bound : float
-        Upper bound of the second objective.
+    aim : Aim
+        Objective of `OBJECTIVES` to minimise; a second one is constrained by its bound.
 
     Returns
     -------
@@ -177,9 +158,7 @@ def local_search(
     """
     names = list(problem.space.bounds)
     bounds = np.log(np.array(list(problem.space.bounds.values())))
-    search = _ConstrainedProblem(
-        problem=problem, start=start, minimise=minimise, second_objective=second_objective, bound=bound, computed={}
-    )
+    search = _ConstrainedProblem(problem=problem, start=start, aim=aim, computed={})
     initial = np.log([{"frequency": start.frequency, **start.candidate.entries}[name] for name in names])
     minimize(
         search.objective,
@@ -190,13 +169,13 @@ def local_search(
         constraints={"type": "ineq", "fun": search.margins, "jac": search.margin_derivatives},
         options={"maxiter": _MAX_ITERATIONS, "ftol": 1e-8},
     )
-    better = [point for point in search.feasible_points() if point.objective(minimise) <= start.objective(minimise)]
+    reached = start.objective(aim.minimise)
+    better = [point for point in search.feasible_points() if point.objective(aim.minimise) <= reached]
+    second = aim.second_objective
     feasible = [
-        point
-        for point in [*better, start]
-        if second_objective is None or point.objective(second_objective) <= bound * (1 + 1e-6)
+        point for point in [*better, start] if second is None or point.objective(second) <= aim.bound * (1 + 1e-6)
     ]
-    return min(feasible or [start], key=lambda point: point.objective(minimise))
+    return min(feasible or [start], key=lambda point: point.objective(aim.minimise))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -216,9 +195,7 @@ class _ConstrainedProblem:
 
     problem: DesignProblem
     start: DesignPoint
-    minimise: str
-    second_objective: str | None
-    bound: float
+    aim: Aim
     computed: dict[bytes, tuple[DesignPoint | None, Floats, Floats]]
 
     def objective(self, x: Floats) -> tuple[float, Floats]:
@@ -268,22 +245,17 @@ class _ConstrainedProblem:
             step[column] = _STEP if x[column] + _STEP < self._upper_bound(column) else -_STEP
             next_f, next_candidate = self._variables(x + step)
             volts = point.voltage_peak_to_peak * np.exp(slope * step[column])
-            evaluation = evaluate(
-                candidate_rig(self.problem.space, next_candidate),
-                self.problem.limits,
-                frequency=[next_f],
-                voltage_peak_to_peak=[volts],
-                bolt=self.problem.space.bolt,
-            )
+            rig = candidate_rig(self.problem.space, next_candidate)
+            evaluation = self.problem.evaluated(rig, frequency=[next_f], voltage_peak_to_peak=[volts])
             slopes[:, column] = (self._row(evaluation) - here) / step[column]
         return point, here, np.nan_to_num(slopes, posinf=0.0, neginf=0.0)
 
     def _row(self, evaluation: Evaluation) -> Floats:
         """Logarithm of the objective, then the margin of each constraint."""
         margins = [1 - values[0] for name, values in evaluation.utilisation.items() if name != "admissible_vibration"]
-        if self.second_objective is not None:
-            margins.append(np.log(self.bound / evaluation.objectives[self.second_objective][0]))
-        return np.array([np.log(evaluation.objectives[self.minimise][0]), *margins])
+        if self.aim.second_objective is not None:
+            margins.append(np.log(self.aim.bound / evaluation.objectives[self.aim.second_objective][0]))
+        return np.array([np.log(evaluation.objectives[self.aim.minimise][0]), *margins])
 
     def _variables(self, x: Floats) -> tuple[float, Candidate]:
         """Drive frequency and candidate of the logarithms of the variables."""

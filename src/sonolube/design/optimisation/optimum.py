@@ -7,8 +7,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.design.optimisation.gradient_search import DesignPoint, design_point_at, local_search
 from sonolube.design.optimisation.pareto import epsilon_bounds, epsilon_constraint_front, non_dominated
-from sonolube.design.optimisation.required_voltage import maximum_swing, refine_swing
-from sonolube.design.optimisation.requirements import OBJECTIVES
+from sonolube.design.optimisation.requirements import OBJECTIVES, Aim
 from sonolube.design.optimisation.screening import (
     DesignProblem,
     ScreeningResult,
@@ -111,7 +110,7 @@ def optimise(
     if not screening.feasible.any():
         raise OutsideRange(_infeasibility(problem, screening))
     starts = _best_of_each_kind(screening, minimise)
-    refined = [_refined(problem, screening, row, minimise) for row in starts]
+    refined = [_refined(problem, screening, row, Aim(minimise=minimise)) for row in starts]
     designs = sorted((design for design in refined if design is not None), key=lambda point: point.objective(minimise))
     if not designs:
         raise OutsideRange(
@@ -141,32 +140,20 @@ def _best_of_each_kind(screening: ScreeningResult, minimise: str) -> list[int]:
     return list(best.values())
 
 
-def _refined(
-    problem: DesignProblem,
-    screening: ScreeningResult,
-    row: int,
-    minimise: str,
-    second_objective: str | None = None,
-    bound: float = np.inf,
-) -> DesignPoint | None:
+def _refined(problem: DesignProblem, screening: ScreeningResult, row: int, aim: Aim) -> DesignPoint | None:
     """Best design near a screened one; None where none is feasible."""
     candidate, f = screening.candidates[screening.candidate_index[row]], float(screening.frequency[row])
     if problem.tolerance is not None:
-        return _refined_with_tolerance(problem, candidate, f, minimise, second_objective, bound)
+        return _refined_with_tolerance(problem, candidate, f, aim)
     start = design_point_at(problem, candidate, frequency=f, near=float(screening.voltage_peak_to_peak[row]))
     if start is None:
         return None
-    best = local_search(problem, start, minimise=minimise, second_objective=second_objective, bound=bound)
+    best = local_search(problem, start, aim)
     return best if best.evaluation.maximum_utilisation[0] <= 1 + 1e-6 else None
 
 
 def _refined_with_tolerance(
-    problem: DesignProblem,
-    candidate: Candidate,
-    frequency: float,
-    minimise: str,
-    second_objective: str | None,
-    bound: float,
+    problem: DesignProblem, candidate: Candidate, frequency: float, aim: Aim
 ) -> DesignPoint | None:
     """Best design under tolerances near a screened one, by repeated sampling in shrinking ranges."""
     space, best = problem.space, (np.inf, candidate, frequency)
@@ -181,9 +168,10 @@ def _refined_with_tolerance(
             f, evaluation = evaluate_candidate(
                 problem, trial, frequency=np.unique([best[2], *np.linspace(low, high, _FREQUENCIES)])
             )
-            objective = np.where(evaluation.maximum_utilisation <= _FEASIBLE, evaluation.objectives[minimise], np.inf)
-            if second_objective is not None:
-                objective = np.where(evaluation.objectives[second_objective] <= bound, objective, np.inf)
+            own, second = evaluation.objectives[aim.minimise], aim.second_objective
+            objective = np.where(evaluation.maximum_utilisation <= _FEASIBLE, own, np.inf)
+            if second is not None:
+                objective = np.where(evaluation.objectives[second] <= aim.bound, objective, np.inf)
             i = int(np.argmin(objective))
             if objective[i] < best[0]:
                 best = (float(objective[i]), trial, float(f[i]))
@@ -193,18 +181,7 @@ def _refined_with_tolerance(
 def _design_point_with_tolerance(problem: DesignProblem, candidate: Candidate, frequency: float) -> DesignPoint | None:
     """Design point at the voltage that reaches the target under tolerances; None where it is infeasible."""
     rigs = [candidate_rig(problem.space, candidate, deviation) for deviation in deviations(problem.tolerance)]
-    swings = np.array(
-        [
-            refine_swing(
-                rig,
-                frequency=frequency,
-                friction_ratio=problem.friction_ratio,
-                near=0.3 * maximum_swing(rig, problem.limits),
-                highest=maximum_swing(rig, problem.limits),
-            )
-            for rig in rigs
-        ]
-    )
+    swings = np.array([problem.required_swing(rig, frequency=frequency) for rig in rigs])
     volts = float(worst_or_quantile(np.where(np.isnan(swings), np.inf, swings), problem.tolerance))
     if not np.isfinite(volts):
         return None
@@ -237,7 +214,8 @@ def _pareto_front(
         if not within.size:
             return None
         row = int(within[np.argmin(objectives[within, 0])])
-        point = _refined(problem, screening, row, minimise, second_objective, bound)
+        aim = Aim(minimise=minimise, second_objective=second_objective, bound=bound)
+        point = _refined(problem, screening, row, aim)
         if point is None:
             return None
         return point, np.array([point.objective(minimise), point.objective(second_objective)])
@@ -260,10 +238,9 @@ def _infeasibility(problem: DesignProblem, screening: ScreeningResult) -> str:
     closest = int(np.argmin(screening.maximum_utilisation[reached]))
     utilisation = {name: float(values[reached][closest]) for name, values in screening.utilisation.items()}
     name = max(utilisation, key=lambda each: utilisation[each])
-    if np.isfinite(utilisation[name]):
-        excess = f"violates {name}, {utilisation[name]:.3g} times what is allowed"
-    else:
-        excess = f"violates {name}, with an infinite utilisation"
+    is_finite = np.isfinite(utilisation[name])
+    how = f"{utilisation[name]:.3g} times what is allowed" if is_finite else "with an infinite utilisation"
+    excess = f"violates {name}, {how}"
     return (
         f"no design gives a {target} within the limits: the closest of {int(reached.sum())} {excess};"
         " relax that limit or widen the ranges"

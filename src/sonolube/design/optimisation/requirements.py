@@ -1,12 +1,32 @@
 """Objectives and limits of a design: stack, preload bolt, contact, horn, temperature and amplifier."""
 
 from dataclasses import dataclass
+from math import inf
 
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 
 OBJECTIVES = ("power", "heat", "voltage")
 """Objectives that can be minimised: amplifier power (D 1.9), heat in the actuator, peak-to-peak drive voltage."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Aim:
+    """Objective to minimise, and a second one with its upper bound.
+
+    Parameters
+    ----------
+    minimise : str
+        Objective to minimise, of `OBJECTIVES`.
+    second_objective : str, optional
+        Another objective, which is constrained.
+    bound : float
+        Upper bound of the second objective.
+    """
+
+    minimise: str
+    second_objective: str | None = None
+    bound: float = inf
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

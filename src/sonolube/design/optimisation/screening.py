@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
 from sonolube.design.optimisation.evaluation import CONSTRAINTS, Evaluation, evaluate
-from sonolube.design.optimisation.required_voltage import estimate_swings
+from sonolube.design.optimisation.required_voltage import estimate_swings, maximum_swing, refine_swing
 from sonolube.design.optimisation.requirements import OBJECTIVES, Limits
 from sonolube.design.optimisation.space import Candidate, DesignSpace, Range, candidate_rig
 from sonolube.design.optimisation.tolerance import Tolerance, deviations, worst_or_quantile
@@ -16,6 +16,7 @@ from sonolube.design.progress import ProgressCallback
 from sonolube.errors import SonolubeError
 from sonolube.rig import frequency_grid
 from sonolube.rig.driven_rig import DrivenRig
+from sonolube.rig.record import Rig
 
 _FREQUENCIES, _RESONANCE_FREQUENCIES = 60, 21
 
@@ -38,6 +39,18 @@ class DesignProblem:
     friction_ratio: float
     limits: Limits = field(default_factory=Limits)
     tolerance: Tolerance | None = None
+
+    def evaluated(self, rig: Rig, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike) -> Evaluation:
+        """Objectives and constraints of several drives of a rig under the limits of the problem."""
+        return evaluate(
+            rig, self.limits, frequency=frequency, voltage_peak_to_peak=voltage_peak_to_peak, bolt=self.space.bolt
+        )
+
+    def required_swing(self, rig: Rig, *, frequency: float, near: float | None = None) -> float:
+        """Peak-to-peak voltage for the target friction ratio, NaN where none reaches it, from a first estimate. [V]"""
+        highest = maximum_swing(rig, self.limits)
+        start = 0.3 * highest if near is None else near
+        return refine_swing(rig, frequency=frequency, friction_ratio=self.friction_ratio, near=start, highest=highest)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -227,13 +240,7 @@ def evaluate_with_tolerance(
             quantities={},
         )
     evaluations = [
-        evaluate(
-            rig,
-            problem.limits,
-            frequency=frequency[reached],
-            voltage_peak_to_peak=voltage_peak_to_peak[reached],
-            bolt=problem.space.bolt,
-        )
+        problem.evaluated(rig, frequency=frequency[reached], voltage_peak_to_peak=voltage_peak_to_peak[reached])
         for rig in rigs
     ]
 

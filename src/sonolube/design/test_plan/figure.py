@@ -46,8 +46,8 @@ def _candidates(plan: TestPlan) -> Panel:
     ticks = _ticks(np.unique(speed))
     words = tuple(f"{tick:.3g}" for tick in ticks)
     return Panel(
-        x=Axis(label="Sliding speed", unit="mm/s", logarithmic=True, ticks=ticks, words=words),
-        y=Axis(label="Vibration amplitude", unit="µm"),
+        x=Axis("Sliding speed", "mm/s", logarithmic=True, ticks=ticks, words=words),
+        y=Axis("Vibration amplitude", "µm"),
         parts=tuple(parts),
     )
 
@@ -75,13 +75,9 @@ def _ratios(plan: TestPlan) -> Panel:
     if len(points) <= _MAX_DESCRIBED:
         words = [f"{word}\n{_condition(plan, point)}" for word, point in zip(words, points, strict=True)]
     x = Axis(
-        label="Point of the plan",
-        ticks=tuple(numbers.tolist()),
-        words=tuple(words),
-        lowest=0.5,
-        highest=len(points) + 0.5,
+        "Point of the plan", ticks=tuple(numbers.tolist()), words=tuple(words), lowest=0.5, highest=len(points) + 0.5
     )
-    return Panel(x=x, y=Axis(label="Friction ratio", lowest=-0.03, highest=1.08), parts=tuple(parts))
+    return Panel(x=x, y=Axis("Friction ratio", lowest=-0.03, highest=1.08), parts=tuple(parts))
 
 
 def _condition(plan: TestPlan, point: int) -> str:

@@ -1,15 +1,4 @@
-r"""Expected information of tests about which of several models holds, and the batch of tests with the most.
-
-The outcome y of a batch of tests under model k is a mixture of normal distributions over draws of its parameters,
-
-.. math:: p(y \mid k) = \frac1J \sum_j N(y;\, m_{kj},\, C_{kj} + D),
-
-with the noise D of the measurement. The mutual information of model and outcome,
-
-.. math:: I = \sum_k w_k\, \mathrm{E}_{y \mid k} \log_2 \frac{p(y \mid k)}{\sum_l w_l\, p(y \mid l)},
-
-is the expected fall of the entropy of the model's weights w by the tests.
-"""
+"""Expected information of tests about which of several models holds, and the batch of tests with the most."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -73,9 +62,18 @@ class ModelOutcomes:
 
 
 def mutual_information(models: Sequence[ModelOutcomes], points: Integers, *, noise: Floats, seed: int = 0) -> float:
-    """Expected information of a batch of tests about which model holds, in bits.
+    r"""Expected information of a batch of tests about which model holds, in bits.
 
-    From 0 to the entropy of the weights.
+    From 0 to the entropy of the weights. The outcome y of a batch of tests under model k is a mixture of normal
+    distributions over draws of its parameters,
+
+    .. math:: p(y \mid k) = \frac1J \sum_j N(y;\, m_{kj},\, C_{kj} + D),
+
+    with the noise D of the measurement. The mutual information of model and outcome,
+
+    .. math:: I = \sum_k w_k\, \mathrm{E}_{y \mid k} \log_2 \frac{p(y \mid k)}{\sum_l w_l\, p(y \mid l)},
+
+    is the expected fall of the entropy of the model's weights w by the tests.
 
     By two opposite, evenly spread samples for each draw; their own draw is left out of the mixture that they are
     compared with.

@@ -60,7 +60,7 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> sheet.She
         sheet.Value("dissipated_energy", "Energy dissipated in the greatest loop", energy, "J"),
         sheet.Value("mean_stiffness", "Mean stiffness over the whole range", span / float(np.ptp(x)), "N/m"),
     )
-    loop = figures.loops(x, force, hysteresis)
+    loop = figures.loops_figure(x, force, hysteresis)
     branches = sheet.attempted(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
     loops = sheet.Sheet(values=values, figures=(loop,))
     return sheet.joined([loops, branches], title=path.name, source=recording_source(recording))
@@ -75,11 +75,8 @@ def _applied_force(recording: "xr.Dataset") -> Floats:
 def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> PreisachCalibration:
     """Preisach model of a force gauge, fitted to recorded loops."""
     recording = read_recording(path, mapping=settings.mapping)
-    return fit_preisach(
-        displacement=channel_values(recording, "displacement"),
-        applied_force=_applied_force(recording),
-        levels=settings.levels,
-    )
+    x, force = channel_values(recording, "displacement"), _applied_force(recording)
+    return fit_preisach(displacement=x, applied_force=force, levels=settings.levels)
 
 
 def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: CalibrationSettings) -> sheet.Sheet:
@@ -97,7 +94,7 @@ def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: Calib
         sheet.quantity_value("applied_force", float(force.mean()), label="Mean force", uncertainty=float(error.mean())),
         sheet.Value("highest_force", "Highest force", float(force[top]), "N", uncertainty=float(error[top])),
     )
-    figure = figures.force(channel_values(recording, "time"), estimate)
+    figure = figures.force_figure(channel_values(recording, "time"), estimate)
     section = sheet.Sheet(values=values, figures=(figure,))
     return sheet.joined([section], title=path.name, source=recording_source(recording))
 
@@ -106,10 +103,8 @@ def _branches(x: Floats, force: Floats, degree: int) -> sheet.Sheet:
     """Polynomials of loading and unloading with the deviations about them."""
     branches = fit_branches(displacement=x, applied_force=force, degree=degree)
     values = (
-        sheet.Value("loading_deviation", "Deviation about the polynomial of loading", branches.loading_deviation, "N"),
-        sheet.Value(
-            "unloading_deviation", "Deviation about the polynomial of unloading", branches.unloading_deviation, "N"
-        ),
+        sheet.field_value(branches, "loading_deviation", "Deviation about the polynomial of loading", "N"),
+        sheet.field_value(branches, "unloading_deviation", "Deviation about the polynomial of unloading", "N"),
     )
     return sheet.Sheet(values=values, tables=(_coefficients(branches),))
 

@@ -72,7 +72,7 @@ def contact_stiffness_sheet(
     source = {name: path.name for name, path in names if path is not None}
     section = sheet.Sheet(
         values=_values(one, settings),
-        figures=(figures.resonances(found),),
+        figures=(figures.resonances_figure(found),),
         caveats=found.caveats,
         not_found=one.not_found,
     )
@@ -93,43 +93,29 @@ def rig_lines(stiffness: LogEstimate) -> tuple[str, ...]:
 
 def _values(one: ContactStiffness, settings: StiffnessSettings) -> tuple[sheet.Value, ...]:
     """Numbers of a measurement, those that matter most first."""
-    values: list[sheet.Value] = []
-    if one.normal_stiffness is not None and one.decay_length is not None:
-        values += [
-            _estimate("normal_stiffness", "Normal stiffness of the contact (95 %)", one.normal_stiffness, "N/m"),
-            _estimate("decay_length", "Decay length of its force, load over stiffness (95 %)", one.decay_length, "m"),
-        ]
-    if one.decay_length_by_ratio is not None and one.stiffness_ratio is not None:
-        label = "Decay length by the ratio of shifts at large and small drive (95 %)"
-        values.append(_estimate("decay_length_by_ratio", label, one.decay_length_by_ratio, "m"))
-    if one.stiffness_ratio is not None:
-        values.append(sheet.Value("stiffness_ratio", "Stiffness at large over small drive", one.stiffness_ratio, ""))
-    if one.decay_length_combined is not None:
-        label = "Decay length by both (95 %)"
-        values.append(_estimate("decay_length_combined", label, one.decay_length_combined, "m"))
-    values += [
-        sheet.Value(
-            "free_frequency",
-            "Resonance without contact",
-            one.free_frequency,
-            "Hz",
-            uncertainty=one.free_uncertainty or None,
-        ),
-        sheet.Value(
-            "pressed_frequency",
-            "Resonance under the load",
-            one.pressed_frequency,
-            "Hz",
-            uncertainty=one.pressed_uncertainty,
-        ),
-        sheet.Value("frequency_shift", "Shift", one.frequency_shift, "Hz", uncertainty=one.shift_uncertainty),
-    ]
-    if one.drift is not None:
-        values.append(sheet.Value("drift", "Drift between both free spectra", one.drift, "Hz"))
-    values.append(sheet.quantity_value("normal_load", settings.normal_load))
-    return tuple(values)
+    contact = (
+        ("normal_stiffness", "Normal stiffness of the contact (95 %)", "N/m"),
+        ("decay_length", "Decay length of its force, load over stiffness (95 %)", "m"),
+        ("decay_length_by_ratio", "Decay length by the ratio of shifts at large and small drive (95 %)", "m"),
+        ("stiffness_ratio", "Stiffness at large over small drive", ""),
+        ("decay_length_combined", "Decay length by both (95 %)", "m"),
+    )
+    known = [(name, label, found, unit) for name, label, unit in contact if (found := getattr(one, name)) is not None]
+    frequencies = (
+        ("free_frequency", "Resonance without contact", one.free_frequency, one.free_uncertainty or None),
+        ("pressed_frequency", "Resonance under the load", one.pressed_frequency, one.pressed_uncertainty),
+        ("frequency_shift", "Shift", one.frequency_shift, one.shift_uncertainty),
+        *(() if one.drift is None else (("drift", "Drift between both free spectra", one.drift, None),)),
+    )
+    return (
+        *(_estimate(*each) for each in known),
+        *(sheet.Value(name, label, value, "Hz", uncertainty=error) for name, label, value, error in frequencies),
+        sheet.quantity_value("normal_load", settings.normal_load),
+    )
 
 
-def _estimate(name: str, label: str, estimate: LogEstimate, unit: str) -> sheet.Value:
-    """Estimate with its 95 % interval."""
-    return sheet.Value(name, label, estimate.median, unit, interval=estimate.interval)
+def _estimate(name: str, label: str, found: LogEstimate | float, unit: str) -> sheet.Value:
+    """Estimate with its 95 % interval, or a plain number."""
+    if isinstance(found, LogEstimate):
+        return sheet.Value(name, label, found.median, unit, interval=found.interval)
+    return sheet.Value(name, label, found, unit)

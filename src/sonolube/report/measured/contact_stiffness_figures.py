@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule
+from sonolube.charts import Axis, Chart, Line, Part, Points, Rule, one_panel
 from sonolube.checks import Complexes, Floats
 from sonolube.measurement.contact_stiffness.analysis import MeasuredContactStiffness
 from sonolube.measurement.contact_stiffness.resonance_fit import ResonanceFit
@@ -10,7 +10,7 @@ from sonolube.report.measured.sheet import captioned
 
 
 @captioned("Resonance free and pressed", "Measured (points) and fitted (lines); the marks are the resonances compared.")
-def resonances(found: MeasuredContactStiffness) -> Chart:
+def resonances_figure(found: MeasuredContactStiffness) -> Chart:
     """Spectra free, pressed, free again and at large drive, with fits and the resonances that were compared."""
     fits = _named(found)
     highest = max(fit.spectrum.frequency[-1] for _, fit in fits)
@@ -25,9 +25,8 @@ def resonances(found: MeasuredContactStiffness) -> Chart:
         compared = [one for one in fit.resonances if one in found.chosen]
         parts += [Rule(value=scale * one.frequency, colour=place, dash=place) for one in compared]
     kinds = ", ".join(sorted({fit.spectrum.quantity for _, fit in fits}))
-    level = Axis(label=f"Response by {kinds} over its maximum", logarithmic=True)
-    panel = Panel(x=Axis(label="Frequency", unit=unit), y=level, parts=tuple(parts))
-    return Chart(panels=(panel,), size=(6.4, 3.8), legend="top", legend_columns=4)
+    level = Axis(f"Response by {kinds} over its maximum", logarithmic=True)
+    return one_panel(Axis("Frequency", unit), level, parts, size=(6.4, 3.8), legend="top", legend_columns=4)
 
 
 def _named(found: MeasuredContactStiffness) -> list[tuple[str, ResonanceFit]]:

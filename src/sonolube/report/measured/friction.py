@@ -73,11 +73,9 @@ class FrictionSettings:
     motor: MotorCalibration | None = None
 
     def __post_init__(self) -> None:
-        require_positive(window_duration=self.window_duration)
-        if self.sliding_speed is not None:
-            require_positive(sliding_speed=self.sliding_speed)
-        if self.rotation_speed is not None:
-            require_positive(rotation_speed=self.rotation_speed)
+        speeds = {"sliding_speed": self.sliding_speed, "rotation_speed": self.rotation_speed}
+        stated = {name: speed for name, speed in speeds.items() if speed is not None}
+        require_positive(window_duration=self.window_duration, **stated)
 
 
 def friction_sheet(path: Path, *, settings: FrictionSettings) -> sheet.Sheet:
@@ -210,14 +208,14 @@ def _trace(
     """Fluctuation in windows, with the trace of the samples where they are at hand."""
     span = format_si(windows.window_duration, "s")
     caption = f"Samples in grey; mean of each window of {span}, and as a band the root mean square about it."
-    trace = sheet.captioned("Trace with windows", caption)(figures.trace)
+    trace = sheet.captioned("Trace with windows", caption)(figures.trace_chart)
     return sheet.Sheet(values=(_fluctuation(windows),), figures=(trace(t, signal, windows=windows, steady=steady),))
 
 
 def _cycle_figure(recording: "xr.Dataset", name: str) -> sheet.Figure:
     """Figure of a recording with one value a cycle."""
     along = channel_values(recording, "revolutions")
-    return figures.by_cycle(along, channel_values(recording, name), name)
+    return figures.by_cycle_figure(along, channel_values(recording, name), name)
 
 
 def _steady_state_or_none(windows: WindowStatistics, sliding_speed: float) -> SteadyStateOnset | None:
@@ -239,18 +237,15 @@ def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> s
     if not friction.steady:
         return sheet.Sheet(not_found=(f"steady friction: {friction.reason}",))
     level, error = friction.friction_force, friction.friction_force_uncertainty
-    values = [
+    values = (
         sheet.Value("steady_friction_force", "Steady friction force", level, "N", uncertainty=error),
         sheet.Value("steady_time", "Time to the steady state", friction.start_time, "s"),
         sheet.Value("steady_distance", "Sliding distance to the steady state", friction.sliding_distance, "m"),
-    ]
-    if fluctuation.steady:
-        distance = fluctuation.sliding_distance
-        values.append(
-            sheet.Value("steady_fluctuation_distance", "Sliding distance to a steady fluctuation", distance, "m")
-        )
-        return sheet.Sheet(values=tuple(values))
-    return sheet.Sheet(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
+    )
+    if not fluctuation.steady:
+        return sheet.Sheet(values=values, not_found=(f"steady fluctuation: {fluctuation.reason}",))
+    name, label = "steady_fluctuation_distance", "Sliding distance to a steady fluctuation"
+    return sheet.Sheet(values=(*values, sheet.Value(name, label, fluctuation.sliding_distance, "m")))
 
 
 def _steps_or_stick_slip(whole: "xr.Dataset", sliding: "xr.Dataset", rotation_speed: float | None) -> list[sheet.Sheet]:
@@ -272,14 +267,7 @@ def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> sheet.
     if not stick_slip.detected:
         return sheet.Sheet(not_found=(f"stick-slip: {stick_slip.reason}",))
     values = (
-        sheet.quantity_value("stick_slip_frequency", stick_slip.stick_slip_frequency),
-        sheet.quantity_value(
-            "stick_slip_amplitude",
-            stick_slip.stick_slip_amplitude,
-            uncertainty=stick_slip.stick_slip_amplitude_uncertainty,
-            interval=stick_slip.stick_slip_amplitude_interval,
-        ),
-        sheet.quantity_value("stick_slip_fraction", stick_slip.stick_slip_fraction),
+        *(sheet.field_value(stick_slip, f"stick_slip_{name}") for name in ("frequency", "amplitude", "fraction")),
         sheet.Value("force_drops", "Slips found", float(stick_slip.force_drops), ""),
     )
     return sheet.Sheet(values=values)
@@ -297,7 +285,9 @@ def _cycles(recording: "xr.Dataset") -> sheet.Sheet:
         error = float(work.std(ddof=1) / work.size**0.5) if work.size > 1 else None
         label = f"Work of friction per cycle, mean of {work.size}"
         values.append(sheet.Value("work_per_cycle", label, float(work.mean()), "J", uncertainty=error))
-    figure = figures.loops(channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force"))
+    figure = figures.loops_figure(
+        channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force")
+    )
     return sheet.Sheet(values=tuple(values), figures=(figure,))
 
 
@@ -318,7 +308,7 @@ def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorCali
     mean = float(trace.friction_force.mean())
     # all windows share the errors of torque constant and idle current, so that averaging does not lower them
     error = float(np.sqrt(np.mean(trace.friction_force_uncertainty**2)))
-    figure = figures.motor_trace(trace)
+    figure = figures.motor_trace_figure(trace)
     return sheet.Sheet(values=(sheet.quantity_value("friction_force", mean, uncertainty=error),), figures=(figure,))
 
 

@@ -24,7 +24,7 @@ def comparison_sheet(with_vibration: Sequence[sheet.Sheet], without_vibration: S
         [value.value for test in sheets if (value := _value(test, level))]
         for sheets in (with_vibration, without_vibration)
     )
-    figure = figures.comparison(_named(without_vibration, still), _named(with_vibration, vibrated), level)
+    figure = figures.comparison_figure(_named(without_vibration, still), _named(with_vibration, vibrated), level)
     sections = [
         sheet.attempted(partial(_reduction, vibrated, still), what="interval of the reduction"),
         sheet.attempted(partial(_significance, vibrated, still), what="significance"),

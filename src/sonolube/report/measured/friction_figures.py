@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule, Zone, envelope
+from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule, Zone, envelope, one_panel
 from sonolube.checks import Floats
 from sonolube.measurement.friction.motor_current import MotorFrictionTrace
 from sonolube.measurement.friction.running_in import SteadyStateOnset
@@ -16,12 +16,12 @@ from sonolube.vocabulary import quantities
 
 _WIDE = (7.0, 3.2)
 _MOST: Final = 20_000  # values of a loop
-_FORCE: Final = Axis(label="Friction force", unit="N")
-_TIME: Final = Axis(label="Time", unit="s")
-_AXES: Final = {"friction_force": _FORCE, "friction_coefficient": Axis(label="Coefficient of friction")}
+_FORCE: Final = Axis("Friction force", "N")
+_TIME: Final = Axis("Time", "s")
+_AXES: Final = {"friction_force": _FORCE, "friction_coefficient": Axis("Coefficient of friction")}
 
 
-def trace(
+def trace_chart(
     t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyStateOnset | None
 ) -> Chart:
     """Samples over time with the means and fluctuations of windows and the begin of the steady state."""
@@ -38,22 +38,21 @@ def trace(
         start = windows.time[0] + steady.start_time
         label = f"steady after {steady.sliding_distance:.3g} m"
         parts.append(Rule(value=start, label=label, colour=1, dash=1))
-    panel = Panel(x=_TIME, y=_axis(windows.channel), parts=tuple(parts))
-    return Chart(panels=(panel,), size=_WIDE, legend="top", legend_columns=4)
+    return one_panel(_TIME, _axis(windows.channel), parts, size=_WIDE, legend="top", legend_columns=4)
 
 
 @captioned("Trace by cycle", "One value a cycle, as the instrument gives it.")
-def by_cycle(cycles: Floats, signal: Floats, name: str) -> Chart:
+def by_cycle_figure(cycles: Floats, signal: Floats, name: str) -> Chart:
     """Signal with one value a cycle over the number of the cycle."""
     parts = (Line(x=cycles, y=signal, weight=0.6), Points(x=cycles, y=signal, is_faint=True))
-    return Chart(panels=(Panel(x=Axis(label="Cycle"), y=_axis(name), parts=parts),), size=_WIDE)
+    return one_panel(Axis("Cycle"), _axis(name), parts, size=_WIDE)
 
 
 @captioned(
     "Friction over voltage",
     "Mean and its standard error at each step, and the reduction of the friction without voltage.",
 )
-def voltage_steps(steps: Sequence[VoltageStep]) -> Chart:
+def voltage_steps_figure(steps: Sequence[VoltageStep]) -> Chart:
     """Friction and its reduction over the voltage."""
     driven = [step for step in steps if step.friction_reduction is not None]
     force = Points(
@@ -73,8 +72,8 @@ def voltage_steps(steps: Sequence[VoltageStep]) -> Chart:
     axes = (("Friction force", "N", force), ("Friction reduction", "%", reduction))
     panels = [
         Panel(
-            x=Axis(label="Voltage, peak to peak", unit="V", lowest=0.0),
-            y=Axis(label=label, unit=unit, lowest=None if (points.y < 0).any() else 0.0),
+            x=Axis("Voltage, peak to peak", "V", lowest=0.0),
+            y=Axis(label, unit, lowest=None if (points.y < 0).any() else 0.0),
             parts=(points,),
         )
         for label, unit, points in axes
@@ -86,7 +85,7 @@ def voltage_steps(steps: Sequence[VoltageStep]) -> Chart:
     "Stick-slip at the steps of the voltage",
     "Samples in grey with the bursts of stick-slip shaded; mean fall of the force in a slip with its 95 % interval.",
 )
-def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
+def stick_slip_figure(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
     """Friction over time with the bursts of stick-slip, and the fall in a slip over the voltage."""
     found = [step for step in steps if step.stick_slip.detected]
     bursts = [burst for step in found for burst in step.stick_slip.bursts]
@@ -103,8 +102,8 @@ def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
         colour=1,
         marker=1,
     )
-    voltage = Axis(label="Voltage, peak to peak", unit="V", lowest=0.0, highest=1.05 * float(_voltages(steps).max()))
-    fall = Axis(label="Fall in a slip", unit="mN", lowest=0.0, highest=1.15 * float(ends.max()))
+    voltage = Axis("Voltage, peak to peak", "V", lowest=0.0, highest=1.05 * float(_voltages(steps).max()))
+    fall = Axis("Fall in a slip", "mN", lowest=0.0, highest=1.15 * float(ends.max()))
     panels = (Panel(x=_TIME, y=_FORCE, parts=left), Panel(x=voltage, y=fall, parts=(points,)))
     return Chart(panels=panels, size=_WIDE, columns=2, widths=(2, 1))
 
@@ -112,25 +111,26 @@ def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> Chart:
 @captioned(
     "Friction over velocity", "Every cycle of the recording; the work is the area of the loop over displacement."
 )
-def loops(velocity: Floats, force: Floats) -> Chart:
+def loops_figure(velocity: Floats, force: Floats) -> Chart:
     """Friction over velocity."""
     stride = max(1, velocity.size // _MOST)
     zero = (Rule(value=0.0, along="y", colour="0.5", dash=0), Rule(value=0.0, colour="0.5", dash=0))
     parts = (Line(x=velocity[::stride], y=force[::stride], weight=0.6), *zero)
-    return Chart(panels=(Panel(x=Axis(label="Velocity", unit="m/s"), y=_FORCE, parts=parts),), size=(4.2, 3.4))
+    return one_panel(Axis("Velocity", "m/s"), _FORCE, parts, size=(4.2, 3.4))
 
 
 @captioned("Friction by the motor current", "Mean in each window with its standard uncertainty.")
-def motor_trace(motor: MotorFrictionTrace) -> Chart:
+def motor_trace_figure(motor: MotorFrictionTrace) -> Chart:
     """Friction by the motor current over time with its uncertainty."""
     force = motor.friction_force
     points = Points(x=motor.time, y=force, y_error=motor.friction_force_uncertainty)
-    panel = Panel(x=_TIME, y=_FORCE, parts=(Line(x=motor.time, y=force), points))
-    return Chart(panels=(panel,), size=_WIDE)
+    return one_panel(_TIME, _FORCE, (Line(x=motor.time, y=force), points), size=_WIDE)
 
 
 @captioned("Tests with and without vibration", "Each test, and the mean of its kind.")
-def comparison(without: Sequence[tuple[str, float]], with_vibration: Sequence[tuple[str, float]], level: str) -> Chart:
+def comparison_figure(
+    without: Sequence[tuple[str, float]], with_vibration: Sequence[tuple[str, float]], level: str
+) -> Chart:
     """Friction of single tests, by name, without and with vibration, and the mean of each kind."""
     parts: list[Part] = []
     for place, (tests, name) in enumerate([(without, "without"), (with_vibration, "with")]):
@@ -150,9 +150,9 @@ def comparison(without: Sequence[tuple[str, float]], with_vibration: Sequence[tu
     kind = Axis(lowest=-0.5, highest=1.5, words=("without", "with vibration"))
     highest = max(value for _, value in (*without, *with_vibration))
     known = level in _AXES or level in quantities()
-    axis = _axis(level) if known else Axis(label="Steady friction", unit="N")
-    y = Axis(label=axis.label, unit=axis.unit, lowest=0.0, highest=1.12 * highest)
-    return Chart(panels=(Panel(x=kind, y=y, parts=tuple(parts)),), size=(3.8, 3.2))
+    axis = _axis(level) if known else Axis("Steady friction", "N")
+    y = Axis(axis.label, axis.unit, lowest=0.0, highest=1.12 * highest)
+    return one_panel(kind, y, parts, size=(3.8, 3.2))
 
 
 def _axis(name: str) -> Axis:
@@ -160,7 +160,7 @@ def _axis(name: str) -> Axis:
     if name in _AXES:
         return _AXES[name]
     known = quantities().get(name)
-    return Axis(label=name) if known is None else Axis(label=known.meaning, unit=known.unit)
+    return Axis(name) if known is None else Axis(known.meaning, known.unit)
 
 
 def _voltages(steps: Sequence[VoltageStep]) -> Floats:

@@ -49,37 +49,18 @@ def groove_sheet(
     groove = measure_groove(file.height_map, track_number=track_number)
     values = [
         sheet.Value("track_count", "Wear tracks in the field", groove.track_count, ""),
-        sheet.quantity_value(
-            "wear_volume",
-            groove.wear_volume,
-            uncertainty=groove.wear_volume_uncertainty,
-            interval=groove.wear_volume_interval,
-        ),
-        sheet.Value("pile_up_volume", "Volume of ridges and projections", groove.pile_up_volume, "m3"),
-        sheet.Value("net_volume", "Net volume lost in the field", groove.net_volume, "m3"),
-        sheet.quantity_value("groove_width", groove.groove_width, interval=groove.groove_width_interval),
-        sheet.Value(
-            "groove_depth",
-            "Greatest depth of the mean section",
-            groove.groove_depth,
-            "m",
-            interval=groove.groove_depth_interval,
-        ),
-        sheet.Value(
-            "cross_section_area",
-            "Area of the mean section",
-            groove.cross_section_area,
-            "m2",
-            interval=groove.cross_section_area_interval,
-        ),
-        sheet.Value("track_length", "Length of track in the field", groove.track_length, "m"),
+        sheet.field_value(groove, "wear_volume"),
+        sheet.field_value(groove, "pile_up_volume", "Volume of ridges and projections", "m3"),
+        sheet.field_value(groove, "net_volume", "Net volume lost in the field", "m3"),
+        sheet.field_value(groove, "groove_width"),
+        sheet.field_value(groove, "groove_depth", "Greatest depth of the mean section", "m"),
+        sheet.field_value(groove, "cross_section_area", "Area of the mean section", "m2"),
+        sheet.field_value(groove, "track_length", "Length of track in the field", "m"),
     ]
     if groove.track_count > 1:
         values.insert(1, sheet.Value("track_number", "The one measured", groove.track_number, ""))
     if groove.track.groove_diameter < _STRAIGHT * groove.track_length:
-        values.append(
-            sheet.quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
-        )
+        values.append(sheet.field_value(groove.track, "groove_diameter", "Diameter of the track's arc"))
     caveats = (*file.caveats, *((groove.caveat,) if groove.caveat else ()))
     sections = [
         sheet.Sheet(values=tuple(values), figures=_figures(groove), caveats=caveats),
@@ -118,7 +99,7 @@ def ring_sheet(
         columns=(sheet.Column("scan", "Scan"), sheet.Column("cross_section_area", "Area", "m2")),
         rows=tuple(zip(counted, map(float, ring.cross_section_area), strict=True)),
     )
-    figure = figures.ring(ring)
+    figure = figures.ring_figure(ring)
     section = sheet.Sheet(values=tuple(values), tables=(table,), figures=(figure,), caveats=ring.excluded_scans)
     return sheet.joined([section], title=title, source={}), ring
 
@@ -126,11 +107,8 @@ def ring_sheet(
 def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> sheet.Sheet:
     """Wear reduction by vibration from worn rings, with its interval."""
     reduction: WearReduction = wear_reduction_between_tracks(without, with_vibration)
-    caveats: tuple[str, ...] = ()
-    if not reduction.between_specimens:
-        caveats = (
-            "the interval covers the scatter along each ring only, not that between specimens: test more specimens",
-        )
+    caveat = "the interval covers the scatter along each ring only, not that between specimens: test more specimens"
+    caveats = () if reduction.between_specimens else (caveat,)
     value = sheet.quantity_value("wear_reduction", reduction.wear_reduction, interval=reduction.interval)
     title = f"{len(with_vibration)} ring with vibration against {len(without)} without"
     return sheet.joined([sheet.Sheet(values=(value,), caveats=caveats)], title=title, source={})
@@ -147,7 +125,7 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
         sheet.quantity_value("tip_radius", cap.tip_radius),
     )
     captioned = sheet.captioned("Scar of the pin", "Heights over the ball; the line goes round the scar.")
-    figure = captioned(figures.height_map)(cap.levelled, cap.worn)
+    figure = captioned(figures.worn_map_chart)(cap.levelled, cap.worn)
     part = sheet.Sheet(values=values, figures=(figure,), caveats=file.caveats)
     return sheet.joined([part], title=path.name, source=surface_source(file))
 
@@ -157,9 +135,9 @@ def _figures(groove: Groove) -> tuple[sheet.Figure, ...]:
     map_caption = "Heights over the unworn surface; the line goes round what counts as worn."
     curve_caption = "Of the whole field over the unworn surface; the groove is its tail."
     return (
-        figures.view(groove),
-        figures.sections(groove),
-        sheet.captioned("Map", map_caption)(figures.height_map)(groove.levelled, groove.worn),
+        figures.view_figure(groove),
+        figures.sections_figure(groove),
+        sheet.captioned("Map", map_caption)(figures.worn_map_chart)(groove.levelled, groove.worn),
         sheet.captioned("Abbott curve", curve_caption)(abbott)(material_ratio_curve(groove.levelled)),
     )
 
@@ -169,6 +147,6 @@ def _marks(groove: Groove) -> sheet.Sheet:
     marks = track_marks(groove)
     if marks.dot_spacing is None:
         return sheet.Sheet(not_found=(f"marks along the track: {marks.reason}",))
-    figure = figures.marks(marks)
+    figure = figures.marks_figure(marks)
     value = sheet.quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
     return sheet.Sheet(values=(value,), figures=(figure,))

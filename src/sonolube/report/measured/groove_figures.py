@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule, Zone
+from sonolube.charts import Axis, Chart, Line, Part, Points, Rule, Zone, one_panel
 from sonolube.checks import Floats
 from sonolube.measurement.wear_track import WearTrack
 from sonolube.models.surfaces import HeightMap
@@ -25,7 +25,7 @@ _BLOCKS = 110  # along the longer side of a view
 _SINGLE = 9  # sections shown
 
 
-def view(groove: Groove) -> sheet.Figure:
+def view_figure(groove: Groove) -> sheet.Figure:
     """Three-dimensional view of the groove, the vertical stretched."""
     caption = "Heights over the unworn surface, the vertical stretched."
     return sheet.Figure(title="The groove", drawing=Drawing(draw=partial(_view, groove), caption=caption, forms=()))
@@ -57,7 +57,7 @@ def _view(groove: Groove) -> "Figure":
     "Cross-sections",
     "Single sections square to the track in grey, the mean in colour, its edges where it meets the unworn surface.",
 )
-def sections(groove: Groove) -> Chart:
+def sections_figure(groove: Groove) -> Chart:
     """Single cross-sections, and the mean one with its edges."""
     single, mean = groove.cross_sections, groove.mean_cross_section
     chosen = np.linspace(0, single.arc_length.size - 1, _SINGLE + 2).round().astype(int)[1:-1]
@@ -70,11 +70,10 @@ def sections(groove: Groove) -> Chart:
         Rule(value=0.0, along="y", label="unworn surface", colour=1, dash=1),
         Points(x=edges, y=np.zeros(2), label="edges", colour=1, marker=1),
     )
-    panel = Panel(x=Axis(label="Distance from the track", unit="mm"), y=Axis(label="Height", unit="µm"), parts=parts)
-    return Chart(panels=(panel,), size=(6.4, 3.2), legend="top")
+    return one_panel(Axis("Distance from the track", "mm"), Axis("Height", "µm"), parts, size=(6.4, 3.2), legend="top")
 
 
-def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> Chart:
+def worn_map_chart(levelled: HeightMap, worn: NDArray[np.bool_]) -> Chart:
     """Heights over the unworn surface, with a line round what counts as worn."""
     _, per_metre = length_scale(levelled.x)
     x, y = _outline(per_metre * levelled.x, per_metre * levelled.y, worn)
@@ -95,7 +94,7 @@ def _outline(x: Floats, y: Floats, inside: NDArray[np.bool_]) -> tuple[Floats, F
     "Sections round the ring",
     "Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
 )
-def ring(worn: WearTrack) -> Chart:
+def ring_figure(worn: WearTrack) -> Chart:
     """Area of the mean section of each scan, with the mean of the ring and its 95 % interval."""
     area = 1e12 * worn.cross_section_area
     circumference = math.pi * worn.groove_diameter
@@ -106,15 +105,14 @@ def ring(worn: WearTrack) -> Chart:
         Rule(value=float(area.mean()), along="y", label="mean", colour=0, dash=0),
         Points(x=place, y=area, label="scans", colour=1, marker=1),
     )
-    panel = Panel(x=Axis(label="Scan", ticks=tuple(place)), y=Axis(label="Section", unit="µm²"), parts=parts)
-    return Chart(panels=(panel,), size=(4.6, 3.0), legend="top")
+    return one_panel(Axis("Scan", ticks=tuple(place)), Axis("Section", "µm²"), parts, size=(4.6, 3.0), legend="top")
 
 
 @captioned(
     "Spectrum along the track",
     "Power of the groove's floor along the track over its background; the peak is the marks' spacing.",
 )
-def marks(track: TrackMarks) -> Chart:
+def marks_figure(track: TrackMarks) -> Chart:
     """Power spectrum along the track over its background."""
     inner = track.wavenumber > 0
     k = track.wavenumber[inner]
@@ -125,8 +123,8 @@ def marks(track: TrackMarks) -> Chart:
         Line(x=k, y=background, label="background", colour=1, dash=1),
         *peak,
     )
-    density = Axis(label="Power spectral density", unit="m³", logarithmic=True)
-    return Chart(panels=(Panel(x=WAVENUMBER, y=density, parts=parts),), size=(4.6, 3.0))
+    density = Axis("Power spectral density", "m³", logarithmic=True)
+    return one_panel(WAVENUMBER, density, parts, size=(4.6, 3.0))
 
 
 def _block_means(height: Floats, size: int) -> Floats:

@@ -79,8 +79,8 @@ def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> sheet.
         f"Measured and fitted by the {fit.residual} residual, and the residual: relative in magnitude,"
         " radians in phase.",
     )
-    figure = captioned(figures.circuit)(spectrum, fit.circuit)
-    circles = (figures.admittance_circle(spectrum, fit.circuit),) if spectrum.has_phase else ()
+    figure = captioned(figures.circuit_chart)(spectrum, fit.circuit)
+    circles = (figures.admittance_circle_figure(spectrum, fit.circuit),) if spectrum.has_phase else ()
     values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
     return sheet.Sheet(values=values, figures=(figure, *circles), caveats=fit.caveats)
 
@@ -96,7 +96,7 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: St
         "Impedance with the fitted stack",
         f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
     )
-    figure = captioned(figures.stack)(spectrum, initial.in_structure(fit.stack))
+    figure = captioned(figures.stack_chart)(spectrum, initial.in_structure(fit.stack))
     return sheet.Sheet(values=values, figures=(figure,), caveats=fit.caveats)
 
 

@@ -49,10 +49,11 @@ def profile_sheet(
         sheet.Sheet(caveats=file.caveats),
         _parameters(found),
         _settings(found, spacing),
-        sheet.Sheet(figures=(figures.profile(found, spacing=spacing),)),
+        sheet.Sheet(figures=(figures.profile_figure(found, spacing=spacing),)),
         sheet.attempted(partial(_spectrum, found, spacing), what="spectrum"),
     ]
-    return sheet.joined(parts, title=file.path.name, source=source | {"setting class": _setting_class(found)})
+    setting_class = f"{found.setting_class} of ISO 21920-3" if found.setting_class else "none of ISO 21920-3"
+    return sheet.joined(parts, title=file.path.name, source=source | {"setting class": setting_class})
 
 
 def _parameters(found: ProfileEvaluation) -> sheet.Sheet:
@@ -86,12 +87,9 @@ def _settings(found: ProfileEvaluation, spacing: float) -> sheet.Sheet:
     )
 
 
-def _setting_class(found: ProfileEvaluation) -> str:
-    """Setting class of ISO 21920-3, or that its defaults do not apply."""
-    return f"{found.setting_class} of ISO 21920-3" if found.setting_class else "none of ISO 21920-3"
-
-
 def _spectrum(found: ProfileEvaluation, spacing: float) -> sheet.Sheet:
     """Figure of the power spectrum of the primary profile."""
     row = HeightMap(height=found.primary[None, :], spacing_x=spacing, spacing_y=spacing)
-    return sheet.Sheet(figures=(figures.spectrum(surfaces.profile_spectrum(row), cutoff=found.long_cutoff_length),))
+    return sheet.Sheet(
+        figures=(figures.spectrum_figure(surfaces.profile_spectrum(row), cutoff=found.long_cutoff_length),)
+    )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sonolube.charts import Axis, Chart, Line, Panel, Part, Rule, envelope
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Rule, envelope, one_panel
 from sonolube.models.surfaces import ProfileEvaluation, ProfileSpectrum
 from sonolube.report.measured.sheet import captioned
 from sonolube.report.measured.surface_figures import WAVENUMBER, length_scale
@@ -11,7 +11,7 @@ _BINS = 5000  # along the page, more than it resolves
 
 
 @captioned("Profile", "Above, the primary profile without form; below, the profile evaluated, with its sections.")
-def profile(found: ProfileEvaluation, *, spacing: float) -> Chart:
+def profile_figure(found: ProfileEvaluation, *, spacing: float) -> Chart:
     """Primary profile above the one evaluated."""
     x = spacing * np.arange(found.primary.size, dtype=np.float64)
     across, per_metre = length_scale(x)
@@ -26,15 +26,15 @@ def profile(found: ProfileEvaluation, *, spacing: float) -> Chart:
         unit, scale = length_scale(heights)
         place, height = envelope(per_metre * x[start : start + heights.size], scale * heights, bins=_BINS)
         parts: tuple[Part, ...] = (Line(x=place, y=height, colour=colour, weight=0.6), *others)
-        panels.append(Panel(x=Axis(label="x", unit=across), y=Axis(label="Height", unit=unit), parts=parts))
+        panels.append(Panel(x=Axis("x", across), y=Axis("Height", unit), parts=parts))
     return Chart(panels=tuple(panels), size=(7.4, 4.2), shares_x=True)
 
 
 @captioned("Power spectrum", "Of the primary profile, two-sided; dashed, the cutoff of the L-filter.")
-def spectrum(found: ProfileSpectrum, *, cutoff: float | None) -> Chart:
+def spectrum_figure(found: ProfileSpectrum, *, cutoff: float | None) -> Chart:
     """Power spectral density of a profile."""
     inner = (found.wavenumber > 0) & (found.profile_spectral_density > 0)
     curve = Line(x=found.wavenumber[inner], y=found.profile_spectral_density[inner], weight=0.6)
     filtered = () if cutoff is None else (Rule(value=1 / cutoff, colour="0.3", dash=1),)
-    density = Axis(label="Power spectral density", unit="m³", logarithmic=True)
-    return Chart(panels=(Panel(x=WAVENUMBER, y=density, parts=(curve, *filtered)),), size=(4.6, 3.2))
+    density = Axis("Power spectral density", "m³", logarithmic=True)
+    return one_panel(WAVENUMBER, density, (curve, *filtered), size=(4.6, 3.2))

@@ -55,13 +55,12 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> sheet.Sheet:
         label, spread = "Relative standard deviation of the speed of the turns", float(turns.std(ddof=1)) / speed
         values.append(sheet.Value("speed_variation", label, spread, ""))
     pictures = (
-        figures.speed(rotation),
-        figures.pulses(channel_values(recording, "time"), channel_values(recording, "magnetic_flux_density"), rotation),
+        figures.speed_figure(rotation),
+        figures.pulses_figure(
+            channel_values(recording, "time"), channel_values(recording, "magnetic_flux_density"), rotation
+        ),
     )
-    caveats: tuple[str, ...] = ()
-    if interpolated > rotation.time.size / 10:
-        caveats = (
-            f"{interpolated} of {rotation.time.size} pulses were missing; lower the prominence or move the probe",
-        )
+    caveat = f"{interpolated} of {rotation.time.size} pulses were missing; lower the prominence or move the probe"
+    caveats = (caveat,) if interpolated > rotation.time.size / 10 else ()
     section = sheet.Sheet(values=tuple(values), figures=pictures, caveats=caveats)
     return sheet.joined([section], title=path.name, source=recording_source(recording))

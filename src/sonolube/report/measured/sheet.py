@@ -203,6 +203,19 @@ def quantity_value(
     return Value(name, label or word.meaning, value, word.unit, uncertainty=uncertainty, interval=interval)
 
 
+def field_value(record: object, name: str, label: str = "", unit: str | None = None) -> Value:
+    """Value of a field of a record, with the uncertainty and the interval that the record has by the field's name."""
+    word = quantities().get(name)
+    return Value(
+        name,
+        label or (word.meaning if word else ""),
+        getattr(record, name),
+        word.unit if word and unit is None else unit or "",
+        uncertainty=getattr(record, f"{name}_uncertainty", None),
+        interval=getattr(record, f"{name}_interval", None),
+    )
+
+
 def quantity_columns(labels: Mapping[str, str]) -> tuple[Column, ...]:
     """Columns of quantities of the vocabulary, by name with their headings."""
     return tuple(Column(name, label, quantities()[name].unit) for name, label in labels.items())

@@ -187,14 +187,12 @@ def _summits(surface: surfaces.HeightMap) -> sheet.Sheet:
     """Density, radius and heights of the summits, and the bandwidth of the spectrum."""
     found, moments = surfaces.summit_statistics(surface), surfaces.spectral_moments(surface)
     for_contact = surfaces.contact_roughness(surface)
+    names = ("summit_density", "summit_radius", "summit_height_deviation", "mean_summit_height")
     return sheet.Sheet(
         values=(
-            sheet.quantity_value("summit_density", found.summit_density),
-            sheet.quantity_value("summit_radius", found.summit_radius),
-            sheet.quantity_value("summit_height_deviation", found.summit_height_deviation),
-            sheet.quantity_value("mean_summit_height", found.mean_summit_height),
-            sheet.quantity_value("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
-            sheet.quantity_value("roughness_parameter", for_contact.roughness_parameter),
+            *(sheet.field_value(found, name) for name in names),
+            sheet.field_value(moments, "bandwidth", "Bandwidth of the spectrum, Nayak's alpha"),
+            sheet.field_value(for_contact, "roughness_parameter"),
         )
     )
 

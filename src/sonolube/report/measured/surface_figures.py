@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from sonolube.charts import Axis, Bars, Chart, Field, Line, Note, Panel, Part, Rule
+from sonolube.charts import Axis, Bars, Chart, Field, Line, Note, Panel, Part, Rule, one_panel
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.surfaces import (
@@ -20,7 +20,7 @@ from sonolube.report.measured.sheet import captioned
 _PIXELS: Final = 700  # along the longer side, more than a page resolves
 _LONGEST: Final = 2000.0  # of a unit, before the next is taken
 _BINS: Final = 80  # of heights
-WAVENUMBER: Final = Axis(label="Wavenumber", unit="1/m", logarithmic=True, reciprocal=(1e6, "Wavelength [µm]"))
+WAVENUMBER: Final = Axis("Wavenumber", "1/m", logarithmic=True, reciprocal=(1e6, "Wavelength [µm]"))
 """Axis of a spectrum, with the wavelength above."""
 
 
@@ -33,9 +33,7 @@ def heights(surface: HeightMap) -> Chart:
     x = surface.x * per_metre
     at = Line(x=x[[0, -1]], y=np.full(2, surface.y[row] * per_metre), colour="0", dash=1, weight=0.6, has_halo=True)
     profile = Panel(
-        x=Axis(label="x", unit=across),
-        y=Axis(label="Height", unit=unit),
-        parts=(Line(x=x, y=surface.height[row] * scale, weight=0.6),),
+        x=Axis("x", across), y=Axis("Height", unit), parts=(Line(x=x, y=surface.height[row] * scale, weight=0.6),)
     )
     return Chart(panels=(map_panel(surface, at), profile), size=(7.4, 3.0), columns=2, widths=(1.15, 1))
 
@@ -58,8 +56,8 @@ def map_panel(surface: HeightMap, *others: Part) -> Panel:
     )
     width, height = (per_metre * n * each for n, each in ((columns, surface.spacing_x), (rows, surface.spacing_y)))
     return Panel(
-        x=Axis(label="x", unit=across, lowest=0.0, highest=width),
-        y=Axis(label="y", unit=across, lowest=height, highest=0.0),  # the first row is the top
+        x=Axis("x", across, lowest=0.0, highest=width),
+        y=Axis("y", across, lowest=height, highest=0.0),  # the first row is the top
         parts=(field, *others),
         has_equal_scales=True,
     )
@@ -79,14 +77,10 @@ def abbott(curve: MaterialRatioCurve) -> Chart:
     bars = Bars(places=middles, lengths=100 * counts / curve.height.size, breadth=width, colour=5)
     stride = max(1, curve.height.size // 4000)
     ratio = Line(x=100 * curve.material_ratio[::stride], y=scale * curve.height[::stride], label="material ratio")
-    y = Axis(label="Height above the mean", unit=unit)
+    y = Axis("Height above the mean", unit)
     panels = (
-        Panel(x=Axis(label="Pixels", unit="%"), y=y, parts=(bars,)),
-        Panel(
-            x=Axis(label="Material ratio", unit="%", lowest=0.0, highest=100.0),
-            y=y,
-            parts=(ratio, *_core(curve, scale)),
-        ),
+        Panel(x=Axis("Pixels", "%"), y=y, parts=(bars,)),
+        Panel(x=Axis("Material ratio", "%", lowest=0.0, highest=100.0), y=y, parts=(ratio, *_core(curve, scale))),
     )
     return Chart(panels=panels, size=(6.4, 3.2), columns=2, widths=(1, 2.2), shares_y=True)
 
@@ -116,8 +110,8 @@ def spectrum(radial: RadialSpectrum) -> Chart:
     """Radially averaged power spectral density."""
     inner = radial.wavenumber > 0
     curve = Line(x=radial.wavenumber[inner], y=radial.areal_spectral_density[inner])
-    density = Axis(label="Power spectral density", unit="m⁴", logarithmic=True)
-    return Chart(panels=(Panel(x=WAVENUMBER, y=density, parts=(curve,)),), size=(4.6, 3.2))
+    density = Axis("Power spectral density", "m⁴", logarithmic=True)
+    return one_panel(WAVENUMBER, density, (curve,), size=(4.6, 3.2))
 
 
 @captioned("Autocorrelation", "Along rows and columns; Sal is where it first falls to 0.2 in any direction.")
@@ -132,5 +126,4 @@ def correlation(found: Autocorrelation) -> Chart:
         Rule(value=0.2, along="y", colour="0.5"),
         Note(x=float(max(along_rows[-1], along_columns[-1])), y=0.2, text="0.2", side="above"),
     )
-    panel = Panel(x=Axis(label="Lag", unit=unit, lowest=0.0), y=Axis(label="Autocorrelation"), parts=parts)
-    return Chart(panels=(panel,), size=(4.6, 3.0))
+    return one_panel(Axis("Lag", unit, lowest=0.0), Axis("Autocorrelation"), parts, size=(4.6, 3.0))

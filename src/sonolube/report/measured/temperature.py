@@ -63,7 +63,7 @@ def temperature_sheet(path: Path, *, settings: TemperatureSettings) -> sheet.She
         sheet.quantity_value("final_temperature_rise", rise.value, interval=(rise.lower, rise.upper)),
         sheet.quantity_value("temperature_deviation", found.temperature_deviation),
     ]
-    pictures = [figures.response(t, value, found)]
+    pictures = [figures.response_figure(t, value, found)]
     if settings.without_vibration is not None:
         values.append(_rise_over_reference(t, value, settings.without_vibration, settings.mapping))
     terms = zip(found.time_constants, found.temperature_changes, strict=True)

@@ -174,7 +174,7 @@ def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> sheet.Ta
 def _shape(points: Sequence[str], shape: OperatingDeflectionShape) -> sheet.Sheet:
     """Operating shape, and the fraction of the motion that is in phase."""
     value = sheet.Value("standing_wave_fraction", "Fraction of the motion in phase", shape.standing_wave_fraction, "")
-    figure = figures.shape(points, shape)
+    figure = figures.shape_figure(points, shape)
     return sheet.Sheet(values=(value,), figures=(figure,))
 
 
@@ -183,7 +183,7 @@ def _assurance(motion: Complexes, modes: Floats) -> sheet.Sheet:
     assurance = modal_assurance_criterion(motion, modes)[0]
     columns = (sheet.Column("mode", "Mode"), sheet.Column("assurance", "Modal assurance"))
     rows = tuple((f"{place}", float(value)) for place, value in enumerate(assurance, start=1))
-    figure = figures.assurance(assurance)
+    figure = figures.assurance_figure(assurance)
     table = sheet.Table(name="modes", title="Modal assurance with computed modes", columns=columns, rows=rows)
     return sheet.Sheet(tables=(table,), figures=(figure,))
 
@@ -194,11 +194,10 @@ def _proportion(found_in: Sequence[tuple[str, float, float]]) -> sheet.Sheet:
     fit = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
     values = (
         sheet.quantity_value("amplitude_per_volt", fit.amplitude_per_volt, interval=(fit.lower, fit.upper)),
-        sheet.quantity_value("amplitude_deviation", fit.amplitude_deviation),
-        sheet.Value("curvature_p_value", "p value of the curvature", fit.curvature_p_value, ""),
+        sheet.field_value(fit, "amplitude_deviation"),
+        sheet.field_value(fit, "curvature_p_value", "p value of the curvature"),
     )
-    caveats: tuple[str, ...] = ()
-    if not fit.proportional:
-        caveats = (f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}",)
-    figure = figures.proportion([name for name, *_ in found_in], volts, amplitudes, fit)
+    caveat = f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}"
+    caveats = () if fit.proportional else (caveat,)
+    figure = figures.proportion_figure([name for name, *_ in found_in], volts, amplitudes, fit)
     return sheet.Sheet(values=values, figures=(figure,), caveats=caveats)

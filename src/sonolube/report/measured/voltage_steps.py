@@ -61,9 +61,9 @@ def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> shee
     force = channel_values(recording, "time"), channel_values(recording, "friction_force")
     sticking = [step for step in steps if step.stick_slip.detected]
     values = (*rotation, sheet.Value("stick_slip_steps", "Steps with stick-slip", float(len(sticking)), ""))
-    pictures = [figures.voltage_steps(steps)]
+    pictures = [figures.voltage_steps_figure(steps)]
     if sticking:
-        pictures.append(figures.stick_slip(*force, steps))
+        pictures.append(figures.stick_slip_figure(*force, steps))
     tables = [table, _slips(steps), *([_bursts(sticking)] if sticking else [])]
     first = next((step for step in steps if not step.stick_slip.resolved), steps[0])
     at = "the first" if first is steps[0] else format_si(first.voltage_peak_to_peak, "V")

@@ -4,6 +4,7 @@ from typing import Any
 
 from sonolube.identification import DecayLengthDecision, Interval, SwitchConditions, SwitchTable
 from sonolube.identification.decay_length.posterior import HYPOTHESES
+from sonolube.report.results.record_object import picked
 from sonolube.text.units import format_si
 
 _FEW_DRAWS = 30.0  # effective, below which probabilities are coarse
@@ -32,14 +33,9 @@ def rows(found: DecayLengthDecision) -> list[tuple[str, str]]:
 def decision_object(found: DecayLengthDecision, table: SwitchTable) -> dict[str, Any]:
     """Verdict, advice, probabilities, changes with their 80 % intervals, and misfits."""
     return {
-        "verdict": found.verdict,
-        "decided": found.decided,
-        "leading": found.leading,
-        "advice": found.advice,
+        **picked(found, "verdict", "decided", "leading", "advice"),
         "probabilities": dict(found.probabilities),
-        "growth": _interval(found.growth, ""),
-        "fall": _interval(found.fall, ""),
-        "zero_factor": _interval(found.zero_factor, ""),
+        **{name: _interval(getattr(found, name), "") for name in ("growth", "fall", "zero_factor")},
         "decay_length_at_start": _interval(found.length_at_start, "m"),
         "decay_length_at_end": _interval(found.length_at_end, "m"),
         "misfits": dict(found.misfits),

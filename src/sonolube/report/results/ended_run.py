@@ -8,6 +8,7 @@ from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_lines, dr
 from sonolube.laboratory.records import Run
 from sonolube.report.blocks import Block, Rows, Table, Verbatim
 from sonolube.report.results.next_step import next_command
+from sonolube.report.results.record_object import picked
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si
@@ -39,9 +40,7 @@ def run_object(result: RunResult, run: Run, *, simulated: bool) -> dict[str, Any
     """Outcome, folder and recordings, for JSON."""
     summary = run.summary
     return {
-        "title": summary.title,
-        "outcome": summary.outcome,
-        "reason": summary.reason,
+        **picked(summary, "title", "outcome", "reason"),
         "state": result.state.value,
         "simulated": simulated,
         "folder": str(summary.folder),

@@ -9,6 +9,7 @@ from sonolube.laboratory.closed_loop import HeldFriction, HoldMetrics, hold_metr
 from sonolube.laboratory.records import Run
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.ended_run import off_text
+from sonolube.report.results.record_object import picked
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si
@@ -35,8 +36,7 @@ def held_object(rig: Rig, held: HeldFriction, design: ControlDesign, run: Run, *
     """Reference, controller, margins, what was held at each speed, and the record, for JSON."""
     return {
         "rig": rig.title,
-        "outcome": held.outcome,
-        "reason": held.reason,
+        **picked(held, "outcome", "reason"),
         "safe": held.is_safe,
         "simulated": simulated,
         "folder": str(run.folder),
@@ -54,8 +54,8 @@ def _phases(held: HeldFriction) -> tuple[HoldMetrics, ...]:
 
 def _held_object(held: HeldFriction, design: ControlDesign) -> dict[str, Any]:
     """Reference, margins, gains, and friction without vibration."""
-    margins = {name: getattr(design.margins, name) for name in _MARGINS}
-    gains = {name: getattr(design.controller.gains, name) for name in ("proportional_gain", "integral_time")}
+    margins = picked(design.margins, *_MARGINS)
+    gains = picked(design.controller.gains, "proportional_gain", "integral_time")
     intrinsic = held.intrinsic_friction_force
     return {
         **si({"friction_force": held.hold.friction_force, **margins, **gains}),

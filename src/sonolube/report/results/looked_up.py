@@ -9,6 +9,7 @@ from sonolube.facts.materials import Material, SourcedValue, material_families
 from sonolube.facts.published import Column, Correction, Table as PublishedTable
 from sonolube.models.actuator import CatalogueActuator
 from sonolube.report.blocks import Block, Rows, Table
+from sonolube.report.results.record_object import picked
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities, si
 
@@ -45,9 +46,7 @@ def _source(known: SourcedValue) -> str:
 def material_object(shown: Material) -> dict[str, Any]:
     """Material with its properties and their sources."""
     return {
-        "title": shown.title,
-        "family": shown.family,
-        "is_class": shown.is_class,
+        **picked(shown, "title", "family", "is_class"),
         "aliases": list(shown.aliases),
         "properties": {key: asdict(known) for key, known in shown.properties.items()},
         "crystal_structure": asdict(shown.crystal_structure) if shown.crystal_structure else None,
@@ -76,19 +75,7 @@ def printed_quantities(shown: CatalogueActuator) -> dict[str, float]:
 
 def actuator_object(shown: CatalogueActuator) -> dict[str, Any]:
     """Actuator with the quantities of its data sheet."""
-    return {
-        "title": shown.title,
-        "kind": shown.kind,
-        **si(printed_quantities(shown)),
-        "source": shown.source,
-        "note": shown.note,
-    }
-
-
-def _table_heads(shown: PublishedTable) -> list[str]:
-    """Names of the columns with their units as printed."""
-    columns = list(shown.columns.values())
-    return [f"{column.name} [{_printed_unit(column)}]" if column.unit else column.name for column in columns]
+    return picked(shown, "title", "kind") | si(printed_quantities(shown)) | picked(shown, "source", "note")
 
 
 def _correction_line(correction: Correction) -> str:
@@ -104,17 +91,11 @@ def _correction_line(correction: Correction) -> str:
 def table_object(shown: PublishedTable) -> dict[str, Any]:
     """Table with its columns as printed and its corrections."""
     return {
-        "id": shown.id,
-        "title": shown.title,
-        "section": shown.section,
+        **picked(shown, "id", "title", "section"),
         "columns": {
-            name: {
-                "quantity": column.quantity,
-                "unit": _printed_unit(column),
-                "role": column.role,
-                "meaning": column.meaning,
-                "printed": list(column.printed),
-            }
+            name: {"quantity": column.quantity, "unit": _printed_unit(column)}
+            | picked(column, "role", "meaning")
+            | {"printed": list(column.printed)}
             for name, column in shown.columns.items()
         },
         "corrections": [asdict(correction) for correction in shown.corrections],
@@ -163,9 +144,7 @@ def material_blocks(shown: Material) -> list[Block]:
 
 def table_blocks(shown: PublishedTable) -> list[Block]:
     """Title, columns as printed, and corrections."""
-    rows = list(zip(*[column.printed for column in shown.columns.values()], strict=True))
-    return [
-        f"Table {shown.id}: {shown.title}",
-        Table(_table_heads(shown), rows),
-        *map(_correction_line, shown.corrections),
-    ]
+    columns = list(shown.columns.values())
+    heads = [f"{column.name} [{_printed_unit(column)}]" if column.unit else column.name for column in columns]
+    table = Table(heads, list(zip(*[column.printed for column in columns], strict=True)))
+    return [f"Table {shown.id}: {shown.title}", table, *map(_correction_line, shown.corrections)]

@@ -1,11 +1,18 @@
 """Published measurements of a rig under its own conditions, to stand beside its prediction."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from sonolube.rig import Rig
 from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
 
+_OF_BOTH = attrgetter(
+    *("contact.nominal_area", "contact.pair.effective_modulus", "contact.pair.yield_strength"),
+    *("normal_load", "sliding_speed", "friction_coefficient"),
+)
+_OF_TEST = attrgetter("frequency", "vibration_amplitude")
 _SAME = 0.02  # relative difference of conditions that were rounded in print
 
 
@@ -48,28 +55,10 @@ def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[Measurement, .
     """
     if rig.drive is None:
         return ()
-    own = {
-        "normal_load": rig.normal_load,
-        "sliding_speed": rig.sliding_speed,
-        "friction_coefficient": rig.friction_coefficient,
-        "frequency": rig.drive.frequency,
-        "vibration_amplitude": vibration_amplitude,
-    }
-    return tuple(Measurement(test=test) for test in friction_tests() if _same_contact(rig, test) and _close(own, test))
+    own = (*_OF_BOTH(rig), rig.drive.frequency, vibration_amplitude)
+    return tuple(Measurement(test=test) for test in friction_tests() if _near(own, (*_OF_BOTH(test), *_OF_TEST(test))))
 
 
-def _same_contact(rig: Rig, test: FrictionTest) -> bool:
-    pairs = (
-        (rig.contact.nominal_area, test.contact.nominal_area),
-        (rig.contact.pair.effective_modulus, test.contact.pair.effective_modulus),
-        (rig.contact.pair.yield_strength, test.contact.pair.yield_strength),
-    )
-    return all(_near(own, other) for own, other in pairs)
-
-
-def _close(own: dict[str, float], test: FrictionTest) -> bool:
-    return all(_near(value, getattr(test, name)) for name, value in own.items())
-
-
-def _near(own: float, other: float) -> bool:
-    return abs(own - other) <= _SAME * abs(other)
+def _near(own: Sequence[float], printed: Sequence[float]) -> bool:
+    """Whether conditions are those of a test as far as print rounds them."""
+    return all(abs(one - other) <= _SAME * abs(other) for one, other in zip(own, printed, strict=True))

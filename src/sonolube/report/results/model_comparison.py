@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
-from math import hypot, isfinite
+from math import hypot
 from typing import Any
 
 from sonolube.report.blocks import Block, Table
+from sonolube.report.results.record_object import finite, picked
 from sonolube.rig import FrictionPoint, Rig
 from sonolube.text.units import format_si
 from sonolube.validation.comparison import DATA_SETS, ONLY_PREDICTED, ComparedFit, FittedParameter, RigPrediction
@@ -97,22 +98,15 @@ def model_object(one: ComparedFit) -> dict[str, Any]:
             "out_of_range": list(fitted.out_of_range),
         }
     return {
-        "name": one.model.name,
-        "description": one.model.description,
-        "source": one.model.source,
+        **picked(one.model, "name", "description", "source"),
         "required_inputs": list(one.model.required_inputs),
         "sets": list(one.sets),
         "seen_by_default": [] if one.model.seen is None else list(one.model.seen.sets),
         "errors": errors,
         "fitted": list(map(parameter_object, one.parameters)),
         "predictions": [
-            {
-                "test": prediction.test.label,
-                "measured": prediction.test.friction_ratio,
-                "fitted": prediction.fitted,
-                "cross_validated": prediction.cross_validated,
-                "reason": prediction.reason,
-            }
+            {"test": prediction.test.label, "measured": prediction.test.friction_ratio}
+            | picked(prediction, "fitted", "cross_validated", "reason")
             for prediction in one.predictions
         ],
     }
@@ -140,15 +134,10 @@ def rig_object(rig: Rig, own: FrictionPoint, predictions: Sequence[RigPrediction
         "own_model": {
             "model": own.friction_model,
             "friction_ratio": finite(own.friction_ratio),
-            "reason": own.reason,
-            "amplitude_source": own.amplitude_source,
-            "amplitude_origin": own.amplitude_origin,
-            "vibration_amplitude": own.vibration_amplitude,
+            **picked(own, "reason", "amplitude_source", "amplitude_origin", "vibration_amplitude"),
         },
         "disagreement": disagreement(predictions),
-        "predictions": [
-            {"model": one.model.name} | {name: getattr(one, name) for name in _PREDICTED} for one in predictions
-        ],
+        "predictions": [{"model": one.model.name} | picked(one, *_PREDICTED) for one in predictions],
         "assumptions": dict(rig.assumptions),
     }
 
@@ -168,7 +157,7 @@ def runs_object(table: RunsTable, predictions: Sequence[RunsPrediction]) -> dict
     """Own runs: conditions with measured ratios, and the ratios and errors of each model."""
     return {
         "runs": table.runs,
-        "conditions": [{"label": one.label, "friction_ratio": one.friction_ratio} for one in table.conditions],
+        "conditions": [picked(one, "label", "friction_ratio") for one in table.conditions],
         "predictions": [
             {
                 "model": one.model.name,
@@ -181,11 +170,6 @@ def runs_object(table: RunsTable, predictions: Sequence[RunsPrediction]) -> dict
             for one in predictions
         ],
     }
-
-
-def finite(value: float) -> float | None:
-    """Value, or None where JSON has no notation for it."""
-    return value if isfinite(value) else None
 
 
 def fit_blocks(fits: Sequence[ComparedFit]) -> list[Block]:

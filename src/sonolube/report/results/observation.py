@@ -6,6 +6,7 @@ from sonolube.laboratory.records import Observation
 from sonolube.operating_system import quoted
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.ended_run import SIMULATED
+from sonolube.report.results.record_object import picked
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si, unit_of
 
@@ -21,17 +22,12 @@ def observation_line(seen: Observation) -> str:
 
 def observation_object(seen: Observation) -> dict[str, Any]:
     """State, step, times, means, set points and limits of a look at a run, in SI."""
-    times = {"protocol_time": seen.protocol_time, "duration": seen.duration, "time_left": seen.time_left}
     return {
         "folder": str(seen.folder),
         "title": seen.known.title,
         "simulated": bool(seen.known.facts.get("simulated", False)),
-        "outcome": seen.outcome,
-        "reason": seen.reason,
-        "state": seen.state,
-        "step": seen.step,
-        "step_kind": seen.step_kind,
-        **si(times, unit="s"),
+        **picked(seen, "outcome", "reason", "state", "step", "step_kind"),
+        **si(picked(seen, "protocol_time", "duration", "time_left"), unit="s"),
         "means": {name: {"value": value, "unit": unit} for name, (value, unit) in seen.means.items()},
         "set_points": si(seen.set_points),
         "trips": list(seen.trips),

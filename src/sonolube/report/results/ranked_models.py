@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from sonolube.report.results.model_comparison import by_reason, finite, parameter_object
+from sonolube.report.results.model_comparison import by_reason, parameter_object
+from sonolube.report.results.record_object import finite, picked
 from sonolube.rig import Rig, steady_vibration
 from sonolube.text.units import format_si
 from sonolube.validation.ranked_models import RankedModel
@@ -63,13 +64,7 @@ def fit_object(fit: RunsFit) -> dict[str, Any]:
     return {
         "runs": fit.table.runs,
         "conditions": [
-            {
-                "label": one.label,
-                "friction_ratio": one.friction_ratio,
-                "uncertainty": one.uncertainty,
-                "repeats": one.repeats,
-            }
-            for one in fit.table.conditions
+            picked(one, "label", "friction_ratio", "uncertainty", "repeats") for one in fit.table.conditions
         ],
         "scatter": fit.table.scatter,
         "models": list(map(_model_object, fit.models)),
@@ -89,9 +84,7 @@ def _model_object(model: RankedModel) -> dict[str, Any]:
         "source": model.fit.variant.source,
         "rms_unseen": finite(model.rms_unseen),
         "rms": finite(model.rms_fit),
-        "aicc": model.aicc,
-        "probability": model.probability,
-        "tied": model.tied,
+        **picked(model, "aicc", "probability", "tied"),
         "conditions_in_range": model.reached,
         "fitted": [{name: value for name, value in each if name not in _OF_PUBLISHED_SETS} for each in parameters],
         "unseen_ratio": list(model.unseen),
@@ -102,9 +95,7 @@ def _model_object(model: RankedModel) -> dict[str, Any]:
 def _next_object(one: NextCondition) -> dict[str, Any]:
     """Next condition with the ratios of both models."""
     return {
-        "vibration_amplitude": one.condition.vibration_amplitude,
-        "vibration_velocity": one.condition.vibration_velocity,
-        "sliding_speed": one.condition.sliding_speed,
+        **picked(one.condition, "vibration_amplitude", "vibration_velocity", "sliding_speed"),
         "models": [one.first, one.second],
         "friction_ratios": [one.first_ratio, one.second_ratio],
         "contrast": one.contrast,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.laboratory.catalogue import CatalogueEntry
 from sonolube.laboratory.records import Note, Run
+from sonolube.report.results.record_object import picked
 from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
@@ -46,19 +47,14 @@ def further_events(run: Run) -> list[str]:
 def run_object(run: Run) -> dict[str, Any]:
     """Outcome, channels, facts, recordings and events of a run, in SI."""
     summary, known = run.summary, run.known
-    notes = [
-        {"kind": note.kind, "time": note.time, "sample": note.sample, "facts": dict(note.facts)} for note in run.notes
-    ]
+    notes = [picked(note, "kind", "time", "sample") | {"facts": dict(note.facts)} for note in run.notes]
     return {
         "folder": str(summary.folder),
         "title": summary.title,
         "begun": summary.begun_text,
-        "outcome": summary.outcome,
-        "reason": summary.reason,
+        **picked(summary, "outcome", "reason"),
         "channels": list(summary.channels),
-        "samples": summary.samples,
-        "duration": summary.duration,
-        "gaps": summary.gaps,
+        **picked(summary, "samples", "duration", "gaps"),
         "facts": dict(known.facts),
         "versions": dict(known.versions),
         "sha256": dict(known.files),

@@ -3,6 +3,7 @@
 from typing import Any, Final
 
 from sonolube.models.wear import WearMechanismAssessment
+from sonolube.report.results.record_object import picked
 from sonolube.rig import LubricationPoint
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si
@@ -32,11 +33,8 @@ def regime_object(result: LubricationPoint, wear: WearMechanismAssessment | None
     """Coefficients of friction by method, the best of them, and the kind of wear."""
     methods = result.coefficients._asdict()
     return {
-        "best": result.best,
-        "friction_model": result.friction_model,
-        "amplitude_source": result.amplitude_source,
-        "amplitude_origin": result.amplitude_origin,
-        **si({name: getattr(result, name) for name in _QUANTITIES}),
+        **picked(result, "best", "friction_model", "amplitude_source", "amplitude_origin"),
+        **si(picked(result, *_QUANTITIES)),
         "friction_coefficient": si({name: float(value) for name, value in methods.items()}, unit=""),
         **({} if wear is None else {"wear": _wear_object(wear)}),
     }

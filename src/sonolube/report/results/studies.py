@@ -4,6 +4,7 @@ from typing import Any
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import PreviousStudy, Statement
+from sonolube.report.results.record_object import picked
 from sonolube.rig import Rig, friction_point
 from sonolube.text.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint
@@ -56,11 +57,9 @@ def _number(entry: Statement) -> str:
 def study_object(study: PreviousStudy) -> dict[str, Any]:
     """Study with its numbers by quantity."""
     return {
-        "study": study.study,
-        "section": study.section,
+        **picked(study, "study", "section"),
         "references": list(study.references),
-        "direction": study.direction,
-        "summary": study.summary,
+        **picked(study, "direction", "summary"),
         **{
             entry.quantity: {
                 "value": entry.number.value,

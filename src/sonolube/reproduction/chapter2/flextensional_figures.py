@@ -10,11 +10,8 @@ from sonolube.checks import Floats
 from sonolube.facts.published import published_number, si_value
 from sonolube.figure import LINES, MARKERS, ReportFigure
 from sonolube.models.actuator import linear_amplifier_power
-from sonolube.models.contact import decay_length, separation
-from sonolube.models.friction import sine_stick_slip_ratio
-from sonolube.reproduction.chapter2.flextensional import gain_of_slow_test
+from sonolube.reproduction.chapter2.flextensional import gain_of_slow_test, slow_test, stick_slip_ratio
 from sonolube.reproduction.plots import axes_row, curve_style, draw_printed, line_style
-from sonolube.validation.published_tests import FrictionTest, friction_tests
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,8 +27,8 @@ def flextensional_figures() -> Iterator[ReportFigure]:
     """Figures of section 2.2."""
     gain = gain_of_slow_test()
     assumed = (
-        f"Asperity stick-slip with R_q of Table 3.2 and a coefficient of friction of {_test().friction_coefficient:g}, "
-        "steel on steel in D 3.1.4: neither is printed for this actuator"
+        "Asperity stick-slip with R_q of Table 3.2 and a coefficient of friction of "
+        f"{slow_test().friction_coefficient:g}, steel on steel in D 3.1.4: neither is printed for this actuator"
     )
     yield ReportFigure(
         name="figure-2-13-voltage",
@@ -55,21 +52,7 @@ def flextensional_figures() -> Iterator[ReportFigure]:
 
 def reduction(*, gain: ArrayLike, sliding_speed: ArrayLike) -> Floats:
     """Friction reduction at a gain of the quasi-static stroke by asperity stick-slip. []"""
-    test = _test()
-    gain, speed = np.broadcast_arrays(np.asarray(gain, dtype=np.float64), np.asarray(sliding_speed, dtype=np.float64))
-    return 1 - sine_stick_slip_ratio(
-        decay_length=float(
-            decay_length(test.contact, separation=separation(test.contact, normal_load=test.normal_load))
-        ),
-        vibration_amplitude=gain * test.vibration_amplitude,
-        frequency=test.frequency,
-        sliding_speed=speed,
-    )
-
-
-def _test() -> FrictionTest:
-    """Test H-1, 2.6 N and 3.5 mm/s."""
-    return friction_tests("H")[0]
+    return 1 - stick_slip_ratio(slow_test(), gain=gain, sliding_speed=sliding_speed)
 
 
 def _over_voltage() -> "Figure":
@@ -79,7 +62,7 @@ def _over_voltage() -> "Figure":
     swing, speed, gain = si_value("2.2.5-voltage-peak-to-peak"), si_value("2.2.3-sliding-speed"), gain_of_slow_test()
     levels = np.concatenate([[0.0], highest])
     ratio = 1 - reduction(gain=np.where(levels > 0, gain, 0.0), sliding_speed=speed)
-    factor = si_value("2.2.2-pulling-force-factor") * _test().friction_coefficient
+    factor = si_value("2.2.2-pulling-force-factor") * slow_test().friction_coefficient
     for index, level in enumerate(_LEVELS):
         load = si_value(f"2.2.3-normal-load-{level}")
         pull.plot(levels, factor * load * ratio, **curve_style(index), label=f"{load:g} N")
@@ -115,7 +98,7 @@ def _over_speed() -> "Figure":
     measured = np.array([si_value(f"2.2.4-sliding-speed-{speed}") for speed in _SPEEDS])
     fine = np.union1d(measured, np.geomspace(2e-3, 0.2, 61))
     marks = np.searchsorted(fine, measured).tolist()
-    dry = _test().friction_coefficient * si_value("2.2.4-normal-load")
+    dry = slow_test().friction_coefficient * si_value("2.2.4-normal-load")
     force.plot(1e3 * fine, np.full(fine.size, dry), color="0.4", linestyle=LINES[2], label="without vibration")
     gain = gain_of_slow_test()
     for index, (value, label) in enumerate(((gain, f"gain {gain:.2g}"), (1.0, "quasi-static stroke"))):

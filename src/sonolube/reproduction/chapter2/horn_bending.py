@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.models import fem
-from sonolube.reproduction.chapter2.poisson_horn import HornShape, HornSolid
+from sonolube.reproduction.chapter2.poisson_horn import INCH, HornShape, HornSolid
 
-PAD_DISTANCE: Final = 4 * 0.0254
+PAD_DISTANCE: Final = 4 * INCH
 """Distance between the centres of the pads, assumed. [m]"""
 
-_PAD_LENGTH: Final = 0.5 * 0.0254
+_PAD_LENGTH: Final = 0.5 * INCH
 PAD_STIFFNESS: Final = 1e8
 """Stiffness of each pad, assumed: of half a gigapascal, a square inch wide and an eighth of an inch thick. [N/m]"""
 
-_CELL: Final = 0.25 * 0.0254
+_CELL: Final = 0.25 * INCH
 _ACROSS, _THROUGH = 3, 4  # elements
 
 

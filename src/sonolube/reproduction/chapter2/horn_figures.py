@@ -12,7 +12,7 @@ from sonolube.models.fem import trajectory_ellipse
 from sonolube.reproduction.chapter2.horn_friction import FACE_END, FaceFriction, driven_face, friction_on_face
 from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS
 from sonolube.reproduction.chapter2.horn_sensitivity import frequency_changes, node_positions
-from sonolube.reproduction.chapter2.poisson_horn import FaceMotion, axial_mode, printed_shape, printed_solid
+from sonolube.reproduction.chapter2.poisson_horn import INCH, FaceMotion, axial_mode, printed_shape, printed_solid
 from sonolube.reproduction.cube import HORNS, Horn
 from sonolube.reproduction.plots import axes_row, line_style, single_axes
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_INCH: Final = 0.0254
 _HORN_NOTE: Final = (
     "Horns of the printed first mode (ends tapered to 3/4 in over their last inch, handbook constants: assumed), "
     "loss factor 0.001, driven on the right end at 20 kHz to 8.5 um."
@@ -128,9 +127,9 @@ def _friction() -> "Figure":
     for axes, (index, horn) in zip(panels, enumerate(HORNS), strict=True):
         friction = friction_on_face(horn, frequency=si_value("2.1.2-welder-frequency"))
         _draw_transition_region(axes, horn, color="0.8")
-        axes.plot(friction.position / _INCH, 100 * friction.ratio, **line_style(index))
+        axes.plot(friction.position / INCH, 100 * friction.ratio, **line_style(index))
         axes.axhline(0, color="black", lw=0.8)
-        axes.set(xlabel="Position along the face [in]", xlim=(-FACE_END / _INCH, FACE_END / _INCH))
+        axes.set(xlabel="Position along the face [in]", xlim=(-FACE_END / INCH, FACE_END / INCH))
         axes.set_title(f"{horn} horn", fontsize=9)
     panels[0].set(ylabel="Friction over that at rest [%]", ylim=(-50, 100))
     band, *_ = panels[0].get_legend_handles_labels()[0]
@@ -150,8 +149,8 @@ def face_friction_chart(horn: Horn, friction: FaceFriction) -> Chart:
         Rule(value=1e3 * friction.node, label="node of the axial motion", colour="0"),
     )
     end = 1e3 * FACE_END
-    x = Axis(label="Position along the face, from its centre", unit="mm", lowest=-end, highest=end)
-    panel = Panel(x=x, y=Axis(label="Friction over that at rest", unit="%"), parts=parts)
+    x = Axis("Position along the face, from its centre", "mm", lowest=-end, highest=end)
+    panel = Panel(x=x, y=Axis("Friction over that at rest", "%"), parts=parts)
     title = f"{horn} horn; below zero the face drives the block"
     return Chart(panels=(panel,), size=(5.0, 3.2), title=title, legend="bottom")
 
@@ -159,7 +158,7 @@ def face_friction_chart(horn: Horn, friction: FaceFriction) -> Chart:
 def _nodes() -> "Figure":
     """Draw the position of the node of the steel horn under single asymmetries."""
     figure, axes = single_axes((7.2, 2.6))
-    inches = {asymmetry: node / _INCH for asymmetry, node in reversed(node_positions().items())}
+    inches = {asymmetry: node / INCH for asymmetry, node in reversed(node_positions().items())}
     _draw_transition_region(axes, "steel", color=COLOURS[1], alpha=0.3)
     bars = axes.barh(list(inches), list(inches.values()), color="0.55")
     axes.bar_label(bars, [f"{node:.3f}" for node in inches.values()], padding=3, size=8)
@@ -169,7 +168,7 @@ def _nodes() -> "Figure":
     return figure
 
 
-def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: float = 1.0, unit: float = _INCH) -> None:
+def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: float = 1.0, unit: float = INCH) -> None:
     """Draw the transition region of a horn in Table 2.1 as a band, over positions in a unit of that many metres."""
     start, end = (place / unit for place in _transition_region(horn))
     axes.axvspan(start, end, color=color, alpha=alpha, lw=0, label="transition region, Table 2.1")

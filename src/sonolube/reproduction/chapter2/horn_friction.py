@@ -22,7 +22,7 @@ from sonolube.validation.contacts import Bodies, poisson_contact
 _COEFFICIENT: Final = {"aluminium": "3.1.4-coefficient-1", "steel": "3.1.4-coefficient-2"}
 _POSITIONS: Final = 61  # on either side of the node
 _STEPS: Final = 256
-FACE_END: Final = 1.5 * 0.0254
+FACE_END: Final = 1.5 * poisson_horn.INCH
 """Distance from the centre to the ends of the flat face, the range of Table 2.1. [m]"""
 
 

@@ -8,20 +8,20 @@ from sonolube.reproduction.chapter2 import horn_friction
 from sonolube.reproduction.chapter2.horn_bending import PAD_DISTANCE, bending_line
 from sonolube.reproduction.chapter2.poisson_horn import (
     ASSUMED_SOLIDS,
+    INCH,
     assumed_shape,
     axial_mode,
     printed_shape,
     printed_solid,
 )
 from sonolube.reproduction.cube import HORNS, Horn
-from sonolube.reproduction.row import Row, RowKind, comparison_row
+from sonolube.reproduction.row import Row, default_model_row
 from sonolube.validation.contacts import Bodies
 
 REGION_ROWS: Final = {"aluminium": 1, "steel": 4}
 """Row of the transition region of each horn in Table 2.1, counted from 1."""
 
 _BENDING_LOAD: Final = 240.0  # N, the largest of D 2.1.2
-_INCH: Final = 0.0254
 _ASSUMED: Final = "ends tapered to 3/4 in over their last inch, handbook moduli and densities"
 
 
@@ -41,13 +41,12 @@ def _modes() -> Iterator[Row]:
             f"Finite elements, a free plain block with E and nu of Table 3.1 and {plain.density:g} kg/m3; the next "
             "modes, bending 3 and 4, lie 2.2 kHz away or more."
         )
-        yield comparison_row(
+        yield default_model_row(
             f"2.1.3-first-mode-{horn}",
             axial_mode(assumed_shape(), assumed).natural_frequency,
             f"Finite elements; assumed, and chosen so that both horns agree: {_ASSUMED} "
             f"({assumed.youngs_modulus / 1e9:g} GPa, {assumed.poisson_ratio:g}, {assumed.density:g} kg/m3).",
             suffix="assumed",
-            kind=RowKind.DEFAULT_MODEL,
             fitted="taper and moduli, with the mode of the other horn",
             alternatives={"plain block": (axial_mode(printed_shape(), plain).natural_frequency, plain_note)},
         )
@@ -62,12 +61,8 @@ def _transition_regions() -> Iterator[Row]:
         )
         resonant = _transition_limits(horn, resonance, f"driven at its own {resonance / 1e3:.1f} kHz")
         for side, (limit, note), alternative in zip(("start", "end"), driven, resonant, strict=True):
-            yield comparison_row(
-                f"table-2.1-{side}-{REGION_ROWS[horn]}",
-                limit,
-                note,
-                kind=RowKind.DEFAULT_MODEL,
-                alternatives={"driven at resonance": alternative},
+            yield default_model_row(
+                f"table-2.1-{side}-{REGION_ROWS[horn]}", limit, note, alternatives={"driven at resonance": alternative}
             )
 
 
@@ -77,7 +72,7 @@ def _transition_limits(horn: Horn, frequency: float, drive: str) -> list[tuple[f
     note = (
         "Position at which the friction of a block at 5 mm/s towards the node reverses: finite elements, "
         f"the horn of the printed mode ({_ASSUMED}), {drive}; springs of the contact of Table 3.1 with "
-        f"Mindlin's ratio. The node lies at {friction.node / _INCH:+.2f} in."
+        f"Mindlin's ratio. The node lies at {friction.node / INCH:+.2f} in."
     )
     return [(float(limit), note) for limit in horn_friction.transition_region(friction)]
 
@@ -99,9 +94,7 @@ def _friction() -> Iterator[Row]:
             "Springs of the contact of Table 3.1 with Mindlin's ratio, at the node of the motion by finite elements, "
             f"the same at every load. The motor force over the intrinsic friction is {driving}."
         )
-        yield comparison_row(
-            published, 1 - friction.at(friction.node), note, suffix="springs", kind=RowKind.DEFAULT_MODEL
-        )
+        yield default_model_row(published, 1 - friction.at(friction.node), note, suffix="springs")
 
 
 def _bending() -> Row:
@@ -110,12 +103,11 @@ def _bending() -> Row:
         horn: bending_line(printed_shape(), printed_solid(horn), normal_load=_BENDING_LOAD).largest_slope
         for horn in HORNS
     }
-    return comparison_row(
+    return default_model_row(
         "2.1.5-coefficient-off",
         si_value("3.1.4-coefficient-2") + slopes["aluminium"] - slopes["steel"],
         "Coefficient of the steel horn with the contribution of bending between the pads, by which section 2.1.6 "
         f"explains the difference: the bent face rises by {1e6 * slopes['aluminium']:.0f} um/m under {_BENDING_LOAD:g} "
         f"N, that of steel by {1e6 * slopes['steel']:.0f}; pads {1e3 * PAD_DISTANCE:.1f} mm apart are assumed.",
         suffix="bending",
-        kind=RowKind.DEFAULT_MODEL,
     )

@@ -8,11 +8,23 @@ from typing import Final
 import numpy as np
 
 from sonolube.models.fem import FaceSpring, Model
-from sonolube.reproduction.chapter2 import poisson_horn as horn
 from sonolube.reproduction.chapter2.horn_bending import PAD_STIFFNESS
 from sonolube.reproduction.chapter2.horn_friction import driven_face
+from sonolube.reproduction.chapter2.poisson_horn import (
+    ASSUMED_SOLIDS,
+    INCH,
+    AxialMode,
+    HornShape,
+    HornSolid,
+    assumed_shape,
+    axial_mode,
+    axial_mode_of,
+    horn_model,
+    node_position,
+    printed_shape,
+    printed_solid,
+)
 
-_INCH: Final = 0.0254
 _TIP_MASS: Final = 0.02  # kg, about that of a steel stud of 1/2 in
 _WEDGE: Final = 0.1
 
@@ -23,19 +35,19 @@ def frequency_changes() -> dict[str, float]:
 
     By the assumption in words.
     """
-    solid = horn.printed_solid("steel")
-    plain = horn.axial_mode(horn.printed_shape(), solid).natural_frequency
-    return {assumption: frequency / plain - 1 for assumption, frequency in _varied(horn.printed_shape(), solid)}
+    solid = printed_solid("steel")
+    plain = axial_mode(printed_shape(), solid).natural_frequency
+    return {assumption: frequency / plain - 1 for assumption, frequency in _varied(printed_shape(), solid)}
 
 
-def _varied(shape: horn.HornShape, solid: horn.HornSolid) -> Iterator[tuple[str, float]]:
+def _varied(shape: HornShape, solid: HornSolid) -> Iterator[tuple[str, float]]:
     """Yield assumptions with the first axial frequency of a horn that differs in each alone. [Hz]"""
 
-    def of(shape: horn.HornShape = shape, solid: horn.HornSolid = solid) -> float:
-        return horn.axial_mode(shape, solid).natural_frequency
+    def of(shape: HornShape = shape, solid: HornSolid = solid) -> float:
+        return axial_mode(shape, solid).natural_frequency
 
     yield "ends tapered to 3/4 in over 1 in", of(replace(shape, end_thickness_ratio=0.75))
-    yield "the same over 1/2 in", of(replace(shape, end_thickness_ratio=0.75, taper_length=_INCH / 2))
+    yield "the same over 1/2 in", of(replace(shape, end_thickness_ratio=0.75, taper_length=INCH / 2))
     yield "ends tapered to 1/2 in over 1 in", of(replace(shape, end_thickness_ratio=0.5))
     yield "one end 10 % wider than the other", of(replace(shape, wedge=_WEDGE))
     yield "1 % shorter", of(replace(shape, length=0.99 * shape.length))
@@ -44,14 +56,8 @@ def _varied(shape: horn.HornShape, solid: horn.HornSolid) -> Iterator[tuple[str,
     yield "Poisson's ratio 0.01 lower", of(solid=replace(solid, poisson_ratio=solid.poisson_ratio - 0.01))
     yield "Young's modulus 2.5 % higher", of(solid=replace(solid, youngs_modulus=1.025 * solid.youngs_modulus))
     yield "density 7850 kg/m³", of(solid=replace(solid, density=7850.0))
-    yield (
-        "two pads of 10⁸ N/m on either face",
-        horn.axial_mode_of(_on_pads(horn.horn_model(shape, solid))).natural_frequency,
-    )
-    yield (
-        "20 g on one end",
-        horn.axial_mode_of(with_tip(horn.horn_model(shape, solid), tip_mass=_TIP_MASS)).natural_frequency,
-    )
+    yield ("two pads of 10⁸ N/m on either face", axial_mode_of(_on_pads(horn_model(shape, solid))).natural_frequency)
+    yield ("20 g on one end", axial_mode_of(with_tip(horn_model(shape, solid), tip_mass=_TIP_MASS)).natural_frequency)
 
 
 @cache
@@ -65,22 +71,22 @@ def node_positions() -> dict[str, float]:
 
 def _asymmetric() -> Iterator[tuple[str, float]]:
     """Yield asymmetries with the position of the node under each alone. [m]"""
-    shape, solid = horn.assumed_shape(), horn.ASSUMED_SOLIDS["steel"]
-    resonance = horn.axial_mode(shape, solid).natural_frequency
+    shape, solid = assumed_shape(), ASSUMED_SOLIDS["steel"]
+    resonance = axial_mode(shape, solid).natural_frequency
 
     def driven(frequency: float, elastic_loss: float) -> float:
         motion = driven_face("steel", frequency=frequency, elastic_loss=elastic_loss)
-        return horn.node_position(position=motion.position, axial=motion.axial.real)
+        return node_position(position=motion.position, axial=motion.axial.real)
 
-    def free(mode: horn.AxialMode) -> float:
-        return horn.node_position(position=mode.position, axial=mode.axial)
+    def free(mode: AxialMode) -> float:
+        return node_position(position=mode.position, axial=mode.axial)
 
     yield "driven at its own 20.8 kHz", driven(resonance, 1e-3)
     yield "the same, loss factor 0.04", driven(resonance, 0.04)
     yield "driven at 20.0 kHz", driven(20.0e3, 1e-3)
     yield "driven at 19.6 kHz", driven(19.6e3, 1e-3)
-    yield "right end 10 % wider than left", free(horn.axial_mode(replace(shape, wedge=_WEDGE), solid))
-    yield "20 g on the right end", free(horn.axial_mode_of(with_tip(horn.horn_model(shape, solid), tip_mass=_TIP_MASS)))
+    yield "right end 10 % wider than left", free(axial_mode(replace(shape, wedge=_WEDGE), solid))
+    yield ("20 g on the right end", free(axial_mode_of(with_tip(horn_model(shape, solid), tip_mass=_TIP_MASS))))
 
 
 def with_tip(model: Model, *, tip_mass: float) -> Model:

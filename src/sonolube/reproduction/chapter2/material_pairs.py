@@ -12,7 +12,7 @@ from sonolube.reproduction import formulas
 from sonolube.reproduction.chapter2.tribometer import reductions_of_table_2_3, wear_reductions
 from sonolube.reproduction.chapter2.welder import welder_friction_reductions
 from sonolube.reproduction.plots import single_axes
-from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row, undetermined_row
+from sonolube.reproduction.row import Row, formula_row, published_formula_row, undetermined_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,19 +91,15 @@ def _summary() -> Iterator[Row]:
         ),
         start=1,
     ):
-        yield comparison_row(f"table-2.14-friction_reduction-{row}", reduction, note, kind=RowKind.PUBLISHED_FORMULA)
+        yield published_formula_row(f"table-2.14-friction_reduction-{row}", reduction, note)
     note = "The largest that the rates of Table 2.5 give."
-    yield comparison_row(
-        "table-2.14-wear_reduction-1", max(wear_reductions("2.5")), note, kind=RowKind.PUBLISHED_FORMULA
-    )
+    yield published_formula_row("table-2.14-wear_reduction-1", max(wear_reductions("2.5")), note)
     yield formula_row("table-2.14-wear_reduction-2", "Section 2.4.5.", float, "2.4.5-wear-reduction")
     for row in (5, 6):
         yield undetermined_row(f"table-2.14-wear_reduction-{row}", "the worn volumes, shown only as profiles.")
     for measure in ("friction", "wear"):
         cells = (propagate_rounding(float, f"table-2.14-{measure}_reduction-{row}") for row in (1, 2, 5, 6))
-        yield comparison_row(
-            f"2.5.7-{measure}-reduction", max(cells), "The largest of Table 2.14.", kind=RowKind.PUBLISHED_FORMULA
-        )
+        yield published_formula_row(f"2.5.7-{measure}-reduction", max(cells), "The largest of Table 2.14.")
 
 
 def _pairs() -> "Figure":

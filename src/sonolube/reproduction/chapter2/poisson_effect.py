@@ -17,7 +17,7 @@ from sonolube.reproduction.chapter2.horn_figures import horn_figures
 from sonolube.reproduction.chapter2.horn_rows import horn_rows
 from sonolube.reproduction.cube import HORNS, STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, poisson_waveguide
 from sonolube.reproduction.plots import axes_row
-from sonolube.reproduction.row import Row, RowKind, comparison_row
+from sonolube.reproduction.row import Row, formula_row, published_model_row
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, STEEL_YIELD_STRENGTHS, Bodies
 
 if TYPE_CHECKING:
@@ -53,16 +53,13 @@ def _uniform_bar_modes() -> Iterator[Row]:
     """Yield the first axial modes of the horns by the half-wave resonance of a uniform bar."""
     for horn, alloy in (("aluminium", "aluminium_2024"), ("steel", "stainless_steel_316")):
         density = material(alloy).value("density")
-        yield comparison_row(
-            f"2.1.3-first-mode-{horn}",
-            propagate_rounding(
-                partial(_half_wave_frequency, density=density),
-                f"table-3.1-youngs_modulus_{horn}-1",
-                "2.1.2-waveguide-length",
-            ),
-            f"Half a wave in a uniform bar with E of Table 3.1 and {density:g} kg/m3: no tapers, no rounded edges.",
-            kind=RowKind.PUBLISHED_MODEL,
+        frequency = propagate_rounding(
+            partial(_half_wave_frequency, density=density),
+            f"table-3.1-youngs_modulus_{horn}-1",
+            "2.1.2-waveguide-length",
         )
+        note = f"Half a wave in a uniform bar with E of Table 3.1 and {density:g} kg/m3: no tapers, no rounded edges."
+        yield published_model_row(f"2.1.3-first-mode-{horn}", frequency, note)
 
 
 def _half_wave_frequency(youngs_modulus: float, length: float, *, density: float) -> float:
@@ -72,12 +69,9 @@ def _half_wave_frequency(youngs_modulus: float, length: float, *, density: float
 
 def _friction_reductions() -> Iterator[Row]:
     """Yield the friction reductions of section 2.1.5 from coefficients and by the cube."""
-    yield comparison_row(
-        "2.1.5-reduction-aluminium-horn",
-        propagate_rounding(formulas.friction_reduction, "2.1.5-coefficient-off", "2.1.5-coefficient-on"),
-        "D 2.1 from both coefficients; D calls all three numbers approximate.",
-        kind=RowKind.PUBLISHED_FORMULA,
-    )
+    note = "D 2.1 from both coefficients; D calls all three numbers approximate."
+    coefficients = "2.1.5-coefficient-off", "2.1.5-coefficient-on"
+    yield formula_row("2.1.5-reduction-aluminium-horn", note, formulas.friction_reduction, *coefficients)
     load = si_value("2.1.2-normal-load")
     tests: tuple[tuple[str, str, Bodies, Horn, str], ...] = (
         ("2.1.5-reduction-aluminium-horn", "cube", "aluminium_steel", "aluminium", ""),
@@ -94,12 +88,11 @@ def _friction_reductions() -> Iterator[Row]:
         weakest, strongest = (
             reduction("2.1.2-welder-amplitude", yield_strength=strength) for strength in STEEL_YIELD_STRENGTHS
         )
-        yield comparison_row(
+        yield published_model_row(
             published,
             reduction("2.1.2-welder-amplitude"),
             note,
             suffix=suffix,
-            kind=RowKind.PUBLISHED_MODEL,
             possible=(weakest, strongest) if bodies == "steel_steel" else None,
         )
 

@@ -22,6 +22,8 @@ from sonolube.reproduction.cube import Horn
 
 _ALLOYS: Final = {"aluminium": "aluminium_2024", "steel": "stainless_steel_316"}
 _SYMMETRY: Final = (fem.FixedSupport(face="-y", along="y"), fem.FixedSupport(face="+z", along="z"))
+INCH: Final = 0.0254
+"""Unit of the sizes of D 2.1. [m]"""
 _TAPER_CELLS: Final = 2  # elements along either taper
 _DIVISIONS: Final = (10, 2, 2)
 _MODE_COUNT: Final = 5  # elastic modes of this symmetry; the first axial one is among the lowest three
@@ -67,7 +69,7 @@ class HornShape:
     length: float
     width: float
     thickness: float
-    taper_length: float = 0.0254
+    taper_length: float = INCH
     end_thickness_ratio: float = 1.0
     wedge: float = 0.0
 

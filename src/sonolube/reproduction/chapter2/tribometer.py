@@ -8,7 +8,7 @@ from sonolube.facts.published import ComputedValue, as_exact, as_setting, propag
 from sonolube.models.friction import dong_2015_half_period_ratio
 from sonolube.models.wear import cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.reproduction import formulas
-from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row, range_rows
+from sonolube.reproduction.row import Row, formula_row, published_formula_row, published_model_row, range_rows
 from sonolube.validation.contacts import wear_contact
 
 _SPEEDS: Final = ("20.3", "40.6", "87")  # one to a row of Tables 2.2 and 2.5, one to two rows of Tables 2.3 and 2.4
@@ -53,12 +53,8 @@ def _settings_of_first_study() -> Iterator[Row]:
     """Yield the rows of Table 2.2 from distance, revolutions and rotation speed."""
     turns = as_setting("table-2.2-revolutions-1")
     printed = formulas.sliding_distance(turns.value, si_value("table-2.2-groove_diameter-1"))
-    yield comparison_row(
-        "table-2.2-groove_diameter-1",
-        propagate_rounding(formulas.groove_diameter, _DISTANCE, turns),
-        f"Distance over pi times turns; with the printed diameter the distance is {printed:.1f} m.",
-        kind=RowKind.PUBLISHED_FORMULA,
-    )
+    note = f"Distance over pi times turns; with the printed diameter the distance is {printed:.1f} m."
+    yield formula_row("table-2.2-groove_diameter-1", note, formulas.groove_diameter, _DISTANCE, turns)
 
     def speed(rotation: float, distance: float, turns: float) -> float:
         return formulas.sliding_speed(rotation, formulas.groove_diameter(distance, turns))
@@ -72,11 +68,9 @@ def _settings_of_first_study() -> Iterator[Row]:
 def _protocol() -> Iterator[Row]:
     """Yield the rows of appendix A from the settings of Table 2.2."""
     turns = as_setting("table-2.2-revolutions-1")
-    yield comparison_row(
-        "A.1.3.6-groove-radius",
-        propagate_rounding(lambda *settings: formulas.groove_diameter(*settings) / 2, _DISTANCE, turns),
-        "Half the diameter that follows from distance and turns of Table 2.2.",
-        kind=RowKind.PUBLISHED_FORMULA,
+    note = "Half the diameter that follows from distance and turns of Table 2.2."
+    yield formula_row(
+        "A.1.3.6-groove-radius", note, lambda *each: formulas.groove_diameter(*each) / 2, _DISTANCE, turns
     )
     for row, rotation in enumerate(_ROTATIONS, start=1):
         time = as_setting(f"table-2.2-running_time-{row}")
@@ -90,11 +84,10 @@ def _friction() -> Iterator[Row]:
     load, amplitude = si_value("table-2.2-normal_load-1"), si_value("table-2.2-vibration_amplitude-1")
     ratio = float(dong_2015_half_period_ratio(wear_contact(), normal_load=load, vibration_amplitude=amplitude))
     for row in (2, 4, 6):
-        yield comparison_row(
+        yield published_model_row(
             f"table-2.3-friction_force-{row}",
             ratio * si_value(f"table-2.3-friction_force-{row - 1}"),
             f"Cube, D 3.15 with Table 3.2: {ratio:.3f} of the force without vibration, at every speed; it has no slip.",
-            kind=RowKind.PUBLISHED_MODEL,
         )
     reductions = reductions_of_table_2_3("friction_force")
     for published, reduction in (
@@ -104,13 +97,11 @@ def _friction() -> Iterator[Row]:
         ("2.3.7-friction-reduction", max(reductions)),
         ("2.3.7-friction-reduction-87", reductions[2]),
     ):
-        yield comparison_row(
-            published, reduction, "D 2.1 from the forces of Table 2.3.", kind=RowKind.PUBLISHED_FORMULA
-        )
+        yield published_formula_row(published, reduction, "D 2.1 from the forces of Table 2.3.")
     reductions = reductions_of_table_2_3("friction_rms")
     each = ", ".join(f"{100 * reduction.value:.1f}" for reduction in reductions)
     note = f"Largest reduction of the fluctuation in Table 2.3: {each} %."
-    yield comparison_row("2.3.7-stick-slip-reduction", max(reductions), note, kind=RowKind.PUBLISHED_FORMULA)
+    yield published_formula_row("2.3.7-stick-slip-reduction", max(reductions), note)
 
 
 def _surfaces() -> Iterator[Row]:
@@ -128,22 +119,13 @@ def _wear_of_first_study() -> Iterator[Row]:
     for row, reduction in enumerate(reductions, start=1):
         rates = f"table-2.5-intrinsic_wear_rate-{row}", f"table-2.5-reduced_wear_rate-{row}"
         yield formula_row(f"table-2.5-wear_rate_drop-{row}", "Difference of the rates.", sub, *rates)
-        yield comparison_row(
-            f"table-2.5-wear_reduction-{row}", reduction, "D 2.3 from the rates.", kind=RowKind.PUBLISHED_FORMULA
-        )
+        yield published_formula_row(f"table-2.5-wear_reduction-{row}", reduction, "D 2.3 from the rates.")
         count, frequency = f"table-2.5-vibration_contact_count-{row}", f"table-2.2-frequency-{row}"
         time = as_setting(f"table-2.2-running_time-{row}")
         yield formula_row(count, "f times running time.", formulas.contact_count, frequency, time)
     smallest, largest = (f"D 2.3 from the rates of Table 2.5, the {which}." for which in ("smallest", "largest"))
-    yield from range_rows(
-        "2.3.5-wear-reduction",
-        min(reductions),
-        max(reductions),
-        smallest,
-        high_note=largest,
-        kind=RowKind.PUBLISHED_FORMULA,
-    )
-    yield comparison_row("2.3.7-wear-reduction", max(reductions), largest, kind=RowKind.PUBLISHED_FORMULA)
+    yield from range_rows("2.3.5-wear-reduction", min(reductions), max(reductions), smallest, high_note=largest)
+    yield published_formula_row("2.3.7-wear-reduction", max(reductions), largest)
     yield _wear_reduction_of_the_cube()
 
 
@@ -155,12 +137,11 @@ def _wear_reduction_of_the_cube() -> Row:
     def reduction(amplitude: float) -> float:
         return 1 - float(vibrating_cube_wear_rate(contact, normal_load=load, vibration_amplitude=amplitude)) / off
 
-    return comparison_row(
+    return published_model_row(
         "2.3.5-wear-reduction",
         propagate_rounding(reduction, "2.3.1-amplitude"),
         "Cube, D 3.26 averaged over the separating half period against that at rest; the same at every speed.",
         suffix="by-the-cube",
-        kind=RowKind.PUBLISHED_MODEL,
     )
 
 
@@ -168,20 +149,16 @@ def _marks() -> Iterator[Row]:
     """Yield the rows of the marks on the discs: dots of the vibration and indentations of stick-slip."""
     period = as_exact("2.3.4-stick-slip-period")
     dots = propagate_rounding(formulas.dot_spacing, _HIGHEST_SPEED, "table-2.2-frequency-3")
-    yield comparison_row("2.3.4-dots-calculated", dots, "v over f.", kind=RowKind.PUBLISHED_FORMULA)
+    yield published_formula_row("2.3.4-dots-calculated", dots, "v over f.")
     note = "v over f, the length of one cycle; D states no scatter of the measurement in one image."
-    yield comparison_row("2.3.4-dots-measured", dots, note, kind=RowKind.PUBLISHED_FORMULA)
+    yield published_formula_row("2.3.4-dots-measured", dots, note)
     for row, printed in enumerate(_SPEEDS, start=1):
         needed = si_value(f"2.3.4-indentation-{printed}") / si_value(f"table-2.2-sliding_speed-{row}")
-        yield comparison_row(
-            f"2.3.4-indentation-{printed}",
-            propagate_rounding(formulas.indentation_spacing, f"table-2.2-sliding_speed-{row}", period),
-            f"D 2.4 with {1e3 * period.value:g} ms; the print corresponds to {1e3 * needed:.1f} ms.",
-            kind=RowKind.PUBLISHED_FORMULA,
-        )
-    at_highest_speed = propagate_rounding(formulas.indentation_spacing, _HIGHEST_SPEED, period)
-    yield comparison_row("2.3.4-indentation-measured", at_highest_speed, "D 2.4.", kind=RowKind.PUBLISHED_FORMULA)
-    yield comparison_row("2.3.7-indentations", at_highest_speed, "D 2.4.", kind=RowKind.PUBLISHED_FORMULA)
+        note = f"D 2.4 with {1e3 * period.value:g} ms; the print corresponds to {1e3 * needed:.1f} ms."
+        inputs = f"table-2.2-sliding_speed-{row}", period
+        yield formula_row(f"2.3.4-indentation-{printed}", note, formulas.indentation_spacing, *inputs)
+    for published in ("2.3.4-indentation-measured", "2.3.7-indentations"):
+        yield formula_row(published, "D 2.4.", formulas.indentation_spacing, _HIGHEST_SPEED, period)
     note = "v over the measured distance of indentations."
     yield formula_row("2.3.7-stick-slip-frequency", note, truediv, _HIGHEST_SPEED, "2.3.4-indentation-measured")
 
@@ -216,6 +193,4 @@ def _wear_of_second_study() -> Iterator[Row]:
         for state in ("intrinsic", "reduced"):
             rate, volume = f"table-2.7-{state}_wear_rate-{row}", f"table-2.7-{state}_wear_volume-{row}"
             yield formula_row(rate, "D 2.2 with the distance of Table 2.6.", formulas.wear_rate, volume, distance)
-        yield comparison_row(
-            f"table-2.7-wear_reduction-{row}", reduction, "D 2.3 from the rates.", kind=RowKind.PUBLISHED_FORMULA
-        )
+        yield published_formula_row(f"table-2.7-wear_reduction-{row}", reduction, "D 2.3 from the rates.")

@@ -4,10 +4,25 @@ from collections.abc import Iterator
 from operator import sub, truediv
 from typing import Final
 
-from sonolube.facts.published import ComputedValue, as_exact, as_setting, propagate_rounding, published_number, si_value
+from sonolube.facts.published import (
+    ComputedValue,
+    PrintedNumber,
+    as_exact,
+    as_setting,
+    propagate_rounding,
+    published_number,
+    si_value,
+)
 from sonolube.models.contact import SphereOnFlat, hertz_mean_pressure, hertz_peak_pressure, tip_radius_for_pressure
 from sonolube.reproduction import formulas
-from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row, range_rows, undetermined_row
+from sonolube.reproduction.row import (
+    Row,
+    default_model_row,
+    formula_row,
+    published_formula_row,
+    range_rows,
+    undetermined_row,
+)
 from sonolube.validation.contacts import poisson_contact
 
 _ROUND_TIP: Final = 1  # first row of either tip in Table 2.8
@@ -26,10 +41,14 @@ def welder_rows() -> Iterator[Row]:
 
 def welder_friction_reductions(tip: int) -> list[ComputedValue]:
     """Reductions of the lower and of the upper forces of a tip, row 1 or 2 of Table 2.9. []"""
+    limits = zip(*(number.limits() for number in printed_forces(tip)), strict=True)
+    return [propagate_rounding(formulas.friction_reduction, *pair) for pair in limits]
+
+
+def printed_forces(tip: int) -> tuple[PrintedNumber, PrintedNumber]:
+    """Friction without and with vibration with a tip, row 1 or 2 of Table 2.9."""
     off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
-    return [
-        propagate_rounding(formulas.friction_reduction, *pair) for pair in zip(off.limits(), on.limits(), strict=True)
-    ]
+    return off, on
 
 
 def _stresses() -> Iterator[Row]:
@@ -41,14 +60,10 @@ def _stresses() -> Iterator[Row]:
         ("2.4.2-round-stress", round_worn, round_new),
     ):
         note = "Load over contact area; the worn area is the larger, and its stress the lower."
-        yield from range_rows(published, worn, new, note, kind=RowKind.PUBLISHED_FORMULA)
-    yield comparison_row(
-        "2.4.2-flat-stress-before", flat_new, "Load over the area before the test.", kind=RowKind.PUBLISHED_FORMULA
-    )
-    yield comparison_row(
-        "2.4.2-flat-stress-after", flat_worn, "Load over the area after the test.", kind=RowKind.PUBLISHED_FORMULA
-    )
-    yield comparison_row("2.4.6-stress", round_new, "Load over the smallest area.", kind=RowKind.PUBLISHED_FORMULA)
+        yield from range_rows(published, worn, new, note)
+    yield published_formula_row("2.4.2-flat-stress-before", flat_new, "Load over the area before the test.")
+    yield published_formula_row("2.4.2-flat-stress-after", flat_worn, "Load over the area after the test.")
+    yield published_formula_row("2.4.6-stress", round_new, "Load over the smallest area.")
 
 
 def _stress_range(row: int) -> tuple[ComputedValue, ComputedValue]:
@@ -66,32 +81,20 @@ def _peak_stress() -> Row:
         mean_pressure=si_value("table-2.8-nominal_pressure-1"), normal_load=load, effective_modulus=modulus
     )
     sphere = SphereOnFlat(tip_radius=float(radius), effective_modulus=modulus)
-    return comparison_row(
+    return default_model_row(
         "2.4.2-round-stress-centre",
         float(hertz_peak_pressure(sphere, normal_load=load) / hertz_mean_pressure(sphere, normal_load=load)),
         "Hertz, peak over mean of any elastic sphere: the least that rounds to the print; that is from an FEA.",
-        kind=RowKind.DEFAULT_MODEL,
     )
 
 
 def _motion() -> Iterator[Row]:
     """Yield sliding speeds and distances from rotation, revolutions and groove diameter."""
-    speeds = [
-        propagate_rounding(
-            formulas.sliding_speed, f"table-2.8-rotation_speed-{row}", f"table-2.8-groove_diameter-{row}"
-        )
-        for row in (1, 2, 3, 4)
-    ]
+    settings = [(f"table-2.8-rotation_speed-{row}", f"table-2.8-groove_diameter-{row}") for row in (1, 2, 3, 4)]
+    speeds = [propagate_rounding(formulas.sliding_speed, *pair) for pair in settings]
     for row, speed in enumerate(speeds, start=1):
-        yield comparison_row(
-            f"table-2.8-sliding_speed-{row}",
-            speed,
-            "Pi times rotation times groove diameter.",
-            kind=RowKind.PUBLISHED_FORMULA,
-        )
-    yield comparison_row(
-        "2.4.6-sliding-speed", max(speeds), "The largest speed of Table 2.8.", kind=RowKind.PUBLISHED_FORMULA
-    )
+        yield published_formula_row(f"table-2.8-sliding_speed-{row}", speed, "Pi times rotation times groove diameter.")
+    yield published_formula_row("2.4.6-sliding-speed", max(speeds), "The largest speed of Table 2.8.")
     for published, row in (
         ("table-2.8-sliding_distance-1", _ROUND_TIP),
         ("table-2.8-sliding_distance-3", _FLAT_TIP),
@@ -107,24 +110,15 @@ def _friction() -> Iterator[Row]:
     for tip in (1, 2):
         reductions = welder_friction_reductions(tip)
         note = "D 2.1, lower force with lower and upper with upper."
-        yield from range_rows(
-            f"table-2.9-friction_reduction-{tip}",
-            min(reductions),
-            max(reductions),
-            note,
-            kind=RowKind.PUBLISHED_FORMULA,
-        )
-    yield comparison_row(
+        yield from range_rows(f"table-2.9-friction_reduction-{tip}", min(reductions), max(reductions), note)
+    yield published_formula_row(
         "2.4.6-friction-reduction",
         max(welder_friction_reductions(1) + welder_friction_reductions(2)),
         "D 2.1 from the forces of Table 2.9, the largest.",
-        kind=RowKind.PUBLISHED_FORMULA,
     )
     for name, tip in (("round", 1), ("flat", 2)):
         middle = si_value(f"table-2.9-intrinsic_friction_force-{tip}")
-        yield comparison_row(
-            f"2.4.4-friction-{name}", middle, "Middle of the range in Table 2.9.", kind=RowKind.PUBLISHED_FORMULA
-        )
+        yield published_formula_row(f"2.4.4-friction-{name}", middle, "Middle of the range in Table 2.9.")
 
 
 def _currents() -> Iterator[Row]:
@@ -132,13 +126,7 @@ def _currents() -> Iterator[Row]:
     for name, tip in (("round", 1), ("flat", 2)):
         currents = (as_exact(f"table-2.9-{state}_motor_current-{tip}") for state in ("intrinsic", "reduced"))
         drop = propagate_rounding(sub, *currents)
-        yield comparison_row(
-            "2.4.4-current-drop",
-            drop,
-            "Difference of the currents of Table 2.9.",
-            suffix=name,
-            kind=RowKind.PUBLISHED_FORMULA,
-        )
+        yield published_formula_row("2.4.4-current-drop", drop, "Difference of the currents of Table 2.9.", suffix=name)
 
 
 def _wear() -> Iterator[Row]:
@@ -146,13 +134,11 @@ def _wear() -> Iterator[Row]:
     for row, tip in ((2, _ROUND_TIP), (3, _FLAT_TIP)):
         volume, turns = f"table-2.10-wear_volume-{row}", as_setting(f"table-2.8-revolutions-{tip}")
         yield formula_row(f"table-2.10-wear_volume_per_turn-{row}", "Volume over turns.", truediv, volume, turns)
-        yield comparison_row(
-            f"table-2.10-wear_rate-{row}", _wear_rate(row), "Volume over distance.", kind=RowKind.PUBLISHED_FORMULA
-        )
+        yield published_formula_row(f"table-2.10-wear_rate-{row}", _wear_rate(row), "Volume over distance.")
     yield undetermined_row("2.4.5-wear-reduction", "the worn volumes of the two tests with the round tip.")
     round_tip, flat_tip = _wear_rate(2), _wear_rate(3)
     of_printed_rates = si_value("table-2.10-wear_rate-3") / si_value("table-2.10-wear_rate-2")
-    yield comparison_row(
+    yield published_formula_row(
         "2.4.5-flat-wear-share",
         ComputedValue(
             value=flat_tip.value / round_tip.value,
@@ -160,7 +146,6 @@ def _wear() -> Iterator[Row]:
             high=flat_tip.high / round_tip.low,
         ),
         f"Volumes over distances of Table 2.10; the printed rates give {100 * of_printed_rates:.1f} %.",
-        kind=RowKind.PUBLISHED_FORMULA,
     )
 
 

@@ -15,12 +15,12 @@ from scipy.optimize import brentq
 
 from sonolube.checks import Floats
 from sonolube.execution.compilation import few_points
-from sonolube.facts.published import PrintedNumber, published_number, si_value
+from sonolube.facts.published import si_value
 from sonolube.figure import COLOURS, LINES, ReportFigure, subplots
 from sonolube.measurement.gauge.calibration import PreisachCalibration, fit_branches, fit_preisach, force_from_preisach
 from sonolube.measurement.gauge.preisach import PreisachPlane
-from sonolube.models.contact import decay_length, separation
-from sonolube.models.friction import sine_stick_slip_ratio
+from sonolube.reproduction.chapter2 import flextensional
+from sonolube.reproduction.chapter2.welder import printed_forces
 from sonolube.reproduction.plots import line_style, single_axes
 from sonolube.validation.published_tests import friction_tests
 
@@ -148,7 +148,7 @@ def tip_record(tip: int, *, samples: int = 401) -> TipRecord:
     time = np.linspace(0.0, end, samples)
     vibrated = (time >= first) & (time < last)
     turned = slow * time + (fast - slow) * (np.clip(time, first, last) - first)
-    without, with_vibration = forces(tip)
+    without, with_vibration = printed_forces(tip)
     highest = _deflection(without.high)
     lowest = _deflection(with_vibration.low, highest)
     off = _deflection(without.low, highest), highest
@@ -158,12 +158,6 @@ def tip_record(tip: int, *, samples: int = 401) -> TipRecord:
     x = started * ((low + high) / 2 + (high - low) / 2 * np.sin(2 * np.pi * turned))
     force = force_from_preisach(calibration(), displacement=x).applied_force
     return TipRecord(time=time, deflection=x, friction_force=force)
-
-
-def forces(tip: int) -> tuple[PrintedNumber, PrintedNumber]:
-    """Friction without and with vibration with a tip, Table 2.9."""
-    off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
-    return off, on
 
 
 def _deflection(force: float, *before: float) -> float:
@@ -205,7 +199,7 @@ def _friction_in_time() -> "Figure":
         deflected.plot(record.time, 1e6 * record.deflection, **line_style(0))
         rubbed.plot(record.time, record.friction_force, **line_style(0), label="by the gauge")
         first, last = _VIBRATED
-        off, on = forces(tip)
+        off, on = printed_forces(tip)
         for number, spans in ((off, ((0.0, first), (last, record.time[-1]))), (on, ((first, last),))):
             for start, end in spans:
                 rubbed.fill_between([start, end], number.low, number.high, color="0.8", linewidth=0, zorder=0)
@@ -227,13 +221,4 @@ def _friction_in_time() -> "Figure":
 
 def stick_slip_ratio(tip: int) -> float:
     """Friction ratio of the test with a tip by asperity stick-slip: 1 round, 2 flat. []"""
-    test = friction_tests("G")[tip - 1]
-    at_rest = separation(test.contact, normal_load=test.normal_load)
-    return float(
-        sine_stick_slip_ratio(
-            decay_length=float(decay_length(test.contact, separation=at_rest)),
-            vibration_amplitude=test.vibration_amplitude,
-            frequency=test.frequency,
-            sliding_speed=test.sliding_speed,
-        )
-    )
+    return float(flextensional.stick_slip_ratio(friction_tests("G")[tip - 1]))

@@ -13,7 +13,8 @@ from typing import Final
 
 from sonolube.facts import metrics
 from sonolube.facts.published import si_value
-from sonolube.reproduction.row import Row, RowKind, comparison_row
+from sonolube.reproduction.chapter2.welder import printed_forces
+from sonolube.reproduction.row import Row, default_model_row
 
 _TIPS: Final = {1: "round", 2: "flat"}
 """Tips by their rows in Table 2.9."""
@@ -51,7 +52,7 @@ def _rows_of_tip(tip: int) -> Iterator[Row]:
     """Yield rotation speed and current drop from the drop of friction, and friction reduction from that of current."""
     name, other = _TIPS[tip], 3 - tip
     current, _ = _currents(tip)
-    off, on = (si_value(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
+    off, on = (number.value for number in printed_forces(tip))
     voltage, constant = si_value("2.4.2-motor-voltage"), welder_motor(other).torque_constant
     speed = si_value(f"table-2.8-rotation_speed-{2 * tip - 1}")
     motor = metrics.DCMotor(
@@ -65,17 +66,11 @@ def _rows_of_tip(tip: int) -> Iterator[Row]:
     note = f"DC motor at {voltage:g} V, {constant:.3f} N m/A at the disc from the test with the {_TIPS[other]} tip; "
     fall = f"friction falls by {off - on:.2f} N (middles of Table 2.9)."
     reduced_speed = float(metrics.motor_speed(motor, motor_current=reduced_current))
-    yield comparison_row(
-        "2.4.2-rotation-on", reduced_speed, note + fall, suffix=f"{name}-motor", kind=RowKind.DEFAULT_MODEL
-    )
-    yield comparison_row(
-        "2.4.4-current-drop", current - reduced_current, note + fall, suffix=f"{name}-motor", kind=RowKind.DEFAULT_MODEL
-    )
+    yield default_model_row("2.4.2-rotation-on", reduced_speed, note + fall, suffix=f"{name}-motor")
+    yield default_model_row("2.4.4-current-drop", current - reduced_current, note + fall, suffix=f"{name}-motor")
     drop = friction_drop_from_current(tip)
     note = f"{note}the drop of the current corresponds to {drop:.2f} N of {off:.2f} N."
-    yield comparison_row(
-        f"table-2.9-friction_reduction-{tip}", drop / off, note, suffix="motor", kind=RowKind.DEFAULT_MODEL
-    )
+    yield default_model_row(f"table-2.9-friction_reduction-{tip}", drop / off, note, suffix="motor")
 
 
 def _currents(tip: int) -> tuple[float, float]:

@@ -1,8 +1,7 @@
-"""Sections 3.1 to 3.3: rows of contact, friction and wear of the cube, coupling factor and loss of contact."""
+"""Sections 3.1 to 3.3: rows of contact, friction and wear of the cube, and the coupling factor."""
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import Final
@@ -10,25 +9,18 @@ from typing import Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.facts.published import (
-    PrintedNumber,
-    propagate_rounding,
-    published_number,
-    published_value,
-    si_value,
-    table,
-)
-from sonolube.models.contact import (
-    cube_tangential_stiffness,
-    decay_length,
-    normal_force,
-    real_contact_area,
-    separation,
-    sinusoidal_motion,
-)
+from sonolube.facts.published import propagate_rounding, published_number, si_value, table
+from sonolube.models.contact import real_contact_area, separation, sinusoidal_motion
 from sonolube.models.wear import cube_wear_rate, full_period_wear_ratio, vibrating_cube_wear_rate
 from sonolube.reproduction.cube import STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, without_yielding
-from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row, undetermined_row
+from sonolube.reproduction.row import (
+    Row,
+    RowKind,
+    formula_row,
+    published_formula_row,
+    published_model_row,
+    undetermined_row,
+)
 from sonolube.validation.contacts import (
     STEEL_YIELD_STRENGTH,
     STEEL_YIELD_STRENGTHS,
@@ -36,9 +28,6 @@ from sonolube.validation.contacts import (
     poisson_contact,
     wear_contact,
 )
-
-LOST_CONTACT: Final = 0.01
-"""Contact force over the load below which an exponentially decaying contact counts as lost. []"""
 
 _REDUCTIONS: Final[tuple[tuple[str, Bodies, Horn, str], ...]] = (
     ("3.1.4-reduction-1-2", "aluminium_steel", "aluminium", ""),
@@ -52,7 +41,6 @@ def cube_rows() -> Iterator[Row]:
     yield from _friction()
     yield from _wear()
     yield _coupling_factor()
-    yield _loss_of_contact()
 
 
 def _contact() -> Iterator[Row]:
@@ -78,7 +66,7 @@ def _contact() -> Iterator[Row]:
         ("3.1.4-area-difference", area_difference[0], f"At 40 N; {area_difference[-1] * 1e12:.2g} um2 at 240 N."),
         ("3.1.4-load-count-1", (high - low) / step + 1, "From 40 to 240 N in steps of 20 N."),
     ):
-        yield comparison_row(published, float(computed), note, kind=RowKind.PUBLISHED_FORMULA)
+        yield published_formula_row(published, float(computed), note)
     constants = product(("youngs_modulus", "poisson_ratio"), ("aluminium", "steel"))
     yield formula_row(
         "table-3.2-effective_modulus-1",
@@ -102,12 +90,8 @@ def _friction() -> Iterator[Row]:
             f"{_percent_range(at_waveguide_amplitude)}. The test falls with load, the cube rises slightly.{remark}"
         )
         weakest, strongest = (float(np.mean(reduction)) for reduction in possible)
-        yield comparison_row(
-            published,
-            float(np.mean(at_welder_amplitude)),
-            note,
-            kind=RowKind.PUBLISHED_MODEL,
-            possible=(weakest, strongest) if is_open else None,
+        yield published_model_row(
+            published, float(np.mean(at_welder_amplitude)), note, possible=(weakest, strongest) if is_open else None
         )
         weakest, strongest = (_mean_error(reduction, published) for reduction in possible)
         note = (
@@ -115,12 +99,11 @@ def _friction() -> Iterator[Row]:
             f"proportion to the load over the printed range, {published_number(published).text} %: the measured "
             "points are only drawn (Fig. 3.4)"
         )
-        yield comparison_row(
+        yield published_model_row(
             "3.1.5-error",
             _mean_error(at_welder_amplitude, published),
             note.format("8.5 um (D 2.1.2)"),
             suffix=published.removeprefix("3.1.4-reduction-"),
-            kind=RowKind.PUBLISHED_MODEL,
             possible=(weakest, strongest) if is_open else None,
             alternatives={
                 "11.24 um of D 4.3.5": (
@@ -170,22 +153,17 @@ def _wear() -> Iterator[Row]:
     largest = 0.0
     for table_id in ("3.3", "3.4"):
         for row, condition in enumerate(table(table_id).columns["ultrasound"].printed, start=1):
-            yield comparison_row(
-                f"table-{table_id}-model-{row}",
-                on if condition == "on" else off,
-                notes[condition],
-                kind=RowKind.PUBLISHED_FORMULA,
+            yield published_formula_row(
+                f"table-{table_id}-model-{row}", on if condition == "on" else off, notes[condition]
             )
             rate = on.value if condition == "on" else off
             error = propagate_rounding(
                 lambda measured, rate=rate: abs(measured - rate) / measured, f"table-{table_id}-test-{row}"
             )
             largest = max(largest, error.value)
-            yield comparison_row(
-                f"table-{table_id}-error-{row}", error, "D 3.16 with the computed rate.", kind=RowKind.PUBLISHED_MODEL
-            )
+            yield published_model_row(f"table-{table_id}-error-{row}", error, "D 3.16 with the computed rate.")
     for published in ("3.2.2-error", "3.2.3-error"):
-        yield comparison_row(published, largest, "Largest error of Tables 3.3 and 3.4.", kind=RowKind.PUBLISHED_MODEL)
+        yield published_model_row(published, largest, "Largest error of Tables 3.3 and 3.4.")
 
 
 def _coupling_factor() -> Row:
@@ -196,29 +174,6 @@ def _coupling_factor() -> Row:
         lambda n, d33, k, c: n * d33 * math.sqrt(k / c),
         *(f"table-3.5-{name}-1" for name in ("stack_layers", "charge_constant_33", "stack_stiffness", "capacitance")),
     )
-
-
-def _loss_of_contact() -> Row:
-    """Row of the displacement of "hopping" of section 3.3.5, at which k_t "becomes virtually zero"."""
-    contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
-    printed = published_value("3.3.5-hopping-displacement")
-    at_rest, reach = separation(contact, normal_load=load), printed.number.value
-    apart, rest, nearest = (
-        float(cube_tangential_stiffness(contact, separation=at_rest + x)) for x in (reach, 0.0, -reach)
-    )
-    force = float(normal_force(contact, separation=at_rest + reach) / load)
-    lost = float(decay_length(contact)) * math.log(1 / LOST_CONTACT)
-    note = (
-        f"Tangential stiffness at a displacement of {printed.number.text} um over its peak in such a period, which is "
-        f"virtually zero if below {LOST_CONTACT:.0%}; over its value at rest {apart / rest:.3f}. The surfaces do not "
-        f"part: {force:.0%} of the normal force remain, 1 % at {lost * 1e6:.1f} um, for an exponential height law has "
-        "no end"
-    )
-    zero = PrintedNumber(
-        text=f"{LOST_CONTACT:g}", value=LOST_CONTACT, low=0.0, high=LOST_CONTACT, rounding_half_width=0.0
-    )
-    virtually_zero = replace(printed, quantity="", unit="", number=zero)
-    return comparison_row(virtually_zero, apart / nearest, note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def _loads() -> Floats:

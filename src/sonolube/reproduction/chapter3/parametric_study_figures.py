@@ -10,7 +10,7 @@ from sonolube.facts.published import si_value
 from sonolube.figure import COLOURS, ReportFigure
 from sonolube.models.contact import decay_length
 from sonolube.reproduction.chapter3 import tribometer_response
-from sonolube.reproduction.chapter3.cube_rows import LOST_CONTACT
+from sonolube.reproduction.chapter3.parametric_study_rows import LOST_CONTACT
 from sonolube.reproduction.plots import axes_row, line_style
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, tribometer_rig
 from sonolube.rig.study_figures import command_chart, frequency_chart, power_chart, speed_chart, waveform_chart

@@ -1,17 +1,23 @@
 """Sections 3.3.4 to 3.3.6, the parametric study: rows of the multi-scale model of the identified tribometer."""
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.facts.published import si_value
+from sonolube.facts.published import PrintedNumber, published_value, si_value
+from sonolube.models.contact import cube_tangential_stiffness, decay_length, normal_force, separation
 from sonolube.reproduction.chapter3 import tribometer_response
-from sonolube.reproduction.row import Row, RowKind, comparison_row
+from sonolube.reproduction.row import Row, default_model_row, published_formula_row, published_model_row
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, tribometer_rig
 from sonolube.rig import operating_points
+from sonolube.validation.contacts import wear_contact
 
+LOST_CONTACT: Final = 0.01
+"""Contact force over the load below which an exponentially decaying contact counts as lost. []"""
 _DECIMALS: Final = 4  # of a friction ratio, the accuracy of the means of the friction models
 _SETTLED: Final = 0.02  # of the amplitude
 _ONE_OF_THE_FACTS: Final = f"{IDENTIFIED_NOTE}, of which this is one."
@@ -21,6 +27,7 @@ _AS_PRINTED: Final = "dong_2015_full_period"  # D 3.46 to 3.48 as printed
 
 def parametric_study_rows() -> Iterator[Row]:
     """Yield the rows of sections 3.3.4 to 3.3.6."""
+    yield _loss_of_contact()
     yield from _start_up()
     yield from _friction_errors()
     yield from _voltage()
@@ -28,6 +35,29 @@ def parametric_study_rows() -> Iterator[Row]:
     yield from _frequency()
     yield _power()
     yield from _waveforms()
+
+
+def _loss_of_contact() -> Row:
+    """Row of the displacement of "hopping" of section 3.3.5, at which k_t "becomes virtually zero"."""
+    contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
+    printed = published_value("3.3.5-hopping-displacement")
+    at_rest, reach = separation(contact, normal_load=load), printed.number.value
+    apart, rest, nearest = (
+        float(cube_tangential_stiffness(contact, separation=at_rest + x)) for x in (reach, 0.0, -reach)
+    )
+    force = float(normal_force(contact, separation=at_rest + reach) / load)
+    lost = float(decay_length(contact)) * math.log(1 / LOST_CONTACT)
+    note = (
+        f"Tangential stiffness at a displacement of {printed.number.text} um over its peak in such a period, which is "
+        f"virtually zero if below {LOST_CONTACT:.0%}; over its value at rest {apart / rest:.3f}. The surfaces do not "
+        f"part: {force:.0%} of the normal force remain, 1 % at {lost * 1e6:.1f} um, for an exponential height law has "
+        "no end"
+    )
+    zero = PrintedNumber(
+        text=f"{LOST_CONTACT:g}", value=LOST_CONTACT, low=0.0, high=LOST_CONTACT, rounding_half_width=0.0
+    )
+    virtually_zero = replace(printed, quantity="", unit="", number=zero)
+    return published_formula_row(virtually_zero, apart / nearest, note)
 
 
 def _start_up() -> Iterator[Row]:
@@ -39,20 +69,12 @@ def _start_up() -> Iterator[Row]:
         "From rest, until the upper envelope of the tip stays within 2 % of the amplitude. The stack itself settles in "
         f"{started.settling_time * 1e3:.1f} ms; the rest is the arm, whose damping no published fact determines."
     )
-    yield comparison_row(
-        "3.3.4-settling-time", float(upper.time[np.flatnonzero(unsettled)[-1]]), note, kind=RowKind.DEFAULT_MODEL
-    )
+    yield default_model_row("3.3.4-settling-time", float(upper.time[np.flatnonzero(unsettled)[-1]]), note)
     note = f"Slow oscillation of the start-up, damped; in this model it decays, in D it persists. {_ONE_OF_THE_FACTS}"
-    yield comparison_row(
-        "3.3.4-residual-frequency", started.beat_frequency, note, kind=RowKind.DEFAULT_MODEL, fitted=_IDENTIFIED
-    )
+    yield default_model_row("3.3.4-residual-frequency", started.beat_frequency, note, fitted=_IDENTIFIED)
     note = f"At the tests' 28.02 V and 22 kHz. {_ONE_OF_THE_FACTS}"
-    yield comparison_row(
-        "3.3.4-amplitude",
-        float(operating_points(tribometer_rig()).vibration_amplitude),
-        note,
-        kind=RowKind.DEFAULT_MODEL,
-        fitted=_IDENTIFIED,
+    yield default_model_row(
+        "3.3.4-amplitude", float(operating_points(tribometer_rig()).vibration_amplitude), note, fitted=_IDENTIFIED
     )
 
 
@@ -66,7 +88,7 @@ def _friction_errors() -> Iterator[Row]:
         f"three speeds by one factor, so that no mean gap brings the largest error below {_least_error(as_printed)}."
     )
     for published in ("3.3.4-error", "3.3.6-error"):
-        yield comparison_row(published, float(np.abs(as_printed).max()), note, kind=RowKind.PUBLISHED_MODEL)
+        yield published_model_row(published, float(np.abs(as_printed).max()), note)
 
 
 def _least_error(errors: Floats) -> str:
@@ -97,17 +119,17 @@ def _voltage() -> Iterator[Row]:
         f"stick-slip. The friction model governs it: kinematic {knees['kinematic']:.0f} V; as printed friction is "
         f"least near {knees[_AS_PRINTED]:.0f} V and grows beyond."
     )
-    yield comparison_row("3.3.5-voltage-knee", _knee(volts, ratios), note, kind=RowKind.DEFAULT_MODEL)
+    yield default_model_row("3.3.5-voltage-knee", _knee(volts, ratios), note)
     note = (
         "Largest of all steps of 2 V from 0 to 200 V. As printed, D 3.46 to 3.48 would raise friction beyond "
         f"{knees[_AS_PRINTED]:.0f} V, to {_voltages_and_ratios(_AS_PRINTED)[1][-1]:.2f} at 200 V."
     )
-    yield comparison_row("3.3.5-voltage-order", _largest_step(ratios), note, kind=RowKind.DEFAULT_MODEL)
+    yield default_model_row("3.3.5-voltage-order", _largest_step(ratios), note)
     knee = int(np.searchsorted(volts, si_value("3.3.5-voltage-knee")))
     fall = np.array([ratios[0] - ratios[knee], ratios[knee] - ratios[-1]])
     slopes = fall / np.array([volts[knee], volts[-1] - volts[knee]])
     note = f"Friction ratio {ratios[knee]:.3f} at 20 V, {ratios[-1]:.3f} at 200 V, by asperity stick-slip."
-    yield comparison_row("3.3.5-voltage-saturation", float(slopes[1] / slopes[0]), note, kind=RowKind.DEFAULT_MODEL)
+    yield default_model_row("3.3.5-voltage-saturation", float(slopes[1] / slopes[0]), note)
 
 
 def _voltages_and_ratios(friction_model: str) -> tuple[Floats, Floats]:
@@ -126,8 +148,8 @@ def _speed() -> Iterator[Row]:
     """Yield the orders of friction over speed and voltage."""
     ratios = np.round(tribometer_response.response_over_speed()["raw_friction_ratio"].values, _DECIMALS)
     note = f"Largest of all steps, 1 mm/s to 1 m/s at {_curves()}, by asperity stick-slip; 1 without any reduction."
-    yield comparison_row("3.3.5-speed-order", _largest_step(ratios[:, ::-1].T), note, kind=RowKind.DEFAULT_MODEL)
-    yield comparison_row("3.3.5-speed-voltage-order", _largest_step(ratios), note, kind=RowKind.DEFAULT_MODEL)
+    yield default_model_row("3.3.5-speed-order", _largest_step(ratios[:, ::-1].T), note)
+    yield default_model_row("3.3.5-speed-voltage-order", _largest_step(ratios), note)
 
 
 def _frequency() -> Iterator[Row]:
@@ -139,14 +161,11 @@ def _frequency() -> Iterator[Row]:
         f"At {peak.natural_frequency / 1e3:.2f} kHz over the least outside its half-power bandwidth, 1 to 100 kHz; "
         f"largest of {_curves()}, by asperity stick-slip."
     )
-    yield comparison_row(
-        "3.3.5-resonance-friction", float((at_peak / elsewhere).max()), note, kind=RowKind.DEFAULT_MODEL
-    )
-    yield comparison_row(
+    yield default_model_row("3.3.5-resonance-friction", float((at_peak / elsewhere).max()), note)
+    yield default_model_row(
         "3.3.5-resonance-voltage-order",
         _largest_step(ratios.min(axis=1)),
         "Minima of the curves: " + ", ".join(f"{ratio:.3f}" for ratio in ratios.min(axis=1)) + f" at {_curves()}.",
-        kind=RowKind.DEFAULT_MODEL,
     )
 
 
@@ -157,14 +176,13 @@ def _power() -> Row:
     at_peak, possible = peak.nearest(f), ~np.isnan(amplifier)
     least = int(np.nanargmin(dissipated))
     ratio = float(study["friction_ratio"].values[at_peak])
-    return comparison_row(
+    return default_model_row(
         "3.3.5-resonance-power",
         float(amplifier[at_peak] / amplifier[peak.outside(f) & possible].min()),
         f"Power by D 1.9 for a friction ratio of {ratio:.3f} at resonance, {amplifier[at_peak]:.2g} W, over the "
         f"least outside the half-power bandwidth; {f[possible].min() / 1e3:.1f} to {f[possible].max() / 1e3:.1f} kHz "
         f"do it with 200 V or less. The dissipated power, {dissipated[at_peak]:.0f} W, falls with frequency instead, "
         f"to {dissipated[least]:.0f} W at {f[least] / 1e3:.1f} kHz.",
-        kind=RowKind.DEFAULT_MODEL,
     )
 
 
@@ -176,10 +194,8 @@ def _waveforms() -> Iterator[Row]:
         f"fundamental alone. As printed, D 3.46 to 3.48 reverse the order: {_listed(_waveform_ratios(_AS_PRINTED))}."
     )
     for waveform, next_waveform in (("square", "sine"), ("sine", "triangle"), ("triangle", "sawtooth")):
-        yield comparison_row(
-            f"3.3.5-waveform-{waveform}", ratios[waveform] / ratios[next_waveform], note, kind=RowKind.DEFAULT_MODEL
-        )
-    yield comparison_row("3.3.6-waveform-ratio", max(ratios.values()), note, kind=RowKind.DEFAULT_MODEL)
+        yield default_model_row(f"3.3.5-waveform-{waveform}", ratios[waveform] / ratios[next_waveform], note)
+    yield default_model_row("3.3.6-waveform-ratio", max(ratios.values()), note)
 
 
 def _waveform_ratios(friction_model: str) -> dict[str, float]:

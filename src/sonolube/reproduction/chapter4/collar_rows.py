@@ -29,7 +29,14 @@ from sonolube.reproduction.chapter4.collar import (
     pulled_rod,
     response_model,
 )
-from sonolube.reproduction.row import Row, RowKind, comparison_row, not_computed_row, undetermined_row
+from sonolube.reproduction.row import (
+    Row,
+    RowKind,
+    default_model_row,
+    not_computed_row,
+    published_formula_row,
+    undetermined_row,
+)
 
 _BY_FINITE_ELEMENTS: Final = (
     "4.5.2-breathing-mode-first",
@@ -86,11 +93,8 @@ def _stack() -> Iterator[Row]:
         f"d33 sqrt(E/eps) with E = k_p L/A = {modulus * 1e-9:.3g} GPa, as of ceramic alone; the printed factor"
         f" needs {needed * 1e-9:.3g} GPa; end pieces and glue, which soften a stack, would account for the difference"
     )
-    yield comparison_row(
-        "table-4.7-coupling_factor-1",
-        charge_constant * float(np.sqrt(modulus / permittivity)),
-        note,
-        kind=RowKind.PUBLISHED_FORMULA,
+    yield published_formula_row(
+        "table-4.7-coupling_factor-1", charge_constant * float(np.sqrt(modulus / permittivity)), note
     )
     layers = np.sqrt(si_value("table-4.7-capacitance-1") / (permittivity * area / length))
     missing = f"number of layers; C = N^2 eps A/L, ceramic over the whole length, would take {layers:.1f} of them"
@@ -112,14 +116,13 @@ def _first_design() -> Iterator[Row]:
         "the oval mode (erratum N16)"
     )
     possible = mode_frequency_range(FIRST_COLLAR, BoreMotion.OVAL, assumed=_ASSUMED_DIMENSIONS)
-    yield comparison_row(at_least, oval, note, kind=RowKind.DEFAULT_MODEL, possible=possible)
-    yield comparison_row(
+    yield default_model_row(at_least, oval, note, possible=possible)
+    yield default_model_row(
         "4.5.2-torsional-mode-first",
         _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL)),
         "Mode odd about the stacks with the largest motion of the inner ring: its hole becomes oval along the "
         f"diagonals and its sides rotate; {_ASSUMED}. In a symmetric collar no voltage excites it: its presence in the "
         "impedance requires stacks or bolts that differ",
-        kind=RowKind.DEFAULT_MODEL,
         possible=mode_frequency_range(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL, assumed=_ASSUMED_DIMENSIONS),
     )
 
@@ -135,10 +138,9 @@ def _revised_designs() -> Iterator[Row]:
             )
             for shape, collar in (("hexagon", THIN_HEXAGON_COLLAR), ("ring", THIN_RING_COLLAR))
         )
-        yield comparison_row(
+        yield default_model_row(
             f"4.5.2-{mode}-mode-revised",
             *hexagon,
-            kind=RowKind.DEFAULT_MODEL,
             possible=mode_frequency_range(THIN_HEXAGON_COLLAR, kind, assumed=(*_ASSUMED_DIMENSIONS, "ring_width")),
             alternatives={"ring": ring},
         )
@@ -154,10 +156,9 @@ def _final_design() -> Iterator[Row]:
                 (NOMINAL_COLLAR, "round inches for what D does not print, nothing fitted"),
             )
         )
-        yield comparison_row(
+        yield default_model_row(
             statement_id,
             *tuned,
-            kind=RowKind.DEFAULT_MODEL,
             fitted="the dimensions that are not printed, with the other frequency",
             alternatives={"dimensions in round inches": guess},
         )
@@ -180,21 +181,14 @@ def _pulled_rod() -> Iterator[Row]:
     limits = published_value("4.5.4-reduction").limits()
     for limit, ratio, place in zip(limits, (ratios.max(), ratios.min()), (np.max, np.min), strict=True):
         over_rod = 1 - place(rod.friction_ratio, axis=1)
-        yield comparison_row(
-            limit,
-            1 - float(ratio),
-            note,
-            kind=RowKind.DEFAULT_MODEL,
-            possible=(float(over_rod.min()), float(over_rod.max())),
-        )
+        yield default_model_row(limit, 1 - float(ratio), note, possible=(float(over_rod.min()), float(over_rod.max())))
     work = rod.work_reduction
     exact = float(np.interp(-si_value("4.5.4-work-reduction"), -work, rod.sliding_speed))
     note = f"{_PULLED}. At {1e3 * exact:.0f} mm/s it would be the printed number. {over_speeds}"
-    yield comparison_row(
+    yield default_model_row(
         "4.5.4-work-reduction",
         float(np.interp(PULL_SPEED, rod.sliding_speed, work)),
         note,
-        kind=RowKind.DEFAULT_MODEL,
         possible=(float(work.min()), float(work.max())),
     )
 

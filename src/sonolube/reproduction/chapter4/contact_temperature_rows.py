@@ -11,7 +11,7 @@ from sonolube.facts.materials import material
 from sonolube.facts.published import column_numbers, si_value
 from sonolube.models import thermal
 from sonolube.reproduction.chapter4 import temperature_tests as tests
-from sonolube.reproduction.row import Row, RowKind, comparison_row, undetermined_row
+from sonolube.reproduction.row import Row, RowKind, comparison_row, default_model_row, undetermined_row
 
 _FRICTION_NOTE: Final = (
     f"Friction kept at {tests.EXAMPLE_FRICTION_RATIO:g} of its dry value at every voltage: in the text it falls "
@@ -33,7 +33,7 @@ def contact_temperature_rows() -> Iterator[Row]:
 
 def _slopes() -> Row:
     """Slope of the temperature over speed at 26 MPa over that at 52 MPa."""
-    rises = np.array([[_at_vibration_start(load, speed) for speed in tests.speeds()] for load in tests.loads()])
+    rises = tests.dry_rises()
     low, high = (float(np.polyfit(tests.speeds(), rise, 1)[0]) for rise in rises)
     per_speed = rises[0] / tests.speeds()
     note = (
@@ -41,13 +41,7 @@ def _slopes() -> Row:
         f"the rise per speed falls by {100 * (1 - per_speed[-1] / per_speed[0]):.0f} % from the lowest to the highest "
         f"speed, nearly a straight line. {tests.ASSUMED}."
     )
-    return comparison_row("4.3.4-slope-ratio", low / high, note, kind=RowKind.DEFAULT_MODEL)
-
-
-def _at_vibration_start(load: float, speed: float) -> float:
-    """Temperature rise at the start of the vibration. [K]"""
-    record = tests.history(tests.TemperatureTest(normal_load=load, sliding_speed=speed, vibrated=False))
-    return float(np.interp(si_value("4.3.3-vibration-start"), record.time, record.temperature_rise))
+    return default_model_row("4.3.4-slope-ratio", low / high, note)
 
 
 def _example_by_superimposed_speed() -> Iterator[Row]:
@@ -63,14 +57,14 @@ def _example_by_superimposed_speed() -> Iterator[Row]:
 
 def _example_by_vibration_heat() -> Iterator[Row]:
     """Yield the temperatures of the example by frictional heat and a fraction of the actuator's power."""
-    low, high = tests.vibration_heat_window()
+    (low, high), loss_tangent = tests.vibration_heat_window(), material(_CERAMIC).value("loss_tangent")
     note = (
         "Heat of friction and a fraction of the actuator's power (D 1.9) in the contact. The fraction is not printed: "
         f"these four statements limit it to {1e2 * low:.2f} to {1e2 * high:.2f} %, and "
         f"{1e2 * tests.vibration_heat_fraction():.2f} %, their geometric mean, is taken: the rows show its existence, "
         f"not its value. {_FRICTION_NOTE}; a fall by more than "
         f"{100 * (1 - tests.EXAMPLE_FRICTION_RATIO) * high / low:.0f} % at 20.7 V would leave none. A stack of "
-        f"{_CERAMIC} would lose {100 * np.pi / 4 * _loss_tangent():.1f} % of that power in its ceramic"
+        f"{_CERAMIC} would lose {100 * np.pi / 4 * loss_tangent:.1f} % of that power in its ceramic"
     )
     yield from _example(
         tests.EXAMPLE_FRICTION_RATIO + tests.vibration_heat() / tests.example_heat(),
@@ -79,11 +73,6 @@ def _example_by_vibration_heat() -> Iterator[Row]:
         kind=RowKind.DEFAULT_MODEL,
         fitted="the fraction of the power, with the other three statements",
     )
-
-
-def _loss_tangent() -> float:
-    """Loss tangent of the ceramic. []"""
-    return material(_CERAMIC).value("loss_tangent")
 
 
 def _example(ratios: Floats, suffix: str, note: str, *, kind: RowKind, fitted: str) -> Iterator[Row]:
@@ -111,9 +100,7 @@ def _low_speed() -> Row:
         "heat of vibration by the fraction from the example at 220 mm/s; rises with vibration over those without, from "
         f"5.1 to 25.9 V: {listed}. Possible: over the fractions that the example leaves open"
     )
-    return comparison_row(
-        "4.3.4-low-speed-warmer", float(np.max(1 / ratios)), note, kind=RowKind.DEFAULT_MODEL, possible=(least, most)
-    )
+    return default_model_row("4.3.4-low-speed-warmer", float(np.max(1 / ratios)), note, possible=(least, most))
 
 
 def _tribometer_peak() -> Row:
@@ -131,9 +118,7 @@ def _tribometer_peak() -> Row:
         f"insulating adhesive of the thermocouple, the coating alone would give {insulated - 273.15:.0f} degC: the "
         "measured peak lies between, depending on the bond of the thermocouple, which is not printed"
     )
-    return comparison_row(
-        "4.3.5-tribometer-temperature-peak", peak, note, kind=RowKind.DEFAULT_MODEL, possible=(peak, insulated)
-    )
+    return default_model_row("4.3.5-tribometer-temperature-peak", peak, note, possible=(peak, insulated))
 
 
 def _waveguide_peak() -> Row:

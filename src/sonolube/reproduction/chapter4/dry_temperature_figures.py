@@ -1,12 +1,10 @@
 """Section 4.3.4: figure of the contact temperature before the vibration, over the sliding speed."""
 
 from collections.abc import Iterator
-from functools import cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from sonolube.checks import Floats
 from sonolube.facts.published import si_value
 from sonolube.figure import COLOURS, LINES, ReportFigure
 from sonolube.reproduction.chapter4 import temperature_tests as tests
@@ -33,30 +31,17 @@ def dry_temperature_figures() -> Iterator[ReportFigure]:
     )
 
 
-@cache
-def dry_rises() -> Floats:
-    """Temperature rises when the vibration starts, by load and speed. [K]"""
-    start = si_value("4.3.3-vibration-start")
-    return np.array([[_rise(float(load), float(speed), start) for speed in tests.speeds()] for load in tests.loads()])
-
-
-def _rise(load: float, speed: float, moment: float) -> float:
-    """Temperature rise of a test without vibration at a moment. [K]"""
-    record = tests.history(tests.TemperatureTest(normal_load=load, sliding_speed=speed, vibrated=False))
-    return float(np.interp(moment, record.time, record.temperature_rise))
-
-
 def _over_speed() -> "Figure":
     """Draw the temperatures of both stresses over speed with their lines."""
     figure, axes = single_axes()
-    speeds, area = tests.speeds(), si_value("table-4.4-nominal_area-1")
+    along, area = tests.speeds(), si_value("table-4.4-nominal_area-1")
     least = _MIN_COEFFICIENT / si_value("4.1.3-friction-coated-last")
-    for index, (load, rise) in enumerate(zip(tests.loads(), dry_rises(), strict=True)):
+    for index, (load, rise) in enumerate(zip(tests.loads(), tests.dry_rises(), strict=True)):
         low = _CELSIUS + rise * least  # heat, and so the rise, is proportional to friction
-        axes.fill_between(1e3 * speeds, low, _CELSIUS + rise, color=COLOURS[index], alpha=0.2, linewidth=0)
+        axes.fill_between(1e3 * along, low, _CELSIUS + rise, color=COLOURS[index], alpha=0.2, linewidth=0)
         label = f"{1e-6 * load / area:.0f} MPa"
-        axes.plot(1e3 * speeds, _CELSIUS + rise, **point_style(index), label=label)
-        slope, intercept = np.polyfit(speeds, rise, 1)
+        axes.plot(1e3 * along, _CELSIUS + rise, **point_style(index), label=label)
+        slope, intercept = np.polyfit(along, rise, 1)
         line = np.array([0.0, 0.24])
         label = f"{1e-3 * slope:.2g} K/(mm/s)"
         axes.plot(

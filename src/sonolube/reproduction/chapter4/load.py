@@ -10,7 +10,7 @@ from sonolube.charts import Zone, draw_chart
 from sonolube.facts.published import published_number, si_value
 from sonolube.figure import ReportFigure
 from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH
-from sonolube.reproduction.row import Row, RowKind, comparison_row
+from sonolube.reproduction.row import Row, default_model_row
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
 from sonolube.rig import load_study
 from sonolube.rig.study_figures import load_chart
@@ -42,10 +42,10 @@ def load_rows() -> Iterator[Row]:
         f"Natural frequency of the arm with the weights for {middle:g} N; {arm.min():.0f} to {arm.max():.0f} Hz over "
         f"all loads. {IDENTIFIED_NOTE}, of which this is one."
     )
-    yield comparison_row("4.1.2-arm-frequency", float(np.interp(middle, loads, arm)), note, kind=RowKind.DEFAULT_MODEL)
+    yield default_model_row("4.1.2-arm-frequency", float(np.interp(middle, loads, arm)), note)
     spread = float(np.ptp(reduction))
     note = f"Largest minus smallest reduction from 3 to 9 N at 25.9 V and 65.5 mm/s. {_NO_EXCITATION}"
-    yield comparison_row("4.1.2-arm-extra-reduction", spread, note, kind=RowKind.DEFAULT_MODEL)
+    yield default_model_row("4.1.2-arm-extra-reduction", spread, note)
     best = float(loads[np.argmax(reduction)])
     rig = plate_rig()
     needed = rig.sliding_speed / (2 * np.pi * si_value("4.1.2-arm-frequency") * EMPIRICAL_MEMORY_LENGTH)
@@ -55,7 +55,7 @@ def load_rows() -> Iterator[Row]:
             f"friction: at 100 Hz asperity stick-slip has no reduction at {1e3 * rig.sliding_speed:g} mm/s below an "
             f"amplitude of {needed:.0f} decay lengths of the contact, at which it would be open for nearly all the time"
         )
-        yield comparison_row(published, best, note, kind=RowKind.DEFAULT_MODEL)
+        yield default_model_row(published, best, note)
 
 
 def load_figures() -> Iterator[ReportFigure]:

@@ -14,7 +14,7 @@ from sonolube.figure import ReportFigure
 from sonolube.models import friction
 from sonolube.reproduction.chapter4.power_rows import nominal_pressure_rows, power_row
 from sonolube.reproduction.plots import axes_row, line_style
-from sonolube.reproduction.row import Row, RowKind, comparison_row, undetermined_row
+from sonolube.reproduction.row import Row, RowKind, default_model_row, undetermined_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,19 +47,14 @@ def lubrication_rows() -> Iterator[Row]:
     limit = replace(published_value(_LIMIT), number=published_number(_LIMIT))
     for pressure in _pressures()[1:]:
         note = f"{_INFERRED}; at this stress predicted, for in the text it holds at every load"
-        yield comparison_row(
-            limit,
-            _limit_speed(float(pressure)),
-            note,
-            suffix=f"at-{1e-6 * pressure:.0f}-MPa",
-            kind=RowKind.DEFAULT_MODEL,
-            fitted=_FILM,
+        yield default_model_row(
+            limit, _limit_speed(float(pressure)), note, suffix=f"at-{1e-6 * pressure:.0f}-MPa", fitted=_FILM
         )
     highest = max(_limit_speed(float(pressure)) for pressure in _pressures())
     useless = published_value(_NO_REDUCTION)
     from_zero = replace(useless, number=replace(useless.number, low=0.0, high=useless.number.value))
     note = f"Highest speed at which vibration alone is best at any stress, which must not exceed the print. {_INFERRED}"
-    yield comparison_row(from_zero, highest, note, kind=RowKind.DEFAULT_MODEL, fitted=_FILM)
+    yield default_model_row(from_zero, highest, note, fitted=_FILM)
 
 
 def lubrication_figures() -> Iterator[ReportFigure]:

@@ -44,7 +44,7 @@ def load_scatter() -> float:
     return (off.high - off.low) / 2 / off.value
 
 
-def coefficients(*, sliding_speed: Floats, normal_load: float) -> dict[str, Floats]:
+def method_coefficients(*, sliding_speed: Floats, normal_load: float) -> dict[str, Floats]:
     """Coefficients of friction by method, by the names of `LubricationCoefficients`; shape (n,). []"""
     pressure = normal_load / si_value("table-4.3-nominal_area-1")
     relative = lubrication.coefficients(sliding_speed=sliding_speed, nominal_pressure=pressure)._asdict()
@@ -63,7 +63,7 @@ def friction_in_time(*, normal_load: float) -> tuple[Floats, Floats, dict[str, F
     travelled = lowest * time + (highest - lowest) * time**2 / (2 * _DURATION)
     angle = 2 * travelled / si_value("table-4.3-rotational_diameter-1")
     load = normal_load * (1 + np.sqrt(2) * load_scatter() * np.sin(angle))
-    methods = coefficients(sliding_speed=speed, normal_load=normal_load)
+    methods = method_coefficients(sliding_speed=speed, normal_load=normal_load)
     return time, speed, {name: coefficient * load for name, coefficient in methods.items()}
 
 
@@ -73,7 +73,7 @@ def _methods() -> "Figure":
     loads = [load.value for load in column_numbers("4.3", "normal_load").values()]
     for (force, coefficient), load in zip(panels.T, loads, strict=True):
         time, speed, friction = friction_in_time(normal_load=load)
-        methods = coefficients(sliding_speed=speed, normal_load=load)
+        methods = method_coefficients(sliding_speed=speed, normal_load=load)
         for index, (name, label) in enumerate(_NAMES.items()):
             style, mean = line_style(index), methods[name]
             force.plot(time, friction[name], **style | {"linewidth": 1.1}, label=label)

@@ -19,7 +19,7 @@ from sonolube.facts.published import column_numbers, published_number, si_value
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.reproduction.chapter4 import power_map
 from sonolube.reproduction.plots import draw_printed, single_axes
-from sonolube.reproduction.row import Row, RowKind, comparison_row, undetermined_row
+from sonolube.reproduction.row import Row, RowKind, default_model_row, published_formula_row, undetermined_row
 from sonolube.reproduction.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
 from sonolube.text.units import convert
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTH
@@ -56,17 +56,14 @@ def map_rows() -> Iterator[Row]:
     lowest, highest = reduction.isel(voltage_peak_to_peak=0), reduction.isel(voltage_peak_to_peak=-1)
     speed = 1e3 * float(reduction["sliding_speed"][0])
     note = f"Largest at any speed and load; the model gives {float(lowest.max()):.1%}. {_MODEL}"
-    yield comparison_row(
-        "4.1.2-reduction-lowest-voltage", float(lowest.max()), note, suffix=_BY_THE_MODEL, kind=RowKind.DEFAULT_MODEL
-    )
-    yield comparison_row(
+    yield default_model_row("4.1.2-reduction-lowest-voltage", float(lowest.max()), note, suffix=_BY_THE_MODEL)
+    yield default_model_row(
         "4.1.2-reduction-highest-voltage",
         float(highest.isel(sliding_speed=0).max()),
         f"At {speed:g} mm/s, the lowest speed of the tests; {float(highest.isel(sliding_speed=-1).max()):.0%} at the"
         f" highest. {_MODEL}; friction falls too much at the lowest voltage and too little at the highest, as in Table"
         " 4.2",
         suffix=_BY_THE_MODEL,
-        kind=RowKind.DEFAULT_MODEL,
     )
     yield _plate_count()
     yield _hardness()
@@ -156,9 +153,7 @@ def _plate_count() -> Row:
     """Number of plates from the loads."""
     loads, step = published_number("4.1.1-normal-load"), si_value("4.1.1-load-step")
     note = f"Loads from {loads.low:g} to {loads.high:g} N by {step:g} N; as many stresses in the captions of appendix B"
-    return comparison_row(
-        "4.1.1-plate-count", (loads.high - loads.low) / step + 1, note, kind=RowKind.PUBLISHED_FORMULA
-    )
+    return published_formula_row("4.1.1-plate-count", (loads.high - loads.low) / step + 1, note)
 
 
 def _hardness() -> Row:

@@ -18,7 +18,7 @@ from sonolube.facts.published import (
 from sonolube.reproduction import formulas
 from sonolube.reproduction.chapter4 import power_map
 from sonolube.reproduction.cube import STEEL_ON_STEEL_NOTE
-from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row
+from sonolube.reproduction.row import Row, formula_row, published_formula_row, published_model_row
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTHS
 from sonolube.validation.efficiency import efficiency_line
 
@@ -71,7 +71,7 @@ def power_row(published: PublishedValue | str, voltage: float) -> Row:
     """Row of a published actuator power at a voltage peak to peak in V."""
     power = float(power_map.actuator_power(voltage_peak_to_peak=voltage))
     note = f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
-    return comparison_row(published, power, note, kind=RowKind.PUBLISHED_FORMULA)
+    return published_formula_row(published, power, note)
 
 
 def line_reduction_row(published: str, test: dict[str, float], *, actuator_power: float) -> Row:
@@ -81,7 +81,7 @@ def line_reduction_row(published: str, test: dict[str, float], *, actuator_power
         f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and {test['sliding_speed'] * 1e3:g} "
         f"mm/s, from {off:.3g} N; the line ends at {power_map.line_end() * 1e3:.0f} mm/s, where it crosses zero"
     )
-    return comparison_row(published, formulas.friction_reduction(off, on), note, kind=RowKind.PUBLISHED_MODEL)
+    return published_model_row(published, formulas.friction_reduction(off, on), note)
 
 
 def _pressure_row(published: PublishedValue | str, load: float, area: PrintedNumber) -> Row:
@@ -95,11 +95,10 @@ def _highest_amplitude() -> Row:
     voltages, amplitude = column_numbers("4.1", "voltage_peak_to_peak"), published_number("2.3.1-amplitude")
     in_wear_tests = 2 * si_value("A.3.1.3-voltage-amplitude") * si_value("A.3.1.5-gain")
     last = max(voltages)
-    return comparison_row(
+    return published_formula_row(
         f"table-4.1-vibration_amplitude-{last}",
         propagate_rounding(lambda a: a / in_wear_tests * voltages[last].value, amplitude),
         f"in proportion to {amplitude.text} um at {in_wear_tests:.3g} V peak to peak, section 2.3.1 and appendix A 3.1",
-        kind=RowKind.PUBLISHED_FORMULA,
     )
 
 
@@ -107,9 +106,7 @@ def _settings_of_the_text() -> Iterator[Row]:
     """Yield diameters, stresses and powers of section 4.1.1."""
     for nth in (1, 2):
         inches = published_number(f"4.1.3-groove-diameter-{nth}")
-        yield comparison_row(
-            f"4.1.1-diameter-{nth}", inches.value, f"{inches.text} in of section 4.1.3", kind=RowKind.PUBLISHED_FORMULA
-        )
+        yield published_formula_row(f"4.1.1-diameter-{nth}", inches.value, f"{inches.text} in of section 4.1.3")
     area, load = published_number("4.1.1-nominal-area"), published_number("4.1.1-normal-load")
     for limit, newtons in zip(published_value("4.1.1-stress").limits(), (load.low, load.high), strict=True):
         yield _pressure_row(limit, newtons, area)
@@ -132,7 +129,7 @@ def _example_test() -> Iterator[Row]:
     levels, level = si_value("4.1.1-voltage-count"), si_value("4.1.2-level-duration")
     duration = si_value("4.1.2-vibration-start") + levels * level
     note = f"start of the vibration, then {levels:g} levels of {level:g} s"
-    yield comparison_row("4.1.2-duration", duration, note, kind=RowKind.PUBLISHED_FORMULA)
+    yield published_formula_row("4.1.2-duration", duration, note)
 
     off, on, *_ = column_numbers("4.2", "friction_force").values()
     yield formula_row("4.1.2-friction-drop", f"{off.value:g} N less {on.value:g} N", sub, off, on)
@@ -143,11 +140,8 @@ def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
     off, on = power_map.example_test()["intrinsic_friction_force"], point.friction.value
     note = f"D 2.1 from the mean forces, {off:g} N and {on:g} N"
     # compared within the scatter of D alone: the rounding of the forces would hide that D averaged otherwise, E17
-    return comparison_row(
-        f"table-4.2-friction_reduction-{point.row}",
-        formulas.friction_reduction(off, on),
-        note,
-        kind=RowKind.PUBLISHED_FORMULA,
+    return published_formula_row(
+        f"table-4.2-friction_reduction-{point.row}", formulas.friction_reduction(off, on), note
     )
 
 
@@ -164,13 +158,8 @@ def _cube_friction(point: power_map.ExamplePoint) -> Row:
         f"cube, D 3.15: ratio {friction / off:.3f} of {off:g} N; R_q = 2.12 um of the plates (D 4.1.3);"
         f" {STEEL_ON_STEEL_NOTE}; neither sliding speed nor in-plane motion of the tip enters"
     )
-    return comparison_row(
-        f"table-4.2-friction_force-{point.row}",
-        friction,
-        note,
-        suffix="by-the-cube",
-        kind=RowKind.PUBLISHED_MODEL,
-        possible=(weakest, strongest),
+    return published_model_row(
+        f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-cube", possible=(weakest, strongest)
     )
 
 
@@ -188,7 +177,7 @@ def _efficiency(point: power_map.ExamplePoint) -> Row:
         lambda friction: power_map.point_efficiency(point, friction=friction) + to_zero_speed, point.friction
     )
     note, suffix = note + _surplus_power_note(point), f"at-{point.voltage_peak_to_peak:g}V"
-    return comparison_row("4.1.2-efficiency-intercept", intercept, note, suffix=suffix, kind=RowKind.PUBLISHED_MODEL)
+    return published_model_row("4.1.2-efficiency-intercept", intercept, note, suffix=suffix)
 
 
 def _line_friction(point: power_map.ExamplePoint) -> Row:
@@ -200,9 +189,7 @@ def _line_friction(point: power_map.ExamplePoint) -> Row:
         f"as printed it would rise to {as_printed:.3g} N{_surplus_power_note(point)}"
     )
     friction = float(power_map.line_friction(test, actuator_power=point.actuator_power))
-    return comparison_row(
-        f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line", kind=RowKind.PUBLISHED_MODEL
-    )
+    return published_model_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line")
 
 
 def _line_power(point: power_map.ExamplePoint) -> Row:
@@ -215,9 +202,7 @@ def _line_power(point: power_map.ExamplePoint) -> Row:
     row = next(row for row, voltage in voltages.items() if voltage.value == point.voltage_peak_to_peak)
     note = f"D 4.3 for the {point.friction.text} N of Table 4.2{_surplus_power_note(point)}"
     power_over_scatter = _over_scatter(power, point.friction)
-    return comparison_row(
-        f"table-4.1-actuator_power-{row}", power_over_scatter, note, suffix="by-the-line", kind=RowKind.PUBLISHED_MODEL
-    )
+    return published_model_row(f"table-4.1-actuator_power-{row}", power_over_scatter, note, suffix="by-the-line")
 
 
 def _surplus_power_note(point: power_map.ExamplePoint) -> str:
@@ -236,7 +221,7 @@ def _intrinsic_friction() -> Row:
     test = power_map.example_test()
     off, load = test["intrinsic_friction_force"], test["normal_load"]
     note = f"friction of Table 4.2 at {load:g} N; over that load a coefficient of {off / load:.3f}"
-    return comparison_row("4.1.3-friction-uncoated", off, note, kind=RowKind.PUBLISHED_FORMULA)
+    return published_formula_row("4.1.3-friction-uncoated", off, note)
 
 
 def _over_scatter(function: Callable[[float], float], measured: PrintedNumber) -> ComputedValue:

@@ -18,7 +18,7 @@ from sonolube.figure import COLOURS, MARKERS, ReportFigure
 from sonolube.models.friction import FaceVibrationMode, exponential_layer_ratio, linear_layer_ratio
 from sonolube.reproduction import formulas
 from sonolube.reproduction.plots import single_axes
-from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row
+from sonolube.reproduction.row import Row, default_model_row, formula_row, published_formula_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -120,18 +120,11 @@ def _measured_friction() -> Iterator[Row]:
         note = f"D 2.1 from {off.text} N and {on.text} N"
         yield formula_row(f"4.4.3-reduction-{load.text}N", note, formulas.friction_reduction, off, on)
     mean = float(np.mean(coefficients))
-    yield comparison_row(
-        "4.4.3-coefficient-on", mean, "mean over the three loads of force over load", kind=RowKind.PUBLISHED_FORMULA
-    )
+    yield published_formula_row("4.4.3-coefficient-on", mean, "mean over the three loads of force over load")
     lowest, *higher = (load.value for load in _loads())
     heads = si_value("4.4.2-total-load-6") / lowest
     for total, each in zip(("9", "12"), higher, strict=True):
-        yield comparison_row(
-            f"4.4.2-total-load-{total}",
-            heads * each,
-            f"{each:g} N on each of {heads:g} heads",
-            kind=RowKind.PUBLISHED_FORMULA,
-        )
+        yield published_formula_row(f"4.4.2-total-load-{total}", heads * each, f"{each:g} N on each of {heads:g} heads")
 
 
 def _soft_layers() -> Iterator[Row]:
@@ -142,11 +135,10 @@ def _soft_layers() -> Iterator[Row]:
         published = replace(
             published_value(f"4.4.3-coefficient-on-{load.text}N"), id=f"soft-{stiffening.name}-{load.text}N"
         )
-        yield comparison_row(
+        yield default_model_row(
             published,
             value,
             note,
-            kind=RowKind.DEFAULT_MODEL,
             fitted="the one parameter, with the numbers of the other two loads",
             alternatives={f"{linear.name} layer": other},
         )

@@ -15,7 +15,7 @@ from sonolube.reproduction.chapter4.power_rows import (
     nominal_pressure_rows,
     power_row,
 )
-from sonolube.reproduction.row import Row, RowKind, comparison_row, formula_row
+from sonolube.reproduction.row import Row, formula_row, published_formula_row
 
 
 def temperature_rows() -> Iterator[Row]:
@@ -41,15 +41,10 @@ def _settings() -> Iterator[Row]:
     yield power_row(highest, voltages[max(voltages)].value)
 
     dry = si_value("4.3.3-motor-start") + si_value("4.3.3-dry-duration")
-    yield comparison_row(
-        "4.3.3-vibration-start",
-        dry,
-        "start of the motor and rotation without vibration",
-        kind=RowKind.PUBLISHED_FORMULA,
-    )
+    yield published_formula_row("4.3.3-vibration-start", dry, "start of the motor and rotation without vibration")
     levels, level, cooling = len(voltages), si_value("4.3.3-level-duration"), si_value("4.3.3-cooling-duration")
     note = f"start of the vibration, {levels} levels of {level:g} s and {cooling:g} s of cooling"
-    yield comparison_row("4.3.3-duration", dry + levels * level + cooling, note, kind=RowKind.PUBLISHED_FORMULA)
+    yield published_formula_row("4.3.3-duration", dry + levels * level + cooling, note)
 
 
 def _superimposed_speeds() -> Iterator[Row]:
@@ -61,7 +56,7 @@ def _superimposed_speeds() -> Iterator[Row]:
         if speeds[row] == speeds[1]:
             mean = propagate_rounding(lambda v_1: v_1 / np.pi, peak)
             note = f"peak over pi, the half-wave mean; the mean of the modulus would be {2 * mean.value * 1e3:.0f} mm/s"
-            yield comparison_row(f"table-4.5-mean_vibration_velocity-{row}", mean, note, kind=RowKind.PUBLISHED_FORMULA)
+            yield published_formula_row(f"table-4.5-mean_vibration_velocity-{row}", mean, note)
         speed = f"table-4.5-superimposed_speed-{row}"
         note = f"sqrt(v_r^2 + (v_1/pi)^2) with {speeds[row].text} and {peak.text} mm/s"
         yield formula_row(speed, note, formulas.superimposed_speed, speeds[row], peak)

@@ -1,6 +1,7 @@
 """Temperature tests of D 4.3: printed settings, assumptions, heat of friction and vibration, computed histories."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 import numpy as np
@@ -137,6 +138,18 @@ def history(test: TemperatureTest, *, step: float = 0.25) -> thermal.ContactTemp
         sliding_speed=np.where(turning, test.sliding_speed, 0.0),
         vibration_heat_rate=np.where(shaken, vibration_heat()[at_level], 0.0),
     )
+
+
+@cache
+def dry_rises() -> Floats:
+    """Temperature rises without vibration at the moment when it starts, by load and speed. [K]"""
+    start = si_value("4.3.3-vibration-start")
+
+    def rise(load: float, speed: float) -> float:
+        record = history(TemperatureTest(normal_load=load, sliding_speed=speed, vibrated=False))
+        return float(np.interp(start, record.time, record.temperature_rise))
+
+    return np.array([[rise(float(load), float(speed)) for speed in speeds()] for load in loads()])
 
 
 def _column(name: str) -> Floats:

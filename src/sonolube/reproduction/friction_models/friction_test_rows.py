@@ -14,7 +14,7 @@ from sonolube.reproduction.friction_models.variant_predictions import (
     is_fitted_to,
     variant_predictions,
 )
-from sonolube.reproduction.row import Row, RowKind, comparison_row
+from sonolube.reproduction.row import Row, default_model_row
 from sonolube.validation.assessment import FITTED_SETS
 from sonolube.validation.fitting import root_mean_square
 from sonolube.validation.friction_model_variants import asperity_stick_slip
@@ -80,11 +80,10 @@ def _rows(sets: str) -> Iterator[Row]:
             continue
         predictions = _predictions(test)
         ratio, note = predictions.pop(DEFAULT)
-        yield comparison_row(
+        yield default_model_row(
             within_scatter(test),
             1 - ratio,
             note,
-            kind=RowKind.DEFAULT_MODEL,
             fitted="the memory length, with other tests" if is_fitted_to(test) else "",
             possible=_possible(test),
             alternatives={name: (1 - other, other_note) for name, (other, other_note) in predictions.items()},

@@ -16,6 +16,7 @@ from sonolube.design.control import (
 from sonolube.design.control.run_results import final_state, lost_resonance
 from sonolube.design.control.stick_slip import StickSlipSuppression
 from sonolube.report.page import PageTable
+from sonolube.report.results.record_object import picked
 from sonolube.report.results.rig_text import amplitude_object
 from sonolube.rig import AMPLITUDE, Rig, operating_caveats
 from sonolube.text.units import format_si
@@ -45,10 +46,10 @@ def control_object(
         "dead_time": process.dead_time_samples * process.sample_interval,
         "sample_interval": process.sample_interval,
         "plant_gain": study.plant_gain,
-        **_fields(study.controller.gains, "proportional_gain", "integral_time"),
-        **_fields(study.margins, "gain_margin", "phase_margin", "delay_margin", "sensitivity_peak"),
-        **_fields(study.response, "rise_time", "settling_time", "overshoot", "tracking_error"),
-        **_fields(study.energy, *_ENERGIES, "saved_work"),
+        **picked(study.controller.gains, "proportional_gain", "integral_time"),
+        **picked(study.margins, "gain_margin", "phase_margin", "delay_margin", "sensitivity_peak"),
+        **picked(study.response, "rise_time", "settling_time", "overshoot", "tracking_error"),
+        **picked(study.energy, *_ENERGIES, "saved_work"),
     }
     if study.run.electrical_energy is None:
         values = {name: value for name, value in values.items() if name not in _ENERGIES}
@@ -132,11 +133,6 @@ def holder_text() -> str:
         f" ratio {holder.HOLDER_DAMPING_RATIO:g}; static friction {holder.STATIC_FRICTION_FACTOR:g} times that"
         " of sliding, falling over the sliding speed"
     )
-
-
-def _fields(record: Any, *names: str) -> dict[str, float | None]:
-    """Fields of a record by name."""
-    return {name: getattr(record, name) for name in names}
 
 
 def _motions(suppression: StickSlipSuppression) -> list[tuple[str, StickSlipMotion, float]]:

@@ -3,6 +3,7 @@
 from typing import Any
 
 from sonolube.design.efficiency import EfficiencyCalibration
+from sonolube.report.results.record_object import picked
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
@@ -37,11 +38,10 @@ def efficiency_object(found: EfficiencyCalibration) -> dict[str, Any]:
     values = {
         "slope": found.fit.line.slope,
         "intercept": found.fit.line.intercept,
-        **{name: getattr(found.fit, name) for name in _FITTED},
+        **picked(found.fit, *_FITTED),
         "confidence_level": found.confidence_level,
     }
     if found.estimate is not None:
         values |= {"friction_force": found.friction_force, "sliding_speed": found.target_speed}
-        powers = {name: getattr(found.estimate, name) for name in _POWERS}
-        values |= {name: value for name, value in powers.items() if value is not None}
+        values |= {name: value for name, value in picked(found.estimate, *_POWERS).items() if value is not None}
     return {"runs": found.fit.runs, **si(values)}

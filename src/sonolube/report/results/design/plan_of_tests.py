@@ -8,6 +8,7 @@ import numpy as np
 from sonolube.design.test_plan.plan import TestPlan
 from sonolube.design.test_plan.run_order import RunState
 from sonolube.facts.protocol import Limits
+from sonolube.report.results.record_object import finite, picked
 from sonolube.rig import Rig
 from sonolube.text.units import format_like, format_si
 from sonolube.vocabulary import si
@@ -26,6 +27,10 @@ POINT_HEADS: Final = (
 )
 """Heads of the table of points."""
 
+_POINT = (
+    *("normal_load", "sliding_speed", "voltage_peak_to_peak", "vibration_amplitude"),
+    *("actuator_power", "mean_temperature_rise"),
+)
 _TO_FILL = ("Friction without (N)", "Friction with (N)", "Measured amplitude", "Remarks")
 _SETTINGS = ("Load (N)", "Speed (mm/s)", "Voltage (V)", "Amplitude (um)", "Vibration (s)")
 RUN_HEADS: Final = ("Run", "Block", "Pair", *_SETTINGS, *_TO_FILL)
@@ -142,8 +147,7 @@ def plan_object(rig: Rig, plan: TestPlan) -> dict[str, Any]:
     return {
         "rig": rig.title,
         "comparison": plan.question.comparison.name,
-        "difference": plan.question.difference,
-        "significance": plan.question.significance,
+        **picked(plan.question, "difference", "significance"),
         "power": plan.power,
         "scatter": {"value": plan.question.comparison.deviation(plan.scatter), "source": plan.scatter.source},
         "replicates": plan.replicates,
@@ -151,15 +155,7 @@ def plan_object(rig: Rig, plan: TestPlan) -> dict[str, Any]:
         "friction_models": plan.weights,
         "information": {"value": plan.batch.information[-1], "of": plan.entropy, "unit": "bit"},
         "points": [
-            si(
-                {
-                    name: _finite(getattr(at, name)[point])
-                    for name in (
-                        *("normal_load", "sliding_speed", "voltage_peak_to_peak", "vibration_amplitude"),
-                        *("actuator_power", "mean_temperature_rise"),
-                    )
-                }
-            )
+            si({name: finite(values[point]) for name, values in picked(at, *_POINT).items()})
             | {
                 "friction_ratio": {
                     "median": float(plan.median[point]),
@@ -177,8 +173,7 @@ def plan_object(rig: Rig, plan: TestPlan) -> dict[str, Any]:
         ],
         "runs": [
             {
-                "run": run.run,
-                "block": run.block,
+                **picked(run, "run", "block"),
                 "point": run.point + 1,
                 "specimens": list(run.specimens),
                 "vibrated": [list(part.vibrated) for part in run.parts],
@@ -225,11 +220,6 @@ def _hours(duration: float) -> str:
 def _text(value: float, unit: str) -> str:
     """Value with its unit, or a dash where it is not known."""
     return format_si(value, unit) if np.isfinite(value) else "-"
-
-
-def _finite(value: float) -> float | None:
-    """Value, or None where it is not known."""
-    return float(value) if np.isfinite(value) else None
 
 
 def _range(values: "np.ndarray[Any, np.dtype[np.float64]]", unit: str) -> str:

@@ -7,6 +7,7 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.fem import Transducer
 from sonolube.models.fem.results.impedance_spectra import SupportedSpectrum
 from sonolube.report.blocks import Block, Table
+from sonolube.report.results.record_object import picked
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
@@ -70,7 +71,6 @@ def _mode_rows(spectrum: SupportedSpectrum) -> list[tuple[str, ...]]:
 
 def _spectrum_object(spectrum: SupportedSpectrum) -> dict[str, Any]:
     """Nodes, error, capacitance and coupled modes of a spectrum."""
-    names = ("series_frequency", "parallel_frequency", "coupling_factor")
     return {
         "nodes": spectrum.port.model.mesh.node_count,
         **si(
@@ -82,7 +82,7 @@ def _spectrum_object(spectrum: SupportedSpectrum) -> dict[str, Any]:
         "modes": [
             {
                 "name": mode.name,
-                **si({name: getattr(mode, name) for name in names}),
+                **si(picked(mode, "series_frequency", "parallel_frequency", "coupling_factor")),
                 **si({"displacement_per_volt": spectrum.tip_displacement_at(mode.series_frequency)}),
             }
             for mode in spectrum.coupled_modes

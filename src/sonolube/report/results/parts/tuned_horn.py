@@ -6,6 +6,7 @@ from typing import Any
 from sonolube.design.horns.tuning import HornDesign, amplitude_limits, loaded_frequency
 from sonolube.facts.materials import Material
 from sonolube.report.blocks import Block, Rows
+from sonolube.report.results.record_object import picked
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si
 
@@ -59,10 +60,10 @@ def horn_object(
         "tuned_size": design.body.tuned_size,
         "thin_bar_length": None if thin is None else {"value": thin.length, "unit": "m"},
         "sizes": si(design.body.sizes, unit="m"),
-        **si({name: getattr(tuned, name) for name in ("length", "frequency_per_length")}),
+        **si(picked(tuned, "length", "frequency_per_length")),
         **si({"total_length": design.total_length}, unit="m"),
-        **si({name: getattr(tuned.mode, name) for name in ("frequency", "frequency_error")}),
-        **si({name: getattr(design, name) for name in _QUANTITIES}),
+        **si(picked(tuned.mode, "frequency", "frequency_error")),
+        **si(picked(design, *_QUANTITIES)),
         **si({"tool_mass": tool_mass, "loaded_frequency": loaded_frequency(design, tool_mass=tool_mass)}),
         **si({"stress_change": design.stress_change}, unit=""),
         **si(peak),
