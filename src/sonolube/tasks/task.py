@@ -1,7 +1,7 @@
 """A task: a function with annotated arguments that returns one answer, and the call that it answers."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from contextvars import ContextVar
 from functools import update_wrapper
 from inspect import Parameter as Argument, cleandoc, signature
@@ -16,8 +16,8 @@ from sonolube.tasks.call import Call, Mark
 from sonolube.tasks.docstrings import split_examples
 from sonolube.tasks.files import private_files, with_names_only
 from sonolube.tasks.notebooks import cell_progress, is_in_notebook
-from sonolube.tasks.parameters import Number, Parameter, RigParameter
-from sonolube.tasks.progress import observed, watched
+from sonolube.tasks.parameters import File, Number, Parameter, RigParameter
+from sonolube.tasks.progress import observed, watched, within
 from sonolube.text.units import temperature_difference_to_si, to_si
 
 P = ParamSpec("P")
@@ -77,9 +77,9 @@ class TaskFunction(Generic[P, A]):
         bound.apply_defaults()
         call = Call(self._function.__name__, dict(bound.arguments), given, self._marks, _NAMES.get())
         _refuse_impossible(call, self._choices)
-        before = _CALL.set(call)
         try:
             with (
+                within(_CALL, call),
                 private_files(),
                 in_notebooks(),
                 watched(bound.arguments.get("progress"), bound.arguments.get("cancelled")),
@@ -88,8 +88,6 @@ class TaskFunction(Generic[P, A]):
         except SonolubeError as failure:
             failure.args = tuple(with_names_only(each) if isinstance(each, str) else each for each in failure.args)
             raise
-        finally:
-            _CALL.reset(before)
         object.__setattr__(found, "call", call)
         return found
 
@@ -126,14 +124,9 @@ def in_notebooks() -> AbstractContextManager[None]:
     return observed(cell_progress) if is_in_notebook() else nullcontext()
 
 
-@contextmanager
-def argument_names(shown: Callable[[str], str]) -> Iterator[None]:
+def argument_names(shown: Callable[[str], str]) -> AbstractContextManager[None]:
     """Show arguments by other names in refusals, such as --sliding-speed for sliding_speed, inside a `with` block."""
-    before = _NAMES.set(shown)
-    try:
-        yield
-    finally:
-        _NAMES.reset(before)
+    return within(_NAMES, shown)
 
 
 def shown(name: str) -> str:
@@ -271,7 +264,7 @@ def _kind(argument: Argument, mark: Mark) -> str:
         return "Rig, str or Path"
     if isinstance(mark, Parameter) and mark.unit is not None:
         return "float or str"
-    if isinstance(mark, Parameter) and mark.is_file:
+    if isinstance(mark, File):
         return "str, Path or NamedBytes"
     kind = get_args(argument.annotation)[0]
     text = kind.__name__ if isinstance(kind, type) else str(getattr(kind, "__forward_arg__", kind))

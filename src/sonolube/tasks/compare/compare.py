@@ -10,7 +10,7 @@ from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig
+from sonolube.tasks.parameters import File, OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
 from sonolube.validation.comparison import (
@@ -33,18 +33,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-_RUNS = Parameter(
-    runs_help("Own measured runs, which each model predicts as published tests fitted it"),
-    kind="RUNS.csv",
-    is_file=True,
-)
+_RUNS = File(runs_help("Own measured runs, which each model predicts as published tests fitted it"), "RUNS.csv")
 
 
 @task
 def compare(
     rig: OptionalRig = None,
     *,
-    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", kind="NAME")] = (),
+    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
     progress: Watch = None,

@@ -12,7 +12,7 @@ from sonolube.report.results import ranked_models as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import OptionalRig, OwnRuns, Parameter, Stop, Watch, file_stem, optional_rig
+from sonolube.tasks.parameters import File, OptionalRig, OwnRuns, Parameter, Stop, Watch, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
 from sonolube.validation.comparison import compared_models
@@ -24,7 +24,7 @@ _CAPTION = (
     "Left: measured friction ratios of {runs} runs with their standard uncertainty, and the models of the least unseen"
     " error as curves. Right: root mean square errors of conditions that were left out of the fit, and of the fit."
 )
-_RUNS = Parameter(runs_help("Own measured runs, a row each"), kind="RUNS.csv", is_file=True)
+_RUNS = File(runs_help("Own measured runs, a row each"), "RUNS.csv")
 
 
 @task
@@ -33,7 +33,7 @@ def fit(
     *,
     rig: OptionalRig = None,
     mapping: MappedRuns = None,
-    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", kind="NAME")] = (),
+    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "FitAnswer":

@@ -5,14 +5,14 @@ from typing import Annotated
 from sonolube.design.control import VibrationMode, assumed_mode
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
-from sonolube.tasks.parameters import Number, Parameter
+from sonolube.tasks.parameters import Number, Parameter, Quantity
 from sonolube.tasks.task import in_si, shown
 from sonolube.text.units import to_si
 
-Delay = Annotated[Number, Parameter("Delay of the friction measurement.", unit="s")]
-Rate = Annotated[Number, Parameter("Sampling rate of the controller.", unit="Hz")]
-ClosedLoop = Annotated[Number | None, Parameter("Time constant of the closed loop; the delay by default.", unit="s")]
-VoltageLimit = Annotated[Number | None, Parameter("Largest swing, peak to peak; the rig's own by default.", unit="V")]
+Delay = Annotated[Number, Quantity("Delay of the friction measurement.", "s")]
+Rate = Annotated[Number, Quantity("Sampling rate of the controller.", "Hz")]
+ClosedLoop = Annotated[Number | None, Quantity("Time constant of the closed loop; the delay by default.", "s")]
+VoltageLimit = Annotated[Number | None, Quantity("Largest swing, peak to peak; the rig's own by default.", "V")]
 Quality = Annotated[float, Parameter("Quality factor, where the rig has no structure.", lowest=0.6)]
 Coupling = Annotated[float, Parameter("Effective coupling, where it has none.", lowest=0.001, highest=0.999)]
 

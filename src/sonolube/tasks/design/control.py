@@ -18,7 +18,7 @@ from sonolube.facts.metrics import EfficiencyLine
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
 from sonolube.tasks.design import closed_loop as loop
 from sonolube.tasks.design.control_answer import ControlAnswer
-from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si
@@ -44,7 +44,7 @@ def control(
     friction: Annotated[
         str | float | None,
         Parameter(
-            "Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.", kind="FRICTION"
+            "Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.", "FRICTION"
         ),
     ] = None,
     feed_forward: Annotated[
@@ -52,28 +52,28 @@ def control(
     ] = "model",
     efficiency: Annotated[
         Number | None,
-        Parameter("Efficiency at the rig's speed, in m2/N, instead of the published.", unit="m2/N", kind="COEFFICIENT"),
+        Quantity("Efficiency at the rig's speed, in m2/N, instead of the published.", "m2/N", kind="COEFFICIENT"),
     ] = None,
     delay: loop.Delay = "1ms",
     rate: loop.Rate = "5kHz",
-    noise: Annotated[Number, Parameter("Standard deviation of the sensor.", unit="N")] = "0N",
+    noise: Annotated[Number, Quantity("Standard deviation of the sensor.", "N")] = "0N",
     factor: Annotated[float, Parameter("Real friction over that of the model.", lowest=0.01, highest=100)] = 1.0,
     closed_loop: loop.ClosedLoop = None,
     amplitude_limit: Annotated[
-        Number | None, Parameter("Largest amplitude of a rig without a voltage; the rig's own by default.", unit="m")
+        Number | None, Quantity("Largest amplitude of a rig without a voltage; the rig's own by default.", "m")
     ] = None,
     voltage_limit: loop.VoltageLimit = None,
-    current_limit: Annotated[Number | None, Parameter("Largest current.", unit="A", kind="CURRENT")] = None,
-    slew_limit: Annotated[Number | None, Parameter("Fastest change of voltage.", unit="V/s", kind="V/s")] = None,
-    warming: Annotated[Number, Parameter("Final temperature rise, such as 40K.", unit="K")] = "0K",
+    current_limit: Annotated[Number | None, Quantity("Largest current.", "A", kind="CURRENT")] = None,
+    slew_limit: Annotated[Number | None, Quantity("Fastest change of voltage.", "V/s", kind="V/s")] = None,
+    warming: Annotated[Number, Quantity("Final temperature rise, such as 40K.", "K")] = "0K",
     warming_time: Annotated[
-        Number | None, Parameter("Time constant of the warming; a quarter of the run by default.", unit="s")
+        Number | None, Quantity("Time constant of the warming; a quarter of the run by default.", "s")
     ] = None,
     track: Annotated[bool, Parameter("Follow the resonance by the phase of the impedance.")] = True,
     quality: loop.Quality = 50.0,
     coupling: loop.Coupling = 0.2,
     stick_slip: Annotated[bool, Parameter("Also compute stick-slip of the slider on an elastic holder.")] = False,
-    duration: Annotated[Number, Parameter("Duration of the run.", unit="s")] = "0.2s",
+    duration: Annotated[Number, Quantity("Duration of the run.", "s")] = "0.2s",
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> ControlAnswer:

@@ -19,7 +19,7 @@ from sonolube.report.results.design import friction_map as results
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Backend, Parameter, RigFile, RunsSource, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Backend, File, KeyValues, Parameter, RigFile, RunsSource, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
@@ -31,21 +31,19 @@ if TYPE_CHECKING:
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
-_OVER = Parameter(
+_OVER = KeyValues(
     "Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
     " drive.frequency, drive.voltage_peak_to_peak or, without a voltage, vibration.vibration_amplitude. May come"
     " again.",
-    kind="KEY=VALUES",
-    is_mapping=True,
+    "KEY=VALUES",
 )
-_RUNS = Parameter(
+_RUNS = File(
     runs_help(
         "Measured runs to draw as points, and to interpolate from six on, with the quantities of both axes; a voltage"
         " gives its power, a load its stress. Columns"
     ),
-    kind="RUNS.csv",
+    "RUNS.csv",
     option="--runs --measured",
-    is_file=True,
 )
 
 

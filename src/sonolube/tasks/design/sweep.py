@@ -17,7 +17,7 @@ from sonolube.rig import Rig, operating_caveats
 from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.design.parametric_study import ParametricStudyAnswer, parametric_study
-from sonolube.tasks.parameters import Backend, Keep, Parameter, RigFile, Stop, Watch, kept, rig_of
+from sonolube.tasks.parameters import Backend, Keep, KeyValues, Parameter, RigFile, Stop, Watch, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, ends_by_key, refuse_replaced, values_by_key
 from sonolube.tasks.task import refuse_unused, shown, task
@@ -26,11 +26,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-_OVER = Parameter(
+_OVER = KeyValues(
     "A key of the file with its values: first:last:count, first:last:count:log or one,two,...;"
     " first:last alone for the sample lhs. May come again.",
-    kind="KEY=VALUES",
-    is_mapping=True,
+    "KEY=VALUES",
 )
 _CAPTIONS = {1: "Results of the rig over the key that was swept.", 2: "Friction over both keys that were swept."}
 _CLOUD_CAPTION = (
@@ -52,8 +51,8 @@ def sweep(
         Literal["voltage", "amplitude", "speed", "frequency", "power", "waveform", "load"] | None,
         Parameter("One quantity over its usual range, with a figure of its own."),
     ] = None,
-    lowest: Annotated[str | None, Parameter("With of: lowest value.", kind="QUANTITY", option="--from")] = None,
-    highest: Annotated[str | None, Parameter("With of: highest value.", kind="QUANTITY", option="--to")] = None,
+    lowest: Annotated[str | None, Parameter("With of: lowest value.", "QUANTITY", option="--from")] = None,
+    highest: Annotated[str | None, Parameter("With of: highest value.", "QUANTITY", option="--to")] = None,
     points: Annotated[
         int | None, Parameter("Number of points to draw for the sample lhs, or of values of one quantity.", lowest=1)
     ] = None,
@@ -62,7 +61,7 @@ def sweep(
     ] = (),
     vibration: Annotated[
         Sequence[str],
-        Parameter("With of speed: amplitude of a curve, of a rig without a voltage. May come again.", kind="LENGTH"),
+        Parameter("With of speed: amplitude of a curve, of a rig without a voltage. May come again.", "LENGTH"),
     ] = (),
     sample: Annotated[
         Literal["grid", "lhs", "list"],
@@ -71,7 +70,7 @@ def sweep(
     seed: Annotated[int, Parameter("Of the points drawn.", lowest=0)] = 0,
     workers: Annotated[int, Parameter("Threads, or processes of a local cluster.", lowest=1)] = 2,
     scheduler: Annotated[
-        str | None, Parameter("Dask scheduler, or local for processes on this machine.", kind="ADDRESS")
+        str | None, Parameter("Dask scheduler, or local for processes on this machine.", "ADDRESS")
     ] = None,
     chunk: Annotated[int, Parameter("Points computed and kept together.", lowest=1)] = 100_000,
     backend: Backend = "cpu",

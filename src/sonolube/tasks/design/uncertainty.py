@@ -23,7 +23,18 @@ from sonolube.report.results.design.uncertain_entries import agreement
 from sonolube.rig import Rig, operating_caveats, steady_vibration
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.parameters import DoorParameter, Interval, Kept, Parameter, RigFile, Stop, Watch, kept, rig_of
+from sonolube.tasks.parameters import (
+    DoorParameter,
+    Interval,
+    Kept,
+    KeyValues,
+    Parameter,
+    RigFile,
+    Stop,
+    Watch,
+    kept,
+    rig_of,
+)
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
@@ -43,7 +54,7 @@ def uncertainty(
     rig: RigFile,
     *,
     of: Annotated[
-        str, Parameter("The outcome, such as vibration_amplitude or wear_rate_ratio.", kind="QUANTITY")
+        str, Parameter("The outcome, such as vibration_amplitude or wear_rate_ratio.", "QUANTITY")
     ] = "friction_ratio",
     samples: Annotated[
         int, Parameter("Number of samples, up to the next power of two; for Sobol indices of each block.", lowest=32)
@@ -53,10 +64,9 @@ def uncertainty(
     ] = False,
     over: Annotated[
         Values | None,
-        Parameter(
+        KeyValues(
             "A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
-            kind="KEY=VALUES",
-            is_mapping=True,
+            "KEY=VALUES",
         ),
     ] = None,
     identified: Annotated[

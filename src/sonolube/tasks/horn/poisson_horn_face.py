@@ -12,7 +12,7 @@ from sonolube.reproduction.chapter2.horn_figures import face_friction_chart
 from sonolube.reproduction.chapter2.horn_friction import FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.cube import Horn
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import Number, Parameter, Quantity, Stop, Watch
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
 
@@ -29,17 +29,11 @@ _ASSUMED = {
 
 @task
 def face(
-    horn: Annotated[Horn, Parameter("Material of the horn: aluminium or steel.", kind="HORN")],
+    horn: Annotated[Horn, Parameter("Material of the horn: aluminium or steel.", "HORN")],
     *,
-    frequency: Annotated[
-        Number, Parameter("Of the drive on the horn's end.", unit="Hz", quantity="frequency")
-    ] = "20kHz",
-    amplitude: Annotated[
-        Number, Parameter("Of the driven end, zero to peak.", unit="m", quantity="vibration_amplitude")
-    ] = "8.5um",
-    sliding_speed: Annotated[
-        Number, Parameter("Of the block towards the node.", unit="m/s", quantity="sliding_speed")
-    ] = "5mm/s",
+    frequency: Annotated[Number, Quantity("Of the drive on the horn's end.", "frequency")] = "20kHz",
+    amplitude: Annotated[Number, Quantity("Of the driven end, zero to peak.", "vibration_amplitude")] = "8.5um",
+    sliding_speed: Annotated[Number, Quantity("Of the block towards the node.", "sliding_speed")] = "5mm/s",
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "FaceAnswer":

@@ -21,7 +21,7 @@ from sonolube.report.blocks import Block
 from sonolube.report.results.parts import tuned_horn as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, Stop, Watch
 from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -39,38 +39,25 @@ _SHARP = 0.2  # change of the peak stress from mesh to mesh above which it is a 
 def design(
     part: Annotated[
         InputFile,
-        Parameter(
-            "block, booster, conical_horn, cylinder, exponential_horn, stepped_horn, or a STEP file.",
-            kind="PART",
-            is_file=True,
-        ),
+        File("block, booster, conical_horn, cylinder, exponential_horn, stepped_horn, or a STEP file.", "PART"),
     ] = "stepped_horn",
     *,
-    frequency: Annotated[
-        Number, Parameter("Frequency of the tuned mode, such as 20kHz.", unit="Hz", quantity="frequency")
-    ],
-    material: Annotated[str, Parameter("Material of the horn.", kind="NAME")],
+    frequency: Annotated[Number, Quantity("Frequency of the tuned mode, such as 20kHz.", "frequency")],
+    material: Annotated[str, Parameter("Material of the horn.", "NAME")],
     sizes: Annotated[
-        PartSizes | None,
-        Parameter(
-            "A size, such as radius=20mm; others are chosen.", kind="SIZE=VALUE", option="--set", is_mapping=True
-        ),
+        PartSizes | None, KeyValues("A size, such as radius=20mm; others are chosen.", "SIZE=VALUE", option="--set")
     ] = None,
     gain: Annotated[
-        Number | None,
-        Parameter("Displacement gain by which the radius of the working end is chosen.", unit="", kind="RATIO"),
+        Number | None, Quantity("Displacement gain by which the radius of the working end is chosen.", "", kind="RATIO")
     ] = None,
-    tune: Annotated[str, Parameter("Length that is tuned.", kind="SIZE")] = "length",
-    mode: Annotated[str, Parameter("Mode that is tuned.", kind="NAME")] = "axial 1",
+    tune: Annotated[str, Parameter("Length that is tuned.", "SIZE")] = "length",
+    mode: Annotated[str, Parameter("Mode that is tuned.", "NAME")] = "axial 1",
     axis: Annotated[Axis | None, Parameter("Axis of the part of a STEP file; its longest by default.")] = None,
-    tool_mass: Annotated[Number, Parameter("Of a tool on the working face.", unit="kg", quantity="tool_mass")] = "10g",
+    tool_mass: Annotated[Number, Quantity("Of a tool on the working face.", "tool_mass")] = "10g",
     amplitude: Annotated[
-        Number | None,
-        Parameter(
-            "Of the working face, for the peak stress at it, such as 20um.", unit="m", quantity="vibration_amplitude"
-        ),
+        Number | None, Quantity("Of the working face, for the peak stress at it, such as 20um.", "vibration_amplitude")
     ] = None,
-    tolerance: Annotated[Number, Parameter("Largest relative error of the frequency.", unit="", kind="RATIO")] = 0.003,
+    tolerance: Annotated[Number, Quantity("Largest relative error of the frequency.", "", kind="RATIO")] = 0.003,
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "HornAnswer":

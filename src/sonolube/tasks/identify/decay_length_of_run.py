@@ -24,7 +24,7 @@ from sonolube.report.results import decay_length as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import Mapped, mapping_of
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch, file_stem
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Stop, Watch, file_stem
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
@@ -35,11 +35,10 @@ _CAPTION = (
     "Readings at the switches of the vibration over the sliding distance, with the most probable course of each"
     " hypothesis; the zero with its smoothed course."
 )
-_FILE = Parameter(
+_FILE = File(
     "Table of the switches of one run (CSV), the folder of a run of decay_length_run, or a recording with"
     " friction_force, voltage_peak_to_peak, normal_load, stack_current and shifts.",
-    kind="FILE",
-    is_file=True,
+    "FILE",
 )
 
 
@@ -47,21 +46,21 @@ _FILE = Parameter(
 def decay_length(
     file: Annotated[InputFile, _FILE],
     *,
-    vibration: Annotated[Number, Parameter("Of the vibration along the normal, at the beginning.", unit="m")] = "2.3um",
-    frequency: Annotated[Number, Parameter("Of the vibration.", unit="Hz", quantity="frequency")] = "22kHz",
-    sliding_speed: Annotated[Number, Parameter("Sliding speed.", unit="m/s", quantity="sliding_speed")] = "65mm/s",
-    load: Annotated[Number, Parameter("Normal load.", unit="N")] = "5N",
+    vibration: Annotated[Number, Quantity("Of the vibration along the normal, at the beginning.", "m")] = "2.3um",
+    frequency: Annotated[Number, Quantity("Of the vibration.", "frequency")] = "22kHz",
+    sliding_speed: Annotated[Number, Quantity("Sliding speed.", "sliding_speed")] = "65mm/s",
+    load: Annotated[Number, Quantity("Normal load.", "N")] = "5N",
     free_frequency: Annotated[
-        Number | None, Parameter("Of the slow mode, pin free; needed where shifts are not small.", unit="Hz")
+        Number | None, Quantity("Of the slow mode, pin free; needed where shifts are not small.", "Hz")
     ] = None,
     modal_mass: Annotated[
-        Number | None, Parameter("Of the slow mode at the contact; gives contact stiffnesses.", unit="kg")
+        Number | None, Quantity("Of the slow mode at the contact; gives contact stiffnesses.", "kg")
     ] = None,
     large_amplitude: Annotated[
-        Number | None, Parameter("Of the slow mode at large drive; that of the vibration by default.", unit="m")
+        Number | None, Quantity("Of the slow mode at large drive; that of the vibration by default.", "m")
     ] = None,
     rotation_speed: Annotated[
-        Number | None, Parameter("Of the disc, to remove its wobble from a recording.", unit="1/s")
+        Number | None, Quantity("Of the disc, to remove its wobble from a recording.", "1/s")
     ] = None,
     mapping: Mapped = None,
     seed: Annotated[int, Parameter("Seed of the sampling; equal seeds give equal results.", lowest=0)] = 0,

@@ -26,7 +26,7 @@ from sonolube.report.results.parts import impedance_spectra as results
 from sonolube.rig.datasets import LabelledArrays, labelled
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Stop, Watch
 from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
@@ -37,30 +37,26 @@ if TYPE_CHECKING:
 
 @task
 def compute(
-    part: Annotated[
-        InputFile,
-        Parameter("stack, tribometer_actuator, cutter_head, or a part or STEP file.", kind="PART", is_file=True),
-    ],
+    part: Annotated[InputFile, File("stack, tribometer_actuator, cutter_head, or a part or STEP file.", "PART")],
     *,
     sizes: Sizes = None,
-    lowest: Annotated[Number, Parameter("Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
-    highest: Annotated[Number, Parameter("Highest frequency.", unit="Hz", option="--to")] = "60kHz",
-    points: Annotated[int, Parameter("Number of frequencies.", kind="NUMBER", lowest=2)] = 1001,
+    lowest: Annotated[Number, Quantity("Lowest frequency.", "Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Quantity("Highest frequency.", "Hz", option="--to")] = "60kHz",
+    points: Annotated[int, Parameter("Number of frequencies.", "NUMBER", lowest=2)] = 1001,
     clamp: Annotated[
-        Sequence[str], Parameter("A face held still for a second spectrum, such as back.-z.", kind="FACE")
+        Sequence[str], Parameter("A face held still for a second spectrum, such as back.-z.", "FACE")
     ] = (),
     ceramic: Annotated[
-        str | None, Parameter("Ceramic of the stack or of a part that is no transducer; pic255.", kind="NAME")
+        str | None, Parameter("Ceramic of the stack or of a part that is no transducer; pic255.", "NAME")
     ] = None,
     poled: Annotated[Axis | None, Parameter("Direction in which such a part is poled; z.")] = None,
-    drive: Annotated[str | None, Parameter("Its driven electrode; +z.", kind="FACE")] = None,
-    ground: Annotated[str | None, Parameter("Its grounded electrode; -z.", kind="FACE")] = None,
+    drive: Annotated[str | None, Parameter("Its driven electrode; +z.", "FACE")] = None,
+    ground: Annotated[str | None, Parameter("Its grounded electrode; -z.", "FACE")] = None,
     measured: Annotated[
-        InputFile | None,
-        Parameter("Spectrum to draw over it, as sonolube measure impedance reads it.", kind="FILE", is_file=True),
+        InputFile | None, File("Spectrum to draw over it, as sonolube measure impedance reads it.", "FILE")
     ] = None,
     tolerance: Annotated[
-        Number, Parameter("Largest change of a coupled resonance from mesh to mesh.", unit="", kind="RATIO")
+        Number, Quantity("Largest change of a coupled resonance from mesh to mesh.", "", kind="RATIO")
     ] = 0.02,
     vtu: Annotated[bool, Parameter("Write the coupled modes for ParaView too.")] = False,
     progress: Watch = None,

@@ -11,7 +11,7 @@ from sonolube.laboratory.dry_run.findings import SAFETY
 from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import File, Parameter
 from sonolube.tasks.task import shown, task
 from sonolube.text.units import format_si
 
@@ -96,10 +96,10 @@ class CheckedDevices(Answer):
 
 @task
 def check(
-    device_map: Annotated[str | Path, Parameter("Devices of a rig.", kind="MAP.toml", is_file=True)],
+    device_map: Annotated[str | Path, File("Devices of a rig.", "MAP.toml")],
     *,
     protocol: Annotated[
-        InputFile | None, Parameter("Such as map_test, or a TOML file: can these devices run it?", kind="PROTOCOL")
+        InputFile | None, Parameter("Such as map_test, or a TOML file: can these devices run it?", "PROTOCOL")
     ] = None,
     connect: Annotated[bool, Parameter("Connect, and read one block with motor and drive off.")] = False,
 ) -> CheckedDevices:

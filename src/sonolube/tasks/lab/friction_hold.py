@@ -18,7 +18,7 @@ from sonolube.tasks.design import closed_loop as loop
 from sonolube.tasks.lab.hold_answer import HoldAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
 from sonolube.tasks.lab.run_record import ControlDoor, device_file, run_stage
-from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import to_si
@@ -31,30 +31,27 @@ def hold(
     friction: Annotated[
         str | float | None,
         Parameter(
-            "Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
-            kind="FRICTION",
+            "Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.", "FRICTION"
         ),
     ] = None,
     step_to: Annotated[
-        Number | None, Parameter("Sliding speed after the step; twice the rig's by default.", unit="m/s")
+        Number | None, Quantity("Sliding speed after the step; twice the rig's by default.", "m/s")
     ] = None,
     step_at: Annotated[
-        Number | None, Parameter("Time under control until the step; half of --duration by default.", unit="s")
+        Number | None, Quantity("Time under control until the step; half of --duration by default.", "s")
     ] = None,
     delay: loop.Delay = "1ms",
     rate: loop.Rate = "20Hz",
     closed_loop: loop.ClosedLoop = None,
     voltage_limit: loop.VoltageLimit = None,
     temperature_limit: Annotated[
-        str | None, Parameter("Temperature that ends the test, such as 60degC.", kind="TEMPERATURE")
+        str | None, Parameter("Temperature that ends the test, such as 60degC.", "TEMPERATURE")
     ] = None,
-    friction_limit: Annotated[Number | None, Parameter("Friction force that ends the test.", unit="N")] = None,
+    friction_limit: Annotated[Number | None, Quantity("Friction force that ends the test.", "N")] = None,
     quality: loop.Quality = 50.0,
     coupling: loop.Coupling = 0.2,
-    run_in: Annotated[
-        Number, Parameter("Sliding without vibration before the controller takes over.", unit="s")
-    ] = "1s",
-    duration: Annotated[Number, Parameter("Time under control.", unit="s")] = "10s",
+    run_in: Annotated[Number, Quantity("Sliding without vibration before the controller takes over.", "s")] = "1s",
+    duration: Annotated[Number, Quantity("Time under control.", "s")] = "10s",
     device_map: Device = "virtual",
     seed: Seed = 0,
     real_time: RealTime = False,

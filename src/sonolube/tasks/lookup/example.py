@@ -20,7 +20,7 @@ _ALL = "all"
 @task
 def example(
     name: Annotated[
-        str | None, Parameter("File to write, such as tribometer, or all; the list by default.", kind="EXAMPLE")
+        str | None, Parameter("File to write, such as tribometer, or all; the list by default.", "EXAMPLE")
     ] = None,
 ) -> "ExampleAnswer":
     """Example files, such as rigs: list them, or write one with its path in the help texts below the current folder.

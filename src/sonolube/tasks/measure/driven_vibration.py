@@ -8,7 +8,7 @@ from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, conditions, each_file
 from sonolube.tasks.number_table import number_table
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Quantity, Stop, Watch
 from sonolube.tasks.task import in_si, task
 
 
@@ -16,10 +16,8 @@ from sonolube.tasks.task import in_si, task
 def vibration(
     files: Files,
     *,
-    frequency: Annotated[Number, Parameter("Of the drive, such as 22kHz.", unit="Hz", quantity="frequency")],
-    modes: Annotated[
-        InputFile | None, Parameter("Computed shapes at the points, one a column.", kind="MODES.csv", is_file=True)
-    ] = None,
+    frequency: Annotated[Number, Quantity("Of the drive, such as 22kHz.", "frequency")],
+    modes: Annotated[InputFile | None, File("Computed shapes at the points, one a column.", "MODES.csv")] = None,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,
     progress: Watch = None,

@@ -26,7 +26,7 @@ from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
 from sonolube.tasks.own_tables import mapping_of
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import File, Parameter
 from sonolube.tasks.progress import stage
 
 if TYPE_CHECKING:
@@ -35,16 +35,11 @@ if TYPE_CHECKING:
     from sonolube.tasks.call import Mark
     from sonolube.tasks.progress import Advance
 
-Files = Annotated[
-    Sequence[InputFile] | InputFile,
-    Parameter("Files, or folders whose files are taken.", kind="FILES...", is_file=True),
-]
-Group = Annotated[str | None, Parameter("Of the channels, in TDMS, HDF5 and MATLAB files.", kind="GROUP")]
-Channels = Annotated[Sequence[str], Parameter("To read, as labelled; may come again.", kind="LABEL")]
-Sections = Annotated[Sequence[str], Parameter("To read, such as a step; may come again.", kind="NUMBER|NAME")]
-TestSheet = Annotated[
-    InputFile | None, Parameter("Conditions of the test, listed in its report.", kind="TEST.toml", is_file=True)
-]
+Files = Annotated[Sequence[InputFile] | InputFile, File("Files, or folders whose files are taken.", "FILES...")]
+Group = Annotated[str | None, Parameter("Of the channels, in TDMS, HDF5 and MATLAB files.", "GROUP")]
+Channels = Annotated[Sequence[str], Parameter("To read, as labelled; may come again.", "LABEL")]
+Sections = Annotated[Sequence[str], Parameter("To read, such as a step; may come again.", "NUMBER|NAME")]
+TestSheet = Annotated[InputFile | None, File("Conditions of the test, listed in its report.", "TEST.toml")]
 Measure = Callable[[Path], Sheet]
 
 _UNLISTED = ("files", "test_sheet", "progress", "cancelled")  # listed otherwise, or changing no number
@@ -221,7 +216,7 @@ def _file_name(file: InputFile) -> str:
 def _setting(value: object, mark: "Mark") -> str:
     """Value of an argument as text: of several files their names, of a number in SI its unit too."""
     if isinstance(value, list | tuple):
-        is_file = isinstance(mark, Parameter) and mark.is_file
+        is_file = isinstance(mark, File)
         return ", ".join(_file_name(each) if is_file else str(each) for each in value)
     if isinstance(value, NamedBytes | Rig):
         return value.name

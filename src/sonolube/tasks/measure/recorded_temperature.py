@@ -8,7 +8,7 @@ from sonolube.report.measured.temperature import TemperatureSettings, temperatur
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, measured
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Stop, Watch
 from sonolube.tasks.task import in_si, shown, task
 
 
@@ -17,17 +17,13 @@ def temperature(
     files: Files,
     *,
     start_time: Annotated[
-        Number | None, Parameter("Of the step of the heat; else the first sample.", unit="s", quantity="start_time")
+        Number | None, Quantity("Of the step of the heat; else the first sample.", "start_time")
     ] = None,
-    end_time: Annotated[
-        Number | None, Parameter("Of the response; else the last sample.", unit="s", quantity="end_time")
-    ] = None,
+    end_time: Annotated[Number | None, Quantity("Of the response; else the last sample.", "end_time")] = None,
     exponentials: Annotated[
         int | None, Parameter("In the response; else as many as the samples tell apart.", lowest=1, highest=2)
     ] = None,
-    without_vibration: Annotated[
-        InputFile | None, Parameter("The test without vibration, to compare with.", kind="FILE", is_file=True)
-    ] = None,
+    without_vibration: Annotated[InputFile | None, File("The test without vibration, to compare with.", "FILE")] = None,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,
     progress: Watch = None,

@@ -28,7 +28,7 @@ from sonolube.report.results.parts import natural_modes as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.number_table import number_table
-from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Stop, Watch
 from sonolube.tasks.parts.named_parts import (
     ALL_TRANSDUCERS,
     ELASTIC_PROPERTIES,
@@ -56,42 +56,33 @@ def modes(
     part: Part,
     *,
     sizes: Sizes = None,
-    material: Annotated[
-        str, Parameter("Material of the part; transducers have their own.", kind="NAME")
-    ] = DEFAULT_MATERIAL,
+    material: Annotated[str, Parameter("Material of the part; transducers have their own.", "NAME")] = DEFAULT_MATERIAL,
     youngs_modulus: Annotated[
         Number | None,
-        Parameter(
-            "Young's modulus instead of the material's.", unit="Pa", quantity="youngs_modulus", option="--young-modulus"
-        ),
+        Quantity("Young's modulus instead of the material's.", "youngs_modulus", option="--young-modulus"),
     ] = None,
     poisson_ratio: Annotated[
-        Number | None,
-        Parameter("Instead of the material's Poisson's ratio.", unit="", quantity="poisson_ratio", kind="RATIO"),
+        Number | None, Quantity("Instead of the material's Poisson's ratio.", "poisson_ratio", kind="RATIO")
     ] = None,
-    density: Annotated[
-        Number | None, Parameter("Density instead of the material's.", unit="kg/m3", quantity="density")
-    ] = None,
-    count: Annotated[int, Parameter("Number of elastic modes.", kind="NUMBER")] = 6,
-    clamp: Annotated[Sequence[str], Parameter("A face held still, such as -x.", kind="FACE")] = (),
+    density: Annotated[Number | None, Quantity("Density instead of the material's.", "density")] = None,
+    count: Annotated[int, Parameter("Number of elastic modes.", "NUMBER")] = 6,
+    clamp: Annotated[Sequence[str], Parameter("A face held still, such as -x.", "FACE")] = (),
     axis: Annotated[Axis | None, Parameter("The part's axis; its longest by default.")] = None,
-    tolerance: Annotated[Number, Parameter("Largest relative error of a frequency.", unit="", kind="RATIO")] = 0.005,
+    tolerance: Annotated[Number, Quantity("Largest relative error of a frequency.", "", kind="RATIO")] = 0.005,
     points: Annotated[
-        InputFile | None,
-        Parameter("Points x, y, z in mm at which to write the shapes.", kind="POINTS.csv", is_file=True),
+        InputFile | None, File("Points x, y, z in mm at which to write the shapes.", "POINTS.csv")
     ] = None,
     toward: Annotated[Axis | None, Parameter("Component at the points; that of the axis by default.")] = None,
     contact: Annotated[
-        str | None,
-        Parameter("Write the modes for a rig file, with the contact at an output such as tip.", kind="OUTPUT"),
+        str | None, Parameter("Write the modes for a rig file, with the contact at an output such as tip.", "OUTPUT")
     ] = None,
     body_mass: Annotated[
-        Number | None, Parameter("Of a body that rests on the contact; held where absent.", unit="kg")
+        Number | None, Quantity("Of a body that rests on the contact; held where absent.", "kg")
     ] = None,
     body_stiffness: Annotated[
-        Number, Parameter("Of the spring that holds that body; none where absent.", unit="N/m")
+        Number, Quantity("Of the spring that holds that body; none where absent.", "N/m")
     ] = "0N/m",
-    body_damping: Annotated[Number, Parameter("Of the damper beside it.", unit="N s/m")] = "0N s/m",
+    body_damping: Annotated[Number, Quantity("Of the damper beside it.", "N s/m")] = "0N s/m",
     vtu: Annotated[bool, Parameter("Write the modes for ParaView too.")] = False,
     animate: Annotated[bool, Parameter("Draw each mode as an animated GIF too.")] = False,
     progress: Watch = None,

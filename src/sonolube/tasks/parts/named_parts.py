@@ -21,14 +21,12 @@ from sonolube.models.fem import (
     read_step,
 )
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import File
 from sonolube.tasks.task import shown
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
-Part = Annotated[
-    InputFile, Parameter("A part such as block, a transducer such as stack, or a STEP file.", kind="PART", is_file=True)
-]
+Part = Annotated[InputFile, File("A part such as block, a transducer such as stack, or a STEP file.", "PART")]
 Axis = Literal["x", "y", "z"]
 PartSizes = Mapping[str, str | float]
 """Sizes of a part by name, as text with units or as numbers in SI."""

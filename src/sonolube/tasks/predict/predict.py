@@ -15,7 +15,7 @@ from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
+from sonolube.tasks.parameters import Disc, File, KeyValues, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
 from sonolube.tasks.task import task
 from sonolube.text.units import format_si
 
@@ -24,10 +24,9 @@ if TYPE_CHECKING:
 
 Laboratory: TypeAlias = "Mapping[RigSource, RunsSource] | Sequence[tuple[RigSource, RunsSource]] | None"
 
-_LABORATORY = Parameter(
+_LABORATORY = KeyValues(
     "Another rig of your laboratory with its runs, which tell of the contact's decay length; may be repeated.",
-    kind="RIG.toml=RUNS.csv",
-    is_mapping=True,
+    "RIG.toml=RUNS.csv",
 )
 _MEASURE_HEADS = ["what would narrow it", "leaves of the interval"]
 
@@ -36,7 +35,7 @@ _MEASURE_HEADS = ["what would narrow it", "leaves of the interval"]
 def predict(
     rig: RigFile,
     *,
-    runs: Annotated[RunsSource, Parameter(runs_help("Own measured runs"), kind="RUNS.csv", is_file=True)] = None,
+    runs: Annotated[RunsSource, File(runs_help("Own measured runs"), "RUNS.csv")] = None,
     mapping: MappedRuns = None,
     laboratory: Annotated[Laboratory, _LABORATORY] = None,
     pin: Pin = None,

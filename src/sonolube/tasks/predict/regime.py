@@ -14,18 +14,16 @@ from sonolube.rig import LubricationMap, LubricationPoint, Rig, lubrication_map,
 from sonolube.rig.datasets import labels
 from sonolube.rig.figures import lubrication_chart
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, rig_of
 from sonolube.tasks.task import in_si, plausible, shown, task
 from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_FILM = Parameter("Coefficient of friction of the lubricant film.", unit="", kind="NUMBER")
-_PRESSURE = Parameter("Pressure at which asperities carry all the load.", unit="Pa")
-_GAIN = Parameter(
-    "Least reduction of a lubricant's friction that is worth the power of vibration.", unit="", kind="SHARE"
-)
+_FILM = Quantity("Coefficient of friction of the lubricant film.", "", kind="NUMBER")
+_PRESSURE = Quantity("Pressure at which asperities carry all the load.", "Pa")
+_GAIN = Quantity("Least reduction of a lubricant's friction that is worth the power of vibration.", "", kind="SHARE")
 
 
 @task
@@ -35,8 +33,8 @@ def regime(
     film_coefficient: Annotated[Number, _FILM],
     asperity_pressure: Annotated[Number, _PRESSURE],
     smallest_gain: Annotated[Number, _GAIN] = "0",
-    pin: Annotated[str | None, Parameter("Material of the pin, for its wear.", kind="MATERIAL")] = None,
-    disc: Annotated[str | None, Parameter("Material of the disc, for its wear.", kind="MATERIAL")] = None,
+    pin: Annotated[str | None, Parameter("Material of the pin, for its wear.", "MATERIAL")] = None,
+    disc: Annotated[str | None, Parameter("Material of the disc, for its wear.", "MATERIAL")] = None,
 ) -> "RegimeAnswer":
     """Lubrication regime: dry, vibrated, lubricated or both, and the kind of wear to expect.
 

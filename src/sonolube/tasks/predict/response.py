@@ -14,7 +14,7 @@ from sonolube.rig.figures import response_chart
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import response_arrays
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.parameters import Number, Parameter, RestingRig, rig_of
+from sonolube.tasks.parameters import Number, Quantity, RestingRig, rig_of
 from sonolube.tasks.task import in_si, shown, task
 from sonolube.text.units import format_si
 
@@ -23,8 +23,8 @@ from sonolube.text.units import format_si
 def response(
     rig: RestingRig,
     *,
-    lowest: Annotated[Number, Parameter("Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
-    highest: Annotated[Number, Parameter("Highest frequency.", unit="Hz", option="--to")] = "100kHz",
+    lowest: Annotated[Number, Quantity("Lowest frequency.", "Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Quantity("Highest frequency.", "Hz", option="--to")] = "100kHz",
 ) -> "ResponseAnswer":
     """Linear response: tip amplitude per volt and electrical impedance over frequency.
 

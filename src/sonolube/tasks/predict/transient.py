@@ -11,7 +11,7 @@ from sonolube.rig.figures import start_up_chart
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import start_up_arrays
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Number, Quantity, RigFile, Stop, Watch, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, task
 from sonolube.text.units import format_si
@@ -23,7 +23,7 @@ _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "bea
 def transient(
     rig: RigFile,
     *,
-    duration: Annotated[Number, Parameter("Time that is integrated.", unit="s")] = "0.1s",
+    duration: Annotated[Number, Quantity("Time that is integrated.", "s")] = "0.1s",
     progress: Watch = None,
     cancelled: Stop = None,
 ) -> "StartUpAnswer":
