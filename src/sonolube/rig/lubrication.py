@@ -123,9 +123,7 @@ def lubrication_point(
         coefficients=found,
         best=str(best_lubrication_method(found, smallest_gain=smallest_gain)),
         friction_model=rig.friction_model.name,
-        vibration_amplitude=vibrated.vibration.amplitude,
-        amplitude_source=vibrated.vibration.source,
-        amplitude_origin=vibrated.vibration.text,
+        **vibrated.origin,
         caveats=(
             *vibrated.caveats,
             "load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",

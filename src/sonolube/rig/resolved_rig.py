@@ -1,7 +1,7 @@
 """Rig with its drive voltage, source of amplitude, gap law and rest state, each resolved once for a whole command."""
 
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -45,6 +45,8 @@ class ResolvedRig:
     """
 
     rig: Rig
+    motions: list[Any] = field(default_factory=list, init=False, repr=False)
+    """Steady vibration of the structure once it was solved, which is that under every friction model."""
 
     @cached_property
     def voltage(self) -> DriveVoltage:

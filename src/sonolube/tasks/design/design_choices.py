@@ -19,7 +19,7 @@ _WAVEFORM = "drive.waveform"
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
 
 
-def friction_ratio(rig: Rig, target: str | float) -> float:
+def target_ratio(rig: Rig, target: str | float) -> float:
     """Target friction over friction without vibration, from a coefficient or a force.
 
     Parameters
@@ -45,7 +45,7 @@ def friction_ratio(rig: Rig, target: str | float) -> float:
     return force / intrinsic
 
 
-def horn(material_name: str | None, limit: float | None) -> HalfWaveHorn | None:
+def half_wave_horn(material_name: str | None, limit: float | None) -> HalfWaveHorn | None:
     """Half-wave horn of a material with the stress amplitude allowed in it; None without both.
 
     Raises
@@ -65,7 +65,7 @@ def horn(material_name: str | None, limit: float | None) -> HalfWaveHorn | None:
     )
 
 
-def bolt(thread: str | None, tension: float | None, strength: float) -> PreloadBolt | None:
+def bolt_of_thread(thread: str | None, tension: float | None, strength: float) -> PreloadBolt | None:
     """Preload bolt of a thread such as M6x40mm; None without thread and tension.
 
     Raises

@@ -86,7 +86,7 @@ def optimise(
         actuators=actuator,
         catalogue=catalogue,
         mechanical_quality_factor=quality,
-        bolt=choices.bolt(bolt, in_si("preload", preload), in_si("bolt_strength", bolt_strength)),
+        bolt=choices.bolt_of_thread(bolt, in_si("preload", preload), in_si("bolt_strength", bolt_strength)),
     )
     limits = optimisation.Limits(
         voltage_maximum=in_si("voltage_limit", voltage_limit),
@@ -95,11 +95,11 @@ def optimise(
         nominal_pressure=in_si("stress_limit", stress_limit),
         temperature_rise=in_si("temperature_limit", temperature_limit),
         thermal_conductance=in_si("conductance", conductance),
-        horn=choices.horn(horn, in_si("horn_limit", horn_limit)),
+        horn=choices.half_wave_horn(horn, in_si("horn_limit", horn_limit)),
     )
     problem = optimisation.DesignProblem(
         space=space,
-        friction_ratio=choices.friction_ratio(known, target_friction),
+        friction_ratio=choices.target_ratio(known, target_friction),
         limits=limits,
         tolerance=None if robust is None else optimisation.Tolerance(manufacturing_tolerance=robust, quantile=quantile),
     )

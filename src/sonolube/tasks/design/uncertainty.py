@@ -21,7 +21,7 @@ from sonolube.report.results.beyond_the_model import BeyondTheModel, beyond_the_
 from sonolube.report.results.design import uncertainty as results
 from sonolube.report.results.design.uncertain_entries import agreement
 from sonolube.rig import Rig, operating_caveats, steady_vibration
-from sonolube.rig.resolved_rig import resolved_rig
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.parameters import (
     DoorParameter,
@@ -150,16 +150,15 @@ class UncertaintyAnswer(Answer):
         if self.structure is not None and not self.structure.posterior.has_converged:
             caveats.append(agreement(self.structure))
         meaning = ratio_caveats(friction_ratio=self.result[self._of].values) if self._of == "friction_ratio" else ()
-        return [*caveats, *operating_caveats(self.rig), *meaning]
+        return [*caveats, *operating_caveats(self._resolved), *meaning]
 
     def leading_caveats(self) -> Sequence[str]:
         """An amplitude beyond that of all published tests, where friction is the outcome."""
         if self._of not in _OF_THE_MODEL:
             return ()
         try:
-            resolved = resolved_rig(self.rig)
-            amplitude = steady_vibration(resolved).vibration_amplitude
-            return large_amplitude_caveats(resolved, vibration_amplitude=amplitude)
+            amplitude = steady_vibration(self._resolved).vibration_amplitude
+            return large_amplitude_caveats(self._resolved, vibration_amplitude=amplitude)
         except SonolubeError:  # at the values of the file, which need not be those of the samples
             return ()
 
@@ -213,6 +212,11 @@ class UncertaintyAnswer(Answer):
         return results.statistics_rows(self._statistics, self._of)
 
     @cached_property
+    def _resolved(self) -> ResolvedRig:
+        """Rig at its own operating point."""
+        return resolved_rig(self.rig)
+
+    @cached_property
     def _statistics(self) -> SampleStatistics:
         """Mean, deviation and quantiles of the outcome."""
         return outcome_statistics(self.result)
@@ -225,7 +229,7 @@ class UncertaintyAnswer(Answer):
     @cached_property
     def _beyond(self) -> BeyondTheModel:
         """Uncertainty of the friction ratio that the samples leave out."""
-        return beyond_the_model(self.rig, self.rig.friction_model, interval=self.interval)
+        return beyond_the_model(self._resolved, self.rig.friction_model, interval=self.interval)
 
     def _error_rows(self) -> list[tuple[str, str]]:
         """The same as names and texts."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
-from sonolube.report.results.parts import horn_face as results
+from sonolube.report.results.parts import horn_face
 from sonolube.reproduction.chapter2.horn_figures import face_friction_chart
 from sonolube.reproduction.chapter2.horn_friction import FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.cube import Horn
@@ -72,11 +72,11 @@ class FaceAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Node, regions, and the greatest motor force."""
-        return results.face_blocks(self.horn, self.friction)
+        return horn_face.face_blocks(self.horn, self.friction)
 
     def object(self) -> dict[str, Any]:
         """Node, limits of the transition region computed and measured, least friction ratio."""
-        return results.face_object(self.horn, self.friction)
+        return horn_face.face_object(self.horn, self.friction)
 
     def caveats(self) -> Sequence[str]:
         """A side of the face that drives nowhere."""
