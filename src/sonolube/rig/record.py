@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, Literal, get_args
+from typing import Any, Final, Literal, Protocol, get_args
 
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput, UnknownName
@@ -17,9 +17,6 @@ from sonolube.models.dynamics import Structure
 from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.distribution import Distribution
 from sonolube.text.units import format_si
-
-if TYPE_CHECKING:
-    from sonolube.rig.file.entries import FileEntries
 
 STATED = "as stated"
 """Beginning of the assumption about an amplitude that was stated before a test, not measured."""
@@ -68,6 +65,28 @@ class MeasuredUnder:
             value = getattr(self, name)
             if value is not None:
                 require_positive(**{name: value})
+
+
+class RigEntries(Protocol):
+    """Entries of the file that a rig was read from."""
+
+    @property
+    def content(self) -> Mapping[str, Any]:
+        """Tables and values as they are written."""
+
+    @property
+    def path(self) -> str:
+        """Path of the file; empty where there is none."""
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """Entries that were replaced when it was read."""
+
+    def replaced(self, key: str, value: str | float) -> "Rig":
+        """Rig of the file with one entry replaced."""
+
+    def write(self, path: str | Path) -> Path:
+        """Write the file with its entries."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -149,7 +168,7 @@ class Rig:
     decay_length_origin: DecayLengthOrigin | None = None
     assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     uncertainty: Mapping[str, Distribution] = field(default_factory=lambda: MappingProxyType({}))
-    _entries: "FileEntries | None" = field(init=False, default=None, compare=False)
+    _entries: RigEntries | None = field(init=False, default=None, compare=False)
 
     def __post_init__(self) -> None:
         require_positive(normal_load=self.normal_load, friction_coefficient=self.friction_coefficient)
@@ -308,7 +327,7 @@ class Rig:
         ]
         return "; ".join(text for text in sources if text)
 
-    def _file(self) -> "FileEntries":
+    def _file(self) -> RigEntries:
         """Entries of the file."""
         if self._entries is None:
             raise InvalidInput(

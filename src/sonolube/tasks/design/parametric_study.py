@@ -80,32 +80,7 @@ def parametric_study(
     voltages: Sequence[str],
     amplitudes: Sequence[str],
 ) -> "ParametricStudyAnswer":
-    """Study of a rig over one quantity.
-
-    Parameters
-    ----------
-    rig : Rig
-    of : str
-        "voltage", "amplitude", "speed", "frequency", "power", "waveform" or "load".
-    lowest, highest : str or None
-        Ends of the range with their units; the default ones where None.
-    points : int or None
-        Number of values.
-    voltages : sequence of str
-        Drive voltage of each curve over speed or frequency, with its unit.
-    amplitudes : sequence of str
-        Vibration amplitude of each curve over speed, with its unit, of a rig without a voltage.
-
-    Returns
-    -------
-    ParametricStudyAnswer
-
-    Raises
-    ------
-    InvalidInput
-        If the rig lacks the structure or voltage of the study, the range is empty, an option has no meaning for the
-        study, or no point has a result.
-    """
+    """Study of a rig over one quantity, whose range has ends with units; default ones where None."""
     _require_studied(rig, of)
     curves = _curves(rig, of, voltages, amplitudes)
     if of == "waveform":
