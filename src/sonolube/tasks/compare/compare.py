@@ -13,15 +13,7 @@ from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
-from sonolube.validation.comparison import (
-    DATA_SETS,
-    ONLY_PREDICTED,
-    ComparedFit,
-    RigPrediction,
-    compare_models,
-    compared_models,
-    predict_rig,
-)
+from sonolube.validation import comparison
 from sonolube.validation.figures import comparison_figures, rig_chart
 from sonolube.validation.rig_conditions import vibrated_rig
 from sonolube.validation.run_conditions import RunsTable, run_conditions
@@ -61,8 +53,8 @@ def compare(
     point = None if known is None else vibrated_rig(known)
     table = None if own_runs is None else run_conditions(own_runs, known)
     with stage("comparing") as advance:
-        fits = compare_models(compared_models(model), advance=advance)
-        predictions = () if point is None else predict_rig(fits, point)
+        fits = comparison.compare_models(comparison.compared_models(model), advance=advance)
+        predictions = () if point is None else comparison.predict_rig(fits, point)
     return ComparisonAnswer(
         fits=fits,
         rig=known,
@@ -77,10 +69,10 @@ def compare(
 class ComparisonAnswer(Answer):
     """Errors of models on published tests, fitted and cross-validated, and their predictions of a rig."""
 
-    fits: tuple[ComparedFit, ...]
+    fits: tuple[comparison.ComparedFit, ...]
     rig: Rig | None
     own: FrictionPoint | None
-    predictions: tuple[RigPrediction, ...]
+    predictions: tuple[comparison.RigPrediction, ...]
     table: RunsTable | None = None
     of_runs: tuple[RunsPrediction, ...] = ()
 
@@ -95,8 +87,8 @@ class ComparisonAnswer(Answer):
     def object(self) -> dict[str, Any]:
         """Errors, fitted parameters and predictions of each model, and the predictions of the rig."""
         content: dict[str, Any] = {
-            "sets": dict(DATA_SETS),
-            "only_predicted": dict(ONLY_PREDICTED),
+            "sets": dict(comparison.DATA_SETS),
+            "only_predicted": dict(comparison.ONLY_PREDICTED),
             "models": list(map(results.model_object, self.fits)),
         }
         if self.table is not None:

@@ -13,7 +13,7 @@ from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, OptionalRig, OwnRuns, Parameter, Stop, Watch, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
-from sonolube.validation.comparison import compared_models
+from sonolube.validation import comparison
 from sonolube.validation.runs_figures import runs_fit_chart
 from sonolube.validation.runs_fit import RunsFit, fit_runs
 from sonolube.validation.runs_tables import runs_fit_dataset
@@ -52,7 +52,7 @@ def fit(
     """
     known, table = optional_rig(rig), runs_of(runs, mapping)
     with stage("fitting") as advance:
-        result = fit_runs(table, known, models=compared_models(model), advance=advance)
+        result = fit_runs(table, known, models=comparison.compared_models(model), advance=advance)
     volts = None if known is None or "voltage_peak_to_peak" not in table else ranked_models.volts_per_amplitude(known)
     return FitAnswer(fit=result, rig=known, volts_per_amplitude=volts, name=f"{file_stem(runs)}-fit")
 

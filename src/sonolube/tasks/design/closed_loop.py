@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from sonolube.design.control import VibrationMode, assumed_mode
+from sonolube.design import control as loops
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
 from sonolube.tasks.parameters import Number, Parameter, Quantity
@@ -37,7 +37,7 @@ def sampling_and_duration(*, rate: Number, duration: Number) -> tuple[float, flo
     return sampling, run_time
 
 
-def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[VibrationMode, dict[str, str]]:
+def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[loops.VibrationMode, dict[str, str]]:
     """Resonance at the frequency of the drive of a rig without a structure, with what is assumed of it.
 
     Parameters
@@ -52,7 +52,7 @@ def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[Vib
     dict of str to str
     """
     text = f"at the drive's frequency, quality factor {quality:g}, coupling {coupling:g}; not measured"
-    return assumed_mode(rig, quality_factor=quality, coupling_factor=coupling), {"resonance": text}
+    return loops.assumed_mode(rig, quality_factor=quality, coupling_factor=coupling), {"resonance": text}
 
 
 def friction_force(name: str, target: str | float, *, normal_load: float) -> float:

@@ -3,15 +3,7 @@
 from math import inf
 from typing import Annotated, Any, Literal
 
-from sonolube.design.control import (
-    Amplifier,
-    ControlSettings,
-    Disturbance,
-    ThermalDrift,
-    VibrationMode,
-    amplitude_mode,
-    design_control,
-)
+from sonolube.design import control as loops
 from sonolube.design.control.stick_slip import stick_slip_suppression
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import EfficiencyLine
@@ -98,7 +90,7 @@ def control(
     if final_rise == 0:
         refuse_unused("warming_time", because=f"without {shown('warming')}")
     limits = _limits(known, amplitude_limit, voltage_limit, current_limit, slew_limit)
-    settings = ControlSettings(
+    settings = loops.ControlSettings(
         friction_force=None
         if friction is None
         else loop.friction_force("friction", friction, normal_load=known.normal_load),
@@ -109,15 +101,15 @@ def control(
         feed_forward=feed_forward,
         tracking=track,
         duration=run_time,
-        disturbance=Disturbance(friction_factor=factor, friction_force_deviation=in_si("noise", noise)),
-        drift=ThermalDrift(
+        disturbance=loops.Disturbance(friction_factor=factor, friction_force_deviation=in_si("noise", noise)),
+        drift=loops.ThermalDrift(
             final_temperature_rise=final_rise, warming_time=_value_or(run_time / 4, in_si("warming_time", warming_time))
         ),
     )
     with stage("controlling"):
         mode, assumed = _assumed(known, quality, coupling)
         line = _efficiency_line(in_si("efficiency", efficiency)) if feed_forward == "efficiency" else None
-        study = design_control(known, settings, mode=mode, line=line)
+        study = loops.design_control(known, settings, mode=mode, line=line)
         suppression = stick_slip_suppression(known, study) if stick_slip else None
     if commanded_quantity(known) is AMPLITUDE and amplitude_limit is None:
         own = format_si(own_level(known), "m")
@@ -135,7 +127,7 @@ def _limits(
     """Largest amplitude, or limits of the amplifier, as settings of the design."""
     if commanded_quantity(rig) is AMPLITUDE:
         return {"amplitude_maximum": _value_or(own_level(rig), in_si("amplitude_limit", amplitude_limit))}
-    amplifier = Amplifier(
+    amplifier = loops.Amplifier(
         voltage_maximum=_value_or(own_level(rig), in_si("voltage_limit", voltage_limit)),
         current_maximum=_value_or(inf, in_si("current_limit", current_limit)),
         slew_rate_maximum=_value_or(inf, in_si("slew_limit", slew_limit)),
@@ -143,13 +135,13 @@ def _limits(
     return {"amplifier": amplifier}
 
 
-def _assumed(rig: Rig, quality: float, coupling: float) -> tuple[VibrationMode | None, dict[str, str]]:
+def _assumed(rig: Rig, quality: float, coupling: float) -> tuple[loops.VibrationMode | None, dict[str, str]]:
     """Resonance of a rig without a structure, with what is assumed of it; None of one with a structure."""
     if rig.structure is not None:
         return None, {}
     if commanded_quantity(rig) is AMPLITUDE:
         text = f"the amplitude follows its set point as a resonance of quality factor {quality:g}; not measured"
-        return amplitude_mode(rig, quality_factor=quality), {"amplitude control": text}
+        return loops.amplitude_mode(rig, quality_factor=quality), {"amplitude control": text}
     return loop.assumed_resonance(rig, quality=quality, coupling=coupling)
 
 

@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from sonolube.design.control import ControlDesign, ControlSettings, controller_source, figures, lookup_table
+from sonolube.design import control as loops
+from sonolube.design.control import figures
 from sonolube.design.control.run_results import control_dataset
 from sonolube.design.control.stick_slip import StickSlipSuppression
 from sonolube.report import Drawing, Page
@@ -22,8 +23,8 @@ class ControlAnswer(Answer):
     """A tuned controller with its margins, step response and energy, and stick-slip where it was computed."""
 
     rig: Rig
-    settings: ControlSettings
-    study: ControlDesign
+    settings: loops.ControlSettings
+    study: loops.ControlDesign
     suppression: StickSlipSuppression | None
     assumed: Mapping[str, str]
 
@@ -75,8 +76,8 @@ class ControlAnswer(Answer):
         controller, title = self.study.controller, self.rig.title
         return {
             f"{self._name}.nc": control_dataset(self.study, title=f"Friction control of {title}"),
-            f"{self._name}.c": controller_source(controller, self.study.tracker, title=title),
-            f"{self._name}.csv": lookup_table(controller),
+            f"{self._name}.c": loops.controller_source(controller, self.study.tracker, title=title),
+            f"{self._name}.csv": loops.lookup_table(controller),
         }
 
     def page(self) -> Page:

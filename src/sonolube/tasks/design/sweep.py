@@ -5,7 +5,7 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from sonolube import design
+from sonolube import design, rig as rigs
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.backend import usable_backend
@@ -13,7 +13,6 @@ from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
 from sonolube.report.blocks import Block
 from sonolube.report.results.design import sweep as results
-from sonolube.rig import Rig, operating_caveats
 from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.design.parametric_study import ParametricStudyAnswer, parametric_study
@@ -129,7 +128,7 @@ def sweep(
 class SweepAnswer(Answer):
     """Points of a sweep by status, reasons of those without a result, and the point of least friction."""
 
-    rig: Rig
+    rig: rigs.Rig
     plan: SweepPlan
     result: "xr.Dataset"
     folder: Path | None
@@ -144,7 +143,7 @@ class SweepAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point, and the meaning of ratios below 0 and above 1."""
-        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.result["friction_ratio"].values))
+        return (*rigs.operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.result["friction_ratio"].values))
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction over the keys that were swept."""
@@ -161,7 +160,7 @@ class SweepAnswer(Answer):
         return results.sweep_page(self.rig, self.plan, self.result)
 
 
-def _plan(rig: Rig, over: Values, sample: str, points: int | None, seed: int) -> SweepPlan:
+def _plan(rig: rigs.Rig, over: Values, sample: str, points: int | None, seed: int) -> SweepPlan:
     """Points of a sweep on a grid, in a list, or drawn by Latin hypercube."""
     if sample == "lhs":
         if points is None:

@@ -3,17 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
+from sonolube import identification
 from sonolube.errors import InvalidInput
-from sonolube.identification import (
-    DecayLengthDecision,
-    SwitchConditions,
-    SwitchTable,
-    decide_decay_length,
-    decision_chart,
-    decision_dataset,
-    recorded_switches,
-    switch_table,
-)
 from sonolube.identification.decay_length.switch_table import is_switch_table
 from sonolube.laboratory.records.switched_run import switched_recording
 from sonolube.measurement.measured_runs import read_runs
@@ -76,7 +67,7 @@ def decay_length(
     elif free_frequency is None:
         needed = f"{shown('free_frequency')}, the natural frequency of that mode with the pin free"
         raise InvalidInput(f"{shown('modal_mass')} needs {needed}")
-    conditions = SwitchConditions(
+    conditions = identification.SwitchConditions(
         normal_load=in_si("load", load),
         vibration_amplitude=in_si("vibration", vibration),
         frequency=in_si("frequency", frequency),
@@ -88,21 +79,21 @@ def decay_length(
     path, columns = file_path(file), mapping_of(mapping)
     with stage("weighing"):
         if path.is_dir():
-            table = recorded_switches(
+            table = identification.recorded_switches(
                 switched_recording(path),
                 sliding_speed=conditions.sliding_speed,
                 rotation_speed=in_si("rotation_speed", rotation_speed),
             )
         elif is_switch_table(path, columns):
             refuse_unused("rotation_speed", because="for a table of switches; it is for recordings")
-            table = switch_table(read_runs(path, mapping=columns))
+            table = identification.switch_table(read_runs(path, mapping=columns))
         else:
-            table = recorded_switches(
+            table = identification.recorded_switches(
                 read_recording(path, mapping=columns),
                 sliding_speed=conditions.sliding_speed,
                 rotation_speed=in_si("rotation_speed", rotation_speed),
             )
-        decision = decide_decay_length(table, conditions, seed=seed)
+        decision = identification.decide_decay_length(table, conditions, seed=seed)
     name = f"{file_stem(file)}-decay-length"
     return DecayLengthAnswer(table=table, conditions=conditions, decision=decision, name=name)
 
@@ -111,9 +102,9 @@ def decay_length(
 class DecayLengthAnswer(Answer):
     """Probabilities of the hypotheses about the decay length, the changes that were found, and the verdict."""
 
-    table: SwitchTable
-    conditions: SwitchConditions
-    decision: DecayLengthDecision
+    table: identification.SwitchTable
+    conditions: identification.SwitchConditions
+    decision: identification.DecayLengthDecision
     name: str
 
     def blocks(self) -> Sequence[Block]:
@@ -136,8 +127,10 @@ class DecayLengthAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Readings over the distance with the courses of the hypotheses."""
-        return {self.name: Drawing(chart=lambda: decision_chart(self.table, self.decision), caption=_CAPTION)}
+        return {
+            self.name: Drawing(chart=lambda: identification.decision_chart(self.table, self.decision), caption=_CAPTION)
+        }
 
     def files(self) -> "Mapping[str, xr.Dataset]":
         """Readings and courses as netCDF."""
-        return {f"{self.name}.nc": decision_dataset(self.table, self.decision)}
+        return {f"{self.name}.nc": identification.decision_dataset(self.table, self.decision)}

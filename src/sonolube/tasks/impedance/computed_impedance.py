@@ -12,13 +12,8 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.fem import Transducer
+from sonolube.models.fem.results import impedance_spectra
 from sonolube.models.fem.results.figures import impedance_chart
-from sonolube.models.fem.results.impedance_spectra import (
-    SupportedSpectrum,
-    coupled_modes_grid,
-    spectrum_table,
-    supported_spectra,
-)
 from sonolube.models.fem.results.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
@@ -73,7 +68,7 @@ def compute(
     reference = None if measured is None else read_impedance(file_path(measured))
     transducer = named_transducer(part, sizes or {}, ceramic=ceramic, poled=poled, drive=drive, ground=ground)
     with stage("meshing and solving") as advance:
-        spectra = supported_spectra(
+        spectra = impedance_spectra.supported_spectra(
             transducer,
             frequency=frequency,
             clamped_faces=clamp,
@@ -106,7 +101,7 @@ class ImpedanceAnswer(Answer):
     part: str
     ceramic: str
     transducer: Transducer
-    spectra: Mapping[str, SupportedSpectrum]
+    spectra: Mapping[str, impedance_spectra.SupportedSpectrum]
     measured: ImpedanceSpectrum | None
     with_modes: bool
 
@@ -136,10 +131,10 @@ class ImpedanceAnswer(Answer):
         stem = self._stem()
         files: dict[str, str | LabelledArrays] = {}
         for name, spectrum in self.spectra.items():
-            files[f"{stem}-impedance-{name}.csv"] = spectrum_table(spectrum)
+            files[f"{stem}-impedance-{name}.csv"] = impedance_spectra.spectrum_table(spectrum)
             files[f"{stem}-impedance-{name}.nc"] = self._labelled(name)
             if self.with_modes:
-                files[f"{stem}-modes-{name}.vtu"] = coupled_modes_grid(spectrum)
+                files[f"{stem}-modes-{name}.vtu"] = impedance_spectra.coupled_modes_grid(spectrum)
         return files
 
     def dataset(self) -> "xr.Dataset":

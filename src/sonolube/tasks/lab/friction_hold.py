@@ -5,8 +5,7 @@ from typing import Annotated
 
 from sonolube.design.control import Amplifier, ControlSettings, design_control
 from sonolube.errors import InvalidInput
-from sonolube.laboratory import RunControl
-from sonolube.laboratory.closed_loop import SpeedStep, hold_friction, hold_protocol, planned_hold, require_holdable
+from sonolube.laboratory import RunControl, closed_loop as holds
 from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import read_run
 from sonolube.laboratory.reservation import require_free
@@ -87,7 +86,7 @@ def hold(
         if known.structure is None:
             mode, assumed = loop.assumed_resonance(known, quality=quality, coupling=coupling)
         design = design_control(known, settings, mode=mode)
-    wanted = planned_hold(
+    wanted = holds.planned_hold(
         drive,
         design,
         speeds=_speeds(known, step_to=in_si("step_to", step_to), step_at=step_at, run_time=run_time),
@@ -98,9 +97,9 @@ def hold(
     )
     virtual = virtual_tribometer(known, seed=seed, real_time=real_time) if file is None else None
     devices = ready_devices(Path(device_map)) if virtual is None else virtual.devices
-    require_holdable(wanted, devices)
+    holds.require_holdable(wanted, devices)
     plan = RunPlan(
-        protocol=hold_protocol(wanted, devices.acquisition.channels),
+        protocol=holds.hold_protocol(wanted, devices.acquisition.channels),
         name="hold",
         rig=known,
         device_file=file,
@@ -112,7 +111,7 @@ def hold(
     recorder = begin_record(plan, devices, out=Path(out), facts={"reference_friction_force": wanted.friction_force})
     requests = control or RunControl()
     with run_stage("holding", requests) as advance:
-        held = hold_friction(wanted, devices, recorder=recorder, control=requests, advance=advance)
+        held = holds.hold_friction(wanted, devices, recorder=recorder, control=requests, advance=advance)
         if virtual is not None:
             recorder.store_truth(virtual.truth())
     return HoldAnswer(
@@ -133,13 +132,13 @@ def _driven(rig: Rig) -> tuple[Rig, Drive]:
     return rig, rig.drive
 
 
-def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time: float) -> tuple[SpeedStep, ...]:
+def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time: float) -> tuple[holds.SpeedStep, ...]:
     """Sliding speed of the rig, then that after the step."""
     after = 2 * rig.sliding_speed if step_to is None else step_to
     time = run_time / 2 if step_at is None else in_si("step_at", step_at)
     if not time > 0:
         raise InvalidInput(f"{shown('step_at')} {step_at} must be positive")
-    return SpeedStep(time=0.0, sliding_speed=rig.sliding_speed), SpeedStep(time=time, sliding_speed=after)
+    return holds.SpeedStep(time=0.0, sliding_speed=rig.sliding_speed), holds.SpeedStep(time=time, sliding_speed=after)
 
 
 def _temperature(text: str) -> float:

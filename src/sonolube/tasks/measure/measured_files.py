@@ -5,19 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from sonolube import report as pages
 from sonolube.errors import SonolubeError
 from sonolube.measurement.file_selection import selected_files
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.report import (
-    Drawing,
-    MeasurementReport,
-    PinOnDiscSheet,
-    measurement_caveats,
-    measurement_object,
-    measurement_page,
-    pin_on_disc_rows,
-    read_pin_on_disc_sheet,
-)
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.sheet_blocks import sheet_blocks
@@ -116,9 +107,9 @@ def _defect(failure: Exception) -> str:
     return f"{type(failure).__name__}: {text}: a defect of sonolube, please report it with the file"
 
 
-def conditions(test_sheet: InputFile | None) -> PinOnDiscSheet | None:
+def conditions(test_sheet: InputFile | None) -> pages.PinOnDiscSheet | None:
     """Conditions of a test by their file; None where there is none."""
-    return None if test_sheet is None else read_pin_on_disc_sheet(file_path(test_sheet))
+    return None if test_sheet is None else pages.read_pin_on_disc_sheet(file_path(test_sheet))
 
 
 def column_mapping(
@@ -145,19 +136,19 @@ class MeasuredFiles(Answer):
     title: str
     sheets: Sequence[Sheet]
     refused: Mapping[str, str]
-    test: PinOnDiscSheet | None = None
+    test: pages.PinOnDiscSheet | None = None
 
     def blocks(self) -> Sequence[Block]:
         """Values and tables of each file, and the conditions of the test."""
         blocks = [block for sheet in self.sheets for block in sheet_blocks(sheet)]
         if blocks and self.test is not None:
-            for part, rows in pin_on_disc_rows(self.test, self.sheets).items():
+            for part, rows in pages.pin_on_disc_rows(self.test, self.sheets).items():
                 blocks += ["", f"  {part}", Rows(rows)]
         return blocks
 
     def object(self) -> dict[str, Any]:
         """Values, tables and caveats of each file, settings, and the files that were refused."""
-        return measurement_object(self._measurement())
+        return pages.measurement_object(self._measurement())
 
     def dataset(self) -> "xr.Dataset":
         """Values and tables of all files, with their settings."""
@@ -167,9 +158,9 @@ class MeasuredFiles(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Caveats of all files."""
-        return measurement_caveats(self._measurement())
+        return pages.measurement_caveats(self._measurement())
 
-    def figures(self) -> Mapping[str, Drawing]:
+    def figures(self) -> Mapping[str, pages.Drawing]:
         """Figures of all sheets by title, with the name of the file where there are several."""
         several = len(self.sheets) > 1
         return {
@@ -180,7 +171,7 @@ class MeasuredFiles(Answer):
 
     def report(self, advance: "Advance") -> str:
         """Page with the figures of all sheets."""
-        return measurement_page(self._measurement(), advance=advance)
+        return pages.measurement_page(self._measurement(), advance=advance)
 
     def refusals(self) -> Mapping[str, str]:
         """Reason for each file that could not be measured."""
@@ -191,9 +182,9 @@ class MeasuredFiles(Answer):
         """Whether any file was measured."""
         return bool(self.sheets)
 
-    def _measurement(self) -> MeasurementReport:
+    def _measurement(self) -> pages.MeasurementReport:
         """Sheets with the settings that their numbers depend on."""
-        return MeasurementReport(
+        return pages.MeasurementReport(
             title=self.title, settings=self._settings(), sheets=tuple(self.sheets), refused=self.refused, test=self.test
         )
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
+from sonolube import rig as rigs
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.models.friction import BoundaryLubricant
@@ -10,7 +11,6 @@ from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results import regime as results
-from sonolube.rig import LubricationMap, LubricationPoint, Rig, lubrication_map, lubrication_point, wear_of_materials
 from sonolube.rig.datasets import labels
 from sonolube.rig.figures import lubrication_chart
 from sonolube.tasks.answer import Answer, answer
@@ -58,9 +58,9 @@ def regime(
     gain = in_si("smallest_gain", smallest_gain)
     return RegimeAnswer(
         rig=known,
-        result=lubrication_point(known, lubricant=lubricant, smallest_gain=gain),
-        wear=wear_of_materials(material(pin), material(disc)) if pin is not None and disc is not None else None,
-        surroundings=lubrication_map(known, lubricant=lubricant, smallest_gain=gain),
+        result=rigs.lubrication_point(known, lubricant=lubricant, smallest_gain=gain),
+        wear=rigs.wear_of_materials(material(pin), material(disc)) if pin is not None and disc is not None else None,
+        surroundings=rigs.lubrication_map(known, lubricant=lubricant, smallest_gain=gain),
     )
 
 
@@ -68,10 +68,10 @@ def regime(
 class RegimeAnswer(Answer):
     """Coefficients of friction of a rig dry, vibrated, lubricated and both, the best of them, and its wear."""
 
-    rig: Rig
-    result: LubricationPoint
+    rig: rigs.Rig
+    result: rigs.LubricationPoint
     wear: WearMechanismAssessment | None
-    surroundings: LubricationMap
+    surroundings: rigs.LubricationMap
 
     def blocks(self) -> Sequence[Block]:
         """Coefficient of friction of each method, the best marked, and the kind of wear."""

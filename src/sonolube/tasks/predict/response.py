@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
+from sonolube import rig as rigs
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import modes
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block, Rows
-from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, structure_in_contact
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.figures import response_chart
 from sonolube.rig.resolved_rig import resolved_rig
@@ -43,8 +43,8 @@ def response(
         raise InvalidInput(f"{shown('lowest')} {lowest} must lie above 0 Hz and below {shown('highest')} {highest}")
     known = rig_of(rig)
     resolved = resolved_rig(known)
-    result = frequency_response(resolved, frequency=frequency_grid(resolved, lowest=low, highest=high))
-    natural = modes(structure_in_contact(resolved))
+    result = rigs.frequency_response(resolved, frequency=rigs.frequency_grid(resolved, lowest=low, highest=high))
+    natural = modes(rigs.structure_in_contact(resolved))
     return ResponseAnswer(rig=known, result=result, natural_frequency=natural.natural_frequency[~natural.rigid])
 
 
@@ -52,8 +52,8 @@ def response(
 class ResponseAnswer(Answer):
     """Linear response of a rig: natural frequencies and the largest amplitude per volt."""
 
-    rig: Rig
-    result: FrequencyResponse
+    rig: rigs.Rig
+    result: rigs.FrequencyResponse
     natural_frequency: Floats
 
     def blocks(self) -> Sequence[Block]:

@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
+from sonolube import rig as rigs
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block, Rows
-from sonolube.rig import ResolvedVibration, Rig, StartUp, start_up
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.figures import start_up_chart
 from sonolube.rig.resolved_rig import resolved_rig
@@ -42,7 +42,7 @@ def transient(
     known = rig_of(rig)
     with stage("marching"):
         resolved = resolved_rig(known)
-        result = start_up(resolved, duration=in_si("duration", duration))
+        result = rigs.start_up(resolved, duration=in_si("duration", duration))
     return StartUpAnswer(rig=known, vibration=resolved.vibration, result=result)
 
 
@@ -50,9 +50,9 @@ def transient(
 class StartUpAnswer(Answer):
     """Start-up of a rig: settling time, final amplitude and slow oscillation."""
 
-    rig: Rig
-    vibration: ResolvedVibration
-    result: StartUp
+    rig: rigs.Rig
+    vibration: rigs.ResolvedVibration
+    result: rigs.StartUp
 
     def blocks(self) -> Sequence[Block]:
         """Settling time, amplitude, mean displacement, slow oscillation and status."""
