@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias, TypedDict
 
 from sonolube.tasks.files import InputFile, NamedBytes
 from sonolube.tasks.progress import Cancelled, Progress
@@ -121,8 +121,15 @@ Kept = str | Path | Callable[[str], Path]
 RigFile = Annotated[RigSource, RigParameter()]
 RestingRig = Annotated[RigSource, RigParameter(without=("amplitude",))]
 OptionalRig = Annotated[OptionalRigSource, RigParameter(is_optional=True)]
-Watch = Annotated[Progress | None, DoorParameter()]
-Stop = Annotated[Cancelled | None, DoorParameter()]
+
+
+class Watched(TypedDict, total=False):
+    """Arguments `progress` and `cancelled` of tasks that can take over a second."""
+
+    progress: Annotated[Progress | None, DoorParameter()]
+    cancelled: Annotated[Cancelled | None, DoorParameter()]
+
+
 Keep = Annotated[Kept | None, DoorParameter()]
 Pin = Annotated[str | None, Parameter("Material of the pin, for the heat; by default the rig's.", "MATERIAL")]
 Disc = Annotated[str | None, Parameter("Material of the disc, for the heat; by default the rig's.", "MATERIAL")]

@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from contextvars import ContextVar
 from functools import update_wrapper
-from inspect import Parameter as Argument, cleandoc, signature
+from inspect import Parameter as Argument, Signature, cleandoc, signature
 from math import inf, isfinite
 from types import NoneType
-from typing import Any, Generic, Literal, NoReturn, ParamSpec, TypeVar, get_args, get_origin, overload
+from typing import Any, Generic, Literal, NoReturn, ParamSpec, TypeVar, get_args, get_origin, get_type_hints, overload
 
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.former_names import moved_module
@@ -16,7 +16,7 @@ from sonolube.tasks.call import Call, Mark
 from sonolube.tasks.docstrings import split_examples
 from sonolube.tasks.files import private_files, with_names_only
 from sonolube.tasks.notebooks import cell_progress, is_in_notebook
-from sonolube.tasks.parameters import File, Number, Parameter, RigParameter
+from sonolube.tasks.parameters import File, Number, Parameter, RigParameter, Watched
 from sonolube.tasks.progress import observed, watched, within
 from sonolube.text.units import temperature_difference_to_si, to_si
 
@@ -63,16 +63,17 @@ class TaskFunction(Generic[P, A]):
     """
 
     def __init__(self, function: Callable[P, A]) -> None:
-        self._function, self._form, self._marks = function, signature(function), marks_of(function)
-        arguments = self._form.parameters.items()
+        self._function, self.__signature__ = function, _form(function)
+        self._marks = marks_of(self)
+        arguments = self.__signature__.parameters.items()
         self._choices = {name: _choices(get_args(argument.annotation)[0]) for name, argument in arguments}
         update_wrapper(self, function)
         if function.__doc__:
-            self.__doc__ = _described(function.__doc__, self._form.parameters, self._marks)
+            self.__doc__ = _described(function.__doc__, self.__signature__.parameters, self._marks)
 
     def __call__(self, *positional: P.args, **named: P.kwargs) -> A:
         """Answer to the arguments."""
-        bound = self._form.bind(*positional, **named)
+        bound = self.__signature__.bind(*positional, **named)
         given = frozenset(bound.arguments)
         bound.apply_defaults()
         call = Call(self._function.__name__, dict(bound.arguments), given, self._marks, _NAMES.get())
@@ -215,6 +216,16 @@ def given_arguments(names: Iterable[str]) -> dict[str, Any]:
     call = _CALL.get()
     known = {} if call is None else {name: call.arguments[name] for name in names if name in call.given}
     return {name: value for name, value in known.items() if value is not None}
+
+
+def _form(function: Callable[..., Any]) -> Signature:
+    """Signature of a function, with the arguments that its `**watch` stands for."""
+    form = signature(function)
+    own = [each for each in form.parameters.values() if each.kind is not Argument.VAR_KEYWORD]
+    if len(own) < len(form.parameters):
+        watched_by = get_type_hints(Watched, include_extras=True)
+        own += [Argument(each, Argument.KEYWORD_ONLY, default=None, annotation=watched_by[each]) for each in watched_by]
+    return form.replace(parameters=own)
 
 
 def _choices(kind: Any) -> tuple[Any, ...]:

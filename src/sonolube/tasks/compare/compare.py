@@ -1,7 +1,7 @@
 """Task `compare`: models of friction under vibration against published tests, and on a rig."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
@@ -10,7 +10,7 @@ from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import File, OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig
+from sonolube.tasks.parameters import File, OptionalRig, Parameter, RunsSource, Watched, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
 from sonolube.validation import comparison
@@ -35,8 +35,7 @@ def compare(
     model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "ComparisonAnswer":
     """Models of friction under vibration against every published test: fitted, cross-validated, and on your rig.
 

@@ -1,7 +1,7 @@
 """Task `fit`: own measured runs against every model of friction under vibration, and what to measure next."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
@@ -10,7 +10,7 @@ from sonolube.report.results import ranked_models
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import File, OptionalRig, OwnRuns, Parameter, Stop, Watch, file_stem, optional_rig
+from sonolube.tasks.parameters import File, OptionalRig, OwnRuns, Parameter, Watched, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
 from sonolube.validation import comparison
@@ -35,8 +35,7 @@ def fit(
     rig: OptionalRig = None,
     mapping: MappedRuns = None,
     model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "FitAnswer":
     """Own runs against every applicable model: ranked by what each predicts unseen, and what to measure next.
 

@@ -1,7 +1,7 @@
 """Task `control`: closed-loop control of the friction force of a rig, with its C source and lookup table."""
 
 from math import inf
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Unpack
 
 from sonolube.design import control as loops
 from sonolube.design.control.stick_slip import stick_slip_suppression
@@ -10,7 +10,7 @@ from sonolube.facts.metrics import EfficiencyLine
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
 from sonolube.tasks.design import closed_loop as loop
 from sonolube.tasks.design.control_answer import ControlAnswer
-from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si
@@ -66,8 +66,7 @@ def control(
     coupling: loop.Coupling = 0.2,
     stick_slip: Annotated[bool, Parameter("Also compute stick-slip of the slider on an elastic holder.")] = False,
     duration: Annotated[Number, Quantity("Duration of the run.", "s")] = "0.2s",
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> ControlAnswer:
     """Friction control: a tuned controller, its run in closed loop, its C source and its lookup table.
 

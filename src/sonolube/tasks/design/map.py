@@ -1,7 +1,7 @@
 """Task `map`: friction reduction of a rig over two quantities, beside measured runs."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from sonolube.report.results.design import friction_map as results
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Backend, File, KeyValues, Parameter, RigFile, RunsSource, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Backend, File, KeyValues, Parameter, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
@@ -66,8 +66,7 @@ def map(  # noqa: A001 - the command's name
         Parameter("png, pdf, svg or an interactive html; may come again."),
     ] = (),
     backend: Backend = "cpu",
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "MapAnswer":
     """Map of friction reduction: over sliding speed or frequency, and stress, power, voltage or vibration amplitude.
 

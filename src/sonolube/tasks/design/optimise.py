@@ -1,7 +1,7 @@
 """Task `optimise`: actuator, frequency, waveform and masses for a friction at least power, heat or voltage."""
 
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Unpack
 
 from sonolube.checks import require_positive
 from sonolube.design import optimisation
@@ -10,7 +10,7 @@ from sonolube.models.actuator import read_catalogue
 from sonolube.tasks.design import design_choices as choices
 from sonolube.tasks.design.optimisation_answer import OptimisationAnswer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, RestingRig, Stop, Watch, rig_of
+from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, RestingRig, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -61,8 +61,7 @@ def optimise(
     source_resistance: Annotated[
         Number | None, Quantity("To match by two elements, such as 50ohm.", "ohm", kind="RESISTANCE")
     ] = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> OptimisationAnswer:
     """Design: actuator, frequency, waveform and masses that give a friction for least power, heat or voltage.
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from glob import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
 
 from sonolube import design, rig as rigs
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
@@ -16,7 +16,7 @@ from sonolube.report.results.design import sweep as results
 from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.design.parametric_study import ParametricStudyAnswer, parametric_study
-from sonolube.tasks.parameters import Backend, Keep, KeyValues, Parameter, RigFile, Stop, Watch, kept, rig_of
+from sonolube.tasks.parameters import Backend, Keep, KeyValues, Parameter, RigFile, Watched, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, ends_by_key, refuse_replaced, values_by_key
 from sonolube.tasks.task import refuse_unused, shown, task
@@ -74,8 +74,7 @@ def sweep(
     chunk: Annotated[int, Parameter("Points computed and kept together.", lowest=1)] = 100_000,
     backend: Backend = "cpu",
     keep: Keep = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "SweepAnswer | ParametricStudyAnswer":
     """Sweep: the rig over any of its parameters, or over one quantity; with a status for each point.
 

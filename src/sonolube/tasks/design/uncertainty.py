@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 
@@ -30,8 +30,7 @@ from sonolube.tasks.parameters import (
     KeyValues,
     Parameter,
     RigFile,
-    Stop,
-    Watch,
+    Watched,
     kept,
     rig_of,
 )
@@ -76,8 +75,7 @@ def uncertainty(
     workers: Annotated[int, Parameter("Threads.", lowest=1)] = 2,
     interval: Interval = True,
     keep: Annotated[Kept | None, DoorParameter(files="sweep.nc sweep.json")] = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "UncertaintyAnswer":
     """Uncertainty of an outcome from the distributions in the rig's file, and which entry to measure better.
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from math import isnan
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
@@ -12,7 +12,7 @@ from sonolube.reproduction.chapter2.horn_figures import face_friction_chart
 from sonolube.reproduction.chapter2.horn_friction import FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.cube import Horn
 from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.parameters import Number, Parameter, Quantity, Stop, Watch
+from sonolube.tasks.parameters import Number, Parameter, Quantity, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
 
@@ -34,8 +34,7 @@ def face(
     frequency: Annotated[Number, Quantity("Of the drive on the horn's end.", "frequency")] = "20kHz",
     amplitude: Annotated[Number, Quantity("Of the driven end, zero to peak.", "vibration_amplitude")] = "8.5um",
     sliding_speed: Annotated[Number, Quantity("Of the block towards the node.", "sliding_speed")] = "5mm/s",
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "FaceAnswer":
     """Friction of a block along the face of a Poisson horn: its transition and motor regions.
 

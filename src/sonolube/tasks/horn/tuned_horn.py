@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from sonolube.report.blocks import Block
 from sonolube.report.results.parts import tuned_horn as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile
-from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, Stop, Watch
+from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, Watched
 from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -58,8 +58,7 @@ def design(
         Number | None, Quantity("Of the working face, for the peak stress at it, such as 20um.", "vibration_amplitude")
     ] = None,
     tolerance: Annotated[Number, Quantity("Largest relative error of the frequency.", "", kind="RATIO")] = 0.003,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "HornAnswer":
     """Tune a horn's length to a frequency, and compute its gain, node, stress, face and neighbouring modes.
 

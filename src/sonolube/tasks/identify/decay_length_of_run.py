@@ -1,7 +1,7 @@
 """Task `identify decay-length`: what sets the decay length of a worn contact, from a run with switched vibration."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 from sonolube import identification
 from sonolube.errors import InvalidInput
@@ -15,7 +15,7 @@ from sonolube.report.results import decay_length as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import Mapped, mapping_of
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Stop, Watch, file_stem
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched, file_stem
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
@@ -55,8 +55,7 @@ def decay_length(
     ] = None,
     mapping: Mapped = None,
     seed: Annotated[int, Parameter("Seed of the sampling; equal seeds give equal results.", lowest=0)] = 0,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "DecayLengthAnswer":
     """What sets the decay length: long sliding, a zero error, detuning or the rig, from a run with switched vibration.
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.identification import Identification, rig_tables
@@ -15,7 +15,7 @@ from sonolube.rig.facts_file import identify_from_facts
 from sonolube.storage.input_files import input_text
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import File, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Parameter, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown, task
 from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
@@ -29,8 +29,7 @@ def rig(
     *,
     facts: Annotated[InputFile | None, _FACTS] = None,
     seed: Annotated[int, Parameter("Seed of the search; equal seeds give equal results.", lowest=0)] = 0,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "IdentificationAnswer":
     """Masses, springs and dampers of a rig from ranked facts, with the facts that contradict each other.
 

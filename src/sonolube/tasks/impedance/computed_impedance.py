@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from sonolube.report.results.parts import impedance_spectra as results
 from sonolube.rig.datasets import LabelledArrays, labelled
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
 from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
@@ -54,8 +54,7 @@ def compute(
         Number, Quantity("Largest change of a coupled resonance from mesh to mesh.", "", kind="RATIO")
     ] = 0.02,
     vtu: Annotated[bool, Parameter("Write the coupled modes for ParaView too.")] = False,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "ImpedanceAnswer":
     """Electrical impedance of a transducer, free and clamped: resonances, coupling and motion per volt.
 

@@ -1,7 +1,7 @@
 """Task `lab hold`: friction held at a reference on devices or a virtual tribometer, the speed changing meanwhile."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.design.control import Amplifier, ControlSettings, design_control
 from sonolube.errors import InvalidInput
@@ -17,7 +17,7 @@ from sonolube.tasks.design import closed_loop as loop
 from sonolube.tasks.lab.hold_answer import HoldAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
 from sonolube.tasks.lab.run_record import ControlDoor, device_file, run_stage
-from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import to_si
@@ -57,8 +57,7 @@ def hold(
     tag: Tags = (),
     out: AllRuns = RUNS,
     control: ControlDoor = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> HoldAnswer:
     """Hold friction at a reference by the controller of `control` while the speed steps, and record it.
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, Unpack
 
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput, UnknownName
@@ -23,8 +23,7 @@ from sonolube.tasks.parameters import (
     OptionalRigSource,
     Parameter,
     RigFile,
-    Stop,
-    Watch,
+    Watched,
     optional_rig,
     rig_of,
 )
@@ -54,8 +53,7 @@ def run(
     out: AllRuns = RUNS,
     operator: OperatorDoor = None,
     control: ControlDoor = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> RunAnswer | DryRunAnswer:
     """Run a protocol and record it; motor and drive are off at the end, whatever happens.
 
@@ -96,8 +94,7 @@ def virtual(
         Literal["netcdf", "tdms", "csv"], Parameter("Of the recording, beside netCDF.", option="--format")
     ] = "netcdf",
     out: AllRuns = RUNS,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> RunAnswer:
     """Record a realistic test of a rig that exists in its file only.
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report.measured.calibration import (
@@ -22,7 +22,7 @@ from sonolube.tasks.measure.measured_files import (
     files_of,
 )
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 
@@ -38,8 +38,7 @@ def calibration(
         Number, Quantity("Of a reading, standard.", "displacement_uncertainty")
     ] = "0um",
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Calibration of a displacement sensor as a force gauge with hysteresis, and forces by it.
 

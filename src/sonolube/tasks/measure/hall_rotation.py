@@ -1,12 +1,12 @@
 """Task `measure rotation`: speed of a disc and of the pin on it from a Hall probe."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, measured
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import Number, Parameter, Quantity, Stop, Watch
+from sonolube.tasks.parameters import Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, task
 
 
@@ -21,8 +21,7 @@ def rotation(
     ] = 0.25,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Rotation from a Hall probe: speed of the disc and of the pin on it, missing pulses repaired.
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.friction.motor_current import MotorCalibration
@@ -24,7 +24,7 @@ from sonolube.tasks.measure.measured_files import (
     reason_of,
 )
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 
@@ -52,8 +52,7 @@ def friction(
     ] = None,
     groove_diameter: Annotated[Number | None, Quantity("Of the circle under the pin.", "groove_diameter")] = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Friction in recordings: level, fluctuation, running-in, steps of the voltage, stick-slip, work.
 

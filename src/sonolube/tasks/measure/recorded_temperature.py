@@ -1,14 +1,14 @@
 """Task `measure temperature`: final rise and time constants of a recorded temperature."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report.measured.temperature import TemperatureSettings, temperature_sheet
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, measured
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, shown, task
 
 
@@ -26,8 +26,7 @@ def temperature(
     without_vibration: Annotated[InputFile | None, File("The test without vibration, to compare with.", "FILE")] = None,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Temperature after a step of the heat: final rise, time constants, and rise over a test without vibration.
 

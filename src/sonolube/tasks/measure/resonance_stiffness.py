@@ -1,7 +1,7 @@
 """Task `measure stiffness`: normal stiffness of a contact by the shift of a resonance between free and pressed."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, MeasurementReport, measurement_object
@@ -13,7 +13,7 @@ from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import File, Number, OptionalRig, Quantity, Stop, Watch, file_stem, optional_rig
+from sonolube.tasks.parameters import File, Number, OptionalRig, Quantity, Watched, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
@@ -51,8 +51,7 @@ def stiffness(
     amplitude_uncertainty: Annotated[
         Number | None, Quantity("Its standard uncertainty, such as 5%.", "", kind="SHARE")
     ] = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "StiffnessAnswer":
     """Normal stiffness of a contact, and its decay length, by the shift of a resonance from free to pressed.
 

@@ -1,11 +1,11 @@
 """Task `measure surface`: areal and profile parameters, spectra and summits of height maps."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.report.measured.surface import SurfaceSettings, spacings, surface_sheet
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, measured
-from sonolube.tasks.parameters import Number, Parameter, Quantity, Stop, Watch
+from sonolube.tasks.parameters import Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, shown, task
 
 Spacing = Annotated[
@@ -27,8 +27,7 @@ def surface(
     short_cutoff: Annotated[Number | None, Quantity("Remove shorter waves, as noise.", "short_cutoff_length")] = None,
     long_cutoff: Annotated[Number | None, Quantity("Remove longer waves, as waviness.", "long_cutoff_length")] = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Surfaces: parameters of ISO 25178-2 and of profiles, spectra, and summits for the contact models.
 

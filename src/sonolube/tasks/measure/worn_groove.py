@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.measurement.wear_track import WearTrack
@@ -14,7 +14,7 @@ from sonolube.report.measured.surface import SurfaceSettings, spacings
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, conditions, each_file
 from sonolube.tasks.measure.scanned_surface import LengthUnit, Spacing
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 
@@ -35,8 +35,7 @@ def groove(
     spacing: Spacing = None,
     length_unit: LengthUnit = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Wear grooves in scans: width, depth, volume, pile-up; wear of the ring and its reduction by vibration.
 

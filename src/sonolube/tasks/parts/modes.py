@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from sonolube.report.results.parts import natural_modes as results
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.number_table import number_table
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
 from sonolube.tasks.parts import named_parts as parts
 from sonolube.tasks.parts.supported_part import DEFAULT_MATERIAL, supported_part
 from sonolube.tasks.progress import stage
@@ -69,8 +69,7 @@ def modes(
     body_damping: Annotated[Number, Quantity("Of the damper beside it.", "N s/m")] = "0N s/m",
     vtu: Annotated[bool, Parameter("Write the modes for ParaView too.")] = False,
     animate: Annotated[bool, Parameter("Draw each mode as an animated GIF too.")] = False,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "ModesAnswer":
     """Natural modes of a part: frequencies with their errors, names and pictures.
 

@@ -1,7 +1,7 @@
 """Task `transient`: start-up of a rig from rest by time integration."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube import rig as rigs
 from sonolube.report import Drawing
@@ -11,7 +11,7 @@ from sonolube.rig.figures import start_up_chart
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import start_up_arrays
 from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.parameters import Number, Quantity, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Number, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, task
 from sonolube.text.units import format_si
@@ -24,8 +24,7 @@ def transient(
     rig: RigFile,
     *,
     duration: Annotated[Number, Quantity("Time that is integrated.", "s")] = "0.1s",
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "StartUpAnswer":
     """Start-up from rest: settling of the tip's vibration, step by step.
 
