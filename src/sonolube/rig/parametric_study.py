@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +11,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import WAVEFORMS, Status, contact_motion, modes
 from sonolube.rig import operating_conditions as conditions
-from sonolube.rig.datasets import gridded
+from sonolube.rig.datasets import Dataset, gridded
 from sonolube.rig.driven_rig import DrivenRig, require_drive
 from sonolube.rig.friction_and_wear import prescribed_sine
 from sonolube.rig.linear_response import structure_in_contact
@@ -20,16 +20,13 @@ from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operatin
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, amplitude_labels, resolved_rig
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 _GRAVITY = 9.80665  # m/s2
 _PHASES = 128
 _PHASE = 2 * np.pi * np.arange(_PHASES) / _PHASES
 _POINT = ("status", "reason", *(name for name in NUMBERS if name != "friction_coefficient"))
 
 
-def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance | None = None) -> Dataset:
     """Operating points over drive voltage, with one period of the contact at each.
 
     Parameters
@@ -62,7 +59,7 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
     return _level_study(rig, conditions.VOLTAGE, voltage_peak_to_peak, "over drive voltage", advance)
 
 
-def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advance | None = None) -> Dataset:
     """Operating points over vibration amplitude, with one period of the contact at each.
 
     Parameters
@@ -98,7 +95,7 @@ def speed_study(
     voltage_peak_to_peak: ArrayLike | None = None,
     vibration_amplitude: ArrayLike | None = None,
     advance: Advance | None = None,
-) -> "xr.Dataset":
+) -> Dataset:
     """Operating points over sliding speed at some drive voltages, or amplitudes of a rig without a voltage.
 
     Parameters
@@ -143,7 +140,7 @@ def frequency_study(
     frequency: ArrayLike,
     voltage_peak_to_peak: ArrayLike | None = None,
     advance: Advance | None = None,
-) -> "xr.Dataset":
+) -> Dataset:
     """Rig over drive frequencies, at some drive voltages.
 
     Parameters
@@ -179,7 +176,7 @@ def frequency_study(
     return _study(resolved, "over drive frequency", _values(points), voltage_peak_to_peak=volts, frequency=f)
 
 
-def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) -> "xr.Dataset":
+def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) -> Dataset:
     """Rig under each named waveform at its own voltage, and one period of its contact under each.
 
     Parameters
@@ -213,7 +210,7 @@ def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) ->
     return _study(resolved, "under waveforms of equal swing", found, waveform=np.array(list(WAVEFORMS)), phase=_PHASE)
 
 
-def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> Dataset:
     """Operating points over normal load; of a structure, by weights that add to the mass they hang on.
 
     Parameters
@@ -263,7 +260,7 @@ def _level_study(
     level: ArrayLike,
     title: str,
     advance: Advance | None,
-) -> "xr.Dataset":
+) -> Dataset:
     """Points over voltage or amplitude, with one period of the contact at each."""
     resolved = resolved_rig(rig)
     conditions.require_commanded(resolved, quantity)
@@ -348,7 +345,7 @@ def _slowest(resolved: ResolvedRig) -> float:
     return float(natural.natural_frequency[~natural.rigid].min())
 
 
-def _study(resolved: ResolvedRig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> "xr.Dataset":
+def _study(resolved: ResolvedRig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> Dataset:
     rig, known = resolved.rig, conditions.commanded_quantity(resolved)
     values = {
         name: array

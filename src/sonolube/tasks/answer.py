@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
     Content: TypeAlias = str | bytes | xr.Dataset | LabelledArrays | Path
 
+Dataset: TypeAlias = "xr.Dataset"
+"""Labelled dataset, by a name that needs no import of xarray."""
+
 _Answer = TypeVar("_Answer")
 
 

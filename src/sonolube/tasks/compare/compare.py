@@ -1,14 +1,14 @@
 """Task `compare`: models of friction under vibration against published tests, and on a rig."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Unpack
+from typing import Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
 from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, OptionalRig, Parameter, RunsSource, Watched, optional_rig
 from sonolube.tasks.progress import stage
@@ -20,10 +20,6 @@ from sonolube.validation.run_conditions import RunsTable, run_conditions
 from sonolube.validation.runs_comparison import RunsPrediction, predict_runs
 from sonolube.validation.runs_figures import runs_prediction_chart
 from sonolube.validation.tables import comparison_csv, comparison_dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _RUNS = File(runs_help("Own measured runs, which each model predicts as published tests fitted it"), "RUNS.csv")
 
@@ -114,11 +110,11 @@ class ComparisonAnswer(Answer):
             drawings["models-on-own-runs"] = Drawing(chart=lambda: runs_prediction_chart(self.of_runs, table))
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> "Mapping[str, str | Dataset]":
         """Errors as CSV, and every ratio as netCDF."""
         return {"models.csv": comparison_csv(self.fits), "models.nc": self._dataset()}
 
-    def _dataset(self) -> "xr.Dataset":
+    def _dataset(self) -> Dataset:
         """Every ratio and error over models and tests, and the predictions of the rig."""
         labelled = comparison_dataset(self.fits, self.predictions)
         return labelled if self.rig is None else labelled.assign_attrs(rig=self.rig.title)

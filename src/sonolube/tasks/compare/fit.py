@@ -1,14 +1,14 @@
 """Task `fit`: own measured runs against every model of friction under vibration, and what to measure next."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Unpack
+from typing import Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block, Table
 from sonolube.report.results import ranked_models
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, OptionalRig, OwnRuns, Parameter, Watched, file_stem, optional_rig
 from sonolube.tasks.progress import stage
@@ -17,9 +17,6 @@ from sonolube.validation import comparison
 from sonolube.validation.runs_figures import runs_fit_chart
 from sonolube.validation.runs_fit import RunsFit, fit_runs
 from sonolube.validation.runs_tables import runs_fit_dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _CAPTION = (
     "Left: measured friction ratios of {runs} runs with their standard uncertainty, and the models of the least unseen"
@@ -97,6 +94,6 @@ class FitAnswer(Answer):
         caption = _CAPTION.format(runs=self.fit.table.runs)
         return {self.name: Drawing(chart=lambda: runs_fit_chart(self.fit), caption=caption)}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Every ratio, error and parameter as netCDF."""
         return {f"{self.name}.nc": runs_fit_dataset(self.fit)} if self.fit.models else {}

@@ -1,7 +1,7 @@
 """Answer of `control`: controller, margins, step response and energy, with figures, C source and lookup table."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sonolube.design import control as loops
 from sonolube.design.control import figures
@@ -12,10 +12,7 @@ from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.design import control_design as results
 from sonolube.report.results.rig_text import amplitude_rows, operating_point, rig_settings
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
-
-if TYPE_CHECKING:
-    import xarray as xr
+from sonolube.tasks.answer import Answer, Dataset, answer
 
 
 @answer
@@ -71,7 +68,7 @@ class ControlAnswer(Answer):
             )
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> "Mapping[str, str | Dataset]":
         """Run as netCDF, controller as C source, and its lookup table."""
         controller, title = self.study.controller, self.rig.title
         return {

@@ -1,7 +1,7 @@
 """Task `efficiency`: efficiency line of a rig from measured runs, and the power that a friction force requires."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_chart
@@ -10,7 +10,7 @@ from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.design import efficiency as results
 from sonolube.report.results.rig_text import rig_settings
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.design.closed_loop import friction_force
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import (
@@ -25,10 +25,6 @@ from sonolube.tasks.parameters import (
     rig_of,
 )
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _CAPTION = (
     "Efficiency coefficient (equation 4.1 of the dissertation) of {runs} runs over sliding speed, with the line of"
@@ -109,7 +105,7 @@ class EfficiencyAnswer(Answer):
         caption = _CAPTION.format(runs=self.calibration.fit.runs)
         return {self.name: Drawing(chart=lambda: efficiency_chart(self.calibration), caption=caption)}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Line and bands as netCDF."""
         return {f"{self.name}.nc": efficiency_dataset(self.calibration)}
 

@@ -1,7 +1,7 @@
 """Task `map`: friction reduction of a rig over two quantities, beside measured runs."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
+from typing import Annotated, Any, Literal, Unpack
 
 import numpy as np
 
@@ -17,16 +17,12 @@ from sonolube.report import Drawing, Page
 from sonolube.report.blocks import Block
 from sonolube.report.results.design import friction_map as results
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Backend, File, KeyValues, Parameter, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
@@ -106,9 +102,9 @@ class MapAnswer(Answer):
     """Map of friction reduction: its greatest value, the ridge of sufficient power, and the measured runs."""
 
     rig: Rig
-    mapped: "xr.Dataset"
-    runs: "xr.Dataset | None"
-    interpolated: "xr.Dataset | None"
+    mapped: Dataset
+    runs: "Dataset | None"
+    interpolated: "Dataset | None"
     forms: tuple[str, ...]
     left_out: tuple[str, ...] = ()
 
@@ -138,9 +134,9 @@ class MapAnswer(Answer):
             )
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> "Mapping[str, str | Dataset]":
         """Interactive page where it is wanted, and the datasets."""
-        files: dict[str, str | xr.Dataset] = {}
+        files: dict[str, str | Dataset] = {}
         if "html" in self.forms:
             files[f"{self._name}.html"] = map_page(self.mapped)
         files[f"{self._name}.nc"] = self.mapped

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,15 +20,11 @@ from sonolube.report.results.design import parametric_study as study_results
 from sonolube.report.results.design.status_tables import failure_objects
 from sonolube.report.results.rig_text import amplitude_object, amplitude_rows, friction_model_text
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown
 from sonolube.text.units import format_si, to_si
 from sonolube.vocabulary import unit_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _POINTS_AT_RESONANCE = 41  # frequencies about each resonance
 _MAX_POINTS = 10_000
@@ -79,7 +75,7 @@ def parametric_study(
                 f"{shown('lowest')}, {shown('highest')} and {shown('points')} have no meaning for {shown('of')}"
                 " waveform, which runs over names"
             )
-        run: Callable[..., xr.Dataset] = partial(rigs.waveform_study, rig)
+        run: Callable[..., Dataset] = partial(rigs.waveform_study, rig)
     else:
         usual = _RANGES[of]
         values = {usual.quantity: _values(rig, of, lowest, highest, points)}
@@ -99,7 +95,7 @@ class ParametricStudyAnswer(Answer):
 
     rig: rigs.Rig
     of: str
-    study: "xr.Dataset"
+    study: Dataset
 
     def blocks(self) -> Sequence[Block]:
         """Main results over the quantity, and the points without a result."""
@@ -138,7 +134,7 @@ class ParametricStudyAnswer(Answer):
 
         return {self._name: Drawing(chart=chart)}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Every point as netCDF."""
         return {f"{self._name}.nc": self.study}
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from glob import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
+from typing import Annotated, Any, Literal, Unpack
 
 from sonolube import design, rig as rigs
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
@@ -14,16 +14,12 @@ from sonolube.report import Drawing, Page
 from sonolube.report.blocks import Block
 from sonolube.report.results.design import sweep as results
 from sonolube.storage.files import expect_files
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.design.parametric_study import ParametricStudyAnswer, parametric_study
 from sonolube.tasks.parameters import Backend, Keep, KeyValues, Parameter, RigFile, Watched, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, ends_by_key, refuse_replaced, values_by_key
 from sonolube.tasks.task import refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _OVER = KeyValues(
     "A key of the file with its values: first:last:count, first:last:count:log or one,two,...;"
@@ -129,7 +125,7 @@ class SweepAnswer(Answer):
 
     rig: rigs.Rig
     plan: SweepPlan
-    result: "xr.Dataset"
+    result: Dataset
     folder: Path | None
 
     def blocks(self) -> Sequence[Block]:
@@ -150,7 +146,7 @@ class SweepAnswer(Answer):
         caption = _CLOUD_CAPTION if listed else _CAPTIONS.get(len(swept_variables(self.result)), _CLOUD_CAPTION)
         return {"sweep": Drawing(chart=lambda: sweep_chart(self.result), caption=caption)}
 
-    def files(self) -> "Mapping[str, Path | xr.Dataset]":
+    def files(self) -> "Mapping[str, Path | Dataset]":
         """Dataset, which the sweep itself has written where there is a folder."""
         return {"sweep.nc": self.result if self.folder is None else self.folder / "sweep.nc"}
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Unpack
+from typing import Annotated, Any, Unpack
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from sonolube.report.results.design import uncertainty as results
 from sonolube.report.results.design.uncertain_entries import agreement
 from sonolube.rig import Rig, operating_caveats, steady_vibration
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.parameters import (
     DoorParameter,
     Interval,
@@ -37,10 +37,6 @@ from sonolube.tasks.parameters import (
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
 _OF_THE_MODEL = ("friction_ratio", "friction_reduction")  # outcomes that have the error of the friction model
@@ -118,7 +114,7 @@ class UncertaintyAnswer(Answer):
     """Statistics of an uncertain outcome, or its band over swept keys, and the ranking of the uncertain entries."""
 
     rig: Rig
-    result: "xr.Dataset"
+    result: Dataset
     structure: IdentifiedStructure | None
     interval: bool = True
 
@@ -170,7 +166,7 @@ class UncertaintyAnswer(Answer):
         ranking = Drawing(chart=lambda: sobol_chart(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
         return {self._name: outcome, f"{self._name}-sobol": ranking}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Samples as netCDF."""
         return {f"{self._name}.nc": self.result}
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from math import isnan
-from typing import TYPE_CHECKING, Annotated, Any, Unpack
+from typing import Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
@@ -11,13 +11,10 @@ from sonolube.report.results.parts import horn_face
 from sonolube.reproduction.chapter2.horn_figures import face_friction_chart
 from sonolube.reproduction.chapter2.horn_friction import FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.cube import Horn
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.parameters import Number, Parameter, Quantity, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ASSUMED = {
     "horn": "ends tapered to 3/4 in over their last inch, handbook constants, by which both have the printed mode",
@@ -91,7 +88,7 @@ class FaceAnswer(Answer):
         """Friction over the position on the face."""
         return {f"horn-{self.horn}-face": Drawing(chart=lambda: face_friction_chart(self.horn, self.friction))}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Friction ratio over the position as netCDF."""
         import xarray as xr
 

@@ -19,7 +19,7 @@ from sonolube.models.fem.results.part_modes import longest_axis
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
 from sonolube.report.results.parts import tuned_horn as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, Watched
 from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part
@@ -28,7 +28,6 @@ from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import to_si
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 _COARSE = 0.02  # m, fine enough to show the longest axis of most parts
@@ -166,7 +165,7 @@ class HornAnswer(Answer):
             files[f"{self.name}-drawing.dxf"] = profile_dxf(profile, horn_notes(self.design, self.material, profile))
         return files
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Quantities of the mode, and its axial displacement over the distance from the driven face."""
         mode, axis = self.design.tuned.mode, self.design.body.axis
         place, displacement = section_motion(mode, axis)

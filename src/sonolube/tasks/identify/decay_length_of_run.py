@@ -1,7 +1,7 @@
 """Task `identify decay-length`: what sets the decay length of a worn contact, from a run with switched vibration."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Unpack
+from typing import Annotated, Any, Unpack
 
 from sonolube import identification
 from sonolube.errors import InvalidInput
@@ -12,15 +12,12 @@ from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import decay_length as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import Mapped, mapping_of
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched, file_stem
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _CAPTION = (
     "Readings at the switches of the vibration over the sliding distance, with the most probable course of each"
@@ -130,6 +127,6 @@ class DecayLengthAnswer(Answer):
             self.name: Drawing(chart=lambda: identification.decision_chart(self.table, self.decision), caption=_CAPTION)
         }
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Readings and courses as netCDF."""
         return {f"{self.name}.nc": identification.decision_dataset(self.table, self.decision)}

@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Unpack
+from typing import Annotated, Any, Unpack
 
 import numpy as np
 
@@ -19,15 +19,12 @@ from sonolube.report import Drawing
 from sonolube.report.blocks import Block
 from sonolube.report.results.parts import impedance_spectra as results
 from sonolube.rig.datasets import LabelledArrays, labelled
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
 from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @task
@@ -136,7 +133,7 @@ class ImpedanceAnswer(Answer):
                 files[f"{stem}-modes-{name}.vtu"] = impedance_spectra.coupled_modes_grid(spectrum)
         return files
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Impedance, phase and motion per volt over frequency and support."""
         import xarray as xr
 

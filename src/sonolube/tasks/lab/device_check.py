@@ -2,21 +2,18 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory.drivers import DeviceMap, first_readings, missing_parts, read_device_map, unfulfilled
 from sonolube.laboratory.dry_run.findings import SAFETY
 from sonolube.report.blocks import Block, Rows
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Parameter
 from sonolube.tasks.task import shown, task
 from sonolube.text.units import format_si
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _SAMPLE_RATE = 1000.0  # Hz, of the first look
 
@@ -75,7 +72,7 @@ class CheckedDevices(Answer):
             SAFETY,
         )
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Readings, a variable each."""
         import xarray as xr
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sonolube.design.control import ControlDesign
 from sonolube.laboratory import closed_loop
@@ -12,11 +12,8 @@ from sonolube.report.blocks import Block
 from sonolube.report.results import held_friction as results
 from sonolube.report.results.ended_run import SIMULATED
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.text.units import format_si
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @answer
@@ -74,7 +71,7 @@ class HoldAnswer(Answer):
             )
         }
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Intervals of the controller as netCDF."""
         if not self.held.time.size:
             return {}

@@ -2,18 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.laboratory.catalogue import FoundRuns, query_from, query_runs, take_in
 from sonolube.report.blocks import Block, Table
 from sonolube.report.results import recorded_runs as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.lab.run_folders import RUNS, facts_of
 from sonolube.tasks.parameters import File, KeyValues, Parameter
 from sonolube.tasks.task import refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @answer
@@ -44,7 +41,7 @@ class FoundRunsAnswer(Answer):
         """Runs that cannot be read, and what was done to the index."""
         return self.found.caveats
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Runs, over `run` by the names of their folders."""
         return results.found_runs_dataset(self.found.entries).assign_attrs(self.notes())
 

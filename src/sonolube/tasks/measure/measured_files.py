@@ -14,15 +14,13 @@ from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
 from sonolube.tasks.own_tables import mapping_of
 from sonolube.tasks.parameters import File, Parameter
 from sonolube.tasks.progress import stage
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from sonolube.tasks.call import Mark
     from sonolube.tasks.progress import Advance
 
@@ -150,7 +148,7 @@ class MeasuredFiles(Answer):
         """Values, tables and caveats of each file, settings, and the files that were refused."""
         return pages.measurement_object(self._measurement())
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Values and tables of all files, with their settings."""
         settings = "\n".join(f"{name}: {text}" for name, text in self._settings().items())
         attributes = {"measured": self.title, "settings": settings, "refused": "\n".join(self.refused.values())}

@@ -1,7 +1,7 @@
 """Task `measure stiffness`: normal stiffness of a contact by the shift of a resonance between free and pressed."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Unpack
+from typing import Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, MeasurementReport, measurement_object
@@ -11,14 +11,11 @@ from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, OptionalRig, Quantity, Watched, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @task
@@ -113,7 +110,7 @@ class StiffnessAnswer(Answer):
         measured = MeasurementReport(title="stiffness", settings={}, sheets=(self.sheet,), refused={})
         return measurement_object(measured) | {"rig_lines": list(self.rig_lines)}
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Numbers with their intervals."""
         return sheets_dataset([self.sheet]).assign_attrs(self.notes())
 

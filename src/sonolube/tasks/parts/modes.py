@@ -17,7 +17,7 @@ from sonolube.operating_system import quoted
 from sonolube.report import Drawing
 from sonolube.report.blocks import Block
 from sonolube.report.results.parts import natural_modes as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.number_table import number_table
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
@@ -28,7 +28,6 @@ from sonolube.tasks.task import given_arguments, in_si, refuse_unused, shown, ta
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 _CHOICES = ("count", "clamp", "tolerance", "contact", "body_mass", "body_stiffness", "body_damping")  # of the modes
@@ -230,7 +229,7 @@ class ModesAnswer(Answer):
                     files[f"{self._file_name(row)}.gif"] = animation
         return files
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Frequencies, errors and shapes of the elastic modes, with the surface of the part."""
         return modes_dataset(self.solved).assign_attrs(self.notes())
 

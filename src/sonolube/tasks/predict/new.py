@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
@@ -13,13 +13,10 @@ from sonolube.rig import Rig
 from sonolube.rig.new_rig.known_surface import KnownSurface
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text, rig_of_known
 from sonolube.rig.new_rig.stated_text import pin_shape, reader, speed_of, surface_of, vibration_of
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity
 from sonolube.tasks.task import shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 DEFAULT_SHAPE = "flat 3mm"
 """End of the pin where none is given."""
@@ -168,7 +165,7 @@ class NewRig(Answer):
             "least_known": {one.key: one.remedy for one in self.least_known},
         }
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Uncertain entries of the rig: medians and 80 % intervals in SI, and their distributions."""
         import xarray as xr
 

@@ -1,7 +1,7 @@
 """Task `regime`: lubrication regime of a rig, by vibration, lubricant or both, and the kind of wear to expect."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube import rig as rigs
 from sonolube.errors import InvalidInput
@@ -13,13 +13,10 @@ from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results import regime as results
 from sonolube.rig.datasets import labels
 from sonolube.rig.figures import lubrication_chart
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Dataset, answer
 from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, rig_of
 from sonolube.tasks.task import in_si, plausible, shown, task
 from sonolube.text.units import format_si
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _FILM = Quantity("Coefficient of friction of the lubricant film.", "", kind="NUMBER")
 _PRESSURE = Quantity("Pressure at which asperities carry all the load.", "Pa")
@@ -95,7 +92,7 @@ class RegimeAnswer(Answer):
         chart = lambda: lubrication_chart(self.rig, self.result, self.surroundings)  # noqa: E731
         return {f"{self.rig.name}-regime": Drawing(chart=chart)}
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Coefficients of friction over `lubrication`, and the operating point."""
         methods = self.result.coefficients._asdict()
         found = super().dataset().assign_coords(lubrication=list(methods))
