@@ -14,8 +14,7 @@ from sonolube.browser.places import Places
 from sonolube.charts import chart_object, chart_tables
 from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError, UnknownName
 from sonolube.example_files import example_file
-from sonolube.report.blocks import Block, Rows, Table, Verbatim
-from sonolube.tasks.answer import Answer
+from sonolube.tasks.answer import Answer, Block, Rows, Table, Verbatim
 from sonolube.tasks.files import NamedBytes, file_path, private_files, with_names_only
 from sonolube.tasks.parameters import DoorParameter, File, KeyValues, OwnFolder, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task

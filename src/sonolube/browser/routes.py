@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import asdict
 from importlib.resources import files
 from typing import Any, Final
 
@@ -113,7 +114,7 @@ class Workbench:
     async def _list_jobs(self, request: Request) -> Response:
         """All jobs."""
         del request
-        jobs = [job.object() for job in self.jobs.list()]
+        jobs = [asdict(job) for job in self.jobs.list()]
         return _json({"jobs": jobs, "days": KEPT_DAYS, "folder": self.jobs.folder.name})
 
     async def _start_job(self, request: Request) -> Response:
@@ -122,13 +123,13 @@ class Workbench:
         places = {"rigs": dict(self._places.rigs), "uploads": self._places.uploads}
         task, label = str(content.get("task", "")), str(content.get("label", ""))[:200]
         _require_task(task)
-        return _json(self.jobs.start(task, content.get("arguments") or {}, label=label, places=places).object())
+        return _json(asdict(self.jobs.start(task, content.get("arguments") or {}, label=label, places=places)))
 
     async def _job(self, request: Request) -> Response:
         """Record of a job."""
         name = request.path_params["id"]
         self.jobs.tend()
-        return _json(self.jobs.job(name).object() | {"request": self.jobs.request(name)})
+        return _json(asdict(self.jobs.job(name)) | {"request": self.jobs.request(name)})
 
     async def _delete_job(self, request: Request) -> Response:
         """Name of a job that was deleted."""
@@ -139,7 +140,7 @@ class Workbench:
 
     async def _cancel_job(self, request: Request) -> Response:
         """Record of a job that was stopped."""
-        return _json(self.jobs.cancel(request.path_params["id"]).object())
+        return _json(asdict(self.jobs.cancel(request.path_params["id"])))
 
     async def _job_result(self, request: Request) -> Response:
         """Answer of a job that is done."""

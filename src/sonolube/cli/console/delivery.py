@@ -13,9 +13,8 @@ import typer
 from sonolube.cli.console.figure_style import prepare_matplotlib
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
-from sonolube.report.blocks import text_lines
 from sonolube.storage.targets import expect_target
-from sonolube.tasks.answer import Answer
+from sonolube.tasks.answer import Answer, text_lines
 from sonolube.text.printable_text import printable
 
 if TYPE_CHECKING:

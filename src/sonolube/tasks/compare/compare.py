@@ -5,10 +5,9 @@ from typing import Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, OptionalRig, Parameter, RunsSource, Watched, optional_rig
 from sonolube.tasks.progress import stage

@@ -5,10 +5,9 @@ from typing import Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Table
 from sonolube.report.results import ranked_models
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, OptionalRig, OwnRuns, Parameter, Watched, file_stem, optional_rig
 from sonolube.tasks.progress import stage

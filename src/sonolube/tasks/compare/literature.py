@@ -6,10 +6,9 @@ from typing import Annotated, Any
 
 from sonolube.facts.published import PreviousStudy, previous_studies
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results import studies as results
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, Block, answer, si
 from sonolube.tasks.files import NamedBytes
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, OptionalRig, RunsSource, optional_rig

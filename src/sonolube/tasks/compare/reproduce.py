@@ -4,9 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Unpack
 
 from sonolube.report import reproduction_files, summary_lines, validation_object
-from sonolube.report.blocks import Block
 from sonolube.reproduction import Reproduction, reproduction
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, answer
 from sonolube.tasks.parameters import Parameter, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task

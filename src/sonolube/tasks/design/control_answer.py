@@ -8,11 +8,10 @@ from sonolube.design.control import figures
 from sonolube.design.control.run_results import control_dataset
 from sonolube.design.control.stick_slip import StickSlipSuppression
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.design import control_design as results
 from sonolube.report.results.rig_text import amplitude_rows, operating_point, rig_settings
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 
 
 @answer

@@ -14,10 +14,9 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block
 from sonolube.report.results.design import friction_map as results
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Backend, File, KeyValues, Parameter, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage

@@ -8,13 +8,12 @@ import tomli_w
 from sonolube.design.optimisation import OWN_ACTUATOR, DriveElectronics, Optimum, design_text, figures
 from sonolube.design.optimisation.designs_dataset import design_counts, designs_dataset
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results.design import optimum as results
 from sonolube.report.results.design.status_tables import count_table
 from sonolube.report.results.rig_text import operating_point, rig_settings
 from sonolube.rig import Rig, read_rig
 from sonolube.storage.input_files import input_text
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
 
 
 @answer

@@ -15,12 +15,11 @@ from sonolube.design.point_statistics import failure_counts
 from sonolube.errors import InvalidInput
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.design import parametric_study as study_results
 from sonolube.report.results.design.status_tables import failure_objects
 from sonolube.report.results.rig_text import amplitude_object, amplitude_rows, friction_model_text
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown
 from sonolube.text.units import format_si, to_si

@@ -11,10 +11,9 @@ from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.backend import usable_backend
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block
 from sonolube.report.results.design import sweep as results
 from sonolube.storage.files import expect_files
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.design.parametric_study import ParametricStudyAnswer, parametric_study
 from sonolube.tasks.parameters import Backend, Keep, KeyValues, Parameter, RigFile, Watched, kept, rig_of
 from sonolube.tasks.progress import stage

@@ -16,13 +16,12 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block
 from sonolube.report.results.beyond_the_model import BeyondTheModel, beyond_the_model
 from sonolube.report.results.design import uncertainty as results
 from sonolube.report.results.design.uncertain_entries import agreement
 from sonolube.rig import Rig, operating_caveats, steady_vibration
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.parameters import (
     DoorParameter,
     Interval,

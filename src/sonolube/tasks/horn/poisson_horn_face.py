@@ -6,12 +6,11 @@ from typing import Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results.parts import horn_face
 from sonolube.reproduction.chapter2.horn_figures import face_friction_chart
 from sonolube.reproduction.chapter2.horn_friction import FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.cube import Horn
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.parameters import Number, Parameter, Quantity, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task

@@ -17,9 +17,8 @@ from sonolube.models.fem import generate_mesh, medium_from_material, step_text
 from sonolube.models.fem.results.figures import mode_figure, shaped_surface
 from sonolube.models.fem.results.part_modes import longest_axis
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results.parts import tuned_horn as results
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, Watched
 from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part

@@ -10,9 +10,8 @@ from sonolube.laboratory.records.switched_run import switched_recording
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import decay_length as results
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import Mapped, mapping_of
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched, file_stem

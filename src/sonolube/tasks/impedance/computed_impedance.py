@@ -16,10 +16,9 @@ from sonolube.models.fem.results import impedance_spectra
 from sonolube.models.fem.results.figures import impedance_chart
 from sonolube.models.fem.results.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results.parts import impedance_spectra as results
 from sonolube.rig.datasets import LabelledArrays, labelled
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
 from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name

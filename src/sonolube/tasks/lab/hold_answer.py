@@ -8,11 +8,10 @@ from sonolube.design.control import ControlDesign
 from sonolube.laboratory import closed_loop
 from sonolube.laboratory.records import Run
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results import held_friction as results
 from sonolube.report.results.ended_run import SIMULATED
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.text.units import format_si
 
 

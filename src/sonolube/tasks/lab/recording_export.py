@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from sonolube.laboratory.records import export_run
-from sonolube.report.blocks import Block
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, answer
 from sonolube.tasks.lab.run_folders import RunFolder
 from sonolube.tasks.parameters import OwnFolder, Parameter
 from sonolube.tasks.task import task

@@ -7,8 +7,7 @@ from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.laboratory.records import Recovery, drop_raw_blocks, recover_run, run_folders
-from sonolube.report.blocks import Block
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, answer
 from sonolube.tasks.parameters import OwnFolder, Parameter
 from sonolube.tasks.task import task
 

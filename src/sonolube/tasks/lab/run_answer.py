@@ -8,10 +8,9 @@ from sonolube.laboratory import RunResult
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
 from sonolube.laboratory.records import Run
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results import ended_run as results
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 
 
 @answer

@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from sonolube.laboratory.catalogue import FoundRuns, query_from, query_runs, take_in
-from sonolube.report.blocks import Block, Table
 from sonolube.report.results import recorded_runs as results
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.lab.run_folders import RUNS, facts_of
 from sonolube.tasks.parameters import File, KeyValues, Parameter
 from sonolube.tasks.task import refuse_unused, shown, task

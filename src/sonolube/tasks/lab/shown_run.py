@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sonolube.laboratory.records import Run, read_run
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import recorded_runs as results
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.lab.run_folders import RunFolder
 from sonolube.tasks.task import task
 

@@ -5,8 +5,7 @@ from functools import cache
 from typing import Annotated, Any
 
 from sonolube.example_files import ExampleFile, example_file, example_files
-from sonolube.report.blocks import Block, Rows, Verbatim
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Verbatim, answer
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.table import TASKS
 from sonolube.tasks.task import task

@@ -3,8 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
-from sonolube.report.blocks import Block
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 
 
 @answer

@@ -10,8 +10,7 @@ from sonolube.measurement.recordings.text_tables import TextTable
 from sonolube.measurement.run_headings import RunHeading
 from sonolube.measurement.run_table import run_text
 from sonolube.measurement.stated_columns import LEFT_OUT, Meaning, mapping_of_columns, samples, stated_columns
-from sonolube.report.blocks import Block, Table
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Table, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, KeyValues, file_stem
 from sonolube.tasks.task import shown, task

@@ -9,12 +9,11 @@ from sonolube import report as pages
 from sonolube.errors import SonolubeError
 from sonolube.measurement.file_selection import selected_files
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
 from sonolube.tasks.own_tables import mapping_of
 from sonolube.tasks.parameters import File, Parameter

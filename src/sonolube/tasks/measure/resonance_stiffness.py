@@ -5,13 +5,12 @@ from typing import Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, MeasurementReport, measurement_object
-from sonolube.report.blocks import Block
 from sonolube.report.measured.contact_stiffness import StiffnessSettings, contact_stiffness_sheet
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, OptionalRig, Quantity, Watched, file_stem, optional_rig
 from sonolube.tasks.progress import stage

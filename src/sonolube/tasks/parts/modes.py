@@ -15,9 +15,8 @@ from sonolube.models.fem.results.figures import ShapedSurface, mode_figure, shap
 from sonolube.models.fem.results.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
 from sonolube.operating_system import quoted
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results.parts import natural_modes as results
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.number_table import number_table
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched

@@ -8,12 +8,11 @@ from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.predictive import DRAWS
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Table
 from sonolube.report.results import prediction as results
 from sonolube.report.results.measured_on_rig import Measurement, measured_on
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, File, KeyValues, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
 from sonolube.tasks.task import task

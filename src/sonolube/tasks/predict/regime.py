@@ -9,11 +9,10 @@ from sonolube.facts.materials import material
 from sonolube.models.friction import BoundaryLubricant
 from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results import regime as results
 from sonolube.rig.datasets import labels
 from sonolube.rig.figures import lubrication_chart
-from sonolube.tasks.answer import Answer, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
 from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, rig_of
 from sonolube.tasks.task import in_si, plausible, shown, task
 from sonolube.text.units import format_si

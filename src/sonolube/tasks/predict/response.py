@@ -8,12 +8,11 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import modes
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.figures import response_chart
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import response_arrays
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, Block, Rows, answer, si
 from sonolube.tasks.parameters import Number, Quantity, RestingRig, rig_of
 from sonolube.tasks.task import in_si, shown, task
 from sonolube.text.units import format_si

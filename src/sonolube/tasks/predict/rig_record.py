@@ -5,11 +5,10 @@ from dataclasses import field
 from typing import Any
 
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.measured_on_rig import Measurement
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays, result_quantities, result_texts
-from sonolube.tasks.answer import Answer, Dataset, answer, si
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer, si
 from sonolube.text.units import format_quantity, format_si
 from sonolube.vocabulary import quantities
 

@@ -5,12 +5,11 @@ from typing import Annotated, Any, Unpack
 
 from sonolube import rig as rigs
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.figures import start_up_chart
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import start_up_arrays
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, Block, Rows, answer, si
 from sonolube.tasks.parameters import Number, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, task
