@@ -53,11 +53,6 @@ class KnownBody:
 
     material: materials.Material
 
-    @classmethod
-    def of(cls, name: str) -> "KnownBody":
-        """Body of a material by its name."""
-        return cls(material=materials.material(name))
-
     @property
     def elastic(self) -> ElasticBody:
         """Elastic constants, those that the catalogue lacks taken from the class or assumed."""

@@ -156,7 +156,7 @@ def _moves_friction(rig: Rig, key: str, low: float, high: float) -> bool:
 
 def _contact(known: KnownRig) -> Entries:
     """Tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
-    pin, disc = KnownBody.of(known.pin), KnownBody.of(known.disc)
+    pin, disc = (KnownBody(material=materials.material(name)) for name in (known.pin, known.disc))
     softer, harder = (disc, pin) if disc.hardness < pin.hardness else (pin, disc)
     strength = softer.strength
     pair = contact_pair(softer=softer.elastic, harder=harder.elastic, yield_strength=strength.yield_strength)
