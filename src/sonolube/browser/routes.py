@@ -95,13 +95,13 @@ class Workbench:
         name = request.path_params["name"].replace("/", " ")
         return await self._ask("task", {"task": name, "arguments": await _content(request)}, request)
 
-    async def _ask(self, kind: str, payload: Mapping[str, Any], request: Request) -> Response:
+    async def _ask(self, kind: str, payload: Mapping[str, Any], request: Request | None = None) -> Response:
         """Answer of a worker, which is ended where it computes long and the page waits no more.
 
         While the workers start, the first page gets the shipped one.
         """
         shipped = None if self.pool.is_warm or self._places.rigs else shipped_answer(kind, payload)
-        gone = request.is_disconnected
+        gone = None if request is None else request.is_disconnected
         status, body = (200, shipped) if shipped else await self.pool.ask(kind, payload, self._places, is_gone=gone)
         return Response(body, status_code=status, media_type=_JSON, headers={"cache-control": "no-store"})
 

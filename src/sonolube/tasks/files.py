@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 
 from sonolube.errors import InvalidInput
-from sonolube.tasks.progress import within
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,5 +61,9 @@ def with_names_only(text: str) -> str:
 @contextmanager
 def private_files() -> Iterator[None]:
     """Keep bytes of arguments as files inside a `with` block."""
-    with ExitStack() as stack, within(_OPEN, stack):
-        yield
+    with ExitStack() as stack:
+        before = _OPEN.set(stack)
+        try:
+            yield
+        finally:
+            _OPEN.reset(before)

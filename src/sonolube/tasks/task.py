@@ -63,11 +63,11 @@ class TaskFunction(Generic[P, A]):
     """
 
     def __init__(self, function: Callable[P, A]) -> None:
+        update_wrapper(self, function)
         self._function, self.__signature__ = function, _form(function)
         self._marks = marks_of(self)
         arguments = self.__signature__.parameters.items()
         self._choices = {name: _choices(get_args(argument.annotation)[0]) for name, argument in arguments}
-        update_wrapper(self, function)
         if function.__doc__:
             self.__doc__ = _described(function.__doc__, self.__signature__.parameters, self._marks)
 
