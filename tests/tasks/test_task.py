@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from pytest import approx, mark, raises
 
@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 from sonolube.report.blocks import Block, Rows
 from sonolube.tasks.answer import Answer, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Watched
 from sonolube.tasks.progress import TaskCancelled, stage
 from sonolube.tasks.task import argument_names, in_si, refuse_unused, task
 
@@ -31,10 +31,9 @@ def stretched(
     length: Annotated[Number, Parameter("At rest.", unit="m", lowest=0)],
     *,
     strain: Annotated[Number, Parameter("Of the rod.", unit="")] = "10 %",
-    table: Annotated[InputFile | None, Parameter("Of what is added.", is_file=True)] = None,
+    table: Annotated[InputFile | None, File("Of what is added.")] = None,
     note: Annotated[str | None, Parameter("With a table.")] = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> Length:
     """Length of a rod under strain.
 

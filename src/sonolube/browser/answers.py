@@ -14,11 +14,10 @@ from sonolube.browser.places import Places
 from sonolube.charts import chart_object, chart_tables
 from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError, UnknownName
 from sonolube.example_files import example_file
-from sonolube.report.blocks import Block, Rows, Table, Verbatim
-from sonolube.tasks.answer import Answer
+from sonolube.tasks.answer import Answer, Block, Rows, Table, Verbatim
 from sonolube.tasks.call import Mark
 from sonolube.tasks.files import NamedBytes, file_path, private_files, with_names_only
-from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
+from sonolube.tasks.parameters import DoorParameter, File, KeyValues, OwnFolder, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
 
@@ -180,14 +179,14 @@ def _given(name: str, value: Any, mark: Any, places: Places, stack: ExitStack) -
     if isinstance(mark, RigParameter):
         return None if value is None else given_rig(value, places, stack)
     assert isinstance(mark, Parameter)
-    if mark.is_file:
+    if isinstance(mark, File):
         several = isinstance(value, list)
         files = [_file(name, each, places) for each in (value if several else [value])]
         return files if several else files[0]
     for text in _texts(value):
         if os.sep in text and Path(text).exists():
             raise InvalidInput(f"{name}: {PurePath(text).name!r} is a file of this computer; upload it", key=name)
-        if mark.is_mapping and mark.kind and ".toml" in mark.kind:
+        if isinstance(mark, KeyValues) and ".toml" in mark.kind:
             raise InvalidInput(f"{name}: is not offered in the browser; use the terminal or Python", key=name)
     return value
 
@@ -254,7 +253,7 @@ def _is_offered(task: Task) -> bool:
     """Whether a task opens no device, and writes no folder that is named as an argument."""
     if task.name in _DEVICES:
         return False
-    return not any(isinstance(mark, Parameter) and mark.is_output for mark in marks_of(task.function).values())
+    return not any(isinstance(mark, OwnFolder) for mark in marks_of(task.function).values())
 
 
 def _charted(chart: Any) -> dict[str, Any]:

@@ -39,7 +39,7 @@ def app(
     Example: sonolube app examples/rigs/tribometer.toml
     """
     try:
-        from sonolube.browser.server import Options, run, token_of_file
+        from sonolube.browser.server import run, token_of_file
     except ImportError:
         raise missing_package("app", remedy="use the terminal or Python") from None
     if host not in _LOOPBACK and token_file is None:
@@ -54,4 +54,4 @@ def app(
     token = "" if token_file is None else token_of_file(token_file)
     if host not in _LOOPBACK:
         typer.echo(f"Other computers can reach it at {host}; without a proxy, what is sent can be read on the way.")
-    run(Options(rig=rig, port=port, host=host, token=token, hosts=tuple(allow_host or ()), opens_browser=browser))
+    run(rig=rig, port=port, host=host, token=token, hosts=tuple(allow_host or ()), opens_browser=browser)

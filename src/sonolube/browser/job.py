@@ -67,12 +67,10 @@ def write_files(contents: "Mapping[str, Content]", *, folder: Path) -> list[str]
 
     for name, content in contents.items():
         path = folder / name
-        if isinstance(content, Path):
-            write_atomically(path, content.read_bytes())
-        elif isinstance(content, str | bytes):
-            write_atomically(path, content)
+        if isinstance(content, str | bytes | Path):
+            write_atomically(path, content.read_bytes() if isinstance(content, Path) else content)
         else:
-            write_netcdf(content if hasattr(content, "to_netcdf") else content.dataset(), path=path)
+            write_netcdf(content, path=path)
     return list(contents)
 
 

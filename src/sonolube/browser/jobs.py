@@ -65,10 +65,6 @@ class Job:
     seconds: float = 0.0
     reason: str = ""
 
-    def object(self) -> dict[str, Any]:
-        """Record for JSON."""
-        return {name: getattr(self, name) for name in self.__slots__}
-
 
 class Jobs:
     """Jobs of one user on this computer.

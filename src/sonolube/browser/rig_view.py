@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any, Final
 
 from sonolube.browser.answers import names_only, requested_file
@@ -70,10 +70,6 @@ class RigField:
     is_first: bool = False
     numbers: Mapping[str, float] = field(default_factory=dict)
 
-    def object(self) -> dict[str, Any]:
-        """Field for JSON."""
-        return {name: getattr(self, name) for name in self.__slots__}
-
 
 def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Rig of a request as an object for JSON.
@@ -90,7 +86,7 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     return {
         "title": rig.title,
         "source": rig.source,
-        "fields": [field.object() for field in sorted(fields, key=_order)],
+        "fields": [asdict(field) for field in sorted(fields, key=_order)],
         "drawing": _drawing(rig),
         "assumptions": dict(rig.assumptions),
         "studies": studies_of(rig),

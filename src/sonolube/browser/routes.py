@@ -1,7 +1,8 @@
 """Routes of the workbench: pages and their files, tasks, rigs, uploads and jobs."""
 
 import json
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import asdict
 from importlib.resources import files
 from typing import Any, Final
 
@@ -22,7 +23,6 @@ from sonolube.errors import InvalidInput, SonolubeError
 
 _LARGEST_REQUEST: Final = 4 * 2**20  # bytes of JSON
 _JSON: Final = "application/json"
-Endpoint = Callable[[Request], Awaitable[Response]]
 
 
 class Workbench:
@@ -48,20 +48,22 @@ class Workbench:
         routes = [
             Route("/", self._page),
             Route("/api/start", self._start),
-            Route("/api/description", self._answering("description"), methods=["GET"]),
-            Route("/api/rig", self._answering("rig"), methods=["POST"]),
-            Route("/api/take", self._answering("take"), methods=["POST"]),
+            Route("/api/description", self._description, methods=["GET"]),
+            Route("/api/rig", self._rig, methods=["POST"]),
+            Route("/api/take", self._take, methods=["POST"]),
             Route("/api/tasks/{name:path}", self._task, methods=["POST"]),
             Route("/api/uploads", self._upload, methods=["POST"]),
             Route("/api/jobs", self._list_jobs, methods=["GET"]),
             Route("/api/jobs", self._start_job, methods=["POST"]),
-            Route("/api/jobs/{id}", self._job, methods=["GET", "DELETE"]),
+            Route("/api/jobs/{id}", self._job, methods=["GET"]),
+            Route("/api/jobs/{id}", self._delete_job, methods=["DELETE"]),
             Route("/api/jobs/{id}/cancel", self._cancel_job, methods=["POST"]),
             Route("/api/jobs/{id}/result", self._job_result, methods=["GET"]),
             Route("/api/jobs/{id}/files/{name:path}", self._job_file, methods=["GET"]),
             Route("/static/{name:path}", static_file, methods=["GET"]),
         ]
-        return Starlette(routes=routes, middleware=[Middleware(GZipMiddleware, minimum_size=500, compresslevel=4)])
+        middleware = [Middleware(GZipMiddleware, minimum_size=500, compresslevel=4)]
+        return Starlette(routes=routes, middleware=middleware, exception_handlers={SonolubeError: _refusal})
 
     async def _page(self, request: Request) -> Response:
         """The one page; everything else is in its scripts."""
@@ -74,17 +76,24 @@ class Workbench:
         del request
         from sonolube import __version__
 
-        content = {"rig": self.opened, "version": __version__}
-        return _json(content)
+        return _json({"rig": self.opened, "version": __version__})
 
-    def _answering(self, kind: str) -> Endpoint:
-        """Endpoint that a worker answers."""
+    async def _description(self, request: Request) -> Response:
+        """OpenAPI description of the tasks."""
+        return await self._ask("description", {}, request)
 
-        async def endpoint(request: Request) -> Response:
-            payload = {} if request.method == "GET" else await _content(request)
-            return await self._ask(kind, payload, request)
+    async def _rig(self, request: Request) -> Response:
+        """Fields and drawing of a rig."""
+        return await self._ask("rig", await _content(request), request)
 
-        return _refusing(endpoint)
+    async def _take(self, request: Request) -> Response:
+        """File to take away."""
+        return await self._ask("take", await _content(request), request)
+
+    async def _task(self, request: Request) -> Response:
+        """Answer of a task."""
+        name = request.path_params["name"].replace("/", " ")
+        return await self._ask("task", {"task": name, "arguments": await _content(request)}, request)
 
     async def _ask(self, kind: str, payload: Mapping[str, Any], request: Request | None = None) -> Response:
         """Answer of a worker, which is ended where it computes long and the page waits no more.
@@ -92,86 +101,56 @@ class Workbench:
         While the workers start, the first page gets the shipped one.
         """
         shipped = None if self.pool.is_warm or self._places.rigs else shipped_answer(kind, payload)
-        is_gone = None if request is None else request.is_disconnected
-        status, body = (200, shipped) if shipped else await self.pool.ask(kind, payload, self._places, is_gone=is_gone)
+        gone = None if request is None else request.is_disconnected
+        status, body = (200, shipped) if shipped else await self.pool.ask(kind, payload, self._places, is_gone=gone)
         return Response(body, status_code=status, media_type=_JSON, headers={"cache-control": "no-store"})
-
-    async def _task(self, request: Request) -> Response:
-        """Answer of a task."""
-
-        async def endpoint(request: Request) -> Response:
-            name = request.path_params["name"].replace("/", " ")
-            return await self._ask("task", {"task": name, "arguments": await _content(request)}, request)
-
-        return await _refusing(endpoint)(request)
 
     async def _upload(self, request: Request) -> Response:
         """Name of an uploaded file."""
-
-        async def endpoint(request: Request) -> Response:
-            length = request.headers.get("content-length", "")
-            announced = int(length) if length.isdigit() else None
-            return _json({"upload": await self.uploads.keep(request.stream(), length=announced)})
-
-        return await _refusing(endpoint)(request)
+        length = request.headers.get("content-length", "")
+        announced = int(length) if length.isdigit() else None
+        return _json({"upload": await self.uploads.keep(request.stream(), length=announced)})
 
     async def _list_jobs(self, request: Request) -> Response:
         """All jobs."""
         del request
-        jobs = [job.object() for job in self.jobs.list()]
+        jobs = [asdict(job) for job in self.jobs.list()]
         return _json({"jobs": jobs, "days": KEPT_DAYS, "folder": self.jobs.folder.name})
 
     async def _start_job(self, request: Request) -> Response:
         """Record of a job that was started."""
-
-        async def endpoint(request: Request) -> Response:
-            content = await _content(request)
-            places = {"rigs": dict(self._places.rigs), "uploads": self._places.uploads}
-            task, label = str(content.get("task", "")), str(content.get("label", ""))[:200]
-            _require_task(task)
-            job = self.jobs.start(task, content.get("arguments") or {}, label=label, places=places)
-            return _json(job.object())
-
-        return await _refusing(endpoint)(request)
+        content = await _content(request)
+        places = {"rigs": dict(self._places.rigs), "uploads": self._places.uploads}
+        task, label = str(content.get("task", "")), str(content.get("label", ""))[:200]
+        _require_task(task)
+        return _json(asdict(self.jobs.start(task, content.get("arguments") or {}, label=label, places=places)))
 
     async def _job(self, request: Request) -> Response:
-        """Record of a job; it is deleted where that is asked for."""
+        """Record of a job."""
+        name = request.path_params["id"]
+        self.jobs.tend()
+        return _json(asdict(self.jobs.job(name)) | {"request": self.jobs.request(name)})
 
-        async def endpoint(request: Request) -> Response:
-            name = request.path_params["id"]
-            self.jobs.tend()
-            if request.method == "DELETE":
-                self.jobs.delete(name)
-                return _json({"deleted": name})
-            return _json(self.jobs.job(name).object() | {"request": self.jobs.request(name)})
-
-        return await _refusing(endpoint)(request)
+    async def _delete_job(self, request: Request) -> Response:
+        """Name of a job that was deleted."""
+        name = request.path_params["id"]
+        self.jobs.tend()
+        self.jobs.delete(name)
+        return _json({"deleted": name})
 
     async def _cancel_job(self, request: Request) -> Response:
         """Record of a job that was stopped."""
-
-        async def endpoint(request: Request) -> Response:
-            return _json(self.jobs.cancel(request.path_params["id"]).object())
-
-        return await _refusing(endpoint)(request)
+        return _json(asdict(self.jobs.cancel(request.path_params["id"])))
 
     async def _job_result(self, request: Request) -> Response:
         """Answer of a job that is done."""
-
-        async def endpoint(request: Request) -> Response:
-            self.jobs.tend()
-            return Response(self.jobs.result(request.path_params["id"]), media_type=_JSON)
-
-        return await _refusing(endpoint)(request)
+        self.jobs.tend()
+        return Response(self.jobs.result(request.path_params["id"]), media_type=_JSON)
 
     async def _job_file(self, request: Request) -> Response:
         """File of the answer of a job."""
-
-        async def endpoint(request: Request) -> Response:
-            path = self.jobs.file(request.path_params["id"], request.path_params["name"])
-            return FileResponse(path, headers={"content-disposition": f'attachment; filename="{path.name}"'})
-
-        return await _refusing(endpoint)(request)
+        path = self.jobs.file(request.path_params["id"], request.path_params["name"])
+        return FileResponse(path, headers={"content-disposition": f'attachment; filename="{path.name}"'})
 
 
 def _require_task(name: str) -> None:
@@ -182,17 +161,11 @@ def _require_task(name: str) -> None:
         raise InvalidInput(f"task: there is none named {name[:60]!r}", key="task")
 
 
-def _refusing(endpoint: Endpoint) -> Endpoint:
-    """Endpoint that answers refusals as JSON."""
-
-    async def guarded(request: Request) -> Response:
-        try:
-            return await endpoint(request)
-        except SonolubeError as failure:
-            text = str(failure)
-            return _json({"text": text, "faults": [{"key": getattr(failure, "key", ""), "text": text}]}, status=422)
-
-    return guarded
+async def _refusal(request: Request, failure: Exception) -> Response:
+    """Refusal as JSON."""
+    del request
+    text = str(failure)
+    return _json({"text": text, "faults": [{"key": getattr(failure, "key", ""), "text": text}]}, status=422)
 
 
 async def _content(request: Request) -> dict[str, Any]:

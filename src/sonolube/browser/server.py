@@ -7,8 +7,8 @@ import socket
 import sys
 import webbrowser
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import uvicorn
 
@@ -19,33 +19,6 @@ from sonolube.browser.routes import Workbench
 from sonolube.browser.security import Access, Guard
 from sonolube.browser.uploads import Uploads
 from sonolube.errors import InvalidInput
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Options:
-    """Settings of the server.
-
-    Parameters
-    ----------
-    rig : Path or None
-        File that the first page shows; an example where None.
-    port : int
-        0 for any free one.
-    host : str
-        Address on which it listens.
-    token : str
-        Empty for a random one.
-    hosts : sequence of str
-        Names beyond those of this computer by which pages may ask.
-    opens_browser : bool
-    """
-
-    rig: Path | None = None
-    port: int = 8765
-    host: str = "127.0.0.1"
-    token: str = ""
-    hosts: Sequence[str] = ()
-    opens_browser: bool = True
 
 
 class _Server(uvicorn.Server):
@@ -64,24 +37,42 @@ class _Server(uvicorn.Server):
             webbrowser.open(self._link)
 
 
-def run(options: Options) -> None:
+def run(
+    *,
+    rig: Path | None = None,
+    port: int = 8765,
+    host: str = "127.0.0.1",
+    token: str = "",
+    hosts: Sequence[str] = (),
+    opens_browser: bool = True,
+) -> None:
     """Serve the workbench until it is interrupted.
 
     Parameters
     ----------
-    options : Options
+    rig : Path or None
+        File that the first page shows; an example where None.
+    port : int
+        0 for any free one.
+    host : str
+        Address on which it listens.
+    token : str
+        Empty for a random one.
+    hosts : sequence of str
+        Names beyond those of this computer by which pages may ask.
+    opens_browser : bool
 
     Raises
     ------
     InvalidInput
         If the port is taken, or the file is no rig.
     """
-    listening = _listening(options.host, options.port)
+    listening = _listening(host, port)
     port = listening.getsockname()[1]
-    access = Access(token=options.token or secrets.token_urlsafe(32), port=port, hosts=frozenset(options.hosts))
-    name = f"[{options.host}]" if ":" in options.host else options.host
+    access = Access(token=token or secrets.token_urlsafe(32), port=port, hosts=frozenset(hosts))
+    name = f"[{host}]" if ":" in host else host
     link = f"http://{name}:{port}/?token={access.token}"
-    workbench = _workbench(options)
+    workbench = _workbench(rig)
     signal.signal(signal.SIGTERM, _leave)  # the server raises it again once it has shut down
     try:
         server = _Server(
@@ -96,7 +87,7 @@ def run(options: Options) -> None:
                 h11_max_incomplete_event_size=64 * 1024,
             ),
             link=link,
-            opens_browser=options.opens_browser,
+            opens_browser=opens_browser,
         )
         server.run(sockets=[listening])
     finally:
@@ -111,10 +102,10 @@ def _leave(number: int, frame: object) -> None:
     sys.exit(128 + number)
 
 
-def _workbench(options: Options) -> Workbench:
+def _workbench(rig: Path | None) -> Workbench:
     """Workbench with its processes."""
     cores = os.cpu_count() or 1
-    rigs = {} if options.rig is None else {options.rig.stem: str(options.rig.resolve())}
+    rigs = {} if rig is None else {rig.stem: str(rig.resolve())}
     return Workbench(
         pool=Pool(max(2, min(cores, 4))),
         jobs=Jobs(jobs_folder(), most=cores),
@@ -139,8 +130,8 @@ def _listening(host: str, port: int) -> socket.socket:
     return found
 
 
-def plain_options(arguments: Sequence[str]) -> Options | None:
-    """Options where nothing but a port and `--no-browser` is given; None where there is more to read.
+def plain_options(arguments: Sequence[str]) -> dict[str, Any] | None:
+    """Arguments of `run` where nothing but a port and `--no-browser` is given; None where there is more to read.
 
     Parameters
     ----------
@@ -149,15 +140,16 @@ def plain_options(arguments: Sequence[str]) -> Options | None:
 
     Returns
     -------
-    Options or None
+    dict or None
     """
-    options, words = Options(), [part for word in arguments for part in word.split("=", 1)]
+    options: dict[str, Any] = {}
+    words = [part for word in arguments for part in word.split("=", 1)]
     while words:
         match words:
             case ["--no-browser", *rest]:
-                options = replace(options, opens_browser=False)
+                options["opens_browser"] = False
             case ["--port", number, *rest] if number.isdecimal() and int(number) < 2**16:
-                options = replace(options, port=int(number))
+                options["port"] = int(number)
             case _:
                 return None
         words = rest

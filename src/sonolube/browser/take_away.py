@@ -15,9 +15,8 @@ from sonolube.browser.places import Places
 from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.operating_system import quoted
-from sonolube.report.blocks import Rows, Table, Verbatim
 from sonolube.report.page import Page, PageTable, rendered_files
-from sonolube.tasks.answer import Answer
+from sonolube.tasks.answer import Answer, Rows, Table, Verbatim
 from sonolube.tasks.parameters import RigParameter
 from sonolube.tasks.table import Task
 from sonolube.tasks.task import marks_of

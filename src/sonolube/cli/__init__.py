@@ -57,8 +57,9 @@ def _serve_at_once(arguments: Sequence[str]) -> None:
 
     try:
         server = import_module("sonolube.browser.server")
-        if options := server.plain_options(arguments):
-            server.run(options)
+        options = server.plain_options(arguments)
+        if options is not None:
+            server.run(**options)
             sys.exit(0)
     except (ImportError, SonolubeError):
         return  # the parser reads the options again, and the refusal is said as those of all commands

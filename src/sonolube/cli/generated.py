@@ -18,7 +18,7 @@ from sonolube.cli.console.questions import operator_arguments
 from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import few_points
 from sonolube.tasks.call import Mark, item_of, members_of
-from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
+from sonolube.tasks.parameters import DoorParameter, File, KeyValues, OwnFolder, Parameter, RigParameter
 from sonolube.tasks.progress import observed
 from sonolube.tasks.table import Task
 from sonolube.tasks.task import argument_names, marks_of
@@ -50,30 +50,25 @@ class _Input:
     def value(self, typed: Mapping[str, Any], own: Collection[str]) -> Any:
         """Value that the task takes."""
         if isinstance(self.mark, RigParameter):
-            read = options.optional_rig if self.mark.is_optional else options.loaded_rig
             entries = {key: None if key in own else typed.get(key) for key in _RIG}
-            return read(typed[self.name], **entries)
+            return options.rig_of_options(typed[self.name], **entries)
         assert isinstance(self.mark, Parameter)
-        return _by_key(self.flag, self.mark.kind, typed[self.name]) if self.mark.is_mapping else typed[self.name]
+        return (
+            _by_key(self.flag, self.mark.kind, typed[self.name])
+            if isinstance(self.mark, KeyValues)
+            else typed[self.name]
+        )
 
 
-@dataclass(frozen=True, slots=True)
-class Extra:
-    """Argument that only a terminal has: its name, annotation for typer, and default."""
-
-    name: str
-    annotation: Any
-    default: Any
-
-    def argument(self) -> Argument:
-        """Argument of the function that typer reads."""
-        return Argument(self.name, Argument.KEYWORD_ONLY, default=self.default, annotation=self.annotation)
+def argument(name: str, annotation: Any, default: Any = Argument.empty) -> Argument:
+    """Argument of the function that typer reads: its name, annotation for typer, and default."""
+    return Argument(name, Argument.KEYWORD_ONLY, default=default, annotation=annotation)
 
 
 def command_of(
     task: Task,
     *,
-    more: Sequence[Extra] = (),
+    more: Sequence[Argument] = (),
     complete: Callable[[dict[str, Any], Mapping[str, Any]], dict[str, Any]] | None = None,
     delivery: Callable[[Any, Mapping[str, Any]], None] | None = None,
 ) -> Callable[..., None]:
@@ -84,8 +79,8 @@ def command_of(
     function = task.function
     marks = marks_of(function)
     inputs = [
-        _input(argument, marks[name], task.writes, is_required=complete is None)
-        for name, argument in signature(function).parameters.items()
+        _input(each, marks[name], task.writes, is_required=complete is None)
+        for name, each in signature(function).parameters.items()
         if not isinstance(marks[name], DoorParameter)
     ]
     names = {each.name: each.flag or each.arguments[0].name.upper() for each in inputs}
@@ -114,8 +109,7 @@ def command_of(
             )
 
     own = _ordered(inputs)
-    context = Argument("context", Argument.KEYWORD_ONLY, annotation=typer.Context)
-    form = Signature([context, *(each.argument() for each in more), *own, *_delivery(task, marks)])
+    form = Signature([argument("context", typer.Context), *more, *own, *_delivery(task, marks)])
     run.__signature__ = form  # type: ignore[attr-defined]
     run.__annotations__ = {name: each.annotation for name, each in form.parameters.items()}
     run.__doc__ = task.summary
@@ -131,46 +125,41 @@ def _ordered(inputs: Sequence[_Input]) -> list[Argument]:
     return [*files, *every, *(each for each in rig if each.name in _RIG and each.name not in taken)]
 
 
-def _input(argument: Argument, mark: Mark, writes: str, *, is_required: bool) -> _Input:
+def _input(given: Argument, mark: Mark, writes: str, *, is_required: bool) -> _Input:
     """Argument of a task as typer reads it."""
-    name = argument.name
+    name = given.name
     if isinstance(mark, RigParameter):
-        flag = f"--{name}" if argument.kind is Argument.KEYWORD_ONLY else ""
+        flag = f"--{name}" if given.kind is Argument.KEYWORD_ONLY else ""
         about: dict[str, Any] = {"metavar": "RIG.toml", "help": _RIG_HELP}
         info = typer.Option(flag, **about) if flag else typer.Argument(**about)
         path: Any = Annotated[Path | None, info] if mark.is_optional else Annotated[Path, info]
         default = None if mark.is_optional else Argument.empty
-        own = [Argument(name, Argument.KEYWORD_ONLY, default=default, annotation=path)]
+        own = [argument(name, path, default)]
         kinds = {key: each for key, each in _RIG.items() if key not in mark.without}
-        own += [Argument(key, Argument.KEYWORD_ONLY, default=None, annotation=each) for key, each in kinds.items()]
+        own += [argument(key, each, None) for key, each in kinds.items()]
         return _Input(name, mark, flag or "RIG.toml", tuple(own))
     assert isinstance(mark, Parameter)
-    by_place = argument.kind is Argument.POSITIONAL_OR_KEYWORD and not mark.option
+    by_place = given.kind is Argument.POSITIONAL_OR_KEYWORD and not mark.option
     flag = "" if by_place else mark.option or f"--{name.replace('_', '-')}"
-    kind = _typed_kind(get_args(argument.annotation)[0], mark)
-    default = None if isinstance(argument.default, tuple | Mapping) else argument.default
+    kind = _typed_kind(get_args(given.annotation)[0], mark)
+    default = None if isinstance(given.default, tuple | Mapping) else given.default
     if default is Argument.empty and not is_required:
         default = None
     annotation: Any = Annotated[kind | None if default is None else kind, _description(mark, flag, default, kind)]
-    if mark.is_output:
+    if isinstance(mark, OwnFolder):
         annotation = Annotated[annotation, OutputFolder(writes) if writes else ContinuedFolder()]
-    return _Input(
-        name,
-        mark,
-        flag.partition(" ")[0],
-        (Argument(name, Argument.KEYWORD_ONLY, default=default, annotation=annotation),),
-    )
+    return _Input(name, mark, flag.partition(" ")[0], (argument(name, annotation, default),))
 
 
 def _typed_kind(kind: Any, mark: Parameter) -> Any:
     """Type that typer reads for an argument of a type."""
-    if mark.is_mapping:
+    if isinstance(mark, KeyValues):
         return list[str]
     if (item := item_of(kind)) is not None:
         each = _typed_kind(item, mark)
         words = get_args(each) if get_origin(each) is Literal else ()  # which typer does not take several of
         return list[StrEnum("Choice", {word: word for word in words}) if words else each]  # type: ignore[misc]
-    if mark.is_file or mark.is_output:
+    if isinstance(mark, File | OwnFolder):
         return Path
     return str if mark.unit is not None else members_of(kind)[0]
 
@@ -189,7 +178,7 @@ def _description(mark: Parameter, flag: str, default: Any, kind: Any) -> Any:
 def _metavar(mark: Parameter) -> str | None:
     """Placeholder of a value in the help; the kind of quantity where nothing is given, such as FORCE."""
     if mark.kind or not mark.unit:
-        return mark.kind or ("KEY=VALUE" if mark.is_mapping else None)
+        return mark.kind or ("KEY=VALUE" if isinstance(mark, KeyValues) else None)
     return unit_description(mark.unit).partition(",")[0].partition(" ")[2].upper()
 
 
@@ -200,19 +189,19 @@ def _delivery(task: Task, marks: Mapping[str, Mark]) -> list[Argument]:
     if isinstance(keep, DoorParameter) and keep.files:
         option = typer.Option(metavar="FOLDER", help=_KEPT_HELP)
         own: Any = Annotated[Path | None, option, OutputFolder(keep.files)]
-        arguments.append(Argument("keep", Argument.KEYWORD_ONLY, default=None, annotation=own))
+        arguments.append(argument("keep", own, None))
     if task.writes and "out" not in marks:
         about = typer.Option(help=_KEEP_HELP if keeps else _OUT_HELP)
         folder: Any = Annotated[Path | None, about, OutputFolder(task.writes)]
         default = None if keeps or task.folder or task.writes_on_request else options.OUT
-        arguments.append(Argument("out", Argument.KEYWORD_ONLY, default=default, annotation=folder))
+        arguments.append(argument("out", folder, default))
     if task.has_report:
         info = typer.Option(metavar="PAGE.html", help="Self-contained page to write.")
         page: Any = Annotated[Path | None, info, OutputFile()]
-        arguments.append(Argument("report", Argument.KEYWORD_ONLY, default=None, annotation=page))
+        arguments.append(argument("report", page, None))
     if any(isinstance(mark, RigParameter) for mark in marks.values()):
-        arguments.append(Argument("brief", Argument.KEYWORD_ONLY, default=False, annotation=options.Brief))
-    return [*arguments, Argument("json", Argument.KEYWORD_ONLY, default=False, annotation=options.Json)]
+        arguments.append(argument("brief", options.Brief, False))
+    return [*arguments, argument("json", options.Json, False)]
 
 
 def _is_given(context: typer.Context, name: str) -> bool:

@@ -8,7 +8,7 @@ import typer
 
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.outputs import OutputFile
-from sonolube.cli.generated import Extra, command_of
+from sonolube.cli.generated import argument, command_of
 from sonolube.tasks.identify.rig_of_facts import IdentificationAnswer
 from sonolube.tasks.table import task_named
 from sonolube.text.printable_text import printable
@@ -27,4 +27,4 @@ def _delivered(answer: IdentificationAnswer, typed: Mapping[str, Any]) -> None:
         typer.echo(printable(answer.file_text()))
 
 
-identify_rig = command_of(task_named("identify rig"), more=(Extra("out", _OUT, None),), delivery=_delivered)
+identify_rig = command_of(task_named("identify rig"), more=(argument("out", _OUT, None),), delivery=_delivered)

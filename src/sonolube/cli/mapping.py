@@ -35,12 +35,7 @@ def _asked(label: str, cells: list[str]) -> str:
         text=f"Column {label!r} ({holds}): quantity and unit, such as 'friction_force N', or - to leave it out",
         default=LEFT_OUT,
     )
-
-    def read(text: str) -> str:
-        meaning(text, label)
-        return text
-
-    return ask(question, read)
+    return ask(question, lambda text: meaning(text, label))
 
 
 mapping = command_of(task_named("mapping"), complete=_completed)

@@ -9,7 +9,7 @@ import typer
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.questions import Question, ask, is_terminal
-from sonolube.cli.generated import Extra, command_of
+from sonolube.cli.generated import argument, command_of
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.rig.new_rig.stated_text import pin_shape, reader, rotation_of, speed_of, surface_of, vibration_of
@@ -62,21 +62,10 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
         raise InvalidInput(f"missing {options}; give them, or answer the questions on a terminal")
     for name, (question, read) in _QUESTIONS.items():
         if missing and not _is_known(name, given):
-            check = _readable_speed(given) if name == "speed" else read
-            given[name] = _answer_to(question, check)
+            given[name] = ask(question, _readable_speed(given) if name == "speed" else read)
         if name == "speed" and _needs_track(given):
-            given["track_radius"] = _answer_to(_TRACK, lambda text: speed_of(given["speed"], track_radius=text))
+            given["track_radius"] = ask(_TRACK, lambda text: speed_of(given["speed"], track_radius=text))
     return given
-
-
-def _answer_to(question: Question, check: Callable[[str], object]) -> str:
-    """Text of an answer that can be read."""
-
-    def read(text: str) -> str:
-        check(text)
-        return text
-
-    return ask(question, read)
 
 
 def _is_known(name: str, given: Mapping[str, Any]) -> bool:
@@ -112,7 +101,7 @@ _FORCE: Final = Annotated[bool, typer.Option("--force", help="Replace the file w
 
 new = command_of(
     task_named("new"),
-    more=(Extra("out", _OUT, Path("rig.toml")), Extra("force", _FORCE, False)),
+    more=(argument("out", _OUT, Path("rig.toml")), argument("force", _FORCE, False)),
     complete=_completed,
     delivery=_delivered,
 )

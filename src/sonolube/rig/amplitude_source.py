@@ -43,8 +43,8 @@ class ResolvedVibration:
 
     source: AmplitudeSource
     text: str
-    driven: DrivenRig | None
-    sine_amplitude: float | None
+    driven: DrivenRig | None = None
+    sine_amplitude: float | None = None
     per_volt: float | None = None
 
     def amplitude_at(self, voltage_peak_to_peak: float) -> float:
@@ -97,7 +97,7 @@ def scaled_vibration(rig: DrivenRig, *, voltage: DriveVoltage, gap_law: GapLaw) 
     """
     driven = _calibrated(rig, voltage, gap_law)
     text = f"{_measurement_text(rig)}; it scales the drive of the computed motion by {driven.calibration:.4g}"
-    return ResolvedVibration(source="measured", text=text, driven=driven, sine_amplitude=None)
+    return ResolvedVibration(source="measured", text=text, driven=driven)
 
 
 def computed_amplitude(rig: DrivenRig, *, voltage: DriveVoltage, gap_law: GapLaw) -> float:
@@ -133,17 +133,16 @@ def _measured_sine(rig: Rig) -> ResolvedVibration:
     per_volt = rig.vibration_amplitude / at if at and volts is not None else None
     amplitude = rig.vibration_amplitude if per_volt is None or volts is None else per_volt * volts
     text = _measurement_text(rig)
-    return ResolvedVibration(source="measured", text=text, driven=None, sine_amplitude=amplitude, per_volt=per_volt)
+    return ResolvedVibration(source="measured", text=text, sine_amplitude=amplitude, per_volt=per_volt)
 
 
 def _computed(rig: Rig) -> ResolvedVibration:
-    text = "computed from stack and structure"
-    return ResolvedVibration(source="computed", text=text, driven=driven_rig(rig), sine_amplitude=None)
+    return ResolvedVibration(source="computed", text="computed from stack and structure", driven=driven_rig(rig))
 
 
 def _of_waveguide(rig: Rig) -> ResolvedVibration:
     text = "computed from the waveguide"
-    return ResolvedVibration(source="waveguide", text=text, driven=None, sine_amplitude=rig.waveguide_amplitude)
+    return ResolvedVibration(source="waveguide", text=text, sine_amplitude=rig.waveguide_amplitude)
 
 
 def _per_volt(rig: Rig) -> ResolvedVibration:
@@ -153,9 +152,7 @@ def _per_volt(rig: Rig) -> ResolvedVibration:
     volts = rig.drive.voltage_peak_to_peak
     text = f"per volt, {format_si(rig.amplitude_per_volt, 'm/V')} times {format_si(volts, 'V')} peak to peak"
     per_volt = rig.amplitude_per_volt
-    return ResolvedVibration(
-        source="per-volt", text=text, driven=None, sine_amplitude=per_volt * volts, per_volt=per_volt
-    )
+    return ResolvedVibration(source="per-volt", text=text, sine_amplitude=per_volt * volts, per_volt=per_volt)
 
 
 VIBRATIONS: Mapping[AmplitudeSource, Callable[[Rig], ResolvedVibration]] = MappingProxyType(

@@ -9,19 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
-from sonolube.models.thermal import (
-    EllipticSource,
-    HeatedContact,
-    ThermalNetwork,
-    ThermalSolid,
-    contact_rise,
-    peclet_number,
-)
-from sonolube.models.thermal.contact_history import (
-    ContactTemperatureHistory,
-    contact_temperature_history,
-    frictional_heat_rate,
-)
+from sonolube.models import thermal
+from sonolube.models.thermal import contact_history
 from sonolube.models.thermal.flash_models import FLASH_MODELS
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
@@ -82,11 +71,11 @@ class TemperaturePoint:
     amplitude_source: str
     amplitude_origin: str
     caveats: tuple[str, ...]
-    with_vibration: ContactTemperatureHistory
-    without_vibration: ContactTemperatureHistory
+    with_vibration: contact_history.ContactTemperatureHistory
+    without_vibration: contact_history.ContactTemperatureHistory
 
 
-def thermal_solid(name: str) -> ThermalSolid:
+def thermal_solid(name: str) -> thermal.ThermalSolid:
     """Thermal properties of a material of the catalogue.
 
     Raises
@@ -97,7 +86,7 @@ def thermal_solid(name: str) -> ThermalSolid:
         If there is no such material.
     """
     found = material(name)
-    return ThermalSolid(
+    return thermal.ThermalSolid(
         thermal_conductivity=found.value("thermal_conductivity"),
         density=found.value("density"),
         specific_heat_capacity=found.value("specific_heat_capacity"),
@@ -107,8 +96,8 @@ def thermal_solid(name: str) -> ThermalSolid:
 def temperature_point(
     rig: Rig | ResolvedRig,
     *,
-    pin: ThermalSolid,
-    disc: ThermalSolid,
+    pin: thermal.ThermalSolid,
+    disc: thermal.ThermalSolid,
     heat_capacity: float,
     thermal_conductance: float,
     duration: float,
@@ -165,10 +154,10 @@ def temperature_point(
             f"dry_duration must lie from 0 to below the {duration:g} s of the test, got {dry_duration!r} s"
         )
     radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
-    source = EllipticSource(half_length=radius, half_width=radius)
+    source = thermal.EllipticSource(half_length=radius, half_width=radius)
     moving_rise = FLASH_MODELS.named(flash_model)
-    network = ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
-    contact = HeatedContact(pin=pin, disc=disc, source=source, network=network, moving_rise=moving_rise)
+    network = thermal.ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
+    contact = thermal.HeatedContact(pin=pin, disc=disc, source=source, network=network, moving_rise=moving_rise)
     vibrated = vibrated_friction(resolved, sliding_speed=rig.sliding_speed)
     intrinsic = rig.friction_coefficient * rig.normal_load
     ratio = float(
@@ -177,26 +166,28 @@ def temperature_point(
         else require_non_negative(friction_ratio=friction_ratio)
     )
     times, heat_rates, shaken = _steps(duration, dry_duration, levels)
-    history = partial(contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
+    history = partial(contact_history.contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
     without = history(friction_force=intrinsic, vibration_heat_rate=0.0)
     warmed = history(friction_force=np.where(shaken, ratio, 1.0) * intrinsic, vibration_heat_rate=heat_rates)
-    of_friction = float(frictional_heat_rate(friction_force=ratio * intrinsic, sliding_speed=rig.sliding_speed))
+    of_friction = float(
+        contact_history.frictional_heat_rate(friction_force=ratio * intrinsic, sliding_speed=rig.sliding_speed)
+    )
     heat = of_friction + float(levels[-1])
-    shared = contact_rise(pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed, moving_rise=moving_rise)
+    shared = thermal.contact_rise(
+        pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed, moving_rise=moving_rise
+    )
     return TemperaturePoint(
         frictional_heat_rate=of_friction,
         vibration_heat_rate=float(levels[-1]),
         heat_partition=float(shared.heat_partition),
-        peclet_number=float(peclet_number(disc, source, sliding_speed=rig.sliding_speed)),
+        peclet_number=float(thermal.peclet_number(disc, source, sliding_speed=rig.sliding_speed)),
         peak_temperature_rise=float(shared.peak_temperature_rise),
         mean_temperature_rise=float(shared.mean_temperature_rise),
         temperature_rise=float(warmed.temperature_rise[-1]),
         temperature_rise_ratio=float(warmed.temperature_rise[-1] / without.temperature_rise[-1]),
         friction_ratio=ratio,
         friction_model=rig.friction_model.name if friction_ratio is None else "stated",
-        vibration_amplitude=vibrated.vibration.amplitude,
-        amplitude_source=vibrated.vibration.source,
-        amplitude_origin=vibrated.vibration.text,
+        **vibrated.origin,
         caveats=(*vibrated.caveats, *_caveats(network, float(levels.max()))),
         with_vibration=warmed,
         without_vibration=without,
@@ -212,7 +203,7 @@ def _steps(duration: float, dry_duration: float, levels: Floats) -> tuple[Floats
     return times, np.where(shaken, levels[np.searchsorted(edges[1:-1], middle)], 0.0), shaken
 
 
-def _caveats(network: ThermalNetwork, vibration_heat_rate: float) -> tuple[str, ...]:
+def _caveats(network: thermal.ThermalNetwork, vibration_heat_rate: float) -> tuple[str, ...]:
     (capacity,), (conductance,) = network.heat_capacity, network.losses
     known = (
         "heat enters over the nominal area; flash temperatures of asperities are higher, for microseconds",

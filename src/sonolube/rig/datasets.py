@@ -9,7 +9,7 @@ from io import BytesIO
 from math import isnan
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ from sonolube.vocabulary import quantities, quantity
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Dataset: TypeAlias = "xr.Dataset"
+"""Labelled dataset, by a name that needs no import of xarray."""
 
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 _TEXTS = {

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,16 +10,6 @@ from sonolube.checks import Floats, require_positive, require_within
 from sonolube.errors import InvalidInput
 
 _MAX_CUT = 0.5
-
-
-class Law(Protocol):
-    """Continuous probability distribution of one number."""
-
-    def below(self, value: ArrayLike) -> Floats:
-        """Cumulative probability at a value. []"""
-
-    def quantile(self, share: ArrayLike) -> Floats:
-        """Quantile of a probability."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -112,6 +101,10 @@ class Uniform:
     def quantile(self, share: ArrayLike) -> Floats:
         """Quantile of a probability."""
         return self.low + (self.high - self.low) * np.asarray(share, dtype=np.float64)
+
+
+Law = Normal | LogNormal | Uniform
+"""Continuous probability distribution of one number."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

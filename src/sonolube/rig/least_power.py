@@ -1,18 +1,13 @@
 """Voltage and power for a given friction ratio over drive frequency, by regula falsi."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive, require_within
-from sonolube.rig.datasets import gridded
+from sonolube.rig.datasets import Dataset, gridded
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, amplitude_labels, resolved_rig
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 OUT_OF_REACH = "out_of_reach"
 """Status of a frequency at which the highest voltage does not bring friction down to the ratio."""
@@ -29,7 +24,7 @@ def least_power_study(
     friction_ratio: float,
     voltage_maximum: float = 200.0,
     advance: Advance | None = None,
-) -> "xr.Dataset":
+) -> Dataset:
     """Drive voltage and power at which friction falls to a ratio, at each drive frequency.
 
     Parameters

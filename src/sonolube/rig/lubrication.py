@@ -8,13 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import MissingProperty, UnknownName
 from sonolube.facts.materials import Material
-from sonolube.models.friction import (
-    BoundaryLubricant,
-    LubricationCoefficients,
-    asperity_load_fraction,
-    best_lubrication_method,
-    lubrication_coefficients,
-)
+from sonolube.models import friction
 from sonolube.models.wear import CrystalStructure, WearMechanismAssessment, WearPairBody, assess_wear_mechanism
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
@@ -58,7 +52,7 @@ class LubricationPoint:
     nominal_pressure: float
     friction_coefficient: float
     asperity_load_fraction: float
-    coefficients: LubricationCoefficients
+    coefficients: friction.LubricationCoefficients
     best: str
     friction_model: str
     vibration_amplitude: float
@@ -87,7 +81,7 @@ class LubricationMap:
 
 
 def lubrication_point(
-    rig: Rig | ResolvedRig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0
+    rig: Rig | ResolvedRig, *, lubricant: friction.BoundaryLubricant, smallest_gain: float = 0.0
 ) -> LubricationPoint:
     """Friction of a rig's contact by each method of lubrication at its load and speed, and the best method.
 
@@ -119,13 +113,11 @@ def lubrication_point(
         sliding_speed=rig.sliding_speed,
         nominal_pressure=pressure,
         friction_coefficient=rig.friction_coefficient,
-        asperity_load_fraction=float(asperity_load_fraction(lubricant, nominal_pressure=pressure)),
+        asperity_load_fraction=float(friction.asperity_load_fraction(lubricant, nominal_pressure=pressure)),
         coefficients=found,
-        best=str(best_lubrication_method(found, smallest_gain=smallest_gain)),
+        best=str(friction.best_lubrication_method(found, smallest_gain=smallest_gain)),
         friction_model=rig.friction_model.name,
-        vibration_amplitude=vibrated.vibration.amplitude,
-        amplitude_source=vibrated.vibration.source,
-        amplitude_origin=vibrated.vibration.text,
+        **vibrated.origin,
         caveats=(
             *vibrated.caveats,
             "load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",
@@ -134,7 +126,7 @@ def lubrication_point(
 
 
 def lubrication_map(
-    rig: Rig | ResolvedRig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0
+    rig: Rig | ResolvedRig, *, lubricant: friction.BoundaryLubricant, smallest_gain: float = 0.0
 ) -> LubricationMap:
     """Best method of lubrication over a decade to either side of a rig's speed and pressure.
 
@@ -170,7 +162,7 @@ def lubrication_map(
     return LubricationMap(
         sliding_speed=speeds,
         nominal_pressure=pressures,
-        best=best_lubrication_method(found, smallest_gain=smallest_gain),
+        best=friction.best_lubrication_method(found, smallest_gain=smallest_gain),
     )
 
 
@@ -197,9 +189,9 @@ def _wearing(body: Material) -> WearPairBody:
 
 
 def _coefficients(
-    rig: Rig, lubricant: BoundaryLubricant, vibrated: VibratedFriction, *, nominal_pressure: ArrayLike
-) -> LubricationCoefficients:
-    return lubrication_coefficients(
+    rig: Rig, lubricant: friction.BoundaryLubricant, vibrated: VibratedFriction, *, nominal_pressure: ArrayLike
+) -> friction.LubricationCoefficients:
+    return friction.lubrication_coefficients(
         lubricant,
         friction_coefficient=rig.friction_coefficient,
         friction_ratio=vibrated.ratio.require_braking(),

@@ -1,6 +1,7 @@
 """Contact of a rig at its operating point, and records of its friction and wear under a vibration."""
 
 from dataclasses import dataclass
+from typing import TypedDict
 
 from sonolube.models.contact.rough import contact_count, normal_stiffness, real_contact_area
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
@@ -14,22 +15,12 @@ COMPUTED = "computed"
 """Status of a result within the range of its model."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class VibrationOrigin:
-    """Amplitude of a vibration and where it comes from.
+class VibrationOrigin(TypedDict):
+    """Amplitude of a vibration with its source, and the source in words, under the names that results have for them."""
 
-    Parameters
-    ----------
-    amplitude : float
-        Zero to peak, in m.
-    source : {"measured", "computed", "waveguide", "per-volt"}
-    text : str
-        The source in words.
-    """
-
-    amplitude: float
-    source: AmplitudeSource
-    text: str
+    vibration_amplitude: float
+    amplitude_source: AmplitudeSource
+    amplitude_origin: str
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -234,7 +225,7 @@ def friction_under(
     rig: Rig,
     *,
     ratio: CheckedRatio,
-    vibration: VibrationOrigin,
+    origin: VibrationOrigin,
     actuator_power: float | None,
     caveats: tuple[str, ...],
     others: str = "",
@@ -252,22 +243,14 @@ def friction_under(
         reason="; ".join(text for text in (str(ratio.reason), others) if text) or None,
         friction_model=rig.friction_model.name,
         citation=rig.friction_model.citation,
-        vibration_amplitude=vibration.amplitude,
-        amplitude_source=vibration.source,
-        amplitude_origin=vibration.text,
+        **origin,
         actuator_power=actuator_power,
         caveats=caveats,
     )
 
 
 def wear_under(
-    rig: Rig,
-    *,
-    ratio: float,
-    model: str,
-    vibration: VibrationOrigin,
-    caveats: tuple[str, ...],
-    reason: str | None = None,
+    rig: Rig, *, ratio: float, model: str, origin: VibrationOrigin, caveats: tuple[str, ...], reason: str | None = None
 ) -> WearPoint:
     """Wear of a rig at a wear ratio."""
     still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
@@ -281,8 +264,6 @@ def wear_under(
         status=OUTSIDE_MODEL_RANGE if reason else COMPUTED,
         reason=reason,
         wear_model=model,
-        vibration_amplitude=vibration.amplitude,
-        amplitude_source=vibration.source,
-        amplitude_origin=vibration.text,
+        **origin,
         caveats=caveats,
     )

@@ -13,15 +13,8 @@ from sonolube.models.dynamics import Status, SteadyStates
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.dynamics.kernels.peak_velocity import peak_velocities
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, checked_ratio
+from sonolube.rig import operating_conditions as conditions, operating_point_grid as grid
 from sonolube.rig.friction_and_wear import friction_at_speeds
-from sonolube.rig.operating_conditions import SETTINGS, OperatingConditions, conditions_of, points_by_vibration
-from sonolube.rig.operating_point_grid import (
-    VIBRATION_NUMBERS,
-    OperatingPoints,
-    friction_and_power,
-    friction_status,
-    operating_points,
-)
 from sonolube.rig.operating_vibrations import REFUSED, steady_states_of
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
@@ -140,12 +133,12 @@ def point_batch(
     rig = resolved.rig
     given = (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
     if resolved.vibration.driven is None:
-        stated: dict[str, Any] = dict(zip(SETTINGS, given, strict=True))
-        return _columns(operating_points(resolved, **stated, vibration_amplitude=vibration_amplitude))
-    columns, speeds = conditions_of(rig, given, vibration_amplitude=vibration_amplitude)
+        stated: dict[str, Any] = dict(zip(conditions.SETTINGS, given, strict=True))
+        return _columns(grid.operating_points(resolved, **stated, vibration_amplitude=vibration_amplitude))
+    columns, speeds = conditions.conditions_of(rig, given, vibration_amplitude=vibration_amplitude)
     columns, speeds = columns.reshape(4, -1), speeds.ravel()
     first, which = _distinct(columns)
-    settings = OperatingConditions.of_columns(columns[:, first])
+    settings = conditions.OperatingConditions.of_columns(columns[:, first])
     rest = separation(rig.contact, normal_load=settings.normal_load)
     refusal, reasons = _refusals(resolved, settings, rest)
     status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal
@@ -154,7 +147,7 @@ def point_batch(
     possible = np.flatnonzero(refusal == 0)
     if possible.size:
         states = steady_states_of(
-            resolved, OperatingConditions.of_columns(columns[:, first[possible]]), rest[possible], backend
+            resolved, conditions.OperatingConditions.of_columns(columns[:, first[possible]]), rest[possible], backend
         )
         status[possible] = states.status
         reason[possible] = states.status
@@ -166,19 +159,19 @@ def point_batch(
     point_status, point_reason = status[which], _shifted(reason, refusal)[which]
     for text in np.unique(friction.reason[friction.reason != ""]):
         members = friction.reason == text
-        point_status[members] = STATUSES.index(friction_status(str(text)))
+        point_status[members] = STATUSES.index(grid.friction_status(str(text)))
         point_reason[members] = len(reasons)
         reasons = (*reasons, str(text))
-    found = friction_and_power(
+    found = grid.friction_and_power(
         resolved, columns, friction_ratio=friction.friction_ratio, raw_friction_ratio=friction.raw_friction_ratio
     )
-    found |= dict(zip(VIBRATION_NUMBERS, numbers[:, which], strict=True))
+    found |= dict(zip(grid.VIBRATION_NUMBERS, numbers[:, which], strict=True))
     return PointBatch(
         numbers={name: found[name] for name in NUMBERS}, status=point_status, reason=point_reason, reasons=reasons
     )
 
 
-def _columns(points: OperatingPoints) -> PointBatch:
+def _columns(points: grid.OperatingPoints) -> PointBatch:
     """Operating points as columns and codes."""
     reasons, reason = np.unique(points.reason.ravel(), return_inverse=True)
     codes = {name: code for code, name in enumerate(STATUSES)}
@@ -204,7 +197,7 @@ def _distinct(columns: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 
 def _refusals(
-    resolved: ResolvedRig, settings: OperatingConditions, rest: Floats
+    resolved: ResolvedRig, settings: conditions.OperatingConditions, rest: Floats
 ) -> tuple[NDArray[np.int16], tuple[str, ...]]:
     """Number of the reason against each drive and load, from 1, 0 without one; and the reasons."""
     stack = resolved.moved.stack
@@ -234,7 +227,9 @@ def _measures(states: SteadyStates) -> Floats:
     of_points = peak_velocities.for_points(velocity.size, at_first=_FEW)
     of_points(2 * np.pi * states.frequency, states.harmonics, velocity)
     velocity[states.status == Status.NOT_CONVERGED] = np.nan
-    return np.stack([velocity if name == "vibration_velocity" else getattr(states, name) for name in VIBRATION_NUMBERS])
+    return np.stack(
+        [velocity if name == "vibration_velocity" else getattr(states, name) for name in grid.VIBRATION_NUMBERS]
+    )
 
 
 def _no_friction(count: int) -> CheckedRatio:
@@ -253,7 +248,7 @@ def _friction(
     if moving.size:
         _fill(found, moving, _batched_friction(rig, states, place[moving], speeds[moving], tolerance))
         open_points = open_points[np.isnan(found.raw_friction_ratio[open_points])]
-    for members in points_by_vibration(open_points, place):
+    for members in conditions.points_by_vibration(open_points, place):
         try:
             moving_gap = gap_motion(states, int(place[members[0]]))
             _fill(found, members, friction_at_speeds(rig, moving_gap, speeds[members]))

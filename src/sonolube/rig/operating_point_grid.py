@@ -14,13 +14,7 @@ from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.excitation import actuator_capacitance
 from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.operating_conditions import CONDITIONS, OperatingConditions, conditions_of, points_by_vibration
-from sonolube.rig.operating_vibrations import (
-    REFUSED,
-    PointVibration,
-    computed_vibrations,
-    stated_vibrations,
-    steady_states_of,
-)
+from sonolube.rig.operating_vibrations import REFUSED, computed_vibrations, stated_vibrations, steady_states_of
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 
@@ -118,15 +112,6 @@ class OperatingPoints:
         return np.isnan(self.friction_ratio)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Outcome:
-    """Statuses, reasons and numbers of the points that share one vibration."""
-
-    status: list[str]
-    reason: list[str]
-    numbers: Floats  # five of the vibration, whether the gap closes, friction ratio and raw friction ratio
-
-
 def operating_points(
     rig: Rig | ResolvedRig,
     *,
@@ -197,20 +182,26 @@ def operating_points(
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
     numbers = np.full((8, speeds.size), np.nan)
     for setting, members in enumerate(points_by_vibration(np.arange(speeds.size), which.ravel())):
-        found = _outcome(rig, vibration_at(setting), speeds[members])
-        status[members], reason[members], numbers[:, members] = found.status, found.reason, found.numbers
+        vibration = vibration_at(setting)
+        status[members], reason[members] = vibration.status, vibration.reason
+        if vibration.motion is not None:
+            found = friction_at_speeds(rig, vibration.motion, speeds[members])
+            numbers[:-2, members] = np.reshape(vibration.numbers, (6, 1))
+            numbers[-2:, members] = found.friction_ratio, found.raw_friction_ratio
+            status[members] = [friction_status(objection) or vibration.status for objection in found.reason]
+            reason[members] = [objection or vibration.reason for objection in found.reason]
         if advance is not None:
             advance(setting + 1, distinct.shape[1])
     columns = columns.reshape(4, *shape)
     if commanded:
         columns[0] = 0.0  # without a voltage
-    *vibration, closed, ratio, raw = numbers.reshape(8, *shape)
+    *of_vibration, closed, ratio, raw = numbers.reshape(8, *shape)
     return OperatingPoints(
         **dict(zip(CONDITIONS, columns, strict=True)),
         sliding_speed=speeds.reshape(shape),
         status=status.astype(np.str_).reshape(shape),
         reason=reason.astype(np.str_).reshape(shape),
-        **dict(zip(VIBRATION_NUMBERS, vibration, strict=True)),
+        **dict(zip(VIBRATION_NUMBERS, of_vibration, strict=True)),
         **friction_and_power(resolved, columns, friction_ratio=ratio, raw_friction_ratio=raw),
         gap_closed=closed == 1,
         amplitude_source=used.source,
@@ -277,20 +268,6 @@ def steady_states(
     settings = OperatingConditions.of_columns(columns.reshape(4, -1))
     rest = separation(resolved.rig.contact, normal_load=settings.normal_load)
     return steady_states_of(resolved, settings, rest, relative_tolerance=relative_tolerance)
-
-
-def _outcome(rig: Rig, vibration: PointVibration, speeds: Floats) -> _Outcome:
-    status, reason, numbers = vibration.status, vibration.reason, np.full((8, speeds.size), np.nan)
-    if vibration.motion is None:
-        return _Outcome(status=[status] * speeds.size, reason=[reason] * speeds.size, numbers=numbers)
-    numbers[:-2].T[:] = vibration.numbers
-    found = friction_at_speeds(rig, vibration.motion, speeds)
-    numbers[-2], numbers[-1] = found.friction_ratio, found.raw_friction_ratio
-    return _Outcome(
-        status=[friction_status(objection) or status for objection in found.reason],
-        reason=[objection or reason for objection in found.reason],
-        numbers=numbers,
-    )
 
 
 def friction_status(objection: str) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,27 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import WAVEFORMS, Status, contact_motion, modes
-from sonolube.rig.datasets import gridded
+from sonolube.rig import operating_conditions as conditions
+from sonolube.rig.datasets import Dataset, gridded
 from sonolube.rig.driven_rig import DrivenRig, require_drive
 from sonolube.rig.friction_and_wear import prescribed_sine
 from sonolube.rig.linear_response import structure_in_contact
-from sonolube.rig.operating_conditions import (
-    AMPLITUDE,
-    POWERS,
-    VOLTAGE,
-    CommandedQuantity,
-    commanded_quantity,
-    level_settings,
-    own_level,
-    require_commanded,
-)
 from sonolube.rig.operating_point_batch import NUMBERS
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, amplitude_labels, resolved_rig
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _GRAVITY = 9.80665  # m/s2
 _PHASES = 128
@@ -38,7 +26,7 @@ _PHASE = 2 * np.pi * np.arange(_PHASES) / _PHASES
 _POINT = ("status", "reason", *(name for name in NUMBERS if name != "friction_coefficient"))
 
 
-def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance | None = None) -> Dataset:
     """Operating points over drive voltage, with one period of the contact at each.
 
     Parameters
@@ -68,10 +56,10 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
     ----------
     .. [1] D 3.3.5, figure 3.15.
     """
-    return _level_study(rig, VOLTAGE, voltage_peak_to_peak, "over drive voltage", advance)
+    return _level_study(rig, conditions.VOLTAGE, voltage_peak_to_peak, "over drive voltage", advance)
 
 
-def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advance | None = None) -> Dataset:
     """Operating points over vibration amplitude, with one period of the contact at each.
 
     Parameters
@@ -97,7 +85,7 @@ def amplitude_study(rig: Rig, *, vibration_amplitude: ArrayLike, advance: Advanc
     --------
     voltage_study
     """
-    return _level_study(rig, AMPLITUDE, vibration_amplitude, "over vibration amplitude", advance)
+    return _level_study(rig, conditions.AMPLITUDE, vibration_amplitude, "over vibration amplitude", advance)
 
 
 def speed_study(
@@ -107,7 +95,7 @@ def speed_study(
     voltage_peak_to_peak: ArrayLike | None = None,
     vibration_amplitude: ArrayLike | None = None,
     advance: Advance | None = None,
-) -> "xr.Dataset":
+) -> Dataset:
     """Operating points over sliding speed at some drive voltages, or amplitudes of a rig without a voltage.
 
     Parameters
@@ -152,7 +140,7 @@ def frequency_study(
     frequency: ArrayLike,
     voltage_peak_to_peak: ArrayLike | None = None,
     advance: Advance | None = None,
-) -> "xr.Dataset":
+) -> Dataset:
     """Rig over drive frequencies, at some drive voltages.
 
     Parameters
@@ -188,7 +176,7 @@ def frequency_study(
     return _study(resolved, "over drive frequency", _values(points), voltage_peak_to_peak=volts, frequency=f)
 
 
-def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) -> "xr.Dataset":
+def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) -> Dataset:
     """Rig under each named waveform at its own voltage, and one period of its contact under each.
 
     Parameters
@@ -222,7 +210,7 @@ def waveform_study(rig: Rig | ResolvedRig, *, advance: Advance | None = None) ->
     return _study(resolved, "under waveforms of equal swing", found, waveform=np.array(list(WAVEFORMS)), phase=_PHASE)
 
 
-def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> Dataset:
     """Operating points over normal load; of a structure, by weights that add to the mass they hang on.
 
     Parameters
@@ -267,13 +255,17 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
 
 
 def _level_study(
-    rig: Rig | ResolvedRig, quantity: CommandedQuantity, level: ArrayLike, title: str, advance: Advance | None
-) -> "xr.Dataset":
+    rig: Rig | ResolvedRig,
+    quantity: conditions.CommandedQuantity,
+    level: ArrayLike,
+    title: str,
+    advance: Advance | None,
+) -> Dataset:
     """Points over voltage or amplitude, with one period of the contact at each."""
     resolved = resolved_rig(rig)
-    require_commanded(resolved, quantity)
+    conditions.require_commanded(resolved, quantity)
     levels = np.atleast_1d(require_non_negative(**{quantity.name: level}))
-    points = operating_points(resolved, **level_settings(resolved, levels), advance=advance)
+    points = operating_points(resolved, **conditions.level_settings(resolved, levels), advance=advance)
     is_sine = resolved.vibration.driven is None
     displacement, normal_force = _sine_periods(resolved.rig, points) if is_sine else _computed_periods(resolved, levels)
     found = _values(points) | {"displacement": displacement, "normal_force": normal_force}
@@ -282,7 +274,7 @@ def _level_study(
 
 def _by_level(resolved: ResolvedRig, level: Floats, **others: Any) -> OperatingPoints:
     """Points over voltage or amplitude, a row each, and over another condition."""
-    return operating_points(resolved, **level_settings(resolved, level[:, np.newaxis]), **others)
+    return operating_points(resolved, **conditions.level_settings(resolved, level[:, np.newaxis]), **others)
 
 
 def _values(points: OperatingPoints) -> dict[str, NDArray[Any]]:
@@ -302,19 +294,19 @@ def _one_by_one(
 
 def _curves(
     resolved: ResolvedRig, volts: ArrayLike | None, amplitudes: ArrayLike | None
-) -> tuple[CommandedQuantity, Floats]:
+) -> tuple[conditions.CommandedQuantity, Floats]:
     """Commanded quantity of a rig, and its value for each curve: those given, or the rig's own."""
-    for quantity, given in ((VOLTAGE, volts), (AMPLITUDE, amplitudes)):
+    for quantity, given in ((conditions.VOLTAGE, volts), (conditions.AMPLITUDE, amplitudes)):
         if given is not None:
-            require_commanded(resolved, quantity)
+            conditions.require_commanded(resolved, quantity)
             return quantity, np.atleast_1d(require_positive(**{quantity.name: given}))
-    own = commanded_quantity(resolved)
-    return own, np.atleast_1d(require_positive(**{own.name: own_level(resolved)}))
+    own = conditions.commanded_quantity(resolved)
+    return own, np.atleast_1d(require_positive(**{own.name: conditions.own_level(resolved)}))
 
 
 def _computed_periods(resolved: ResolvedRig, volts: Floats) -> tuple[Floats, Floats]:
     """Displacement and normal force of the contact over a period at each voltage; NaN where not converged."""
-    states = steady_states(resolved, **level_settings(resolved, volts))
+    states = steady_states(resolved, **conditions.level_settings(resolved, volts))
     displacement, normal_force = np.full((2, volts.size, _PHASES), np.nan)
     for point in np.flatnonzero(states.status != Status.NOT_CONVERGED):
         period = contact_motion(states, int(point), samples=_PHASES)
@@ -353,12 +345,12 @@ def _slowest(resolved: ResolvedRig) -> float:
     return float(natural.natural_frequency[~natural.rigid].min())
 
 
-def _study(resolved: ResolvedRig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> "xr.Dataset":
-    rig, known = resolved.rig, commanded_quantity(resolved)
+def _study(resolved: ResolvedRig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> Dataset:
+    rig, known = resolved.rig, conditions.commanded_quantity(resolved)
     values = {
         name: array
         for name, array in values.items()
-        if name not in axes and not (known is AMPLITUDE and name in POWERS)
+        if name not in axes and not (known is conditions.AMPLITUDE and name in conditions.POWERS)
     }
     about = {"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(resolved)
     return gridded(values, axes=axes, title=f"Friction {title}, {rig.title}", about=about)

@@ -1,6 +1,6 @@
 """Rig: two bodies in sliding contact, and the actuator that vibrates one of them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
 from html import escape
@@ -42,6 +42,13 @@ DECAY_LENGTH_ORIGINS: Final[Mapping[DecayLengthOrigin, str]] = MappingProxyType(
 """Origins of a decay length, each in words."""
 
 
+def check_stated(check: Callable[..., object], record: object, *names: str) -> None:
+    """Check those numbers of a record that are not None, each by its name."""
+    for name in names:
+        if (value := getattr(record, name)) is not None:
+            check(**{name: value})
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MeasuredUnder:
     """Drive and load under which an amplitude was measured; None where they are the rig's own.
@@ -61,10 +68,7 @@ class MeasuredUnder:
     normal_load: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("voltage_peak_to_peak", "frequency", "normal_load"):
-            value = getattr(self, name)
-            if value is not None:
-                require_positive(**{name: value})
+        check_stated(require_positive, self, "voltage_peak_to_peak", "frequency", "normal_load")
 
 
 class RigEntries(Protocol):
@@ -173,17 +177,13 @@ class Rig:
     def __post_init__(self) -> None:
         require_positive(normal_load=self.normal_load, friction_coefficient=self.friction_coefficient)
         require_non_negative(sliding_speed=self.sliding_speed)
-        for name in ("vibration_amplitude", "amplitude_per_volt", "waveguide_amplitude"):
-            value = getattr(self, name)
-            if value is not None:
-                require_non_negative(**{name: value})
+        check_stated(require_non_negative, self, "vibration_amplitude", "amplitude_per_volt", "waveguide_amplitude")
         if self.amplitude_source is not None and self.amplitude_source not in AMPLITUDE_SOURCES:
             raise UnknownName.among(list(AMPLITUDE_SOURCES), kind="source of the amplitude", name=self.amplitude_source)
         if self.decay_length_origin is not None and self.decay_length_origin not in DECAY_LENGTH_ORIGINS:
             known = list(DECAY_LENGTH_ORIGINS)
             raise UnknownName.among(known, kind="origin of the decay length", name=self.decay_length_origin)
-        if self.capacitance is not None:
-            require_positive(capacitance=self.capacitance)
+        check_stated(require_positive, self, "capacitance")
         if not self.title.strip():
             raise InvalidInput("title must not be empty")
 

@@ -1,7 +1,7 @@
 """Rig with its drive voltage, source of amplitude, gap law and rest state, each resolved once for a whole command."""
 
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,15 +12,7 @@ from sonolube.models.contact import ExponentialHeights, RoughContact
 from sonolube.models.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
 from sonolube.models.dynamics import ExponentialGap, GapLaw, StartUpRamp, TabulatedGap
 from sonolube.models.friction.models import FrictionModel
-from sonolube.rig.amplitude_source import (
-    AMPLITUDE_ERROR,
-    VIBRATIONS,
-    ResolvedVibration,
-    available_sources,
-    chosen_source,
-    computed_amplitude,
-    scaled_vibration,
-)
+from sonolube.rig import amplitude_source
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import DriveVoltage
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, Rig
@@ -45,6 +37,8 @@ class ResolvedRig:
     """
 
     rig: Rig
+    motions: list[Any] = field(default_factory=list, init=False, repr=False)
+    """Steady vibration of the structure once it was solved, which is that under every friction model."""
 
     @cached_property
     def voltage(self) -> DriveVoltage:
@@ -55,10 +49,10 @@ class ResolvedRig:
     @cached_property
     def sources(self) -> tuple[AmplitudeSource, ...]:
         """Sources that the rig has for its amplitude, the one taken by default first."""
-        return available_sources(self.rig)
+        return amplitude_source.available_sources(self.rig)
 
     @cached_property
-    def vibration(self) -> ResolvedVibration:
+    def vibration(self) -> amplitude_source.ResolvedVibration:
         """Vibration by the source that the rig names, else by the first that it has.
 
         Raises
@@ -74,7 +68,7 @@ class ResolvedRig:
         if found.sine_amplitude is not None:
             return found.sine_amplitude
         assert found.driven is not None
-        return computed_amplitude(found.driven, voltage=self.voltage, gap_law=self.gap_law)
+        return amplitude_source.computed_amplitude(found.driven, voltage=self.voltage, gap_law=self.gap_law)
 
     @property
     def moved(self) -> DrivenRig:
@@ -153,9 +147,9 @@ def drive_and_load(resolved: ResolvedRig) -> dict[str, Any]:
     }
 
 
-def resolved_vibration(resolved: ResolvedRig) -> ResolvedVibration:
+def resolved_vibration(resolved: ResolvedRig) -> amplitude_source.ResolvedVibration:
     """Vibration of a rig by the source that it names, else measured, computed, waveguide, per volt."""
-    return _vibration_by(chosen_source(resolved.rig, resolved.sources), resolved)
+    return _vibration_by(amplitude_source.chosen_source(resolved.rig, resolved.sources), resolved)
 
 
 def rest_separation(rig: Rig) -> float:
@@ -194,7 +188,9 @@ def source_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tupl
     """Line where the amplitudes of two sources of a rig differ by more than their error, at its own drive."""
     taken = resolved.vibration.source
     found = {source: resolved.amplitude_by(source) for source in resolved.sources if source != taken}
-    error = {source: AMPLITUDE_ERROR * max(other, vibration_amplitude) for source, other in found.items()}
+    error = {
+        source: amplitude_source.AMPLITUDE_ERROR * max(other, vibration_amplitude) for source, other in found.items()
+    }
     others = [
         f"{source} {format_si(found[source], 'm')}"
         for source in AMPLITUDE_SOURCES
@@ -203,14 +199,14 @@ def source_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tupl
     if not others:
         return ()
     return (
-        f"the amplitudes differ by more than their error of {100 * AMPLITUDE_ERROR:.0f} %: {taken}"
+        f"the amplitudes differ by more than their error of {100 * amplitude_source.AMPLITUDE_ERROR:.0f} %: {taken}"
         f" {format_si(vibration_amplitude, 'm')}, taken here, and {', '.join(others)}",
     )
 
 
-def _vibration_by(source: AmplitudeSource, resolved: ResolvedRig) -> ResolvedVibration:
+def _vibration_by(source: AmplitudeSource, resolved: ResolvedRig) -> amplitude_source.ResolvedVibration:
     """Vibration of a rig by one of the sources that it has."""
     if source == "measured" and resolved.rig.structure is not None:
         driven = driven_rig(resolved.rig)
-        return scaled_vibration(driven, voltage=resolved.voltage, gap_law=resolved.gap_law)
-    return VIBRATIONS[source](resolved.rig)
+        return amplitude_source.scaled_vibration(driven, voltage=resolved.voltage, gap_law=resolved.gap_law)
+    return amplitude_source.VIBRATIONS[source](resolved.rig)

@@ -67,14 +67,14 @@ class VibratedFriction:
     ----------
     ratio : CheckedRatio
         Friction with vibration over friction without.
-    vibration : VibrationOrigin
+    origin : VibrationOrigin
         Amplitude and its source.
     caveats : tuple of str
         Reasons for caution about the numbers, one line each, ratios below 0 and above 1 among them.
     """
 
     ratio: CheckedRatio
-    vibration: VibrationOrigin
+    origin: VibrationOrigin
     caveats: tuple[str, ...]
 
 
@@ -160,7 +160,7 @@ def friction_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> Frict
         return friction_under(
             resolved.rig,
             ratio=_outside(refusal, resolved.rig.sliding_speed),
-            vibration=_stated_origin(used),
+            origin=_stated_origin(used),
             actuator_power=_amplifier_power(resolved),
             caveats=resting_caveats(resolved),
             others=_models_that_hold(resolved),
@@ -217,11 +217,11 @@ def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> Vi
     except OutsideRange as refusal:
         if used.driven is not None:
             raise
-        return VibratedFriction(ratio=_outside(refusal, sliding_speed), vibration=_stated_origin(used), caveats=())
+        return VibratedFriction(ratio=_outside(refusal, sliding_speed), origin=_stated_origin(used), caveats=())
     ratio = mean_friction(resolved.rig, vibration.motions, sliding_speed=sliding_speed)
     return VibratedFriction(
         ratio=ratio,
-        vibration=_origin(vibration),
+        origin=_origin(vibration),
         caveats=(*_caveats(resolved, vibration), *ratio_caveats(friction_ratio=ratio.friction_ratio)),
     )
 
@@ -260,7 +260,7 @@ def _friction_point(
     return friction_under(
         rig,
         ratio=ratio,
-        vibration=origin,
+        origin=origin,
         actuator_power=_amplifier_power(resolved),
         caveats=(*caveats, *ratio_caveats(friction_ratio=ratio.friction_ratio)),
         others=_models_that_hold(resolved, vibration) if ratio.reason else "",
@@ -292,9 +292,7 @@ def _wear_point(
         reason = friction.reason
     if not reason and not vibration.prescribed:
         caveats = (*caveats, *rise_caveats(vibration.motions, wear_model=model))
-    return wear_under(
-        resolved.rig, ratio=ratio, model=model, vibration=_origin(vibration), caveats=caveats, reason=reason
-    )
+    return wear_under(resolved.rig, ratio=ratio, model=model, origin=_origin(vibration), caveats=caveats, reason=reason)
 
 
 def _models_that_hold(resolved: ResolvedRig, vibration: SteadyVibration | None = None) -> str:
@@ -323,13 +321,17 @@ def _outside(refusal: OutsideRange, sliding_speed: ArrayLike) -> CheckedRatio:
 
 def _origin(vibration: SteadyVibration) -> VibrationOrigin:
     return VibrationOrigin(
-        amplitude=vibration.vibration_amplitude, source=vibration.amplitude_source, text=vibration.amplitude_origin
+        vibration_amplitude=vibration.vibration_amplitude,
+        amplitude_source=vibration.amplitude_source,
+        amplitude_origin=vibration.amplitude_origin,
     )
 
 
 def _stated_origin(used: ResolvedVibration) -> VibrationOrigin:
     assert used.sine_amplitude is not None
-    return VibrationOrigin(amplitude=used.sine_amplitude, source=used.source, text=used.text)
+    return VibrationOrigin(
+        vibration_amplitude=used.sine_amplitude, amplitude_source=used.source, amplitude_origin=used.text
+    )
 
 
 def _amplifier_power(resolved: ResolvedRig) -> float | None:

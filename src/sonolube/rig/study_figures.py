@@ -2,16 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sonolube.charts import Axis, Bars, Chart, Line, Panel, Points
 from sonolube.checks import Floats
+from sonolube.rig.datasets import Dataset
 from sonolube.rig.operating_conditions import CommandedQuantity, quantity_of_axis
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _PERIODS = 4  # voltages or amplitudes of which a period is drawn
 _RATIO = Axis(label="Friction ratio", lowest=0.0)
@@ -21,7 +19,7 @@ _LOAD = Axis(label="Normal load", unit="N")
 _TIP = Axis(label="Tip displacement", unit="µm")
 
 
-def command_chart(study: "xr.Dataset") -> Chart:
+def command_chart(study: Dataset) -> Chart:
     """Displacement and normal force over a period, friction ratio and amplitude over voltage or amplitude."""
     quantity, levels = _level(study)
     motions, forces = [], []
@@ -47,7 +45,7 @@ def command_chart(study: "xr.Dataset") -> Chart:
     )
 
 
-def speed_chart(study: "xr.Dataset") -> Chart:
+def speed_chart(study: Dataset) -> Chart:
     """Friction ratio over sliding speed and over velocity ratio."""
     axes = (
         ("sliding_speed", Axis(label="Sliding speed", unit="m/s", logarithmic=True)),
@@ -57,7 +55,7 @@ def speed_chart(study: "xr.Dataset") -> Chart:
     return Chart(panels=panels, size=(7.2, 3.4), columns=2, legend="top", legend_columns=6, shares_y=True)
 
 
-def frequency_chart(study: "xr.Dataset") -> Chart:
+def frequency_chart(study: Dataset) -> Chart:
     """Amplitude and friction ratio over frequency, and friction ratio over the power of the amplifier."""
     tips = [
         (float(curve["actuator_power"][best]), float(curve["friction_ratio"][best]))
@@ -83,7 +81,7 @@ def frequency_chart(study: "xr.Dataset") -> Chart:
     )
 
 
-def power_chart(study: "xr.Dataset") -> Chart:
+def power_chart(study: Dataset) -> Chart:
     """Voltage and the power that one friction ratio takes over frequency."""
     kilohertz = 1e-3 * study["frequency"].values
     watts = (
@@ -102,7 +100,7 @@ def power_chart(study: "xr.Dataset") -> Chart:
     )
 
 
-def waveform_chart(study: "xr.Dataset") -> Chart:
+def waveform_chart(study: Dataset) -> Chart:
     """One period of the tip under each waveform, and the friction ratio each gives."""
     names = [str(name) for name in study["waveform"].values]
     periods = []
@@ -130,7 +128,7 @@ def waveform_chart(study: "xr.Dataset") -> Chart:
     )
 
 
-def load_chart(study: "xr.Dataset") -> Chart:
+def load_chart(study: Dataset) -> Chart:
     """Friction reduction and, of a structure, the arm's natural frequency over normal load."""
     loads = study["normal_load"].values
     reduction = Axis(label="Friction reduction", unit="%", lowest=0.0, highest=100.0)
@@ -142,7 +140,7 @@ def load_chart(study: "xr.Dataset") -> Chart:
     return Chart(panels=tuple(panels), size=size, columns=len(panels))
 
 
-STUDY_CHARTS: Mapping[str, Callable[["xr.Dataset"], Chart]] = MappingProxyType(
+STUDY_CHARTS: Mapping[str, Callable[[Dataset], Chart]] = MappingProxyType(
     {
         "voltage": command_chart,
         "amplitude": command_chart,
@@ -156,18 +154,18 @@ STUDY_CHARTS: Mapping[str, Callable[["xr.Dataset"], Chart]] = MappingProxyType(
 """Function that returns the chart of the dataset of each study."""
 
 
-def _level(study: "xr.Dataset") -> tuple[CommandedQuantity, Floats]:
+def _level(study: Dataset) -> tuple[CommandedQuantity, Floats]:
     """Quantity that sets the vibration of a study, with its values."""
     quantity = quantity_of_axis(study.dims)
     return quantity, study[quantity.name].values
 
 
-def _curves(study: "xr.Dataset") -> "list[xr.Dataset]":
+def _curves(study: Dataset) -> list[Dataset]:
     quantity, levels = _level(study)
     return [study.isel({quantity.name: index}) for index in range(levels.size)]
 
 
-def _family(study: "xr.Dataset", x: str, y: str, x_scale: float = 1.0, y_scale: float = 1.0) -> tuple[Any, ...]:
+def _family(study: Dataset, x: str, y: str, x_scale: float = 1.0, y_scale: float = 1.0) -> tuple[Any, ...]:
     """Curve for each voltage or amplitude of a study."""
     quantity, levels = _level(study)
     return tuple(

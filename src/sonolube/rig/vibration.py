@@ -1,6 +1,6 @@
 """Steady vibration of the tip of a rig: by harmonic balance where periodic and stable, else by time marching."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -75,19 +75,19 @@ class SteadyVibration:
     prescribed: bool
     status: str
     reason: str
-    attractor: str
-    repetition_periods: int
+    attractor: str = "periodic"
+    repetition_periods: int = 1
     motions: tuple[ContactMotion, ...]
     vibration_amplitude: float
-    lowest_amplitude: float | None
-    highest_amplitude: float | None
+    lowest_amplitude: float | None = None
+    highest_amplitude: float | None = None
     mean_displacement: float
     contact_loss_fraction: float
-    beat_frequency: float | None
-    beat_amplitude: float | None
-    coexisting_amplitude: float | None
-    dissipated_power: float | None
-    elongation: complex
+    beat_frequency: float | None = None
+    beat_amplitude: float | None = None
+    coexisting_amplitude: float | None = None
+    dissipated_power: float | None = None
+    elongation: complex = 0j
     gap_closed: bool
 
 
@@ -117,8 +117,12 @@ def steady_vibration(rig: Rig | ResolvedRig) -> SteadyVibration:
     """
     resolved = resolved_rig(rig)
     used = resolved.vibration
-    found = _sine(resolved) if used.driven is None else _of_structure(resolved, used.driven)
-    return replace(found, amplitude_source=used.source, amplitude_origin=used.text)
+    if used.driven is None:
+        return _sine(resolved)
+    if not resolved.motions:
+        resolved.motions.append(_of_structure(resolved, used.driven))
+    found: SteadyVibration = resolved.motions[0]
+    return found
 
 
 def _sine(resolved: ResolvedRig) -> SteadyVibration:
@@ -132,19 +136,10 @@ def _sine(resolved: ResolvedRig) -> SteadyVibration:
         prescribed=True,
         status="periodic",
         reason=f"periodic: a sine about the mean gap {_MEAN_GAPS[rig.friction_model.mean_gap]}",
-        attractor="periodic",
-        repetition_periods=1,
         motions=(motion,),
         vibration_amplitude=used.sine_amplitude,
-        lowest_amplitude=None,
-        highest_amplitude=None,
         mean_displacement=float(motion.displacement.mean()),
         contact_loss_fraction=contact_loss_fraction(motion),
-        beat_frequency=None,
-        beat_amplitude=None,
-        coexisting_amplitude=None,
-        dissipated_power=None,
-        elongation=0j,
         gap_closed=bool(motion.displacement.min() <= -resolved.separation),
     )
 
@@ -159,7 +154,7 @@ def _of_structure(resolved: ResolvedRig, rig: DrivenRig) -> SteadyVibration:
     _refuse_drive_beyond_contact(resolved, rig)
     balanced = _balanced(resolved, rig, upper_branch=False)
     if balanced.status == Status.PERIODIC:
-        return _of_balance(rig, balanced, balanced.reason(()))
+        return _of_balance(resolved, rig, balanced, balanced.reason(()))
     if balanced.stability_undetermined(()):
         raise OutsideRange(balanced.reason(()))
     attained = march_until_settled(rig.structure, resolved.gap_law, **drive_and_load(resolved))
@@ -169,7 +164,8 @@ def _of_structure(resolved: ResolvedRig, rig: DrivenRig) -> SteadyVibration:
         for states in (balanced, _balanced(resolved, rig, upper_branch=True)):
             if _same(states, attained):
                 appears = format_si(float(states.vibration_amplitude), "m")
-                return _of_balance(rig, states, f"{route} that of {appears} appears{states.contact_loss_note(())}")
+                reason = f"{route} that of {appears} appears{states.contact_loss_note(())}"
+                return _of_balance(resolved, rig, states, reason)
     early = "" if attained.settled else f"; followed for {format_si(attained.marched_time, 's')}, before it has settled"
     return _of_march(resolved, rig, attained, balanced, f"{route} another motion appears: {found.description}{early}")
 
@@ -256,27 +252,21 @@ def _same(states: SteadyStates, attained: LongTimeResponse) -> bool:
     return bool(abs(attained.amplitudes[0] - own) <= _SAME * own)
 
 
-def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyVibration:
+def _of_balance(resolved: ResolvedRig, rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyVibration:
     drive, amplitude, rival = rig.drive, float(states.vibration_amplitude), float(states.coexisting_amplitude)
     # the stack's elongation in complex amplitude, from the charge on it: q = C_S V + b.x
     charge = complex(states.current_harmonics[0]) / (2j * np.pi * drive.frequency)
     moved = charge - states.structure.clamped_capacitance * complex(states.voltage_harmonics[0])
     return SteadyVibration(
-        amplitude_source="computed",
-        amplitude_origin="",
+        amplitude_source=resolved.vibration.source,
+        amplitude_origin=resolved.vibration.text,
         prescribed=False,
         status=Status(int(states.status)).name.lower(),
         reason=reason,
-        attractor="periodic",
-        repetition_periods=1,
         motions=(gap_motion(states, ()),),
         vibration_amplitude=amplitude,
-        lowest_amplitude=None,
-        highest_amplitude=None,
         mean_displacement=float(states.mean_displacement),
         contact_loss_fraction=float(states.contact_loss_fraction),
-        beat_frequency=None,
-        beat_amplitude=None,
         coexisting_amplitude=rival if np.isfinite(rival) else None,
         dissipated_power=float(states.dissipated_power),
         elongation=moved / rig.stack.charge_per_elongation,
@@ -300,8 +290,8 @@ def _of_march(
         reason += f"; friction and wear are means over {periods:.0f} periods of the drive in {len(motions)} segments"
     unstable = float(balanced.vibration_amplitude)
     return SteadyVibration(
-        amplitude_source="computed",
-        amplitude_origin="",
+        amplitude_source=resolved.vibration.source,
+        amplitude_origin=resolved.vibration.text,
         prescribed=False,
         status=Status(int(balanced.status)).name.lower(),
         reason=reason,

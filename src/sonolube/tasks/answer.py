@@ -8,7 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar, dataclass_transform
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.report.blocks import Block, block_html, text_lines
+from sonolube.report.blocks import (
+    Block as Block,
+    Rows as Rows,
+    Table as Table,
+    Verbatim as Verbatim,
+    block_html,
+    text_lines as text_lines,
+)
 from sonolube.report.results.facts_dataset import scalar_dataset
 from sonolube.vocabulary import si as si
 
@@ -23,6 +30,9 @@ if TYPE_CHECKING:
     from sonolube.tasks.progress import Advance
 
     Content: TypeAlias = str | bytes | xr.Dataset | LabelledArrays | Path
+
+Dataset: TypeAlias = "xr.Dataset"
+"""Labelled dataset, by a name that needs no import of xarray."""
 
 _Answer = TypeVar("_Answer")
 

@@ -8,7 +8,7 @@ _EXAMPLES: Final = "\n\nExamples\n--------\n"
 
 
 def docstring(package: str, where: str) -> str:
-    """Docstring, without examples, of a function such as "predict.friction:friction", whose module is not imported."""
+    """Docstring, without examples, of a function such as "predict.wear:wear"; its module is not imported."""
     module, _, name = f"{package}.{where}".strip(".").partition(":")
     root, _, inner = module.partition(".")
     source = files(root).joinpath(f"{inner.replace('.', '/')}.py").read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ from typing import Any, Final, Literal, get_args, get_origin
 from sonolube import __version__
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.call import item_of, members_of
-from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
+from sonolube.tasks.parameters import DoorParameter, File, KeyValues, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
 from sonolube.text.units import unit_description
@@ -136,11 +136,11 @@ def _reading(unit: str) -> str:
 
 def _argument(kind: Any, mark: Parameter) -> dict[str, Any]:
     """Type of an argument, without its default."""
-    if mark.is_mapping:
+    if isinstance(mark, KeyValues):
         return {"type": "object", "additionalProperties": {"type": ["string", "number", "array"]}}
     if (item := item_of(kind)) is not None:
         return {"type": "array", "items": _argument(item, mark)}
-    if mark.is_file:
+    if isinstance(mark, File):
         path = {"type": "string", "description": "Path or name on the computer that computes."}
         return {"anyOf": [{"$ref": "#/components/schemas/File"}, path]}
     limits = {"minimum": mark.lowest, "maximum": mark.highest}

@@ -7,25 +7,18 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.instrument_mappings import mapping_by_name
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
-from sonolube.tasks.parameters import OwnRuns, Parameter, RunsSource
+from sonolube.tasks.parameters import File, OwnRuns, RunsSource
 from sonolube.tasks.task import refuse_unused, shown
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Mapped = Annotated[
-    InputFile | None,
-    Parameter(
-        "Of the columns: umt, anton-paar, t-11, rtec, pin-on-disc, or a file.", kind="NAME|MAPPING.toml", is_file=True
-    ),
+    InputFile | None, File("Of the columns: umt, anton-paar, t-11, rtec, pin-on-disc, or a file.", "NAME|MAPPING.toml")
 ]
 MappedRuns = Annotated[
     InputFile | None,
-    Parameter(
-        "Of the columns of the runs whose headings are no names, as sonolube mapping writes it.",
-        kind="MAPPING.toml",
-        is_file=True,
-    ),
+    File("Of the columns of the runs whose headings are no names, as sonolube mapping writes it.", "MAPPING.toml"),
 ]
 _CATALOGUE = "catalogue:"
 

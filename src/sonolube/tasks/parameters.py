@@ -3,10 +3,11 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias, TypedDict
 
 from sonolube.tasks.files import InputFile, NamedBytes
 from sonolube.tasks.progress import Cancelled, Progress
+from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,35 +26,47 @@ class Parameter:
     ----------
     help : str
         One sentence.
+    kind : str
+        What stands for the value in a help text, such as MATERIAL.
     unit : str or None
         SI unit of a `Number`, in K a temperature difference; empty for a pure number.
     quantity : str
         Its name in the vocabulary, where it has one.
-    kind : str
-        What stands for the value in a help text, such as MATERIAL.
     option : str
         As typed on a terminal, where that is not the name with hyphens; further names of it behind spaces.
     lowest, highest : float or None
         Range of a number.
-    is_file : bool
-        Whether it names files that are read.
-    is_mapping : bool
-        Whether it is a mapping, of which a terminal takes KEY=VALUE once for each key.
-    is_output : bool
-        Whether it names a folder in which the task itself writes, such as the folder of all runs.
     """
 
     help: str
+    kind: str = ""
     _: KW_ONLY
     unit: str | None = None
     quantity: str = ""
-    kind: str = ""
     option: str = ""
     lowest: float | None = None
     highest: float | None = None
-    is_file: bool = False
-    is_mapping: bool = False
-    is_output: bool = False
+
+
+class Quantity(Parameter):
+    """Meaning of a `Number`, by its SI unit or by the name in the vocabulary that has one."""
+
+    def __init__(self, text: str, of: str, *, kind: str = "", option: str = "") -> None:
+        known = quantities().get(of)
+        unit, name = (of, "") if known is None else (known.unit, of)
+        super().__init__(text, kind, unit=unit, quantity=name, option=option)
+
+
+class File(Parameter):
+    """Meaning of an argument that names files that are read."""
+
+
+class KeyValues(Parameter):
+    """Meaning of a mapping, of which a terminal takes KEY=VALUE once for each key."""
+
+
+class OwnFolder(Parameter):
+    """Meaning of an argument that names a folder in which the task itself writes, such as the folder of all runs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,11 +121,18 @@ Kept = str | Path | Callable[[str], Path]
 RigFile = Annotated[RigSource, RigParameter()]
 RestingRig = Annotated[RigSource, RigParameter(without=("amplitude",))]
 OptionalRig = Annotated[OptionalRigSource, RigParameter(is_optional=True)]
-Watch = Annotated[Progress | None, DoorParameter()]
-Stop = Annotated[Cancelled | None, DoorParameter()]
+
+
+class Watched(TypedDict, total=False):
+    """Arguments `progress` and `cancelled` of tasks that can take over a second."""
+
+    progress: Annotated[Progress | None, DoorParameter()]
+    cancelled: Annotated[Cancelled | None, DoorParameter()]
+
+
 Keep = Annotated[Kept | None, DoorParameter()]
-Pin = Annotated[str | None, Parameter("Material of the pin, for the heat; by default the rig's.", kind="MATERIAL")]
-Disc = Annotated[str | None, Parameter("Material of the disc, for the heat; by default the rig's.", kind="MATERIAL")]
+Pin = Annotated[str | None, Parameter("Material of the pin, for the heat; by default the rig's.", "MATERIAL")]
+Disc = Annotated[str | None, Parameter("Material of the disc, for the heat; by default the rig's.", "MATERIAL")]
 Backend = Annotated[
     Literal["cpu", "gpu"],
     Parameter("Processor for the steady vibrations; gpu needs JAX and a GPU that it can use, and falls back to cpu."),
@@ -120,7 +140,7 @@ Backend = Annotated[
 Interval = Annotated[bool, Parameter("State the error of the friction model, and the interval with it.")]
 Sizes = Annotated[
     Mapping[str, str | float] | None,
-    Parameter("A size of the part, such as length=127mm.", kind="SIZE=VALUE", option="--set", is_mapping=True),
+    KeyValues("A size of the part, such as length=127mm.", "SIZE=VALUE", option="--set"),
 ]
 
 

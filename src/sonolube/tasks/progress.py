@@ -3,8 +3,11 @@
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from contextvars import ContextVar
+from typing import TypeVar
 
 from sonolube.errors import SonolubeError
+
+T = TypeVar("T")
 
 Advance = Callable[[str, int, int], None]
 """Called with the stage, the number done and their total, zero where it is unknown."""
@@ -33,13 +36,18 @@ _CANCELLED: ContextVar[Cancelled] = ContextVar("cancelled", default=lambda: Fals
 
 
 @contextmanager
-def observed(observer: Observer) -> Iterator[None]:
-    """Show the progress of tasks by an observer inside a `with` block."""
-    before = _OBSERVER.set(observer)
+def within(variable: ContextVar[T], value: T) -> Iterator[None]:
+    """Set a variable of the context inside a `with` block."""
+    before = variable.set(value)
     try:
         yield
     finally:
-        _OBSERVER.reset(before)
+        variable.reset(before)
+
+
+def observed(observer: Observer) -> AbstractContextManager[None]:
+    """Show the progress of tasks by an observer inside a `with` block."""
+    return within(_OBSERVER, observer)
 
 
 @contextmanager
@@ -55,8 +63,7 @@ def watched(progress: Progress | None, cancelled: Cancelled | None) -> Iterator[
 
             stack.enter_context(observed(observer))
         if cancelled is not None:
-            before = _CANCELLED.set(cancelled)
-            stack.callback(_CANCELLED.reset, before)
+            stack.enter_context(within(_CANCELLED, cancelled))
         yield
 
 

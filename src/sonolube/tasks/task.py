@@ -1,13 +1,13 @@
 """A task: a function with annotated arguments that returns one answer, and the call that it answers."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from contextvars import ContextVar
 from functools import update_wrapper
-from inspect import Parameter as Argument, cleandoc, signature
+from inspect import Parameter as Argument, Signature, cleandoc, signature
 from math import inf, isfinite
 from types import NoneType
-from typing import Any, Generic, Literal, NoReturn, ParamSpec, TypeVar, get_args, get_origin, overload
+from typing import Any, Generic, Literal, NoReturn, ParamSpec, TypeVar, get_args, get_origin, get_type_hints, overload
 
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.former_names import moved_module
@@ -16,8 +16,8 @@ from sonolube.tasks.call import Call, Mark
 from sonolube.tasks.docstrings import split_examples
 from sonolube.tasks.files import private_files, with_names_only
 from sonolube.tasks.notebooks import cell_progress, is_in_notebook
-from sonolube.tasks.parameters import Number, Parameter, RigParameter
-from sonolube.tasks.progress import observed, watched
+from sonolube.tasks.parameters import File, Number, Parameter, RigParameter, Watched
+from sonolube.tasks.progress import observed, watched, within
 from sonolube.text.units import temperature_difference_to_si, to_si
 
 P = ParamSpec("P")
@@ -63,23 +63,24 @@ class TaskFunction(Generic[P, A]):
     """
 
     def __init__(self, function: Callable[P, A]) -> None:
-        self._function, self._form, self._marks = function, signature(function), marks_of(function)
-        arguments = self._form.parameters.items()
-        self._choices = {name: _choices(get_args(argument.annotation)[0]) for name, argument in arguments}
         update_wrapper(self, function)
+        self._function, self.__signature__ = function, _form(function)
+        self._marks = marks_of(self)
+        arguments = self.__signature__.parameters.items()
+        self._choices = {name: _choices(get_args(argument.annotation)[0]) for name, argument in arguments}
         if function.__doc__:
-            self.__doc__ = _described(function.__doc__, self._form.parameters, self._marks)
+            self.__doc__ = _described(function.__doc__, self.__signature__.parameters, self._marks)
 
     def __call__(self, *positional: P.args, **named: P.kwargs) -> A:
         """Answer to the arguments."""
-        bound = self._form.bind(*positional, **named)
+        bound = self.__signature__.bind(*positional, **named)
         given = frozenset(bound.arguments)
         bound.apply_defaults()
         call = Call(self._function.__name__, dict(bound.arguments), given, self._marks, _NAMES.get())
         _refuse_impossible(call, self._choices)
-        before = _CALL.set(call)
         try:
             with (
+                within(_CALL, call),
                 private_files(),
                 in_notebooks(),
                 watched(bound.arguments.get("progress"), bound.arguments.get("cancelled")),
@@ -88,8 +89,6 @@ class TaskFunction(Generic[P, A]):
         except SonolubeError as failure:
             failure.args = tuple(with_names_only(each) if isinstance(each, str) else each for each in failure.args)
             raise
-        finally:
-            _CALL.reset(before)
         object.__setattr__(found, "call", call)
         return found
 
@@ -126,14 +125,9 @@ def in_notebooks() -> AbstractContextManager[None]:
     return observed(cell_progress) if is_in_notebook() else nullcontext()
 
 
-@contextmanager
-def argument_names(shown: Callable[[str], str]) -> Iterator[None]:
+def argument_names(shown: Callable[[str], str]) -> AbstractContextManager[None]:
     """Show arguments by other names in refusals, such as --sliding-speed for sliding_speed, inside a `with` block."""
-    before = _NAMES.set(shown)
-    try:
-        yield
-    finally:
-        _NAMES.reset(before)
+    return within(_NAMES, shown)
 
 
 def shown(name: str) -> str:
@@ -224,6 +218,16 @@ def given_arguments(names: Iterable[str]) -> dict[str, Any]:
     return {name: value for name, value in known.items() if value is not None}
 
 
+def _form(function: Callable[..., Any]) -> Signature:
+    """Signature of a function, with the arguments that its `**watch` stands for."""
+    form = signature(function)
+    own = [each for each in form.parameters.values() if each.kind is not Argument.VAR_KEYWORD]
+    if len(own) < len(form.parameters):
+        watched_by = get_type_hints(Watched, include_extras=True)
+        own += [Argument(each, Argument.KEYWORD_ONLY, default=None, annotation=watched_by[each]) for each in watched_by]
+    return form.replace(parameters=own)
+
+
 def _choices(kind: Any) -> tuple[Any, ...]:
     """Words of which an argument of a type is one, or has several; empty where it may be anything else."""
     if get_origin(kind) is Literal:
@@ -271,7 +275,7 @@ def _kind(argument: Argument, mark: Mark) -> str:
         return "Rig, str or Path"
     if isinstance(mark, Parameter) and mark.unit is not None:
         return "float or str"
-    if isinstance(mark, Parameter) and mark.is_file:
+    if isinstance(mark, File):
         return "str, Path or NamedBytes"
     kind = get_args(argument.annotation)[0]
     text = kind.__name__ if isinstance(kind, type) else str(getattr(kind, "__forward_arg__", kind))

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from sonolube.cli.console.figure_style import prepare_matplotlib
+from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
-from sonolube.report.blocks import text_lines
 from sonolube.storage.targets import expect_target
-from sonolube.tasks.answer import Answer
+from sonolube.tasks.answer import Answer, text_lines
 from sonolube.text.printable_text import printable
 
 if TYPE_CHECKING:
@@ -66,8 +67,6 @@ def _write(answer: Answer, folder: Path, report: Path | None) -> list[Path]:
     page, drawings = answer.page(), answer.figures()
     contents: dict[Path, Any] = {}
     if page is not None or report is not None or any(drawing.forms for drawing in drawings.values()):
-        from sonolube.cli.console.figure_style import prepare_matplotlib
-        from sonolube.cli.console.progress import progress
         from sonolube.report import rendered_files
 
         prepare_matplotlib()

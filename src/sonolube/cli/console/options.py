@@ -52,10 +52,19 @@ Style = Annotated[
 OUT = Path("out")
 
 
-def loaded_rig(
-    path: Path, *, load: str | None = None, changes: list[str] | None = None, amplitude: AmplitudeSource | None = None
-) -> "Rig":
-    """Rig of a file with entries replaced, `--load` and `--amplitude` among them."""
+def rig_of_options(
+    path: Path | None,
+    *,
+    load: str | None = None,
+    changes: list[str] | None = None,
+    amplitude: AmplitudeSource | None = None,
+) -> "Rig | None":
+    """Rig of a file with entries replaced, `--load` and `--amplitude` among them; None where no file is named."""
+    if path is None:
+        for option, value in {"--set": changes, "--amplitude": amplitude, "--load": load}.items():
+            if value:
+                raise InvalidInput(f"{option} needs a rig; name its file, such as examples/rigs/tribometer.toml")
+        return None
     from sonolube.rig import read_rig
 
     replaced = list(changes or ())
@@ -65,20 +74,3 @@ def loaded_rig(
         to_si(load, unit="N", name="--load")
         replaced.append(f"contact.normal_load={load}")
     return read_rig(path, changes=replaced)
-
-
-def optional_rig(
-    path: Path | None,
-    *,
-    load: str | None = None,
-    changes: list[str] | None = None,
-    amplitude: AmplitudeSource | None = None,
-) -> "Rig | None":
-    """Rig of a file with entries replaced, or None where no file is named."""
-    if path is not None:
-        return loaded_rig(path, load=load, changes=changes, amplitude=amplitude)
-    given = {"--set": changes, "--amplitude": amplitude, "--load": load}
-    for option, value in given.items():
-        if value:
-            raise InvalidInput(f"{option} needs a rig; name its file, such as examples/rigs/tribometer.toml")
-    return None

@@ -4,7 +4,7 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
@@ -20,18 +20,13 @@ SHORT = 2.0
 _BETWEEN_LINES = 10.0  # s
 
 
-@contextmanager
-def progress(title: str) -> Iterator[Advance]:
+def progress(title: str) -> AbstractContextManager[Advance]:
     """Report the progress of the work inside a `with` block.
 
     Called with what is done now, the number done and their total.
     """
-    if sys.stderr.isatty() and os.environ.get("TERM") != "dumb":
-        with _bar(title) as advance:
-            yield advance
-    else:
-        with _lines(title) as advance:
-            yield advance
+    is_terminal = sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+    return _bar(title) if is_terminal else _lines(title)
 
 
 def time_left(elapsed: float, done: int, total: int | None) -> str:

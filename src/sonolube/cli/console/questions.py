@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -14,8 +14,6 @@ from sonolube.text.printable_text import printable
 if TYPE_CHECKING:
     from sonolube.facts.protocol import Prompt
     from sonolube.laboratory import RunControl
-
-Value = TypeVar("Value")
 
 _POLL = 0.1  # s, between two looks at requests to end while an operator is asked
 
@@ -44,18 +42,21 @@ def is_terminal() -> bool:
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
-def ask(question: Question, read: Callable[[str], Value]) -> Value:
-    """Answer to a question, asked again until it can be read; what `read` returns."""
+def ask(question: Question, read: Callable[[str], object]) -> str:
+    """Answer to a question, asked again until it can be read."""
     while True:
         typer.echo(f"{question.text} [{question.default}]: ", nl=False, err=True)
         line = sys.stdin.readline()
         if not line:
             typer.echo(err=True)
             raise InvalidInput(f"the input ended at {question.option}; nothing is written")
+        answer = line.strip() or question.default
         try:
-            return read(line.strip() or question.default)
+            read(answer)
         except SonolubeError as refusal:
             typer.echo(f"  {printable(' '.join(str(refusal).split()))}", err=True)
+        else:
+            return answer
 
 
 def operator_arguments() -> dict[str, Any]:

@@ -12,10 +12,9 @@ import typer
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.options import Json
 from sonolube.laboratory.records import Observation, RunObserver, run_to_watch
-from sonolube.report.blocks import Block
 from sonolube.report.results import observation as results
 from sonolube.storage.interruption import asked_by_signal
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, answer
 from sonolube.text.printable_text import printable
 
 LOOK_INTERVAL = 0.5

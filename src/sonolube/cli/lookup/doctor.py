@@ -8,9 +8,8 @@ import typer
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.progress import progress
-from sonolube.report.blocks import Block
 from sonolube.report.results.installation import Installation, installation
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, answer
 
 
 def doctor(json: Json = False) -> None:

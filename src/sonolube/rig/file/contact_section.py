@@ -13,7 +13,7 @@ from sonolube.models.surfaces import Roughness
 from sonolube.rig.file.plausible import DECAY_LENGTHS
 from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.stated_surface import height_of_finish
-from sonolube.rig.record import DecayLengthOrigin
+from sonolube.rig.record import DecayLengthOrigin, check_stated
 from sonolube.text.units import format_si
 
 Text = Annotated[str, Field(min_length=1, max_length=1000)]
@@ -57,9 +57,8 @@ class StatedRoughnessSection(Section):
         given = [name for name in ("rms_height", *STATED_HEIGHTS) if getattr(self, name) is not None]
         if len(given) > 1:
             raise InvalidInput(f"give one of rms_height, {', '.join(STATED_HEIGHTS)}, got {' and '.join(given)}")
-        for name in ("roughness_average", "maximum_height", "summit_radius", "summit_density"):
-            if (value := getattr(self, name)) is not None:
-                require_positive(**{name: value})
+        names = ("roughness_average", "maximum_height", "summit_radius", "summit_density")
+        check_stated(require_positive, self, *names)
         if self.finish is not None:
             height_of_finish(self.finish)
 
@@ -196,9 +195,7 @@ class ContactSection(Section):
 
     def _require_one_decay_length(self) -> None:
         """Refuse two decay lengths, implausible ones, and entries about one that is absent."""
-        for name in ("decay_length", "normal_stiffness", "stiffness_load"):
-            if (value := getattr(self, name)) is not None:
-                require_positive(**{name: value})
+        check_stated(require_positive, self, "decay_length", "normal_stiffness", "stiffness_load")
         if self.decay_length is not None and self.normal_stiffness is not None:
             raise InvalidInput("give either decay_length or normal_stiffness, got both")
         if self.stiffness_load is not None and self.normal_stiffness is None:

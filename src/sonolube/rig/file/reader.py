@@ -18,7 +18,7 @@ from sonolube.rig.file.contact_section import RoughnessSection
 from sonolube.rig.file.derived import ALTERNATIVES, REPLACED, with_derived
 from sonolube.rig.file.entries import FileEntries, from_file, set_entry, with_entries
 from sonolube.rig.file.modes_file import read_modes
-from sonolube.rig.file.renamed import refuse_former_names
+from sonolube.rig.file.renamed import entry_of, refuse_former_names
 from sonolube.rig.file.sections import RigFile
 from sonolube.rig.file.structures import ModesSection, PinOnDiscSection
 from sonolube.rig.file.toml_file import prefixed, validated
@@ -213,11 +213,8 @@ def _apply(change: str, content: dict[str, Any]) -> None:
 
 def _require_known_assumptions(file: RigFile, content: Mapping[str, Any]) -> None:
     for key in file.assumptions:
-        place: Any = content
-        for part in key.split("."):
-            if not isinstance(place, Mapping) or part not in place:
-                raise InvalidInput(f"assumptions.{key}: the file has no entry {key}")
-            place = place[part]
+        if entry_of(content, key) is None:
+            raise InvalidInput(f"assumptions.{key}: the file has no entry {key}")
 
 
 def _rig(file: RigFile) -> Rig:

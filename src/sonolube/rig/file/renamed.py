@@ -21,17 +21,18 @@ _NAMES = {
 def refuse_former_names(content: Mapping[str, Any]) -> None:
     """Refuse content of a rig file that has a former key or name."""
     for key, present in _KEYS.items():
-        if (value := _entry(content, key)) is not None:
+        if (value := entry_of(content, key)) is not None:
             names = _NAMES.get(present, {})
             now = f'{present.rpartition(".")[2]} = "{names.get(value, value)}"' if isinstance(value, str) else present
             raise InvalidInput(f"{key}: is now {present}; write {now}")
     for key, names in _NAMES.items():
-        value = _entry(content, key)
+        value = entry_of(content, key)
         if isinstance(value, str) and value in names:
             raise InvalidInput(f'{key}: "{value}" is now "{names[value]}"')
 
 
-def _entry(content: Mapping[str, Any], key: str) -> Any:
+def entry_of(content: Mapping[str, Any], key: str) -> Any:
+    """Entry of the content of a file by its dotted key; None where there is none."""
     place: Any = content
     for part in key.split("."):
         if not isinstance(place, Mapping) or part not in place:

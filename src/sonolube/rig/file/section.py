@@ -3,15 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, Self, get_args, get_origin
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
-    ValidationInfo,
-    field_validator,
-    model_validator,
-)
+import pydantic
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
@@ -34,19 +26,19 @@ class NameIn:
 
     table: VariantTable[Any]
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+    def __get_pydantic_core_schema__(self, source: Any, handler: pydantic.GetCoreSchemaHandler) -> CoreSchema:
         """Accept the names of the table only."""
         return core_schema.literal_schema(list(self.table))
 
 
-class Section(BaseModel):
+class Section(pydantic.BaseModel):
     """A table of a rig file; unknown keys are refused, text with a unit becomes SI."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True, defer_build=True)
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True, defer_build=True)
 
-    @field_validator("*", mode="before")
+    @pydantic.field_validator("*", mode="before")
     @classmethod
-    def _read_quantity(cls, value: object, info: ValidationInfo) -> object:
+    def _read_quantity(cls, value: object, info: pydantic.ValidationInfo) -> object:
         known = cls.quantity_of(info.field_name or "")
         if known is None or value is None:
             return value
@@ -54,7 +46,7 @@ class Section(BaseModel):
             raise ValueError(f"{value} is a hardness; expected {unit_description(known.unit)}")
         return quantity_in_si(value, unit=known.unit)
 
-    @model_validator(mode="after")
+    @pydantic.model_validator(mode="after")
     def _possible(self) -> Self:
         try:
             self.require_possible()
@@ -87,7 +79,9 @@ class Section(BaseModel):
         return next((each for each in field.metadata if isinstance(each, Quantity)), quantities().get(name))
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+    def __get_pydantic_json_schema__(
+        cls, core_schema: CoreSchema, handler: pydantic.GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
         """Describe physical keys by meaning, unit and an example."""
         schema = handler(core_schema)
         properties: dict[str, Any] = handler.resolve_ref_schema(schema).get("properties", {})

@@ -14,7 +14,7 @@ from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.file.contact_section import ContactSection, Text
 from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.structures import StructureSection
-from sonolube.rig.record import AmplitudeSource, MeasuredUnder
+from sonolube.rig.record import AmplitudeSource, MeasuredUnder, check_stated
 from sonolube.vocabulary import Quantity
 
 
@@ -117,10 +117,8 @@ class ActuatorSection(Section):
 
     def require_possible(self) -> None:
         """Refuse a capacitance that is not positive and a negative amplitude."""
-        if self.capacitance is not None:
-            require_positive(capacitance=self.capacitance)
-        if self.amplitude_per_volt is not None:
-            require_non_negative(amplitude_per_volt=self.amplitude_per_volt)
+        check_stated(require_positive, self, "capacitance")
+        check_stated(require_non_negative, self, "amplitude_per_volt")
 
 
 class StackSection(Section):
@@ -169,8 +167,7 @@ class VibrationSection(Section):
         conditions = (self.voltage_peak_to_peak, self.frequency, self.normal_load)
         if self.vibration_amplitude is None and any(value is not None for value in conditions):
             raise InvalidInput("drive and load of a measurement need vibration_amplitude")
-        if self.vibration_amplitude is not None:
-            require_non_negative(vibration_amplitude=self.vibration_amplitude)
+        check_stated(require_non_negative, self, "vibration_amplitude")
         self.measured_under()
 
     def measured_under(self) -> MeasuredUnder | None:

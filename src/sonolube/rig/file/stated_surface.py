@@ -6,13 +6,7 @@ from math import exp, hypot, log
 from typing import Final
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.models.surfaces import (
-    RmsHeightEstimate,
-    SurfaceFinish,
-    rms_height_from_maximum_height,
-    rms_height_from_roughness_average,
-    surface_finish,
-)
+from sonolube.models import surfaces
 from sonolube.text.units import format_si, to_si
 
 FINISH_FORMS: Final = (
@@ -57,13 +51,13 @@ def deviation_of_range(low: float, high: float) -> float:
 
 def height_from_roughness_average(*, roughness_average: float) -> StatedHeight:
     """Root mean square height of a surface by its Ra."""
-    found = rms_height_from_roughness_average(arithmetic_mean_height=roughness_average)
+    found = surfaces.rms_height_from_roughness_average(arithmetic_mean_height=roughness_average)
     return _stated(found, f"Ra {format_si(roughness_average, 'm')}")
 
 
 def height_from_maximum_height(*, maximum_height: float) -> StatedHeight:
     """Root mean square height of a surface by its Rz."""
-    found = rms_height_from_maximum_height(mean_section_height=maximum_height)
+    found = surfaces.rms_height_from_maximum_height(mean_section_height=maximum_height)
     return _stated(found, f"Rz {format_si(maximum_height, 'm')}")
 
 
@@ -74,15 +68,15 @@ def height_of_finish(text: str) -> StatedHeight:
         return _height_of_number(text.strip(), **number.groupdict(default=""))
     finish = _finish(text)
     low, high = finish.roughness_average_low, finish.roughness_average_high
-    found = rms_height_from_roughness_average(arithmetic_mean_height=finish.arithmetic_mean_height)
+    found = surfaces.rms_height_from_roughness_average(arithmetic_mean_height=finish.arithmetic_mean_height)
     stated = f"{finish.title}, Ra {format_si(low, 'm')} to {format_si(high, 'm')} by {finish.source}"
     return _stated(found, stated, deviation=deviation_of_range(low, high))
 
 
-def _finish(text: str) -> SurfaceFinish:
+def _finish(text: str) -> surfaces.SurfaceFinish:
     """Process, a grade or both; refuse others with the forms that are read."""
     try:
-        return surface_finish(text)
+        return surfaces.surface_finish(text)
     except (InvalidInput, UnknownName) as refusal:
         raise type(refusal)(f"{str(refusal).partition('; known:')[0]}; {FINISH_FORMS}") from None
 
@@ -125,7 +119,7 @@ def _height_of_number(text: str, *, process: str, parameter: str, number: str, u
     return replace(named, reason=f"from {letter} {format_si(height, 'm')}, {said}; {relation}")
 
 
-def _stated(found: RmsHeightEstimate, stated: str, *, deviation: float = 0.0) -> StatedHeight:
+def _stated(found: surfaces.RmsHeightEstimate, stated: str, *, deviation: float = 0.0) -> StatedHeight:
     """Height with the spread of the relation and that of what was stated."""
     return StatedHeight(
         rms_height=found.rms_height,

@@ -8,15 +8,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from sonolube.errors import InvalidInput
 from sonolube.models.actuator import PiezoStack
-from sonolube.models.dynamics import Structure
-from sonolube.models.dynamics.chain import (
-    Damper,
-    LumpedChain,
-    Spring,
-    chain_structure,
-    modal_structure,
-    pin_on_disc_chain,
-)
+from sonolube.models.dynamics import Structure, chain
 from sonolube.rig.file.section import Section, quantity_in_si
 
 Name = Annotated[str, Field(min_length=1)]
@@ -37,7 +29,7 @@ class PinOnDiscSection(Section):
 
     def structure(self, stack: PiezoStack) -> Structure:
         """Structure with a stack in it."""
-        return chain_structure(pin_on_disc_chain(stack, **self.entries()))
+        return chain.chain_structure(chain.pin_on_disc_chain(stack, **self.entries()))
 
     def entries(self) -> dict[str, float]:
         """Masses, stiffness and damping by key, in SI."""
@@ -134,14 +126,16 @@ class ChainSection(Section):
     def structure(self, stack: PiezoStack) -> Structure:
         """Structure with a stack in it."""
         (near, behind) = self.stack_between
-        return chain_structure(
-            LumpedChain(
+        return chain.chain_structure(
+            chain.LumpedChain(
                 masses=self.masses,
                 springs=tuple(
-                    Spring(between=_ends(each.between), spring_stiffness=each.spring_stiffness) for each in self.springs
+                    chain.Spring(between=_ends(each.between), spring_stiffness=each.spring_stiffness)
+                    for each in self.springs
                 ),
                 dampers=tuple(
-                    Damper(between=_ends(each.between), viscous_damping=each.viscous_damping) for each in self.dampers
+                    chain.Damper(between=_ends(each.between), viscous_damping=each.viscous_damping)
+                    for each in self.dampers
                 ),
                 stack=stack,
                 stack_between=(near, behind),
@@ -184,7 +178,7 @@ class ModesSection(Section):
         """Structure; the stack is part of its modes."""
         if self.clamped_capacitance is None:
             raise InvalidInput("the file of the modes has not been read, or has no clamped_capacitance; give it here")
-        return modal_structure(
+        return chain.modal_structure(
             frequencies=self.natural_frequency or (),
             damping_ratios=self.damping_ratio or (),
             drive_participation=self.drive_participation or (),

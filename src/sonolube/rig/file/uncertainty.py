@@ -134,4 +134,3 @@ def _text(law: Law, unit: str) -> str:
             return f"lognormal, {format_si(law.median, unit)} within a factor of {law.factor:.3g}"
         case Uniform():
             return f"uniform, {format_si(law.low, unit)} to {format_si(law.high, unit)}"
-    raise AssertionError(law)

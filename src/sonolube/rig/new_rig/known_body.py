@@ -6,7 +6,7 @@ from math import hypot
 from typing import Final
 
 from sonolube.errors import MissingProperty
-from sonolube.facts.materials import Material, SourcedValue, material, material_classes, yield_strength_from_hardness
+from sonolube.facts import materials
 from sonolube.models.contact import ElasticBody
 from sonolube.rig.file.stated_surface import deviation_of_range
 from sonolube.rig.new_rig.known_surface import lognormal_text
@@ -51,12 +51,7 @@ class KnownBody:
         A material, or a class of materials whose spread enters the file.
     """
 
-    material: Material
-
-    @classmethod
-    def of(cls, name: str) -> "KnownBody":
-        """Body of a material by its name."""
-        return cls(material=material(name))
+    material: materials.Material
 
     @property
     def elastic(self) -> ElasticBody:
@@ -88,7 +83,7 @@ class KnownBody:
                 deviation=hypot(found.deviation, _CATALOGUE_STRENGTH),
                 reason=f"{origin}{tension}; 15 % between batches assumed",
             )
-        estimate = yield_strength_from_hardness(hardness=found.value)
+        estimate = materials.yield_strength_from_hardness(hardness=found.value)
         beyond = "" if is_metal else "; beyond the metals that the relation is of"
         origin = _origin(found) if found.deviation else ""
         reason = f"from {found.value / 9.80665e6:.0f} HV of the catalogue; {estimate.source}; {estimate.reason}{beyond}"
@@ -116,10 +111,10 @@ class KnownBody:
             reasons[f"{place}.poisson_ratio"] = _POISSON_REASON
         return Entries(tables={place: table}, assumptions=reasons, uncertainty=laws)
 
-    def _property(self, key: str) -> SourcedValue:
+    def _property(self, key: str) -> materials.SourcedValue:
         """Property of the material, or of the class of its family where the catalogue lacks it."""
-        if key not in self.material.properties and self.material.family in material_classes():
-            of_class = material(self.material.family)
+        if key not in self.material.properties and self.material.family in materials.material_classes():
+            of_class = materials.material(self.material.family)
             if key in of_class.properties:
                 found = of_class.property(key)
                 return replace(found, source=f"{of_class.title.lower()}, {found.source}")
@@ -129,6 +124,6 @@ class KnownBody:
             raise MissingProperty(f"{str(refusal).partition(';')[0]}; name another material") from None
 
 
-def _origin(known: SourcedValue) -> str:
+def _origin(known: materials.SourcedValue) -> str:
     """Where a property of a class is from."""
     return "; ".join(filter(None, (f"{_CLASS}: {known.source}", known.note)))

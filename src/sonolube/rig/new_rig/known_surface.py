@@ -6,14 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from sonolube.measurement.surface_files.reader import read_height_map
-from sonolube.models.surfaces import (
-    Roughness,
-    combined_roughness,
-    contact_roughness,
-    height_parameters,
-    remove_form,
-    typical_summits,
-)
+from sonolube.models import surfaces
 from sonolube.rig.file.stated_surface import height_of_finish
 
 _SCAN_DEVIATION: Final = 0.1
@@ -34,7 +27,7 @@ class KnownSurface:
         Where they come from.
     """
 
-    roughness: Roughness
+    roughness: surfaces.Roughness
     height_deviation: float
     radius_deviation: float
     density_deviation: float
@@ -45,9 +38,9 @@ class KnownSurface:
 def finished_surface(finish: str) -> KnownSurface:
     """Surface by its process, its ISO grade or both, or by Ra, Rz or Rq."""
     height = height_of_finish(finish)
-    summits = typical_summits(rms_height=height.rms_height)
+    summits = surfaces.typical_summits(rms_height=height.rms_height)
     return KnownSurface(
-        roughness=Roughness(
+        roughness=surfaces.Roughness(
             rms_height=height.rms_height, summit_radius=summits.summit_radius, summit_density=summits.summit_density
         ),
         height_deviation=log(height.factor),
@@ -64,12 +57,12 @@ def scanned_surface(path: str | Path) -> KnownSurface:
     The height is taken as known within 10 %, the spread between places; the summits, which depend on the distance of
     the pixels, within a factor of 1.5.
     """
-    levelled = remove_form(read_height_map(Path(path)), degree=1)
-    summits = contact_roughness(levelled)
+    levelled = surfaces.remove_form(read_height_map(Path(path)), degree=1)
+    summits = surfaces.contact_roughness(levelled)
     name = Path(path).name
     return KnownSurface(
-        roughness=Roughness(
-            rms_height=height_parameters(levelled).rms_height,
+        roughness=surfaces.Roughness(
+            rms_height=surfaces.height_parameters(levelled).rms_height,
             summit_radius=summits.summit_radius,
             summit_density=summits.summit_density,
         ),
@@ -93,9 +86,9 @@ def surfaces_in_contact(pin: KnownSurface, disc: KnownSurface) -> KnownSurface:
     heights = [each.roughness.rms_height for each in (pin, disc)]
     height = hypot(*heights)
     shares = [(each / height) ** 2 for each in heights]
-    summits = combined_roughness(pin.roughness, disc.roughness)
+    summits = surfaces.combined_roughness(pin.roughness, disc.roughness)
     return KnownSurface(
-        roughness=Roughness(
+        roughness=surfaces.Roughness(
             rms_height=height, summit_radius=summits.summit_radius, summit_density=summits.summit_density
         ),
         height_deviation=hypot(shares[0] * pin.height_deviation, shares[1] * disc.height_deviation),

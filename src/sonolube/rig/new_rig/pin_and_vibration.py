@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import pi
-from typing import Final, Protocol
+from typing import Final
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
@@ -21,17 +21,6 @@ _LARGEST_AMPLITUDE: Final = 1e-3
 def toml_text(value: float, unit: str) -> str:
     """Quantity as a TOML value."""
     return json.dumps(format_si(value, unit, digits=4))
-
-
-class PinShape(Protocol):
-    """Shape of the end of a pin."""
-
-    @property
-    def text(self) -> str:
-        """The shape in words."""
-
-    def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
-        """Nominal contact area. [m2]"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -86,6 +75,10 @@ class RoundPin:
         return pi * float(hertz_contact_radius(sphere, normal_load=normal_load)) ** 2
 
 
+PinShape = FlatPin | RoundPin
+"""Shape of the end of a pin."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Entries:
     """Part of a rig file.
@@ -101,13 +94,6 @@ class Entries:
     tables: Mapping[str, Mapping[str, str]]
     assumptions: Mapping[str, str] = field(default_factory=dict)
     uncertainty: Mapping[str, str] = field(default_factory=dict)
-
-
-class Vibration(Protocol):
-    """Source of the vibration of the contact."""
-
-    def entries(self, frequency: float) -> Entries:
-        """Part of a rig file at a frequency in Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -185,3 +171,7 @@ class DrivenActuator:
             assumptions={key: f"half the free stroke per volt of {shown.title}; load and resonance are left out: 30 %"},
             uncertainty={key: f"lognormal {100 * _DATA_SHEET_STROKE:g} %"},
         )
+
+
+Vibration = StatedAmplitude | DrivenActuator
+"""Source of the vibration of the contact."""

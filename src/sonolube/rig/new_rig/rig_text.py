@@ -12,7 +12,7 @@ from typing import Final
 
 from sonolube.checks import require_positive
 from sonolube.errors import SonolubeError
-from sonolube.facts.materials import dry_friction, material
+from sonolube.facts import materials
 from sonolube.models.contact import contact_pair
 from sonolube.rig.file.entries import FileEntries, with_entries
 from sonolube.rig.file.guidance import guidance
@@ -107,7 +107,7 @@ def new_rig_text(known: KnownRig) -> str:
     Entries that nobody measured are in its table `uncertainty`, each with its reason in `assumptions`.
     """
     parts = [_contact(known), _friction(known), known.vibration.entries(known.frequency)]
-    pin, disc = material(known.pin), material(known.disc)
+    pin, disc = materials.material(known.pin), materials.material(known.disc)
     tables: dict[str, Mapping[str, str]] = {
         "": {"title": json.dumps(f"{pin.title} pin on {disc.title} disc"), "source": '"what was known before a test"'}
     }
@@ -156,7 +156,7 @@ def _moves_friction(rig: Rig, key: str, low: float, high: float) -> bool:
 
 def _contact(known: KnownRig) -> Entries:
     """Tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
-    pin, disc = KnownBody.of(known.pin), KnownBody.of(known.disc)
+    pin, disc = (KnownBody(material=materials.material(name)) for name in (known.pin, known.disc))
     softer, harder = (disc, pin) if disc.hardness < pin.hardness else (pin, disc)
     strength = softer.strength
     pair = contact_pair(softer=softer.elastic, harder=harder.elastic, yield_strength=strength.yield_strength)
@@ -213,7 +213,7 @@ def _friction(known: KnownRig) -> Entries:
     if known.friction_coefficient is not None:
         value, reason, law = known.friction_coefficient, "as stated, taken as measured: 5 %", _MEASURED_FRICTION
     else:
-        pair = dry_friction(known.pin, known.disc)
+        pair = materials.dry_friction(known.pin, known.disc)
         value, law = (pair.low + pair.high) / 2, f"uniform {pair.low:g} to {pair.high:g}"
         what = f"range of the class of pair, {pair.pair_class}" if pair.pair_class else "range of the pair"
         reason = "; ".join(part for part in (what, pair.source, pair.condition, pair.note) if part)

@@ -1,27 +1,18 @@
 """Task `compare`: models of friction under vibration against published tests, and on a rig."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, Stop, Watch, optional_rig
+from sonolube.tasks.parameters import File, OptionalRig, Parameter, RunsSource, Watched, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
-from sonolube.validation.comparison import (
-    DATA_SETS,
-    ONLY_PREDICTED,
-    ComparedFit,
-    RigPrediction,
-    compare_models,
-    compared_models,
-    predict_rig,
-)
+from sonolube.validation import comparison
 from sonolube.validation.figures import comparison_figures, rig_chart
 from sonolube.validation.rig_conditions import vibrated_rig
 from sonolube.validation.run_conditions import RunsTable, run_conditions
@@ -29,26 +20,17 @@ from sonolube.validation.runs_comparison import RunsPrediction, predict_runs
 from sonolube.validation.runs_figures import runs_prediction_chart
 from sonolube.validation.tables import comparison_csv, comparison_dataset
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
-_RUNS = Parameter(
-    runs_help("Own measured runs, which each model predicts as published tests fitted it"),
-    kind="RUNS.csv",
-    is_file=True,
-)
+_RUNS = File(runs_help("Own measured runs, which each model predicts as published tests fitted it"), "RUNS.csv")
 
 
 @task
 def compare(
     rig: OptionalRig = None,
     *,
-    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", kind="NAME")] = (),
+    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "ComparisonAnswer":
     """Models of friction under vibration against every published test: fitted, cross-validated, and on your rig.
 
@@ -65,8 +47,8 @@ def compare(
     point = None if known is None else vibrated_rig(known)
     table = None if own_runs is None else run_conditions(own_runs, known)
     with stage("comparing") as advance:
-        fits = compare_models(compared_models(model), advance=advance)
-        predictions = () if point is None else predict_rig(fits, point)
+        fits = comparison.compare_models(comparison.compared_models(model), advance=advance)
+        predictions = () if point is None else comparison.predict_rig(fits, point)
     return ComparisonAnswer(
         fits=fits,
         rig=known,
@@ -81,10 +63,10 @@ def compare(
 class ComparisonAnswer(Answer):
     """Errors of models on published tests, fitted and cross-validated, and their predictions of a rig."""
 
-    fits: tuple[ComparedFit, ...]
+    fits: tuple[comparison.ComparedFit, ...]
     rig: Rig | None
     own: FrictionPoint | None
-    predictions: tuple[RigPrediction, ...]
+    predictions: tuple[comparison.RigPrediction, ...]
     table: RunsTable | None = None
     of_runs: tuple[RunsPrediction, ...] = ()
 
@@ -99,8 +81,8 @@ class ComparisonAnswer(Answer):
     def object(self) -> dict[str, Any]:
         """Errors, fitted parameters and predictions of each model, and the predictions of the rig."""
         content: dict[str, Any] = {
-            "sets": dict(DATA_SETS),
-            "only_predicted": dict(ONLY_PREDICTED),
+            "sets": dict(comparison.DATA_SETS),
+            "only_predicted": dict(comparison.ONLY_PREDICTED),
             "models": list(map(results.model_object, self.fits)),
         }
         if self.table is not None:
@@ -127,11 +109,11 @@ class ComparisonAnswer(Answer):
             drawings["models-on-own-runs"] = Drawing(chart=lambda: runs_prediction_chart(self.of_runs, table))
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> "Mapping[str, str | Dataset]":
         """Errors as CSV, and every ratio as netCDF."""
         return {"models.csv": comparison_csv(self.fits), "models.nc": self._dataset()}
 
-    def _dataset(self) -> "xr.Dataset":
+    def _dataset(self) -> Dataset:
         """Every ratio and error over models and tests, and the predictions of the rig."""
         labelled = comparison_dataset(self.fits, self.predictions)
         return labelled if self.rig is None else labelled.assign_attrs(rig=self.rig.title)

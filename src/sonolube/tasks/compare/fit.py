@@ -1,21 +1,18 @@
 """Task `fit`: own measured runs against every model of friction under vibration, and what to measure next."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
-
-import xarray as xr
+from typing import Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Table
-from sonolube.report.results import ranked_models as results
+from sonolube.report.results import ranked_models
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import OptionalRig, OwnRuns, Parameter, Stop, Watch, file_stem, optional_rig
+from sonolube.tasks.parameters import File, OptionalRig, OwnRuns, Parameter, Watched, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
-from sonolube.validation.comparison import compared_models
+from sonolube.validation import comparison
 from sonolube.validation.runs_figures import runs_fit_chart
 from sonolube.validation.runs_fit import RunsFit, fit_runs
 from sonolube.validation.runs_tables import runs_fit_dataset
@@ -24,7 +21,7 @@ _CAPTION = (
     "Left: measured friction ratios of {runs} runs with their standard uncertainty, and the models of the least unseen"
     " error as curves. Right: root mean square errors of conditions that were left out of the fit, and of the fit."
 )
-_RUNS = Parameter(runs_help("Own measured runs, a row each"), kind="RUNS.csv", is_file=True)
+_RUNS = File(runs_help("Own measured runs, a row each"), "RUNS.csv")
 
 
 @task
@@ -33,9 +30,8 @@ def fit(
     *,
     rig: OptionalRig = None,
     mapping: MappedRuns = None,
-    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", kind="NAME")] = (),
-    progress: Watch = None,
-    cancelled: Stop = None,
+    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
+    **watch: Unpack[Watched],
 ) -> "FitAnswer":
     """Own runs against every applicable model: ranked by what each predicts unseen, and what to measure next.
 
@@ -51,8 +47,8 @@ def fit(
     """
     known, table = optional_rig(rig), runs_of(runs, mapping)
     with stage("fitting") as advance:
-        result = fit_runs(table, known, models=compared_models(model), advance=advance)
-    volts = None if known is None or "voltage_peak_to_peak" not in table else results.volts_per_amplitude(known)
+        result = fit_runs(table, known, models=comparison.compared_models(model), advance=advance)
+    volts = None if known is None or "voltage_peak_to_peak" not in table else ranked_models.volts_per_amplitude(known)
     return FitAnswer(fit=result, rig=known, volts_per_amplitude=volts, name=f"{file_stem(runs)}-fit")
 
 
@@ -71,16 +67,16 @@ class FitAnswer(Answer):
         scatter = "" if table.scatter is None else f", repeats scatter by {table.scatter:.3f}"
         return [
             f"{table.title}: {table.runs} runs under {len(table.conditions)} conditions{scatter}; errors of the ratio",
-            Table(("model", "k", "unseen", "fit", "AICc", ""), results.error_rows(self.fit)),
-            *results.parameter_lines(self.fit),
+            Table(("model", "k", "unseen", "fit", "AICc", ""), ranked_models.error_rows(self.fit)),
+            *ranked_models.parameter_lines(self.fit),
             f"  {self.fit.verdict}",
-            *(results.next_line(one, self.volts_per_amplitude) for one in self.fit.next_conditions),
-            *results.inapplicable_lines(self.fit),
+            *(ranked_models.next_line(one, self.volts_per_amplitude) for one in self.fit.next_conditions),
+            *ranked_models.inapplicable_lines(self.fit),
         ]
 
     def object(self) -> dict[str, Any]:
         """Models with errors, parameters and predictions, the verdict and the next conditions."""
-        return results.fit_object(self.fit)
+        return ranked_models.fit_object(self.fit)
 
     def caveats(self) -> Sequence[str]:
         """Runs that were left out or are copies, and the direction that is taken for the vibration."""
@@ -97,6 +93,6 @@ class FitAnswer(Answer):
         caption = _CAPTION.format(runs=self.fit.table.runs)
         return {self.name: Drawing(chart=lambda: runs_fit_chart(self.fit), caption=caption)}
 
-    def files(self) -> Mapping[str, xr.Dataset]:
+    def files(self) -> Mapping[str, Dataset]:
         """Every ratio, error and parameter as netCDF."""
         return {f"{self.name}.nc": runs_fit_dataset(self.fit)} if self.fit.models else {}

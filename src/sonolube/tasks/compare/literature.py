@@ -6,24 +6,22 @@ from typing import Annotated, Any
 
 from sonolube.facts.published import PreviousStudy, previous_studies
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results import studies as results
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, Block, answer, si
 from sonolube.tasks.files import NamedBytes
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import OptionalRig, Parameter, RunsSource, optional_rig
+from sonolube.tasks.parameters import File, OptionalRig, RunsSource, optional_rig
 from sonolube.tasks.task import task
 from sonolube.text.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint, study_chart
 from sonolube.validation.study_table import studies_of_runs, study_table
 
-_TABLE = Parameter(
+_TABLE = File(
     "Further studies to draw on the map, in the columns of studies.csv, which is written; each point with"
     " study, source and a friction, as in a table of runs. Or own runs of the laboratory, such as"
     " catalogue:material=brass,load=5N.",
-    kind="STUDIES.csv",
-    is_file=True,
+    "STUDIES.csv",
 )
 
 

@@ -1,13 +1,12 @@
 """Task `reproduce`: published numbers of the dissertation beside computed ones."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube.report import reproduction_files, summary_lines, validation_object
-from sonolube.report.blocks import Block
 from sonolube.reproduction import Reproduction, reproduction
-from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.parameters import Parameter, Stop, Watch
+from sonolube.tasks.answer import Answer, Block, answer
+from sonolube.tasks.parameters import Parameter, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
 
@@ -16,8 +15,7 @@ from sonolube.tasks.task import task
 def reproduce(
     *,
     chapter: Annotated[int | None, Parameter("Only this chapter: 2, 3 or 4.", lowest=2, highest=4)] = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "ReproductionAnswer":
     """Ten claims of the dissertation judged, and every published number beside the computed one, with figures.
 

@@ -2,17 +2,17 @@
 
 from typing import Annotated
 
-from sonolube.design.control import VibrationMode, assumed_mode
+from sonolube.design import control as loops
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
-from sonolube.tasks.parameters import Number, Parameter
+from sonolube.tasks.parameters import Number, Parameter, Quantity
 from sonolube.tasks.task import in_si, shown
 from sonolube.text.units import to_si
 
-Delay = Annotated[Number, Parameter("Delay of the friction measurement.", unit="s")]
-Rate = Annotated[Number, Parameter("Sampling rate of the controller.", unit="Hz")]
-ClosedLoop = Annotated[Number | None, Parameter("Time constant of the closed loop; the delay by default.", unit="s")]
-VoltageLimit = Annotated[Number | None, Parameter("Largest swing, peak to peak; the rig's own by default.", unit="V")]
+Delay = Annotated[Number, Quantity("Delay of the friction measurement.", "s")]
+Rate = Annotated[Number, Quantity("Sampling rate of the controller.", "Hz")]
+ClosedLoop = Annotated[Number | None, Quantity("Time constant of the closed loop; the delay by default.", "s")]
+VoltageLimit = Annotated[Number | None, Quantity("Largest swing, peak to peak; the rig's own by default.", "V")]
 Quality = Annotated[float, Parameter("Quality factor, where the rig has no structure.", lowest=0.6)]
 Coupling = Annotated[float, Parameter("Effective coupling, where it has none.", lowest=0.001, highest=0.999)]
 
@@ -37,7 +37,7 @@ def sampling_and_duration(*, rate: Number, duration: Number) -> tuple[float, flo
     return sampling, run_time
 
 
-def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[VibrationMode, dict[str, str]]:
+def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[loops.VibrationMode, dict[str, str]]:
     """Resonance at the frequency of the drive of a rig without a structure, with what is assumed of it.
 
     Parameters
@@ -52,7 +52,7 @@ def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[Vib
     dict of str to str
     """
     text = f"at the drive's frequency, quality factor {quality:g}, coupling {coupling:g}; not measured"
-    return assumed_mode(rig, quality_factor=quality, coupling_factor=coupling), {"resonance": text}
+    return loops.assumed_mode(rig, quality_factor=quality, coupling_factor=coupling), {"resonance": text}
 
 
 def friction_force(name: str, target: str | float, *, normal_load: float) -> float:

@@ -1,24 +1,16 @@
 """Task `control`: closed-loop control of the friction force of a rig, with its C source and lookup table."""
 
 from math import inf
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Unpack
 
-from sonolube.design.control import (
-    Amplifier,
-    ControlSettings,
-    Disturbance,
-    ThermalDrift,
-    VibrationMode,
-    amplitude_mode,
-    design_control,
-)
+from sonolube.design import control as loops
 from sonolube.design.control.stick_slip import stick_slip_suppression
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import EfficiencyLine
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
 from sonolube.tasks.design import closed_loop as loop
 from sonolube.tasks.design.control_answer import ControlAnswer
-from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si
@@ -44,7 +36,7 @@ def control(
     friction: Annotated[
         str | float | None,
         Parameter(
-            "Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.", kind="FRICTION"
+            "Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.", "FRICTION"
         ),
     ] = None,
     feed_forward: Annotated[
@@ -52,30 +44,29 @@ def control(
     ] = "model",
     efficiency: Annotated[
         Number | None,
-        Parameter("Efficiency at the rig's speed, in m2/N, instead of the published.", unit="m2/N", kind="COEFFICIENT"),
+        Quantity("Efficiency at the rig's speed, in m2/N, instead of the published.", "m2/N", kind="COEFFICIENT"),
     ] = None,
     delay: loop.Delay = "1ms",
     rate: loop.Rate = "5kHz",
-    noise: Annotated[Number, Parameter("Standard deviation of the sensor.", unit="N")] = "0N",
+    noise: Annotated[Number, Quantity("Standard deviation of the sensor.", "N")] = "0N",
     factor: Annotated[float, Parameter("Real friction over that of the model.", lowest=0.01, highest=100)] = 1.0,
     closed_loop: loop.ClosedLoop = None,
     amplitude_limit: Annotated[
-        Number | None, Parameter("Largest amplitude of a rig without a voltage; the rig's own by default.", unit="m")
+        Number | None, Quantity("Largest amplitude of a rig without a voltage; the rig's own by default.", "m")
     ] = None,
     voltage_limit: loop.VoltageLimit = None,
-    current_limit: Annotated[Number | None, Parameter("Largest current.", unit="A", kind="CURRENT")] = None,
-    slew_limit: Annotated[Number | None, Parameter("Fastest change of voltage.", unit="V/s", kind="V/s")] = None,
-    warming: Annotated[Number, Parameter("Final temperature rise, such as 40K.", unit="K")] = "0K",
+    current_limit: Annotated[Number | None, Quantity("Largest current.", "A", kind="CURRENT")] = None,
+    slew_limit: Annotated[Number | None, Quantity("Fastest change of voltage.", "V/s", kind="V/s")] = None,
+    warming: Annotated[Number, Quantity("Final temperature rise, such as 40K.", "K")] = "0K",
     warming_time: Annotated[
-        Number | None, Parameter("Time constant of the warming; a quarter of the run by default.", unit="s")
+        Number | None, Quantity("Time constant of the warming; a quarter of the run by default.", "s")
     ] = None,
     track: Annotated[bool, Parameter("Follow the resonance by the phase of the impedance.")] = True,
     quality: loop.Quality = 50.0,
     coupling: loop.Coupling = 0.2,
     stick_slip: Annotated[bool, Parameter("Also compute stick-slip of the slider on an elastic holder.")] = False,
-    duration: Annotated[Number, Parameter("Duration of the run.", unit="s")] = "0.2s",
-    progress: Watch = None,
-    cancelled: Stop = None,
+    duration: Annotated[Number, Quantity("Duration of the run.", "s")] = "0.2s",
+    **watch: Unpack[Watched],
 ) -> ControlAnswer:
     """Friction control: a tuned controller, its run in closed loop, its C source and its lookup table.
 
@@ -98,7 +89,7 @@ def control(
     if final_rise == 0:
         refuse_unused("warming_time", because=f"without {shown('warming')}")
     limits = _limits(known, amplitude_limit, voltage_limit, current_limit, slew_limit)
-    settings = ControlSettings(
+    settings = loops.ControlSettings(
         friction_force=None
         if friction is None
         else loop.friction_force("friction", friction, normal_load=known.normal_load),
@@ -109,15 +100,15 @@ def control(
         feed_forward=feed_forward,
         tracking=track,
         duration=run_time,
-        disturbance=Disturbance(friction_factor=factor, friction_force_deviation=in_si("noise", noise)),
-        drift=ThermalDrift(
+        disturbance=loops.Disturbance(friction_factor=factor, friction_force_deviation=in_si("noise", noise)),
+        drift=loops.ThermalDrift(
             final_temperature_rise=final_rise, warming_time=_value_or(run_time / 4, in_si("warming_time", warming_time))
         ),
     )
     with stage("controlling"):
         mode, assumed = _assumed(known, quality, coupling)
         line = _efficiency_line(in_si("efficiency", efficiency)) if feed_forward == "efficiency" else None
-        study = design_control(known, settings, mode=mode, line=line)
+        study = loops.design_control(known, settings, mode=mode, line=line)
         suppression = stick_slip_suppression(known, study) if stick_slip else None
     if commanded_quantity(known) is AMPLITUDE and amplitude_limit is None:
         own = format_si(own_level(known), "m")
@@ -135,7 +126,7 @@ def _limits(
     """Largest amplitude, or limits of the amplifier, as settings of the design."""
     if commanded_quantity(rig) is AMPLITUDE:
         return {"amplitude_maximum": _value_or(own_level(rig), in_si("amplitude_limit", amplitude_limit))}
-    amplifier = Amplifier(
+    amplifier = loops.Amplifier(
         voltage_maximum=_value_or(own_level(rig), in_si("voltage_limit", voltage_limit)),
         current_maximum=_value_or(inf, in_si("current_limit", current_limit)),
         slew_rate_maximum=_value_or(inf, in_si("slew_limit", slew_limit)),
@@ -143,13 +134,13 @@ def _limits(
     return {"amplifier": amplifier}
 
 
-def _assumed(rig: Rig, quality: float, coupling: float) -> tuple[VibrationMode | None, dict[str, str]]:
+def _assumed(rig: Rig, quality: float, coupling: float) -> tuple[loops.VibrationMode | None, dict[str, str]]:
     """Resonance of a rig without a structure, with what is assumed of it; None of one with a structure."""
     if rig.structure is not None:
         return None, {}
     if commanded_quantity(rig) is AMPLITUDE:
         text = f"the amplitude follows its set point as a resonance of quality factor {quality:g}; not measured"
-        return amplitude_mode(rig, quality_factor=quality), {"amplitude control": text}
+        return loops.amplitude_mode(rig, quality_factor=quality), {"amplitude control": text}
     return loop.assumed_resonance(rig, quality=quality, coupling=coupling)
 
 

@@ -1,20 +1,17 @@
 """Answer of `control`: controller, margins, step response and energy, with figures, C source and lookup table."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from sonolube.design.control import ControlDesign, ControlSettings, controller_source, figures, lookup_table
+from sonolube.design import control as loops
+from sonolube.design.control import figures
 from sonolube.design.control.run_results import control_dataset
 from sonolube.design.control.stick_slip import StickSlipSuppression
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.design import control_design as results
 from sonolube.report.results.rig_text import amplitude_rows, operating_point, rig_settings
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
-
-if TYPE_CHECKING:
-    import xarray as xr
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 
 
 @answer
@@ -22,8 +19,8 @@ class ControlAnswer(Answer):
     """A tuned controller with its margins, step response and energy, and stick-slip where it was computed."""
 
     rig: Rig
-    settings: ControlSettings
-    study: ControlDesign
+    settings: loops.ControlSettings
+    study: loops.ControlDesign
     suppression: StickSlipSuppression | None
     assumed: Mapping[str, str]
 
@@ -70,13 +67,13 @@ class ControlAnswer(Answer):
             )
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> "Mapping[str, str | Dataset]":
         """Run as netCDF, controller as C source, and its lookup table."""
         controller, title = self.study.controller, self.rig.title
         return {
             f"{self._name}.nc": control_dataset(self.study, title=f"Friction control of {title}"),
-            f"{self._name}.c": controller_source(controller, self.study.tracker, title=title),
-            f"{self._name}.csv": lookup_table(controller),
+            f"{self._name}.c": loops.controller_source(controller, self.study.tracker, title=title),
+            f"{self._name}.csv": loops.lookup_table(controller),
         }
 
     def page(self) -> Page:

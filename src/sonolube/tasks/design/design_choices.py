@@ -19,24 +19,8 @@ _WAVEFORM = "drive.waveform"
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
 
 
-def friction_ratio(rig: Rig, target: str | float) -> float:
-    """Target friction over friction without vibration, from a coefficient or a force.
-
-    Parameters
-    ----------
-    rig : Rig
-    target : str or float
-        Such as 0.1 or "0.3N".
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        If the target does not lie between zero and the friction without vibration.
-    """
+def target_ratio(rig: Rig, target: str | float) -> float:
+    """Target friction over friction without vibration, from a coefficient or a force."""
     force = friction_force("target_friction", target, normal_load=rig.normal_load)
     intrinsic = rig.friction_coefficient * rig.normal_load
     if not force < intrinsic:
@@ -45,14 +29,8 @@ def friction_ratio(rig: Rig, target: str | float) -> float:
     return force / intrinsic
 
 
-def horn(material_name: str | None, limit: float | None) -> HalfWaveHorn | None:
-    """Half-wave horn of a material with the stress amplitude allowed in it; None without both.
-
-    Raises
-    ------
-    InvalidInput
-        If one is given without the other.
-    """
+def half_wave_horn(material_name: str | None, limit: float | None) -> HalfWaveHorn | None:
+    """Half-wave horn of a material with the stress amplitude allowed in it; None without both."""
     if material_name is None and limit is None:
         return None
     if material_name is None or limit is None:
@@ -65,14 +43,8 @@ def horn(material_name: str | None, limit: float | None) -> HalfWaveHorn | None:
     )
 
 
-def bolt(thread: str | None, tension: float | None, strength: float) -> PreloadBolt | None:
-    """Preload bolt of a thread such as M6x40mm; None without thread and tension.
-
-    Raises
-    ------
-    InvalidInput
-        If one is given without the other, or the thread cannot be read.
-    """
+def bolt_of_thread(thread: str | None, tension: float | None, strength: float) -> PreloadBolt | None:
+    """Preload bolt of a thread such as M6x40mm; None without thread and tension."""
     if thread is None and tension is None:
         return None
     if thread is None or tension is None:
@@ -92,32 +64,7 @@ def design_space(
     mechanical_quality_factor: float,
     bolt: PreloadBolt | None,
 ) -> DesignSpace:
-    """Design space of actuators, frequencies, waveforms and entries of the structure.
-
-    Parameters
-    ----------
-    rig : Rig
-    over : mapping of str to str
-        Ranges by key, such as "50g:150g" of "structure.tip_mass"; names of "drive.waveform".
-    actuators : sequence of str
-        Names of the catalogue, "own" or "catalogue"; the rig's own where empty.
-    catalogue : InputFile or None
-        File of further actuators.
-    mechanical_quality_factor : float
-        Of the catalogue's ceramics. []
-    bolt : PreloadBolt or None
-
-    Returns
-    -------
-    DesignSpace
-
-    Raises
-    ------
-    InvalidInput
-        If a range cannot be read or a key cannot be chosen over.
-    UnknownName
-        If an entry of the structure is unknown.
-    """
+    """Design space of actuators, frequencies, waveforms and entries of the structure."""
     driven = driven_rig(rig)
     drive = driven.drive
     known: dict[str, CatalogueActuator] = {name: catalogue_actuator(name) for name in catalogue_names()}

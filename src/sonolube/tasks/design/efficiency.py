@@ -1,24 +1,29 @@
 """Task `efficiency`: efficiency line of a rig from measured runs, and the power that a friction force requires."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_chart
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.design import efficiency as results
 from sonolube.report.results.rig_text import rig_settings
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.design.closed_loop import friction_force
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Number, OwnRuns, Parameter, RigParameter, RigSource, file_stem, rig_of
+from sonolube.tasks.parameters import (
+    File,
+    Number,
+    OwnRuns,
+    Parameter,
+    Quantity,
+    RigParameter,
+    RigSource,
+    file_stem,
+    rig_of,
+)
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _CAPTION = (
     "Efficiency coefficient (equation 4.1 of the dissertation) of {runs} runs over sliding speed, with the line of"
@@ -29,15 +34,15 @@ _CAPTION = (
 
 @task
 def efficiency(
-    runs: Annotated[OwnRuns, Parameter("Measured runs, a row each.", kind="RUNS.csv", is_file=True)],
+    runs: Annotated[OwnRuns, File("Measured runs, a row each.", "RUNS.csv")],
     *,
     rig: Annotated[RigSource, RigParameter(without=("load", "amplitude"))],
     mapping: MappedRuns = None,
     target_friction: Annotated[
         str | float | None,
-        Parameter("Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.", kind="FRICTION"),
+        Parameter("Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.", "FRICTION"),
     ] = None,
-    speed: Annotated[Number | None, Parameter("Sliding speed of that target.", unit="m/s")] = None,
+    speed: Annotated[Number | None, Quantity("Sliding speed of that target.", "m/s")] = None,
     level: Annotated[float, Parameter("Confidence level.", lowest=0.5, highest=0.9999)] = 0.95,
 ) -> "EfficiencyAnswer":
     """Efficiency line from measured runs by the dissertation's section 4.1, and the power that a friction takes.
@@ -99,7 +104,7 @@ class EfficiencyAnswer(Answer):
         caption = _CAPTION.format(runs=self.calibration.fit.runs)
         return {self.name: Drawing(chart=lambda: efficiency_chart(self.calibration), caption=caption)}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Line and bands as netCDF."""
         return {f"{self.name}.nc": efficiency_dataset(self.calibration)}
 

@@ -1,7 +1,7 @@
 """Task `map`: friction reduction of a rig over two quantities, beside measured runs."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Unpack
 
 import numpy as np
 
@@ -14,38 +14,31 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block
 from sonolube.report.results.design import friction_map as results
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Backend, Parameter, RigFile, RunsSource, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Backend, File, KeyValues, Parameter, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
-_OVER = Parameter(
+_OVER = KeyValues(
     "Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
     " drive.frequency, drive.voltage_peak_to_peak or, without a voltage, vibration.vibration_amplitude. May come"
     " again.",
-    kind="KEY=VALUES",
-    is_mapping=True,
+    "KEY=VALUES",
 )
-_RUNS = Parameter(
+_RUNS = File(
     runs_help(
         "Measured runs to draw as points, and to interpolate from six on, with the quantities of both axes; a voltage"
         " gives its power, a load its stress. Columns"
     ),
-    kind="RUNS.csv",
+    "RUNS.csv",
     option="--runs --measured",
-    is_file=True,
 )
 
 
@@ -68,8 +61,7 @@ def map(  # noqa: A001 - the command's name
         Parameter("png, pdf, svg or an interactive html; may come again."),
     ] = (),
     backend: Backend = "cpu",
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "MapAnswer":
     """Map of friction reduction: over sliding speed or frequency, and stress, power, voltage or vibration amplitude.
 
@@ -109,9 +101,9 @@ class MapAnswer(Answer):
     """Map of friction reduction: its greatest value, the ridge of sufficient power, and the measured runs."""
 
     rig: Rig
-    mapped: "xr.Dataset"
-    runs: "xr.Dataset | None"
-    interpolated: "xr.Dataset | None"
+    mapped: Dataset
+    runs: "Dataset | None"
+    interpolated: "Dataset | None"
     forms: tuple[str, ...]
     left_out: tuple[str, ...] = ()
 
@@ -141,9 +133,9 @@ class MapAnswer(Answer):
             )
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> "Mapping[str, str | Dataset]":
         """Interactive page where it is wanted, and the datasets."""
-        files: dict[str, str | xr.Dataset] = {}
+        files: dict[str, str | Dataset] = {}
         if "html" in self.forms:
             files[f"{self._name}.html"] = map_page(self.mapped)
         files[f"{self._name}.nc"] = self.mapped

@@ -1,23 +1,19 @@
 """Answer of the task `optimise`: best designs, Pareto front, amplifier, matching networks and a rig file."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import tomli_w
 
 from sonolube.design.optimisation import OWN_ACTUATOR, DriveElectronics, Optimum, design_text, figures
 from sonolube.design.optimisation.designs_dataset import design_counts, designs_dataset
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results.design import optimum as results
 from sonolube.report.results.design.status_tables import count_table
 from sonolube.report.results.rig_text import operating_point, rig_settings
 from sonolube.rig import Rig, read_rig
 from sonolube.storage.input_files import input_text
-from sonolube.tasks.answer import Answer, answer
-
-if TYPE_CHECKING:
-    import xarray as xr
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
 
 
 @answer
@@ -80,7 +76,7 @@ class OptimisationAnswer(Answer):
         )
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> "Mapping[str, str | Dataset]":
         """All designs as netCDF, and the best as a rig file."""
         content = self.rig.content()
         file = self.rig.file

@@ -1,7 +1,7 @@
 """Task `optimise`: actuator, frequency, waveform and masses for a friction at least power, heat or voltage."""
 
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Unpack
 
 from sonolube.checks import require_positive
 from sonolube.design import optimisation
@@ -10,28 +10,27 @@ from sonolube.models.actuator import read_catalogue
 from sonolube.tasks.design import design_choices as choices
 from sonolube.tasks.design.optimisation_answer import OptimisationAnswer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Number, Parameter, RestingRig, Stop, Watch, rig_of
+from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, RestingRig, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 Objective = Literal["power", "heat", "voltage"]
 
-_OVER = Parameter(
+_OVER = KeyValues(
     "A range to choose from: drive.frequency or an entry of structure; or drive.waveform=one,two."
     " May come again; the frequency by a fifth either way by default.",
-    kind="KEY=FIRST:LAST",
-    is_mapping=True,
+    "KEY=FIRST:LAST",
 )
-_ACTUATOR = Parameter("own, a name that sonolube actuators lists, or catalogue. May come again.", kind="NAME")
-_CATALOGUE = Parameter("Further actuators, in the format of the built-in list.", kind="FILE.toml", is_file=True)
+_ACTUATOR = Parameter("own, a name that sonolube actuators lists, or catalogue. May come again.", "NAME")
+_CATALOGUE = File("Further actuators, in the format of the built-in list.", "FILE.toml")
 
 
 @task
 def optimise(
     rig: RestingRig,
     *,
-    target_friction: Annotated[str | float, Parameter("Coefficient or force, such as 0.1 or 0.3N.", kind="FRICTION")],
+    target_friction: Annotated[str | float, Parameter("Coefficient or force, such as 0.1 or 0.3N.", "FRICTION")],
     over: Annotated[Values | None, _OVER] = None,
     actuator: Annotated[Sequence[str], _ACTUATOR] = (),
     catalogue: Annotated[InputFile | None, _CATALOGUE] = None,
@@ -45,25 +44,24 @@ def optimise(
         Parameter("Fraction of built rigs that must reach it; the worst by default.", lowest=0.5, highest=1),
     ] = None,
     samples: Annotated[int, Parameter("Structures drawn for each actuator.", lowest=2, highest=4096)] = 16,
-    voltage_limit: Annotated[Number | None, Parameter("Highest voltage either way.", unit="V")] = None,
-    current_limit: Annotated[Number | None, Parameter("Highest current.", unit="A", kind="CURRENT")] = None,
-    slew_limit: Annotated[Number | None, Parameter("Fastest change, such as 3V/us.", unit="V/s", kind="RATE")] = None,
-    stress_limit: Annotated[Number | None, Parameter("Highest nominal stress.", unit="Pa", kind="STRESS")] = None,
-    temperature_limit: Annotated[Number | None, Parameter("Highest temperature rise, such as 40K.", unit="K")] = None,
+    voltage_limit: Annotated[Number | None, Quantity("Highest voltage either way.", "V")] = None,
+    current_limit: Annotated[Number | None, Quantity("Highest current.", "A", kind="CURRENT")] = None,
+    slew_limit: Annotated[Number | None, Quantity("Fastest change, such as 3V/us.", "V/s", kind="RATE")] = None,
+    stress_limit: Annotated[Number | None, Quantity("Highest nominal stress.", "Pa", kind="STRESS")] = None,
+    temperature_limit: Annotated[Number | None, Quantity("Highest temperature rise, such as 40K.", "K")] = None,
     conductance: Annotated[
-        Number | None, Parameter("Thermal conductance of the actuator, such as 0.5W/K.", unit="W/K", kind="CONDUCTANCE")
+        Number | None, Quantity("Thermal conductance of the actuator, such as 0.5W/K.", "W/K", kind="CONDUCTANCE")
     ] = None,
-    horn: Annotated[str | None, Parameter("Of a half-wave horn at the tip.", kind="MATERIAL")] = None,
-    horn_limit: Annotated[Number | None, Parameter("Stress amplitude allowed in it.", unit="Pa", kind="STRESS")] = None,
-    bolt: Annotated[str | None, Parameter("Preload bolt, such as M6x40mm.", kind="THREAD")] = None,
-    preload: Annotated[Number | None, Parameter("Tension of the bolt.", unit="N")] = None,
-    bolt_strength: Annotated[Number, Parameter("Proof strength; class 8.8.", unit="Pa", kind="STRESS")] = "640MPa",
+    horn: Annotated[str | None, Parameter("Of a half-wave horn at the tip.", "MATERIAL")] = None,
+    horn_limit: Annotated[Number | None, Quantity("Stress amplitude allowed in it.", "Pa", kind="STRESS")] = None,
+    bolt: Annotated[str | None, Parameter("Preload bolt, such as M6x40mm.", "THREAD")] = None,
+    preload: Annotated[Number | None, Quantity("Tension of the bolt.", "N")] = None,
+    bolt_strength: Annotated[Number, Quantity("Proof strength; class 8.8.", "Pa", kind="STRESS")] = "640MPa",
     quality: Annotated[float, Parameter("Mechanical quality factor of the catalogue's ceramics.")] = 80.0,
     source_resistance: Annotated[
-        Number | None, Parameter("To match by two elements, such as 50ohm.", unit="ohm", kind="RESISTANCE")
+        Number | None, Quantity("To match by two elements, such as 50ohm.", "ohm", kind="RESISTANCE")
     ] = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> OptimisationAnswer:
     """Design: actuator, frequency, waveform and masses that give a friction for least power, heat or voltage.
 
@@ -87,7 +85,7 @@ def optimise(
         actuators=actuator,
         catalogue=catalogue,
         mechanical_quality_factor=quality,
-        bolt=choices.bolt(bolt, in_si("preload", preload), in_si("bolt_strength", bolt_strength)),
+        bolt=choices.bolt_of_thread(bolt, in_si("preload", preload), in_si("bolt_strength", bolt_strength)),
     )
     limits = optimisation.Limits(
         voltage_maximum=in_si("voltage_limit", voltage_limit),
@@ -96,11 +94,11 @@ def optimise(
         nominal_pressure=in_si("stress_limit", stress_limit),
         temperature_rise=in_si("temperature_limit", temperature_limit),
         thermal_conductance=in_si("conductance", conductance),
-        horn=choices.horn(horn, in_si("horn_limit", horn_limit)),
+        horn=choices.half_wave_horn(horn, in_si("horn_limit", horn_limit)),
     )
     problem = optimisation.DesignProblem(
         space=space,
-        friction_ratio=choices.friction_ratio(known, target_friction),
+        friction_ratio=choices.target_ratio(known, target_friction),
         limits=limits,
         tolerance=None if robust is None else optimisation.Tolerance(manufacturing_tolerance=robust, quantile=quantile),
     )

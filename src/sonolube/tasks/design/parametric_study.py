@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,30 +15,15 @@ from sonolube.design.point_statistics import failure_counts
 from sonolube.errors import InvalidInput
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
-from sonolube.report.results.design import parametric_study as results
+from sonolube.report.results.design import parametric_study as study_results
 from sonolube.report.results.design.status_tables import failure_objects
 from sonolube.report.results.rig_text import amplitude_object, amplitude_rows, friction_model_text
-from sonolube.rig import (
-    AMPLITUDE,
-    STUDY_CHARTS,
-    VOLTAGE,
-    Rig,
-    commanded_quantity,
-    frequency_grid,
-    operating_caveats,
-    operating_points,
-)
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown
 from sonolube.text.units import format_si, to_si
 from sonolube.vocabulary import unit_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _POINTS_AT_RESONANCE = 41  # frequencies about each resonance
 _MAX_POINTS = 10_000
@@ -71,7 +56,7 @@ _RANGES = {
 
 
 def parametric_study(
-    rig: Rig,
+    rig: rigs.Rig,
     *,
     of: str,
     lowest: str | None,
@@ -80,32 +65,7 @@ def parametric_study(
     voltages: Sequence[str],
     amplitudes: Sequence[str],
 ) -> "ParametricStudyAnswer":
-    """Study of a rig over one quantity.
-
-    Parameters
-    ----------
-    rig : Rig
-    of : str
-        "voltage", "amplitude", "speed", "frequency", "power", "waveform" or "load".
-    lowest, highest : str or None
-        Ends of the range with their units; the default ones where None.
-    points : int or None
-        Number of values.
-    voltages : sequence of str
-        Drive voltage of each curve over speed or frequency, with its unit.
-    amplitudes : sequence of str
-        Vibration amplitude of each curve over speed, with its unit, of a rig without a voltage.
-
-    Returns
-    -------
-    ParametricStudyAnswer
-
-    Raises
-    ------
-    InvalidInput
-        If the rig lacks the structure or voltage of the study, the range is empty, an option has no meaning for the
-        study, or no point has a result.
-    """
+    """Study of a rig over one quantity, whose range has ends with units; default ones where None."""
     _require_studied(rig, of)
     curves = _curves(rig, of, voltages, amplitudes)
     if of == "waveform":
@@ -114,7 +74,7 @@ def parametric_study(
                 f"{shown('lowest')}, {shown('highest')} and {shown('points')} have no meaning for {shown('of')}"
                 " waveform, which runs over names"
             )
-        run: Callable[..., xr.Dataset] = partial(rigs.waveform_study, rig)
+        run: Callable[..., Dataset] = partial(rigs.waveform_study, rig)
     else:
         usual = _RANGES[of]
         values = {usual.quantity: _values(rig, of, lowest, highest, points)}
@@ -132,16 +92,16 @@ def parametric_study(
 class ParametricStudyAnswer(Answer):
     """Least friction over one quantity, and the points without a result."""
 
-    rig: Rig
+    rig: rigs.Rig
     of: str
-    study: "xr.Dataset"
+    study: Dataset
 
     def blocks(self) -> Sequence[Block]:
         """Main results over the quantity, and the points without a result."""
         points, load = self.study["status"].size, format_si(self.rig.normal_load, "N")
         return [
             f"{self.rig.title}, {load}, {points} points, {friction_model_text(self.rig)}",
-            Rows([*amplitude_rows(self.rig), *results.rows(self.study, self.of)]),
+            Rows([*amplitude_rows(self.rig), *study_results.rows(self.study, self.of)]),
             *[f"  without result: {count} of {points}: {reason}" for reason, count in self.failures().items()],
         ]
 
@@ -152,7 +112,7 @@ class ParametricStudyAnswer(Answer):
             "study": self.of,
             "friction_model": self.rig.friction_model.name,
             **amplitude_object(self.rig),
-            "least_friction": results.best_objects(self.study),
+            "least_friction": study_results.best_objects(self.study),
             "points": int(self.study["status"].size),
             "without_result": failure_objects(self.failures()),
         }
@@ -163,17 +123,17 @@ class ParametricStudyAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point."""
-        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.study["friction_ratio"].values))
+        return (*rigs.operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.study["friction_ratio"].values))
 
     def figures(self) -> Mapping[str, Drawing]:
         """Figure of the study."""
 
         def chart() -> Chart:
-            return replace(STUDY_CHARTS[self.of](self.study), title=self.study.attrs["rig"])
+            return replace(rigs.STUDY_CHARTS[self.of](self.study), title=self.study.attrs["rig"])
 
         return {self._name: Drawing(chart=chart)}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Every point as netCDF."""
         return {f"{self._name}.nc": self.study}
 
@@ -182,14 +142,16 @@ class ParametricStudyAnswer(Answer):
         return failure_counts(self.study, outcome="friction_ratio")
 
 
-def _curves(rig: Rig, of: str, voltages: Sequence[str], amplitudes: Sequence[str]) -> dict[str, Any]:
+def _curves(rig: rigs.Rig, of: str, voltages: Sequence[str], amplitudes: Sequence[str]) -> dict[str, Any]:
     """Voltages or amplitudes of the curves of a study by name; empty where none are given."""
     if voltages and of not in ("speed", "frequency"):
         raise InvalidInput(f"{shown('voltage')} has no meaning for {shown('of')} {of}; it is for speed and frequency")
     if amplitudes and of != "speed":
         raise InvalidInput(f"{shown('vibration')} has no meaning for {shown('of')} {of}; it is for speed")
-    own = commanded_quantity(rig)
-    name, texts, others = ("voltage", voltages, amplitudes) if own is VOLTAGE else ("vibration", amplitudes, voltages)
+    own = rigs.commanded_quantity(rig)
+    name, texts, others = (
+        ("voltage", voltages, amplitudes) if own is rigs.VOLTAGE else ("vibration", amplitudes, voltages)
+    )
     if others:
         raise InvalidInput(f"{rig.title}: its {own.word} sets its vibration; give {shown(name)} of each curve")
     if not texts:
@@ -198,7 +160,7 @@ def _curves(rig: Rig, of: str, voltages: Sequence[str], amplitudes: Sequence[str
     return {own.name: require_positive(**{own.name: read})}
 
 
-def studies_of(rig: Rig) -> list[str]:
+def studies_of(rig: rigs.Rig) -> list[str]:
     """Names of the studies over one quantity that a rig has."""
     found = []
     for name in _RANGES | {"waveform": None}:
@@ -208,12 +170,12 @@ def studies_of(rig: Rig) -> list[str]:
     return found
 
 
-def _require_studied(rig: Rig, of: str) -> None:
+def _require_studied(rig: rigs.Rig, of: str) -> None:
     """Raise if a rig lacks the structure that a study computes, or another quantity sets its vibration."""
     resolved = resolved_rig(rig)
-    own = commanded_quantity(resolved)
-    if of in (VOLTAGE.word, AMPLITUDE.word) and of != own.word:
-        why = "has no drive voltage" if own is AMPLITUDE else "has a drive voltage, which sets its amplitude"
+    own = rigs.commanded_quantity(resolved)
+    if of in (rigs.VOLTAGE.word, rigs.AMPLITUDE.word) and of != own.word:
+        why = "has no drive voltage" if own is rigs.AMPLITUDE else "has a drive voltage, which sets its amplitude"
         raise InvalidInput(f"{rig.title} {why}: take {shown('of')} {own.word}")
     if of in _OF_STRUCTURE:
         _ = resolved.moved  # which refuses a rig without a structure that moves it
@@ -221,7 +183,7 @@ def _require_studied(rig: Rig, of: str) -> None:
         _ = resolved.vibration  # which refuses a rig without an amplitude
 
 
-def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None) -> Floats:
+def _values(rig: rigs.Rig, of: str, lowest: str | None, highest: str | None, points: int | None) -> Floats:
     """Values that a study runs over."""
     usual = _RANGES[of]
     unit = unit_of(usual.quantity)
@@ -237,13 +199,13 @@ def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: 
     if not 2 <= count <= _MAX_POINTS:
         raise InvalidInput(f"{shown('points')} {count} must lie between 2 and {_MAX_POINTS} for {shown('of')} {of}")
     if of in ("frequency", "power"):
-        return frequency_grid(rig, lowest=low, highest=high, points=count, resonance_points=_POINTS_AT_RESONANCE)
+        return rigs.frequency_grid(rig, lowest=low, highest=high, points=count, resonance_points=_POINTS_AT_RESONANCE)
     return np.geomspace(low, high, count) if usual.even_ratios else np.linspace(low, high, count)
 
 
-def _present_ratio(rig: Rig) -> float:
+def _present_ratio(rig: rigs.Rig) -> float:
     """Friction ratio of the rig as it is driven."""
-    own = operating_points(rig)
+    own = rigs.operating_points(rig)
     if bool(own.failed):
         raise InvalidInput(f"{rig.title} has no friction ratio of its own to be had elsewhere: {own.reason}")
     return float(own.friction_ratio)

@@ -15,7 +15,7 @@ from sonolube.prediction.inputs import RigInputs, rig_inputs
 from sonolube.rig import Rig
 from sonolube.tasks.design.plan_answer import PlanAnswer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Disc, Number, Parameter, Pin, RigFile, RunsSource, rig_of
+from sonolube.tasks.parameters import Disc, File, Number, Parameter, Pin, Quantity, RigFile, RunsSource, rig_of
 from sonolube.tasks.task import in_si, shown, task
 
 _SPEEDS, _AMPLITUDES = 7, 5  # values of a range without a count
@@ -28,26 +28,21 @@ def plan(
     rig: RigFile,
     *,
     runs: Annotated[
-        RunsSource,
-        Parameter("Own earlier runs: they give the scatter and update the prediction.", kind="RUNS.csv", is_file=True),
+        RunsSource, File("Own earlier runs: they give the scatter and update the prediction.", "RUNS.csv")
     ] = None,
     mapping: MappedRuns = None,
     speed: Annotated[
         str | None,
-        Parameter(
-            "Sliding speeds, such as 20:200mm/s or 20,40,87mm/s; by default 1/3 to 3 times the rig's.", kind="VALUES"
-        ),
+        Parameter("Sliding speeds, such as 20:200mm/s or 20,40,87mm/s; by default 1/3 to 3 times the rig's.", "VALUES"),
     ] = None,
-    load: Annotated[str | None, Parameter("Normal loads, such as 3,5,7N; the rig's by default.", kind="VALUES")] = None,
+    load: Annotated[str | None, Parameter("Normal loads, such as 3,5,7N; the rig's by default.", "VALUES")] = None,
     vibration: Annotated[
         str | None,
-        Parameter("Vibration amplitudes, such as 0.5:2.3um; by default 1/5 of the rig's up to it.", kind="VALUES"),
+        Parameter("Vibration amplitudes, such as 0.5:2.3um; by default 1/5 of the rig's up to it.", "VALUES"),
     ] = None,
-    voltage: Annotated[
-        str | None, Parameter("Drive voltages, peak to peak, instead of amplitudes.", kind="VALUES")
-    ] = None,
+    voltage: Annotated[str | None, Parameter("Drive voltages, peak to peak, instead of amplitudes.", "VALUES")] = None,
     points: Annotated[int, Parameter("Number of conditions to test.", lowest=1)] = 4,
-    difference: Annotated[Number, Parameter("Friction reduction to be shown.", unit="", kind="SHARE")] = "10%",
+    difference: Annotated[Number, Quantity("Friction reduction to be shown.", "", kind="SHARE")] = "10%",
     power: Annotated[float, Parameter("Probability to show it where it is there.")] = 0.9,
     significance: Annotated[float, Parameter("Probability to show it where it is not.")] = 0.05,
     comparison: Annotated[
@@ -56,24 +51,22 @@ def plan(
     ] = "paired",
     scatter: Annotated[
         Number | None,
-        Parameter("Standard deviation of friction between runs; by the runs, or D Table 2.3.", unit="", kind="SHARE"),
+        Quantity("Standard deviation of friction between runs; by the runs, or D Table 2.3.", "", kind="SHARE"),
     ] = None,
     block: Annotated[
         Literal["day", "pair"], Parameter("What the runs of a block share: a day, or one pair of pin and disc.")
     ] = "day",
     running_in: Annotated[
         Number | None,
-        Parameter(
-            "Sliding until friction is steady; the longest of the dissertation's Table 2.3 by default.", unit="m"
-        ),
+        Quantity("Sliding until friction is steady; the longest of the dissertation's Table 2.3 by default.", "m"),
     ] = None,
-    measuring_time: Annotated[Number, Parameter("In steady friction, in each state.", unit="s")] = "12s",
+    measuring_time: Annotated[Number, Quantity("In steady friction, in each state.", "s")] = "12s",
     amplifier_voltage: Annotated[
-        Number | None, Parameter("Greatest voltage of the amplifier, offset included.", unit="V")
+        Number | None, Quantity("Greatest voltage of the amplifier, offset included.", "V")
     ] = None,
-    amplifier_power: Annotated[Number | None, Parameter("Greatest power of the amplifier.", unit="W")] = None,
+    amplifier_power: Annotated[Number | None, Quantity("Greatest power of the amplifier.", "W")] = None,
     temperature_rise: Annotated[
-        Number, Parameter("Greatest rise of the contact by friction; needs both materials.", unit="K")
+        Number, Quantity("Greatest rise of the contact by friction; needs both materials.", "K")
     ] = "50K",
     pin: Pin = None,
     disc: Disc = None,

@@ -9,11 +9,10 @@ from sonolube.design.test_plan.run_protocols import run_protocols
 from sonolube.design.test_plan.run_table import has_results, run_table
 from sonolube.facts.protocol import Protocol, protocol_text
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.pin_on_disc_sheet import pin_on_disc_checklist
 from sonolube.report.results.design import plan_of_tests as results
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Rows, Table, answer
 
 _CAPTION = (
     "Left: candidates over speed and amplitude, coloured by the information that the replicates at one of them are"

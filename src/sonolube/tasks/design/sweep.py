@@ -3,34 +3,27 @@
 from collections.abc import Mapping, Sequence
 from glob import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Unpack
 
-from sonolube import design
+from sonolube import design, rig as rigs
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.backend import usable_backend
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block
 from sonolube.report.results.design import sweep as results
-from sonolube.rig import Rig, operating_caveats
 from sonolube.storage.files import expect_files
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.design.parametric_study import ParametricStudyAnswer, parametric_study
-from sonolube.tasks.parameters import Backend, Keep, Parameter, RigFile, Stop, Watch, kept, rig_of
+from sonolube.tasks.parameters import Backend, Keep, KeyValues, Parameter, RigFile, Watched, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, ends_by_key, refuse_replaced, values_by_key
 from sonolube.tasks.task import refuse_unused, shown, task
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
-_OVER = Parameter(
+_OVER = KeyValues(
     "A key of the file with its values: first:last:count, first:last:count:log or one,two,...;"
     " first:last alone for the sample lhs. May come again.",
-    kind="KEY=VALUES",
-    is_mapping=True,
+    "KEY=VALUES",
 )
 _CAPTIONS = {1: "Results of the rig over the key that was swept.", 2: "Friction over both keys that were swept."}
 _CLOUD_CAPTION = (
@@ -52,8 +45,8 @@ def sweep(
         Literal["voltage", "amplitude", "speed", "frequency", "power", "waveform", "load"] | None,
         Parameter("One quantity over its usual range, with a figure of its own."),
     ] = None,
-    lowest: Annotated[str | None, Parameter("With of: lowest value.", kind="QUANTITY", option="--from")] = None,
-    highest: Annotated[str | None, Parameter("With of: highest value.", kind="QUANTITY", option="--to")] = None,
+    lowest: Annotated[str | None, Parameter("With of: lowest value.", "QUANTITY", option="--from")] = None,
+    highest: Annotated[str | None, Parameter("With of: highest value.", "QUANTITY", option="--to")] = None,
     points: Annotated[
         int | None, Parameter("Number of points to draw for the sample lhs, or of values of one quantity.", lowest=1)
     ] = None,
@@ -62,7 +55,7 @@ def sweep(
     ] = (),
     vibration: Annotated[
         Sequence[str],
-        Parameter("With of speed: amplitude of a curve, of a rig without a voltage. May come again.", kind="LENGTH"),
+        Parameter("With of speed: amplitude of a curve, of a rig without a voltage. May come again.", "LENGTH"),
     ] = (),
     sample: Annotated[
         Literal["grid", "lhs", "list"],
@@ -71,13 +64,12 @@ def sweep(
     seed: Annotated[int, Parameter("Of the points drawn.", lowest=0)] = 0,
     workers: Annotated[int, Parameter("Threads, or processes of a local cluster.", lowest=1)] = 2,
     scheduler: Annotated[
-        str | None, Parameter("Dask scheduler, or local for processes on this machine.", kind="ADDRESS")
+        str | None, Parameter("Dask scheduler, or local for processes on this machine.", "ADDRESS")
     ] = None,
     chunk: Annotated[int, Parameter("Points computed and kept together.", lowest=1)] = 100_000,
     backend: Backend = "cpu",
     keep: Keep = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "SweepAnswer | ParametricStudyAnswer":
     """Sweep: the rig over any of its parameters, or over one quantity; with a status for each point.
 
@@ -130,9 +122,9 @@ def sweep(
 class SweepAnswer(Answer):
     """Points of a sweep by status, reasons of those without a result, and the point of least friction."""
 
-    rig: Rig
+    rig: rigs.Rig
     plan: SweepPlan
-    result: "xr.Dataset"
+    result: Dataset
     folder: Path | None
 
     def blocks(self) -> Sequence[Block]:
@@ -145,7 +137,7 @@ class SweepAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point, and the meaning of ratios below 0 and above 1."""
-        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.result["friction_ratio"].values))
+        return (*rigs.operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.result["friction_ratio"].values))
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction over the keys that were swept."""
@@ -153,7 +145,7 @@ class SweepAnswer(Answer):
         caption = _CLOUD_CAPTION if listed else _CAPTIONS.get(len(swept_variables(self.result)), _CLOUD_CAPTION)
         return {"sweep": Drawing(chart=lambda: sweep_chart(self.result), caption=caption)}
 
-    def files(self) -> "Mapping[str, Path | xr.Dataset]":
+    def files(self) -> "Mapping[str, Path | Dataset]":
         """Dataset, which the sweep itself has written where there is a folder."""
         return {"sweep.nc": self.result if self.folder is None else self.folder / "sweep.nc"}
 
@@ -162,7 +154,7 @@ class SweepAnswer(Answer):
         return results.sweep_page(self.rig, self.plan, self.result)
 
 
-def _plan(rig: Rig, over: Values, sample: str, points: int | None, seed: int) -> SweepPlan:
+def _plan(rig: rigs.Rig, over: Values, sample: str, points: int | None, seed: int) -> SweepPlan:
     """Points of a sweep on a grid, in a list, or drawn by Latin hypercube."""
     if sample == "lhs":
         if points is None:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, Unpack
 
 import numpy as np
 
@@ -16,21 +16,26 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
 from sonolube.report import Drawing, Page
-from sonolube.report.blocks import Block
 from sonolube.report.results.beyond_the_model import BeyondTheModel, beyond_the_model
 from sonolube.report.results.design import uncertainty as results
 from sonolube.report.results.design.uncertain_entries import agreement
 from sonolube.rig import Rig, operating_caveats, steady_vibration
-from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.parameters import DoorParameter, Interval, Kept, Parameter, RigFile, Stop, Watch, kept, rig_of
+from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
+from sonolube.tasks.parameters import (
+    DoorParameter,
+    Interval,
+    Kept,
+    KeyValues,
+    Parameter,
+    RigFile,
+    Watched,
+    kept,
+    rig_of,
+)
 from sonolube.tasks.progress import stage
 from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
 _OF_THE_MODEL = ("friction_ratio", "friction_reduction")  # outcomes that have the error of the friction model
@@ -43,7 +48,7 @@ def uncertainty(
     rig: RigFile,
     *,
     of: Annotated[
-        str, Parameter("The outcome, such as vibration_amplitude or wear_rate_ratio.", kind="QUANTITY")
+        str, Parameter("The outcome, such as vibration_amplitude or wear_rate_ratio.", "QUANTITY")
     ] = "friction_ratio",
     samples: Annotated[
         int, Parameter("Number of samples, up to the next power of two; for Sobol indices of each block.", lowest=32)
@@ -53,10 +58,9 @@ def uncertainty(
     ] = False,
     over: Annotated[
         Values | None,
-        Parameter(
+        KeyValues(
             "A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
-            kind="KEY=VALUES",
-            is_mapping=True,
+            "KEY=VALUES",
         ),
     ] = None,
     identified: Annotated[
@@ -66,8 +70,7 @@ def uncertainty(
     workers: Annotated[int, Parameter("Threads.", lowest=1)] = 2,
     interval: Interval = True,
     keep: Annotated[Kept | None, DoorParameter(files="sweep.nc sweep.json")] = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "UncertaintyAnswer":
     """Uncertainty of an outcome from the distributions in the rig's file, and which entry to measure better.
 
@@ -110,7 +113,7 @@ class UncertaintyAnswer(Answer):
     """Statistics of an uncertain outcome, or its band over swept keys, and the ranking of the uncertain entries."""
 
     rig: Rig
-    result: "xr.Dataset"
+    result: Dataset
     structure: IdentifiedStructure | None
     interval: bool = True
 
@@ -140,16 +143,15 @@ class UncertaintyAnswer(Answer):
         if self.structure is not None and not self.structure.posterior.has_converged:
             caveats.append(agreement(self.structure))
         meaning = ratio_caveats(friction_ratio=self.result[self._of].values) if self._of == "friction_ratio" else ()
-        return [*caveats, *operating_caveats(self.rig), *meaning]
+        return [*caveats, *operating_caveats(self._resolved), *meaning]
 
     def leading_caveats(self) -> Sequence[str]:
         """An amplitude beyond that of all published tests, where friction is the outcome."""
         if self._of not in _OF_THE_MODEL:
             return ()
         try:
-            resolved = resolved_rig(self.rig)
-            amplitude = steady_vibration(resolved).vibration_amplitude
-            return large_amplitude_caveats(resolved, vibration_amplitude=amplitude)
+            amplitude = steady_vibration(self._resolved).vibration_amplitude
+            return large_amplitude_caveats(self._resolved, vibration_amplitude=amplitude)
         except SonolubeError:  # at the values of the file, which need not be those of the samples
             return ()
 
@@ -163,7 +165,7 @@ class UncertaintyAnswer(Answer):
         ranking = Drawing(chart=lambda: sobol_chart(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
         return {self._name: outcome, f"{self._name}-sobol": ranking}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Samples as netCDF."""
         return {f"{self._name}.nc": self.result}
 
@@ -203,6 +205,11 @@ class UncertaintyAnswer(Answer):
         return results.statistics_rows(self._statistics, self._of)
 
     @cached_property
+    def _resolved(self) -> ResolvedRig:
+        """Rig at its own operating point."""
+        return resolved_rig(self.rig)
+
+    @cached_property
     def _statistics(self) -> SampleStatistics:
         """Mean, deviation and quantiles of the outcome."""
         return outcome_statistics(self.result)
@@ -215,7 +222,7 @@ class UncertaintyAnswer(Answer):
     @cached_property
     def _beyond(self) -> BeyondTheModel:
         """Uncertainty of the friction ratio that the samples leave out."""
-        return beyond_the_model(self.rig, self.rig.friction_model, interval=self.interval)
+        return beyond_the_model(self._resolved, self.rig.friction_model, interval=self.interval)
 
     def _error_rows(self) -> list[tuple[str, str]]:
         """The same as names and texts."""

@@ -2,22 +2,18 @@
 
 from collections.abc import Mapping, Sequence
 from math import isnan
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
-from sonolube.report.results.parts import horn_face as results
+from sonolube.report.results.parts import horn_face
 from sonolube.reproduction.chapter2.horn_figures import face_friction_chart
 from sonolube.reproduction.chapter2.horn_friction import FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.cube import Horn
-from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
+from sonolube.tasks.parameters import Number, Parameter, Quantity, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ASSUMED = {
     "horn": "ends tapered to 3/4 in over their last inch, handbook constants, by which both have the printed mode",
@@ -29,19 +25,12 @@ _ASSUMED = {
 
 @task
 def face(
-    horn: Annotated[Horn, Parameter("Material of the horn: aluminium or steel.", kind="HORN")],
+    horn: Annotated[Horn, Parameter("Material of the horn: aluminium or steel.", "HORN")],
     *,
-    frequency: Annotated[
-        Number, Parameter("Of the drive on the horn's end.", unit="Hz", quantity="frequency")
-    ] = "20kHz",
-    amplitude: Annotated[
-        Number, Parameter("Of the driven end, zero to peak.", unit="m", quantity="vibration_amplitude")
-    ] = "8.5um",
-    sliding_speed: Annotated[
-        Number, Parameter("Of the block towards the node.", unit="m/s", quantity="sliding_speed")
-    ] = "5mm/s",
-    progress: Watch = None,
-    cancelled: Stop = None,
+    frequency: Annotated[Number, Quantity("Of the drive on the horn's end.", "frequency")] = "20kHz",
+    amplitude: Annotated[Number, Quantity("Of the driven end, zero to peak.", "vibration_amplitude")] = "8.5um",
+    sliding_speed: Annotated[Number, Quantity("Of the block towards the node.", "sliding_speed")] = "5mm/s",
+    **watch: Unpack[Watched],
 ) -> "FaceAnswer":
     """Friction of a block along the face of a Poisson horn: its transition and motor regions.
 
@@ -78,11 +67,11 @@ class FaceAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Node, regions, and the greatest motor force."""
-        return results.face_blocks(self.horn, self.friction)
+        return horn_face.face_blocks(self.horn, self.friction)
 
     def object(self) -> dict[str, Any]:
         """Node, limits of the transition region computed and measured, least friction ratio."""
-        return results.face_object(self.horn, self.friction)
+        return horn_face.face_object(self.horn, self.friction)
 
     def caveats(self) -> Sequence[str]:
         """A side of the face that drives nowhere."""
@@ -98,7 +87,7 @@ class FaceAnswer(Answer):
         """Friction over the position on the face."""
         return {f"horn-{self.horn}-face": Drawing(chart=lambda: face_friction_chart(self.horn, self.friction))}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Friction ratio over the position as netCDF."""
         import xarray as xr
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 
@@ -17,18 +17,16 @@ from sonolube.models.fem import generate_mesh, medium_from_material, step_text
 from sonolube.models.fem.results.figures import mode_figure, shaped_surface
 from sonolube.models.fem.results.part_modes import longest_axis
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results.parts import tuned_horn as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, Watched
 from sonolube.tasks.parts.named_parts import Axis, PartSizes, is_step, part_name, step_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import to_si
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 _COARSE = 0.02  # m, fine enough to show the longest axis of most parts
@@ -39,40 +37,26 @@ _SHARP = 0.2  # change of the peak stress from mesh to mesh above which it is a 
 def design(
     part: Annotated[
         InputFile,
-        Parameter(
-            "block, booster, conical_horn, cylinder, exponential_horn, stepped_horn, or a STEP file.",
-            kind="PART",
-            is_file=True,
-        ),
+        File("block, booster, conical_horn, cylinder, exponential_horn, stepped_horn, or a STEP file.", "PART"),
     ] = "stepped_horn",
     *,
-    frequency: Annotated[
-        Number, Parameter("Frequency of the tuned mode, such as 20kHz.", unit="Hz", quantity="frequency")
-    ],
-    material: Annotated[str, Parameter("Material of the horn.", kind="NAME")],
+    frequency: Annotated[Number, Quantity("Frequency of the tuned mode, such as 20kHz.", "frequency")],
+    material: Annotated[str, Parameter("Material of the horn.", "NAME")],
     sizes: Annotated[
-        PartSizes | None,
-        Parameter(
-            "A size, such as radius=20mm; others are chosen.", kind="SIZE=VALUE", option="--set", is_mapping=True
-        ),
+        PartSizes | None, KeyValues("A size, such as radius=20mm; others are chosen.", "SIZE=VALUE", option="--set")
     ] = None,
     gain: Annotated[
-        Number | None,
-        Parameter("Displacement gain by which the radius of the working end is chosen.", unit="", kind="RATIO"),
+        Number | None, Quantity("Displacement gain by which the radius of the working end is chosen.", "", kind="RATIO")
     ] = None,
-    tune: Annotated[str, Parameter("Length that is tuned.", kind="SIZE")] = "length",
-    mode: Annotated[str, Parameter("Mode that is tuned.", kind="NAME")] = "axial 1",
+    tune: Annotated[str, Parameter("Length that is tuned.", "SIZE")] = "length",
+    mode: Annotated[str, Parameter("Mode that is tuned.", "NAME")] = "axial 1",
     axis: Annotated[Axis | None, Parameter("Axis of the part of a STEP file; its longest by default.")] = None,
-    tool_mass: Annotated[Number, Parameter("Of a tool on the working face.", unit="kg", quantity="tool_mass")] = "10g",
+    tool_mass: Annotated[Number, Quantity("Of a tool on the working face.", "tool_mass")] = "10g",
     amplitude: Annotated[
-        Number | None,
-        Parameter(
-            "Of the working face, for the peak stress at it, such as 20um.", unit="m", quantity="vibration_amplitude"
-        ),
+        Number | None, Quantity("Of the working face, for the peak stress at it, such as 20um.", "vibration_amplitude")
     ] = None,
-    tolerance: Annotated[Number, Parameter("Largest relative error of the frequency.", unit="", kind="RATIO")] = 0.003,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    tolerance: Annotated[Number, Quantity("Largest relative error of the frequency.", "", kind="RATIO")] = 0.003,
+    **watch: Unpack[Watched],
 ) -> "HornAnswer":
     """Tune a horn's length to a frequency, and compute its gain, node, stress, face and neighbouring modes.
 
@@ -180,7 +164,7 @@ class HornAnswer(Answer):
             files[f"{self.name}-drawing.dxf"] = profile_dxf(profile, horn_notes(self.design, self.material, profile))
         return files
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Quantities of the mode, and its axial displacement over the distance from the driven face."""
         mode, axis = self.design.tuned.mode, self.design.body.axis
         place, displacement = section_motion(mode, axis)

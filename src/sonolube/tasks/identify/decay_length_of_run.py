@@ -1,45 +1,31 @@
 """Task `identify decay-length`: what sets the decay length of a worn contact, from a run with switched vibration."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, Unpack
 
+from sonolube import identification
 from sonolube.errors import InvalidInput
-from sonolube.identification import (
-    DecayLengthDecision,
-    SwitchConditions,
-    SwitchTable,
-    decide_decay_length,
-    decision_chart,
-    decision_dataset,
-    recorded_switches,
-    switch_table,
-)
 from sonolube.identification.decay_length.switch_table import is_switch_table
 from sonolube.laboratory.records.switched_run import switched_recording
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import decay_length as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import Mapped, mapping_of
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch, file_stem
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched, file_stem
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _CAPTION = (
     "Readings at the switches of the vibration over the sliding distance, with the most probable course of each"
     " hypothesis; the zero with its smoothed course."
 )
-_FILE = Parameter(
+_FILE = File(
     "Table of the switches of one run (CSV), the folder of a run of decay_length_run, or a recording with"
     " friction_force, voltage_peak_to_peak, normal_load, stack_current and shifts.",
-    kind="FILE",
-    is_file=True,
+    "FILE",
 )
 
 
@@ -47,26 +33,25 @@ _FILE = Parameter(
 def decay_length(
     file: Annotated[InputFile, _FILE],
     *,
-    vibration: Annotated[Number, Parameter("Of the vibration along the normal, at the beginning.", unit="m")] = "2.3um",
-    frequency: Annotated[Number, Parameter("Of the vibration.", unit="Hz", quantity="frequency")] = "22kHz",
-    sliding_speed: Annotated[Number, Parameter("Sliding speed.", unit="m/s", quantity="sliding_speed")] = "65mm/s",
-    load: Annotated[Number, Parameter("Normal load.", unit="N")] = "5N",
+    vibration: Annotated[Number, Quantity("Of the vibration along the normal, at the beginning.", "m")] = "2.3um",
+    frequency: Annotated[Number, Quantity("Of the vibration.", "frequency")] = "22kHz",
+    sliding_speed: Annotated[Number, Quantity("Sliding speed.", "sliding_speed")] = "65mm/s",
+    load: Annotated[Number, Quantity("Normal load.", "N")] = "5N",
     free_frequency: Annotated[
-        Number | None, Parameter("Of the slow mode, pin free; needed where shifts are not small.", unit="Hz")
+        Number | None, Quantity("Of the slow mode, pin free; needed where shifts are not small.", "Hz")
     ] = None,
     modal_mass: Annotated[
-        Number | None, Parameter("Of the slow mode at the contact; gives contact stiffnesses.", unit="kg")
+        Number | None, Quantity("Of the slow mode at the contact; gives contact stiffnesses.", "kg")
     ] = None,
     large_amplitude: Annotated[
-        Number | None, Parameter("Of the slow mode at large drive; that of the vibration by default.", unit="m")
+        Number | None, Quantity("Of the slow mode at large drive; that of the vibration by default.", "m")
     ] = None,
     rotation_speed: Annotated[
-        Number | None, Parameter("Of the disc, to remove its wobble from a recording.", unit="1/s")
+        Number | None, Quantity("Of the disc, to remove its wobble from a recording.", "1/s")
     ] = None,
     mapping: Mapped = None,
     seed: Annotated[int, Parameter("Seed of the sampling; equal seeds give equal results.", lowest=0)] = 0,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "DecayLengthAnswer":
     """What sets the decay length: long sliding, a zero error, detuning or the rig, from a run with switched vibration.
 
@@ -77,7 +62,7 @@ def decay_length(
     elif free_frequency is None:
         needed = f"{shown('free_frequency')}, the natural frequency of that mode with the pin free"
         raise InvalidInput(f"{shown('modal_mass')} needs {needed}")
-    conditions = SwitchConditions(
+    conditions = identification.SwitchConditions(
         normal_load=in_si("load", load),
         vibration_amplitude=in_si("vibration", vibration),
         frequency=in_si("frequency", frequency),
@@ -89,21 +74,21 @@ def decay_length(
     path, columns = file_path(file), mapping_of(mapping)
     with stage("weighing"):
         if path.is_dir():
-            table = recorded_switches(
+            table = identification.recorded_switches(
                 switched_recording(path),
                 sliding_speed=conditions.sliding_speed,
                 rotation_speed=in_si("rotation_speed", rotation_speed),
             )
         elif is_switch_table(path, columns):
             refuse_unused("rotation_speed", because="for a table of switches; it is for recordings")
-            table = switch_table(read_runs(path, mapping=columns))
+            table = identification.switch_table(read_runs(path, mapping=columns))
         else:
-            table = recorded_switches(
+            table = identification.recorded_switches(
                 read_recording(path, mapping=columns),
                 sliding_speed=conditions.sliding_speed,
                 rotation_speed=in_si("rotation_speed", rotation_speed),
             )
-        decision = decide_decay_length(table, conditions, seed=seed)
+        decision = identification.decide_decay_length(table, conditions, seed=seed)
     name = f"{file_stem(file)}-decay-length"
     return DecayLengthAnswer(table=table, conditions=conditions, decision=decision, name=name)
 
@@ -112,9 +97,9 @@ def decay_length(
 class DecayLengthAnswer(Answer):
     """Probabilities of the hypotheses about the decay length, the changes that were found, and the verdict."""
 
-    table: SwitchTable
-    conditions: SwitchConditions
-    decision: DecayLengthDecision
+    table: identification.SwitchTable
+    conditions: identification.SwitchConditions
+    decision: identification.DecayLengthDecision
     name: str
 
     def blocks(self) -> Sequence[Block]:
@@ -137,8 +122,10 @@ class DecayLengthAnswer(Answer):
 
     def figures(self) -> Mapping[str, Drawing]:
         """Readings over the distance with the courses of the hypotheses."""
-        return {self.name: Drawing(chart=lambda: decision_chart(self.table, self.decision), caption=_CAPTION)}
+        return {
+            self.name: Drawing(chart=lambda: identification.decision_chart(self.table, self.decision), caption=_CAPTION)
+        }
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Readings and courses as netCDF."""
-        return {f"{self.name}.nc": decision_dataset(self.table, self.decision)}
+        return {f"{self.name}.nc": identification.decision_dataset(self.table, self.decision)}

@@ -3,38 +3,32 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.identification import Identification, rig_tables
 from sonolube.models.actuator import PiezoStack
-from sonolube.report.blocks import Block, Table, text_lines
 from sonolube.report.results import identification as results
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identify_from_facts
 from sonolube.storage.input_files import input_text
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Table, answer, text_lines
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Parameter, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown, task
 from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
 
-_FACTS = Parameter(
-    "Facts about the rig; those of the dissertation's tribometer by default.", kind="FACTS.toml", is_file=True
-)
+_FACTS = File("Facts about the rig; those of the dissertation's tribometer by default.", "FACTS.toml")
 
 
 @task
 def rig(
-    base: Annotated[
-        InputFile | None, Parameter("Rig whose tables stack and structure to replace.", kind="[RIG.toml]", is_file=True)
-    ] = None,
+    base: Annotated[InputFile | None, File("Rig whose tables stack and structure to replace.", "[RIG.toml]")] = None,
     *,
     facts: Annotated[InputFile | None, _FACTS] = None,
     seed: Annotated[int, Parameter("Seed of the search; equal seeds give equal results.", lowest=0)] = 0,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "IdentificationAnswer":
     """Masses, springs and dampers of a rig from ranked facts, with the facts that contradict each other.
 

@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, Unpack
 
 import numpy as np
 
@@ -12,59 +12,45 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.fem import Transducer
+from sonolube.models.fem.results import impedance_spectra
 from sonolube.models.fem.results.figures import impedance_chart
-from sonolube.models.fem.results.impedance_spectra import (
-    SupportedSpectrum,
-    coupled_modes_grid,
-    spectrum_table,
-    supported_spectra,
-)
 from sonolube.models.fem.results.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results.parts import impedance_spectra as results
 from sonolube.rig.datasets import LabelledArrays, labelled
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
 from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, named_transducer, part_name
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, shown, task
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 @task
 def compute(
-    part: Annotated[
-        InputFile,
-        Parameter("stack, tribometer_actuator, cutter_head, or a part or STEP file.", kind="PART", is_file=True),
-    ],
+    part: Annotated[InputFile, File("stack, tribometer_actuator, cutter_head, or a part or STEP file.", "PART")],
     *,
     sizes: Sizes = None,
-    lowest: Annotated[Number, Parameter("Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
-    highest: Annotated[Number, Parameter("Highest frequency.", unit="Hz", option="--to")] = "60kHz",
-    points: Annotated[int, Parameter("Number of frequencies.", kind="NUMBER", lowest=2)] = 1001,
+    lowest: Annotated[Number, Quantity("Lowest frequency.", "Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Quantity("Highest frequency.", "Hz", option="--to")] = "60kHz",
+    points: Annotated[int, Parameter("Number of frequencies.", "NUMBER", lowest=2)] = 1001,
     clamp: Annotated[
-        Sequence[str], Parameter("A face held still for a second spectrum, such as back.-z.", kind="FACE")
+        Sequence[str], Parameter("A face held still for a second spectrum, such as back.-z.", "FACE")
     ] = (),
     ceramic: Annotated[
-        str | None, Parameter("Ceramic of the stack or of a part that is no transducer; pic255.", kind="NAME")
+        str | None, Parameter("Ceramic of the stack or of a part that is no transducer; pic255.", "NAME")
     ] = None,
     poled: Annotated[Axis | None, Parameter("Direction in which such a part is poled; z.")] = None,
-    drive: Annotated[str | None, Parameter("Its driven electrode; +z.", kind="FACE")] = None,
-    ground: Annotated[str | None, Parameter("Its grounded electrode; -z.", kind="FACE")] = None,
+    drive: Annotated[str | None, Parameter("Its driven electrode; +z.", "FACE")] = None,
+    ground: Annotated[str | None, Parameter("Its grounded electrode; -z.", "FACE")] = None,
     measured: Annotated[
-        InputFile | None,
-        Parameter("Spectrum to draw over it, as sonolube measure impedance reads it.", kind="FILE", is_file=True),
+        InputFile | None, File("Spectrum to draw over it, as sonolube measure impedance reads it.", "FILE")
     ] = None,
     tolerance: Annotated[
-        Number, Parameter("Largest change of a coupled resonance from mesh to mesh.", unit="", kind="RATIO")
+        Number, Quantity("Largest change of a coupled resonance from mesh to mesh.", "", kind="RATIO")
     ] = 0.02,
     vtu: Annotated[bool, Parameter("Write the coupled modes for ParaView too.")] = False,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "ImpedanceAnswer":
     """Electrical impedance of a transducer, free and clamped: resonances, coupling and motion per volt.
 
@@ -77,7 +63,7 @@ def compute(
     reference = None if measured is None else read_impedance(file_path(measured))
     transducer = named_transducer(part, sizes or {}, ceramic=ceramic, poled=poled, drive=drive, ground=ground)
     with stage("meshing and solving") as advance:
-        spectra = supported_spectra(
+        spectra = impedance_spectra.supported_spectra(
             transducer,
             frequency=frequency,
             clamped_faces=clamp,
@@ -110,7 +96,7 @@ class ImpedanceAnswer(Answer):
     part: str
     ceramic: str
     transducer: Transducer
-    spectra: Mapping[str, SupportedSpectrum]
+    spectra: Mapping[str, impedance_spectra.SupportedSpectrum]
     measured: ImpedanceSpectrum | None
     with_modes: bool
 
@@ -140,13 +126,13 @@ class ImpedanceAnswer(Answer):
         stem = self._stem()
         files: dict[str, str | LabelledArrays] = {}
         for name, spectrum in self.spectra.items():
-            files[f"{stem}-impedance-{name}.csv"] = spectrum_table(spectrum)
+            files[f"{stem}-impedance-{name}.csv"] = impedance_spectra.spectrum_table(spectrum)
             files[f"{stem}-impedance-{name}.nc"] = self._labelled(name)
             if self.with_modes:
-                files[f"{stem}-modes-{name}.vtu"] = coupled_modes_grid(spectrum)
+                files[f"{stem}-modes-{name}.vtu"] = impedance_spectra.coupled_modes_grid(spectrum)
         return files
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Impedance, phase and motion per volt over frequency and support."""
         import xarray as xr
 

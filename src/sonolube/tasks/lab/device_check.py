@@ -2,21 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory.drivers import DeviceMap, first_readings, missing_parts, read_device_map, unfulfilled
 from sonolube.laboratory.dry_run.findings import SAFETY
-from sonolube.report.blocks import Block, Rows
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import File, Parameter
 from sonolube.tasks.task import shown, task
 from sonolube.text.units import format_si
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _SAMPLE_RATE = 1000.0  # Hz, of the first look
 
@@ -75,7 +71,7 @@ class CheckedDevices(Answer):
             SAFETY,
         )
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Readings, a variable each."""
         import xarray as xr
 
@@ -96,10 +92,10 @@ class CheckedDevices(Answer):
 
 @task
 def check(
-    device_map: Annotated[str | Path, Parameter("Devices of a rig.", kind="MAP.toml", is_file=True)],
+    device_map: Annotated[str | Path, File("Devices of a rig.", "MAP.toml")],
     *,
     protocol: Annotated[
-        InputFile | None, Parameter("Such as map_test, or a TOML file: can these devices run it?", kind="PROTOCOL")
+        InputFile | None, Parameter("Such as map_test, or a TOML file: can these devices run it?", "PROTOCOL")
     ] = None,
     connect: Annotated[bool, Parameter("Connect, and read one block with motor and drive off.")] = False,
 ) -> CheckedDevices:

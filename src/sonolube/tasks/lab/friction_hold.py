@@ -1,12 +1,11 @@
 """Task `lab hold`: friction held at a reference on devices or a virtual tribometer, the speed changing meanwhile."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.design.control import Amplifier, ControlSettings, design_control
 from sonolube.errors import InvalidInput
-from sonolube.laboratory import RunControl
-from sonolube.laboratory.closed_loop import SpeedStep, hold_friction, hold_protocol, planned_hold, require_holdable
+from sonolube.laboratory import RunControl, closed_loop as holds
 from sonolube.laboratory.drivers.readiness import ready_devices
 from sonolube.laboratory.records import read_run
 from sonolube.laboratory.reservation import require_free
@@ -18,7 +17,7 @@ from sonolube.tasks.design import closed_loop as loop
 from sonolube.tasks.lab.hold_answer import HoldAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
 from sonolube.tasks.lab.run_record import ControlDoor, device_file, run_stage
-from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import to_si
@@ -31,38 +30,34 @@ def hold(
     friction: Annotated[
         str | float | None,
         Parameter(
-            "Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
-            kind="FRICTION",
+            "Reference, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.", "FRICTION"
         ),
     ] = None,
     step_to: Annotated[
-        Number | None, Parameter("Sliding speed after the step; twice the rig's by default.", unit="m/s")
+        Number | None, Quantity("Sliding speed after the step; twice the rig's by default.", "m/s")
     ] = None,
     step_at: Annotated[
-        Number | None, Parameter("Time under control until the step; half of --duration by default.", unit="s")
+        Number | None, Quantity("Time under control until the step; half of --duration by default.", "s")
     ] = None,
     delay: loop.Delay = "1ms",
     rate: loop.Rate = "20Hz",
     closed_loop: loop.ClosedLoop = None,
     voltage_limit: loop.VoltageLimit = None,
     temperature_limit: Annotated[
-        str | None, Parameter("Temperature that ends the test, such as 60degC.", kind="TEMPERATURE")
+        str | None, Parameter("Temperature that ends the test, such as 60degC.", "TEMPERATURE")
     ] = None,
-    friction_limit: Annotated[Number | None, Parameter("Friction force that ends the test.", unit="N")] = None,
+    friction_limit: Annotated[Number | None, Quantity("Friction force that ends the test.", "N")] = None,
     quality: loop.Quality = 50.0,
     coupling: loop.Coupling = 0.2,
-    run_in: Annotated[
-        Number, Parameter("Sliding without vibration before the controller takes over.", unit="s")
-    ] = "1s",
-    duration: Annotated[Number, Parameter("Time under control.", unit="s")] = "10s",
+    run_in: Annotated[Number, Quantity("Sliding without vibration before the controller takes over.", "s")] = "1s",
+    duration: Annotated[Number, Quantity("Time under control.", "s")] = "10s",
     device_map: Device = "virtual",
     seed: Seed = 0,
     real_time: RealTime = False,
     tag: Tags = (),
     out: AllRuns = RUNS,
     control: ControlDoor = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> HoldAnswer:
     """Hold friction at a reference by the controller of `control` while the speed steps, and record it.
 
@@ -90,7 +85,7 @@ def hold(
         if known.structure is None:
             mode, assumed = loop.assumed_resonance(known, quality=quality, coupling=coupling)
         design = design_control(known, settings, mode=mode)
-    wanted = planned_hold(
+    wanted = holds.planned_hold(
         drive,
         design,
         speeds=_speeds(known, step_to=in_si("step_to", step_to), step_at=step_at, run_time=run_time),
@@ -101,9 +96,9 @@ def hold(
     )
     virtual = virtual_tribometer(known, seed=seed, real_time=real_time) if file is None else None
     devices = ready_devices(Path(device_map)) if virtual is None else virtual.devices
-    require_holdable(wanted, devices)
+    holds.require_holdable(wanted, devices)
     plan = RunPlan(
-        protocol=hold_protocol(wanted, devices.acquisition.channels),
+        protocol=holds.hold_protocol(wanted, devices.acquisition.channels),
         name="hold",
         rig=known,
         device_file=file,
@@ -115,7 +110,7 @@ def hold(
     recorder = begin_record(plan, devices, out=Path(out), facts={"reference_friction_force": wanted.friction_force})
     requests = control or RunControl()
     with run_stage("holding", requests) as advance:
-        held = hold_friction(wanted, devices, recorder=recorder, control=requests, advance=advance)
+        held = holds.hold_friction(wanted, devices, recorder=recorder, control=requests, advance=advance)
         if virtual is not None:
             recorder.store_truth(virtual.truth())
     return HoldAnswer(
@@ -136,13 +131,13 @@ def _driven(rig: Rig) -> tuple[Rig, Drive]:
     return rig, rig.drive
 
 
-def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time: float) -> tuple[SpeedStep, ...]:
+def _speeds(rig: Rig, *, step_to: float | None, step_at: Number | None, run_time: float) -> tuple[holds.SpeedStep, ...]:
     """Sliding speed of the rig, then that after the step."""
     after = 2 * rig.sliding_speed if step_to is None else step_to
     time = run_time / 2 if step_at is None else in_si("step_at", step_at)
     if not time > 0:
         raise InvalidInput(f"{shown('step_at')} {step_at} must be positive")
-    return SpeedStep(time=0.0, sliding_speed=rig.sliding_speed), SpeedStep(time=time, sliding_speed=after)
+    return holds.SpeedStep(time=0.0, sliding_speed=rig.sliding_speed), holds.SpeedStep(time=time, sliding_speed=after)
 
 
 def _temperature(text: str) -> float:

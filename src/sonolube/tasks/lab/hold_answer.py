@@ -2,21 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sonolube.design.control import ControlDesign
-from sonolube.laboratory.closed_loop import HeldFriction, held_friction_chart, held_friction_dataset
+from sonolube.laboratory import closed_loop
 from sonolube.laboratory.records import Run
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results import held_friction as results
 from sonolube.report.results.ended_run import SIMULATED
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.text.units import format_si
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @answer
@@ -39,7 +35,7 @@ class HoldAnswer(Answer):
 
     rig: Rig
     design: ControlDesign
-    held: HeldFriction
+    held: closed_loop.HeldFriction
     run: Run
     simulated: bool
     assumed: Mapping[str, str]
@@ -68,13 +64,19 @@ class HoldAnswer(Answer):
         if not held.time.size:
             return {}
         caption = f"Friction held at {format_si(held.hold.friction_force, 'N')} by the drive voltage."
-        return {"held-friction": Drawing(chart=lambda: held_friction_chart(held, simulated=simulated), caption=caption)}
+        return {
+            "held-friction": Drawing(
+                chart=lambda: closed_loop.held_friction_chart(held, simulated=simulated), caption=caption
+            )
+        }
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, Dataset]:
         """Intervals of the controller as netCDF."""
         if not self.held.time.size:
             return {}
-        return {"held-friction.nc": held_friction_dataset(self.held, title=f"Friction held on {self.rig.title}")}
+        return {
+            "held-friction.nc": closed_loop.held_friction_dataset(self.held, title=f"Friction held on {self.rig.title}")
+        }
 
     @property
     def is_failure(self) -> bool:

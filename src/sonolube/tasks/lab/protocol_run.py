@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, Unpack
 
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput, UnknownName
@@ -17,7 +17,16 @@ from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.lab.run_answer import DryRunAnswer, RunAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags, facts_of
 from sonolube.tasks.lab.run_record import ControlDoor, OperatorDoor, device_file, run_and_record
-from sonolube.tasks.parameters import OptionalRigSource, Parameter, RigFile, Stop, Watch, optional_rig, rig_of
+from sonolube.tasks.parameters import (
+    File,
+    KeyValues,
+    OptionalRigSource,
+    Parameter,
+    RigFile,
+    Watched,
+    optional_rig,
+    rig_of,
+)
 from sonolube.tasks.task import refuse_unused, shown, task
 
 _OWN_TEST: Final = "map_test"  # of a virtual rig for which no protocol is named
@@ -25,12 +34,10 @@ _OWN_TEST: Final = "map_test"  # of a virtual rig for which no protocol is named
 
 @task
 def run(
-    protocol: Annotated[InputFile, Parameter("Such as map_test, or a TOML file.", kind="PROTOCOL")],
+    protocol: Annotated[InputFile, Parameter("Such as map_test, or a TOML file.", "PROTOCOL")],
     device_map: Device = "virtual",
     *,
-    rig: Annotated[
-        OptionalRigSource, Parameter("The rig; a virtual tribometer takes its friction.", kind="RIG.toml", is_file=True)
-    ] = None,
+    rig: Annotated[OptionalRigSource, File("The rig; a virtual tribometer takes its friction.", "RIG.toml")] = None,
     seed: Seed = 0,
     real_time: RealTime = False,
     dry_run: Annotated[bool, Parameter("Tell what will happen, and touch nothing.")] = False,
@@ -39,17 +46,14 @@ def run(
     tag: Tags = (),
     fact: Annotated[
         Mapping[str, str | float] | None,
-        Parameter(
-            "For the record, such as operator=Ann; specimen=7; humidity=45 %; calibrated=2026-03-01.",
-            kind="NAME=VALUE",
-            is_mapping=True,
+        KeyValues(
+            "For the record, such as operator=Ann; specimen=7; humidity=45 %; calibrated=2026-03-01.", "NAME=VALUE"
         ),
     ] = None,
     out: AllRuns = RUNS,
     operator: OperatorDoor = None,
     control: ControlDoor = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> RunAnswer | DryRunAnswer:
     """Run a protocol and record it; motor and drive are off at the end, whatever happens.
 
@@ -83,15 +87,14 @@ def virtual(
     *,
     protocol: Annotated[
         InputFile | None,
-        Parameter("Such as study_1, or a TOML file; map_test at load and speed of the rig.", kind="PROTOCOL"),
+        Parameter("Such as study_1, or a TOML file; map_test at load and speed of the rig.", "PROTOCOL"),
     ] = None,
     seed: Annotated[int, Parameter("Of all that is drawn: another specimen, other noise.", lowest=0)] = 0,
     file_format: Annotated[
         Literal["netcdf", "tdms", "csv"], Parameter("Of the recording, beside netCDF.", option="--format")
     ] = "netcdf",
     out: AllRuns = RUNS,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> RunAnswer:
     """Record a realistic test of a rig that exists in its file only.
 

@@ -5,10 +5,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from sonolube.laboratory.records import export_run
-from sonolube.report.blocks import Block
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, answer
 from sonolube.tasks.lab.run_folders import RunFolder
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import OwnFolder, Parameter
 from sonolube.tasks.task import task
 
 
@@ -42,7 +41,7 @@ def export(
     run: RunFolder,
     *,
     file_format: Annotated[Literal["netcdf", "tdms", "csv"], Parameter("Of the files.", option="--format")] = "netcdf",
-    out: Annotated[str | Path, Parameter("Folder for the files.", is_output=True)] = "out",
+    out: Annotated[str | Path, OwnFolder("Folder for the files.")] = "out",
 ) -> ExportedRecording:
     """Write the recording of a run to files for other programs, one a part.
 

@@ -1,20 +1,16 @@
 """Answers of runs of protocols: how a run ended and where its record is, or what a dry run says of it."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sonolube.facts.protocol import Protocol
 from sonolube.laboratory import RunResult
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
 from sonolube.laboratory.records import Run
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results import ended_run as results
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
-
-if TYPE_CHECKING:
-    import xarray as xr
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 
 
 @answer
@@ -51,7 +47,7 @@ class RunAnswer(Answer):
         """Assumptions of the rig file, where the friction is that of the rig."""
         return {} if self.rig is None or not self.simulated else self.rig.assumptions
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Recording, where there is one."""
         return self.run.dataset().assign_attrs(self.notes()) if self.run.recordings else super().dataset()
 

@@ -5,18 +5,18 @@ from pathlib import Path
 from typing import Annotated
 
 from sonolube.errors import InvalidInput
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import File, OwnFolder, Parameter
 from sonolube.tasks.task import shown
 
 RUNS = "runs"
 """Folder of all runs, where none is given."""
 
-RunFolder = Annotated[str | Path, Parameter("Folder of the run.", kind="RUN", is_file=True)]
-AllRuns = Annotated[str | Path, Parameter("Folder of all runs; each has a new one in it.", kind="DIR", is_output=True)]
-Tags = Annotated[Sequence[str], Parameter("For the catalogue; may come again.", kind="TAG")]
+RunFolder = Annotated[str | Path, File("Folder of the run.", "RUN")]
+AllRuns = Annotated[str | Path, OwnFolder("Folder of all runs; each has a new one in it.", "DIR")]
+Tags = Annotated[Sequence[str], Parameter("For the catalogue; may come again.", "TAG")]
 Seed = Annotated[int, Parameter("Of a virtual tribometer.", lowest=0)]
 RealTime = Annotated[bool, Parameter("Let a virtual test take its time.")]
-Device = Annotated[str | Path, Parameter("What to run on.", kind="virtual|MAP.toml", option="--device")]
+Device = Annotated[str | Path, Parameter("What to run on.", "virtual|MAP.toml", option="--device")]
 
 
 def facts_of(given: Mapping[str, str | float]) -> dict[str, str | float]:

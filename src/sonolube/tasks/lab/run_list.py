@@ -2,18 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.laboratory.catalogue import FoundRuns, query_from, query_runs, take_in
-from sonolube.report.blocks import Block, Table
 from sonolube.report.results import recorded_runs as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.lab.run_folders import RUNS, facts_of
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import File, KeyValues, Parameter
 from sonolube.tasks.task import refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @answer
@@ -44,31 +40,27 @@ class FoundRunsAnswer(Answer):
         """Runs that cannot be read, and what was done to the index."""
         return self.found.caveats
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Runs, over `run` by the names of their folders."""
         return results.found_runs_dataset(self.found.entries).assign_attrs(self.notes())
 
 
 @task
 def runs(
-    folder: Annotated[str | Path, Parameter("Folder of runs.", kind="DIR", is_file=True)] = RUNS,
+    folder: Annotated[str | Path, File("Folder of runs.", "DIR")] = RUNS,
     *,
-    material: Annotated[Sequence[str], Parameter("Of pin or disc; may come again.", kind="NAME")] = (),
-    load: Annotated[str | None, Parameter("Normal load: 5N, 3N..6N, or 3N.. and up.", kind="FORCE")] = None,
-    speed: Annotated[str | None, Parameter("Sliding speed, such as 10mm/s..30mm/s.", kind="SPEED")] = None,
-    since: Annotated[str | None, Parameter("Begun then or later, such as 2026-01-31.", kind="DATE")] = None,
-    until: Annotated[str | None, Parameter("Begun before.", kind="DATE")] = None,
-    tag: Annotated[Sequence[str], Parameter("Among the tags of the run; may come again.", kind="TAG")] = (),
-    text: Annotated[Sequence[str], Parameter("In title, facts, protocol or notes.", kind="TEXT")] = (),
-    outcome: Annotated[
-        str | None, Parameter("completed, stopped, failed, interrupted or running.", kind="OUTCOME")
-    ] = None,
-    add: Annotated[
-        Sequence[str | Path], Parameter("Take in a recording or a folder of them.", kind="PATH", is_file=True)
-    ] = (),
+    material: Annotated[Sequence[str], Parameter("Of pin or disc; may come again.", "NAME")] = (),
+    load: Annotated[str | None, Parameter("Normal load: 5N, 3N..6N, or 3N.. and up.", "FORCE")] = None,
+    speed: Annotated[str | None, Parameter("Sliding speed, such as 10mm/s..30mm/s.", "SPEED")] = None,
+    since: Annotated[str | None, Parameter("Begun then or later, such as 2026-01-31.", "DATE")] = None,
+    until: Annotated[str | None, Parameter("Begun before.", "DATE")] = None,
+    tag: Annotated[Sequence[str], Parameter("Among the tags of the run; may come again.", "TAG")] = (),
+    text: Annotated[Sequence[str], Parameter("In title, facts, protocol or notes.", "TEXT")] = (),
+    outcome: Annotated[str | None, Parameter("completed, stopped, failed, interrupted or running.", "OUTCOME")] = None,
+    add: Annotated[Sequence[str | Path], File("Take in a recording or a folder of them.", "PATH")] = (),
     fact: Annotated[
         Mapping[str, str | float] | None,
-        Parameter("Of what is taken in, such as normal_load=5; tags=map,old.", kind="NAME=VALUE", is_mapping=True),
+        KeyValues("Of what is taken in, such as normal_load=5; tags=map,old.", "NAME=VALUE"),
     ] = None,
 ) -> FoundRunsAnswer:
     """Runs that were recorded, with what they are found by.

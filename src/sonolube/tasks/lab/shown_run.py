@@ -6,15 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sonolube.laboratory.records import Run, read_run
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results import recorded_runs as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.lab.run_folders import RunFolder
 from sonolube.tasks.task import task
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from sonolube.charts import Chart
     from sonolube.report import Drawing
 
@@ -62,7 +59,7 @@ class ShownRun(Answer):
         }
         return {name: Drawing(chart=lambda: channels_chart(self.run.dataset()), caption=caption)} | of_clocks
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Recording, where there is one."""
         return self.run.dataset().assign_attrs(self.notes()) if self.run.recordings else super().dataset()
 

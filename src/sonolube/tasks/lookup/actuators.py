@@ -13,7 +13,7 @@ from sonolube.tasks.task import task
 
 @task
 def actuators(
-    name: Annotated[str | None, Parameter("One actuator; all of them by default.", kind="ACTUATOR")] = None,
+    name: Annotated[str | None, Parameter("One actuator; all of them by default.", "ACTUATOR")] = None,
 ) -> Listing:
     """Actuators one can buy, with the numbers of their data sheets and where these were read.
 

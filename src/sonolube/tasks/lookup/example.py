@@ -2,17 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.example_files import ExampleFile, example_file, example_files
-from sonolube.report.blocks import Block, Rows, Verbatim
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Verbatim, answer
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.table import TASKS
 from sonolube.tasks.task import task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ALL = "all"
 
@@ -20,7 +16,7 @@ _ALL = "all"
 @task
 def example(
     name: Annotated[
-        str | None, Parameter("File to write, such as tribometer, or all; the list by default.", kind="EXAMPLE")
+        str | None, Parameter("File to write, such as tribometer, or all; the list by default.", "EXAMPLE")
     ] = None,
 ) -> "ExampleAnswer":
     """Example files, such as rigs: list them, or write one with its path in the help texts below the current folder.
@@ -77,7 +73,7 @@ class ExampleAnswer(Answer):
         """Whether a file was changed since it was written."""
         return present != self.files().get(name)
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Paths and titles by name."""
         import xarray as xr
 

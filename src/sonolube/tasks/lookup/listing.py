@@ -1,13 +1,9 @@
 """Answer of look-ups: a table of facts as blocks and as JSON, both given."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
-from sonolube.report.blocks import Block
-from sonolube.tasks.answer import Answer, answer
-
-if TYPE_CHECKING:
-    import xarray as xr
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 
 
 @answer
@@ -28,7 +24,7 @@ class Listing(Answer):
 
     parts: Sequence[Block]
     content: dict[str, Any]
-    labelled: "Callable[[], xr.Dataset] | None" = None
+    labelled: "Callable[[], Dataset] | None" = None
 
     def blocks(self) -> Sequence[Block]:
         """Blocks as given."""
@@ -38,6 +34,6 @@ class Listing(Answer):
         """Object as given."""
         return self.content
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Table as a labelled dataset, with units."""
         return super().dataset() if self.labelled is None else self.labelled()

@@ -10,22 +10,20 @@ from sonolube.measurement.recordings.text_tables import TextTable
 from sonolube.measurement.run_headings import RunHeading
 from sonolube.measurement.run_table import run_text
 from sonolube.measurement.stated_columns import LEFT_OUT, Meaning, mapping_of_columns, samples, stated_columns
-from sonolube.report.blocks import Block, Table
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Table, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Parameter, file_stem
+from sonolube.tasks.parameters import File, KeyValues, file_stem
 from sonolube.tasks.task import shown, task
 
-_COLUMN = Parameter(
+_COLUMN = KeyValues(
     "Quantity and unit of a column, such as 'Kraft=friction_force N', or - to leave it out; may come again.",
-    kind="LABEL=QUANTITY",
-    is_mapping=True,
+    "LABEL=QUANTITY",
 )
 
 
 @task
 def mapping(
-    file: Annotated[InputFile, Parameter("Table of runs, or text export of an instrument.", kind="FILE", is_file=True)],
+    file: Annotated[InputFile, File("Table of runs, or text export of an instrument.", "FILE")],
     *,
     column: Annotated[Mapping[str, str] | None, _COLUMN] = None,
 ) -> "MappingAnswer":

@@ -13,7 +13,7 @@ from sonolube.tasks.task import task
 
 @task
 def materials(
-    name: Annotated[str | None, Parameter("One material; all of them by default.", kind="MATERIAL")] = None,
+    name: Annotated[str | None, Parameter("One material; all of them by default.", "MATERIAL")] = None,
 ) -> Listing:
     """Materials, piezo ceramics and classes of materials, each property with its source.
 

@@ -12,7 +12,7 @@ from sonolube.tasks.task import task
 
 @task
 def published(
-    table: Annotated[str | None, Parameter("One table, such as 2.5; the list by default.", kind="TABLE")] = None,
+    table: Annotated[str | None, Parameter("One table, such as 2.5; the list by default.", "TABLE")] = None,
 ) -> Listing:
     """Published data of the dissertation, with the corrections of single cells.
 

@@ -1,14 +1,14 @@
 """Task `measure vibration`: amplitudes, operating shape and modal assurance of vibrometer recordings."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.report.measured.vibration import VibrationSettings, has_voltage, proportion_sheet, vibration_sheet
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, conditions, each_file
 from sonolube.tasks.number_table import number_table
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Quantity, Watched
 from sonolube.tasks.task import in_si, task
 
 
@@ -16,14 +16,11 @@ from sonolube.tasks.task import in_si, task
 def vibration(
     files: Files,
     *,
-    frequency: Annotated[Number, Parameter("Of the drive, such as 22kHz.", unit="Hz", quantity="frequency")],
-    modes: Annotated[
-        InputFile | None, Parameter("Computed shapes at the points, one a column.", kind="MODES.csv", is_file=True)
-    ] = None,
+    frequency: Annotated[Number, Quantity("Of the drive, such as 22kHz.", "frequency")],
+    modes: Annotated[InputFile | None, File("Computed shapes at the points, one a column.", "MODES.csv")] = None,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Vibration at the drive frequency: amplitude, amplitude per volt, operating shape, likeness to computed modes.
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report.measured.calibration import (
@@ -22,7 +22,7 @@ from sonolube.tasks.measure.measured_files import (
     files_of,
 )
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 
@@ -30,19 +30,15 @@ from sonolube.tasks.task import in_si, refuse_unused, shown, task
 def calibration(
     files: Files,
     *,
-    apply: Annotated[
-        Sequence[InputFile],
-        Parameter("A displacement to compute the force of; may come again.", kind="FILE", is_file=True),
-    ] = (),
+    apply: Annotated[Sequence[InputFile], File("A displacement to compute the force of; may come again.", "FILE")] = (),
     mapping: Mapped = None,
     degree: Annotated[int, Parameter("Of the polynomials of loading and unloading.", lowest=1, highest=7)] = 3,
     levels: Annotated[int, Parameter("Of displacement in the Preisach model.", lowest=2, highest=64)] = 16,
     displacement_uncertainty: Annotated[
-        Number, Parameter("Of a reading, standard.", unit="m", quantity="displacement_uncertainty")
+        Number, Quantity("Of a reading, standard.", "displacement_uncertainty")
     ] = "0um",
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Calibration of a displacement sensor as a force gauge with hysteresis, and forces by it.
 

@@ -1,12 +1,12 @@
 """Task `measure rotation`: speed of a disc and of the pin on it from a Hall probe."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, measured
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, task
 
 
@@ -14,15 +14,14 @@ from sonolube.tasks.task import in_si, task
 def rotation(
     files: Files,
     *,
-    groove_diameter: Annotated[Number, Parameter("Of the circle under the pin.", unit="m", quantity="groove_diameter")],
+    groove_diameter: Annotated[Number, Quantity("Of the circle under the pin.", "groove_diameter")],
     magnets: Annotated[int, Parameter("Magnets at the rim.", lowest=1)] = 1,
     prominence: Annotated[
         float, Parameter("Weakest pulse that counts over the strongest.", lowest=0.01, highest=1.0)
     ] = 0.25,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Rotation from a Hall probe: speed of the disc and of the pin on it, missing pulses repaired.
 

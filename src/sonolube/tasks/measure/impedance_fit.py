@@ -1,12 +1,12 @@
 """Task `measure impedance`: equivalent circuit of an impedance spectrum, or the stack of a rig's structure."""
 
 from functools import partial
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Unpack
 
 from sonolube.report.measured.impedance import ImpedanceSettings, StackInStructure, impedance_sheet
 from sonolube.rig import structure_by_stack
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, measured
-from sonolube.tasks.parameters import Number, OptionalRigSource, Parameter, Stop, Watch, rig_of
+from sonolube.tasks.parameters import File, Number, OptionalRigSource, Parameter, Quantity, Watched, rig_of
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 
@@ -21,16 +21,12 @@ def impedance(
         Literal["log-complex", "log-magnitude", "linear-magnitude"], Parameter("Residual that the fit minimises.")
     ] = "log-complex",
     series_resistance: Annotated[
-        Number | None,
-        Parameter("Of the leads, such as 0.2ohm.", unit="ohm", quantity="series_resistance", kind="RESISTANCE"),
+        Number | None, Quantity("Of the leads, such as 0.2ohm.", "series_resistance", kind="RESISTANCE")
     ] = None,
-    sweep: Annotated[str | None, Parameter("Sweep of the file, such as memory.", kind="NAME")] = None,
-    stack_of: Annotated[
-        OptionalRigSource, Parameter("Fit the stack of this rig's structure.", kind="RIG.toml", is_file=True)
-    ] = None,
+    sweep: Annotated[str | None, Parameter("Sweep of the file, such as memory.", "NAME")] = None,
+    stack_of: Annotated[OptionalRigSource, File("Fit the stack of this rig's structure.", "RIG.toml")] = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Impedance: the circuit that fits a spectrum, with quality, frequencies and coupling, or the stack of a rig.
 

@@ -5,46 +5,29 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from sonolube import report as pages
 from sonolube.errors import SonolubeError
 from sonolube.measurement.file_selection import selected_files
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.report import (
-    Drawing,
-    MeasurementReport,
-    PinOnDiscSheet,
-    measurement_caveats,
-    measurement_object,
-    measurement_page,
-    pin_on_disc_rows,
-    read_pin_on_disc_sheet,
-)
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
 from sonolube.tasks.own_tables import mapping_of
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import File, Parameter
 from sonolube.tasks.progress import stage
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from sonolube.tasks.call import Mark
     from sonolube.tasks.progress import Advance
 
-Files = Annotated[
-    Sequence[InputFile] | InputFile,
-    Parameter("Files, or folders whose files are taken.", kind="FILES...", is_file=True),
-]
-Group = Annotated[str | None, Parameter("Of the channels, in TDMS, HDF5 and MATLAB files.", kind="GROUP")]
-Channels = Annotated[Sequence[str], Parameter("To read, as labelled; may come again.", kind="LABEL")]
-Sections = Annotated[Sequence[str], Parameter("To read, such as a step; may come again.", kind="NUMBER|NAME")]
-TestSheet = Annotated[
-    InputFile | None, Parameter("Conditions of the test, listed in its report.", kind="TEST.toml", is_file=True)
-]
+Files = Annotated[Sequence[InputFile] | InputFile, File("Files, or folders whose files are taken.", "FILES...")]
+Group = Annotated[str | None, Parameter("Of the channels, in TDMS, HDF5 and MATLAB files.", "GROUP")]
+Channels = Annotated[Sequence[str], Parameter("To read, as labelled; may come again.", "LABEL")]
+Sections = Annotated[Sequence[str], Parameter("To read, such as a step; may come again.", "NUMBER|NAME")]
+TestSheet = Annotated[InputFile | None, File("Conditions of the test, listed in its report.", "TEST.toml")]
 Measure = Callable[[Path], Sheet]
 
 _UNLISTED = ("files", "test_sheet", "progress", "cancelled")  # listed otherwise, or changing no number
@@ -121,9 +104,9 @@ def _defect(failure: Exception) -> str:
     return f"{type(failure).__name__}: {text}: a defect of sonolube, please report it with the file"
 
 
-def conditions(test_sheet: InputFile | None) -> PinOnDiscSheet | None:
+def conditions(test_sheet: InputFile | None) -> pages.PinOnDiscSheet | None:
     """Conditions of a test by their file; None where there is none."""
-    return None if test_sheet is None else read_pin_on_disc_sheet(file_path(test_sheet))
+    return None if test_sheet is None else pages.read_pin_on_disc_sheet(file_path(test_sheet))
 
 
 def column_mapping(
@@ -150,21 +133,21 @@ class MeasuredFiles(Answer):
     title: str
     sheets: Sequence[Sheet]
     refused: Mapping[str, str]
-    test: PinOnDiscSheet | None = None
+    test: pages.PinOnDiscSheet | None = None
 
     def blocks(self) -> Sequence[Block]:
         """Values and tables of each file, and the conditions of the test."""
         blocks = [block for sheet in self.sheets for block in sheet_blocks(sheet)]
         if blocks and self.test is not None:
-            for part, rows in pin_on_disc_rows(self.test, self.sheets).items():
+            for part, rows in pages.pin_on_disc_rows(self.test, self.sheets).items():
                 blocks += ["", f"  {part}", Rows(rows)]
         return blocks
 
     def object(self) -> dict[str, Any]:
         """Values, tables and caveats of each file, settings, and the files that were refused."""
-        return measurement_object(self._measurement())
+        return pages.measurement_object(self._measurement())
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Values and tables of all files, with their settings."""
         settings = "\n".join(f"{name}: {text}" for name, text in self._settings().items())
         attributes = {"measured": self.title, "settings": settings, "refused": "\n".join(self.refused.values())}
@@ -172,9 +155,9 @@ class MeasuredFiles(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Caveats of all files."""
-        return measurement_caveats(self._measurement())
+        return pages.measurement_caveats(self._measurement())
 
-    def figures(self) -> Mapping[str, Drawing]:
+    def figures(self) -> Mapping[str, pages.Drawing]:
         """Figures of all sheets by title, with the name of the file where there are several."""
         several = len(self.sheets) > 1
         return {
@@ -185,7 +168,7 @@ class MeasuredFiles(Answer):
 
     def report(self, advance: "Advance") -> str:
         """Page with the figures of all sheets."""
-        return measurement_page(self._measurement(), advance=advance)
+        return pages.measurement_page(self._measurement(), advance=advance)
 
     def refusals(self) -> Mapping[str, str]:
         """Reason for each file that could not be measured."""
@@ -196,9 +179,9 @@ class MeasuredFiles(Answer):
         """Whether any file was measured."""
         return bool(self.sheets)
 
-    def _measurement(self) -> MeasurementReport:
+    def _measurement(self) -> pages.MeasurementReport:
         """Sheets with the settings that their numbers depend on."""
-        return MeasurementReport(
+        return pages.MeasurementReport(
             title=self.title, settings=self._settings(), sheets=tuple(self.sheets), refused=self.refused, test=self.test
         )
 
@@ -221,7 +204,7 @@ def _file_name(file: InputFile) -> str:
 def _setting(value: object, mark: "Mark") -> str:
     """Value of an argument as text: of several files their names, of a number in SI its unit too."""
     if isinstance(value, list | tuple):
-        is_file = isinstance(mark, Parameter) and mark.is_file
+        is_file = isinstance(mark, File)
         return ", ".join(_file_name(each) if is_file else str(each) for each in value)
     if isinstance(value, NamedBytes | Rig):
         return value.name

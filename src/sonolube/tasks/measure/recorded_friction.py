@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.friction.motor_current import MotorCalibration
@@ -24,7 +24,7 @@ from sonolube.tasks.measure.measured_files import (
     reason_of,
 )
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 
@@ -37,34 +37,22 @@ def friction(
     channel: Channels = (),
     section: Sections = (),
     join: Annotated[bool, Parameter("The files are one test, in this order: measure it too.")] = False,
-    without_vibration: Annotated[
-        Sequence[InputFile], Parameter("A test without vibration; may come again.", kind="FILE", is_file=True)
-    ] = (),
-    sliding_speed: Annotated[
-        Number | None, Parameter("For the distance to the steady state.", unit="m/s", quantity="sliding_speed")
-    ] = None,
-    window: Annotated[Number, Parameter("Duration of the windows.", unit="s")] = "2s",
+    without_vibration: Annotated[Sequence[InputFile], File("A test without vibration; may come again.", "FILE")] = (),
+    sliding_speed: Annotated[Number | None, Quantity("For the distance to the steady state.", "sliding_speed")] = None,
+    window: Annotated[Number, Quantity("Duration of the windows.", "s")] = "2s",
     rotation_speed: Annotated[
         Number | None,
-        Parameter(
-            "Of the disc, to remove its wobble; without it found at voltage steps.",
-            unit="1/s",
-            quantity="rotation_speed",
-        ),
+        Quantity("Of the disc, to remove its wobble; without it found at voltage steps.", "rotation_speed"),
     ] = None,
     torque_constant: Annotated[
-        Number | None,
-        Parameter("Of the motor, such as '0.5 N m/A'.", unit="N m/A", quantity="torque_constant", kind="QUANTITY"),
+        Number | None, Quantity("Of the motor, such as '0.5 N m/A'.", "torque_constant", kind="QUANTITY")
     ] = None,
     idle_current: Annotated[
-        Number | None, Parameter("Of the motor with the pin lifted.", unit="A", quantity="idle_current", kind="CURRENT")
+        Number | None, Quantity("Of the motor with the pin lifted.", "idle_current", kind="CURRENT")
     ] = None,
-    groove_diameter: Annotated[
-        Number | None, Parameter("Of the circle under the pin.", unit="m", quantity="groove_diameter")
-    ] = None,
+    groove_diameter: Annotated[Number | None, Quantity("Of the circle under the pin.", "groove_diameter")] = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Friction in recordings: level, fluctuation, running-in, steps of the voltage, stick-slip, work.
 

@@ -1,14 +1,14 @@
 """Task `measure temperature`: final rise and time constants of a recorded temperature."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report.measured.temperature import TemperatureSettings, temperature_sheet
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, column_mapping, measured
 from sonolube.tasks.own_tables import Mapped
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, shown, task
 
 
@@ -17,21 +17,16 @@ def temperature(
     files: Files,
     *,
     start_time: Annotated[
-        Number | None, Parameter("Of the step of the heat; else the first sample.", unit="s", quantity="start_time")
+        Number | None, Quantity("Of the step of the heat; else the first sample.", "start_time")
     ] = None,
-    end_time: Annotated[
-        Number | None, Parameter("Of the response; else the last sample.", unit="s", quantity="end_time")
-    ] = None,
+    end_time: Annotated[Number | None, Quantity("Of the response; else the last sample.", "end_time")] = None,
     exponentials: Annotated[
         int | None, Parameter("In the response; else as many as the samples tell apart.", lowest=1, highest=2)
     ] = None,
-    without_vibration: Annotated[
-        InputFile | None, Parameter("The test without vibration, to compare with.", kind="FILE", is_file=True)
-    ] = None,
+    without_vibration: Annotated[InputFile | None, File("The test without vibration, to compare with.", "FILE")] = None,
     mapping: Mapped = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Temperature after a step of the heat: final rise, time constants, and rise over a test without vibration.
 

@@ -1,69 +1,53 @@
 """Task `measure stiffness`: normal stiffness of a contact by the shift of a resonance between free and pressed."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, MeasurementReport, measurement_object
-from sonolube.report.blocks import Block
 from sonolube.report.measured.contact_stiffness import StiffnessSettings, contact_stiffness_sheet
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.sheet_blocks import sheet_blocks
 from sonolube.report.measured.sheets_dataset import sheets_dataset
 from sonolube.rig import Rig
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Number, OptionalRig, Parameter, Stop, Watch, file_stem, optional_rig
+from sonolube.tasks.parameters import File, Number, OptionalRig, Quantity, Watched, file_stem, optional_rig
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @task
 def stiffness(
-    free: Annotated[InputFile, Parameter("Spectrum with the contact lifted.", kind="FREE", is_file=True)],
-    pressed: Annotated[InputFile, Parameter("Spectrum under the load, at small drive.", kind="PRESSED", is_file=True)],
-    again: Annotated[
-        InputFile | None, Parameter("Lifted again afterwards: drift enters the interval.", kind="[FREE2]", is_file=True)
-    ] = None,
+    free: Annotated[InputFile, File("Spectrum with the contact lifted.", "FREE")],
+    pressed: Annotated[InputFile, File("Spectrum under the load, at small drive.", "PRESSED")],
+    again: Annotated[InputFile | None, File("Lifted again afterwards: drift enters the interval.", "[FREE2]")] = None,
     *,
     rig: OptionalRig = None,
-    load: Annotated[
-        Number | None, Parameter("Normal load instead of the rig's, such as 40N.", unit="N", quantity="normal_load")
-    ] = None,
+    load: Annotated[Number | None, Quantity("Normal load instead of the rig's, such as 40N.", "normal_load")] = None,
     mode_near: Annotated[
         Number | None,
-        Parameter(
-            "Free resonance to take, such as 154Hz; 0Hz for a floating mode; the strongest by default.", unit="Hz"
-        ),
+        Quantity("Free resonance to take, such as 154Hz; 0Hz for a floating mode; the strongest by default.", "Hz"),
     ] = None,
     pressed_near: Annotated[
-        Number | None, Parameter("Pressed resonance to take; by default the nearest above the free one.", unit="Hz")
+        Number | None, Quantity("Pressed resonance to take; by default the nearest above the free one.", "Hz")
     ] = None,
     modal_mass: Annotated[
-        Number | None,
-        Parameter("Of the mode at the contact, instead of the rig's structure.", unit="kg", quantity="modal_mass"),
+        Number | None, Quantity("Of the mode at the contact, instead of the rig's structure.", "modal_mass")
     ] = None,
     mass_uncertainty: Annotated[
-        Number | None, Parameter("Standard uncertainty of the modal mass, such as 10%.", unit="", kind="SHARE")
+        Number | None, Quantity("Standard uncertainty of the modal mass, such as 10%.", "", kind="SHARE")
     ] = None,
     large: Annotated[
-        InputFile | None,
-        Parameter("Spectrum under the load at large drive, of constant amplitude.", kind="FILE", is_file=True),
+        InputFile | None, File("Spectrum under the load at large drive, of constant amplitude.", "FILE")
     ] = None,
     amplitude: Annotated[
-        Number | None,
-        Parameter(
-            "At the contact at large drive, zero to peak, such as 2.5um.", unit="m", quantity="vibration_amplitude"
-        ),
+        Number | None, Quantity("At the contact at large drive, zero to peak, such as 2.5um.", "vibration_amplitude")
     ] = None,
     amplitude_uncertainty: Annotated[
-        Number | None, Parameter("Its standard uncertainty, such as 5%.", unit="", kind="SHARE")
+        Number | None, Quantity("Its standard uncertainty, such as 5%.", "", kind="SHARE")
     ] = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "StiffnessAnswer":
     """Normal stiffness of a contact, and its decay length, by the shift of a resonance from free to pressed.
 
@@ -125,7 +109,7 @@ class StiffnessAnswer(Answer):
         measured = MeasurementReport(title="stiffness", settings={}, sheets=(self.sheet,), refused={})
         return measurement_object(measured) | {"rig_lines": list(self.rig_lines)}
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Numbers with their intervals."""
         return sheets_dataset([self.sheet]).assign_attrs(self.notes())
 

@@ -1,17 +1,17 @@
 """Task `measure surface`: areal and profile parameters, spectra and summits of height maps."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.report.measured.surface import SurfaceSettings, spacings, surface_sheet
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, measured
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, shown, task
 
 Spacing = Annotated[
-    str | float | None, Parameter("Distance of pixels, for files that lack it; one or 'x,y'.", kind="LENGTH")
+    str | float | None, Parameter("Distance of pixels, for files that lack it; one or 'x,y'.", "LENGTH")
 ]
-LengthUnit = Annotated[str | None, Parameter("For files that lack it, such as um.", kind="UNIT")]
+LengthUnit = Annotated[str | None, Parameter("For files that lack it, such as um.", "UNIT")]
 
 
 @task
@@ -24,15 +24,10 @@ def surface(
         int, Parameter("Degree of the form that is removed: 1 tilt, 2 curvature.", lowest=0, highest=12)
     ] = 1,
     robust: Annotated[bool, Parameter("Weight pixels far from the form less.")] = False,
-    short_cutoff: Annotated[
-        Number | None, Parameter("Remove shorter waves, as noise.", unit="m", quantity="short_cutoff_length")
-    ] = None,
-    long_cutoff: Annotated[
-        Number | None, Parameter("Remove longer waves, as waviness.", unit="m", quantity="long_cutoff_length")
-    ] = None,
+    short_cutoff: Annotated[Number | None, Quantity("Remove shorter waves, as noise.", "short_cutoff_length")] = None,
+    long_cutoff: Annotated[Number | None, Quantity("Remove longer waves, as waviness.", "long_cutoff_length")] = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Surfaces: parameters of ISO 25178-2 and of profiles, spectra, and summits for the contact models.
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.measurement.wear_track import WearTrack
@@ -14,7 +14,7 @@ from sonolube.report.measured.surface import SurfaceSettings, spacings
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.measure.measured_files import Files, MeasuredFiles, TestSheet, conditions, each_file
 from sonolube.tasks.measure.scanned_surface import LengthUnit, Spacing
-from sonolube.tasks.parameters import Number, Parameter, Stop, Watch
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
 
@@ -22,29 +22,20 @@ from sonolube.tasks.task import in_si, refuse_unused, shown, task
 def groove(
     files: Files,
     *,
-    groove_diameter: Annotated[
-        Number | None, Parameter("Of the ring that the scans lie on.", unit="m", quantity="groove_diameter")
-    ] = None,
-    sliding_distance: Annotated[
-        Number | None, Parameter("Sliding distance on the ring.", unit="m", quantity="sliding_distance")
-    ] = None,
+    groove_diameter: Annotated[Number | None, Quantity("Of the ring that the scans lie on.", "groove_diameter")] = None,
+    sliding_distance: Annotated[Number | None, Quantity("Sliding distance on the ring.", "sliding_distance")] = None,
     without_vibration: Annotated[
-        Sequence[InputFile], Parameter("Scan or folder of a ring worn without vibration.", kind="FILE", is_file=True)
+        Sequence[InputFile], File("Scan or folder of a ring worn without vibration.", "FILE")
     ] = (),
-    tip_radius: Annotated[
-        Number | None, Parameter("Of the pin, for ASTM G99's geometry.", unit="m", quantity="tip_radius")
-    ] = None,
-    pin: Annotated[
-        Sequence[InputFile], Parameter("Scan of the pin's tip; may come again.", kind="FILE", is_file=True)
-    ] = (),
+    tip_radius: Annotated[Number | None, Quantity("Of the pin, for ASTM G99's geometry.", "tip_radius")] = None,
+    pin: Annotated[Sequence[InputFile], File("Scan of the pin's tip; may come again.", "FILE")] = (),
     track: Annotated[
-        int | None, Parameter("Of several tracks: from the left, or the innermost radius.", kind="N", lowest=1)
+        int | None, Parameter("Of several tracks: from the left, or the innermost radius.", "N", lowest=1)
     ] = None,
     spacing: Spacing = None,
     length_unit: LengthUnit = None,
     test_sheet: TestSheet = None,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> MeasuredFiles:
     """Wear grooves in scans: width, depth, volume, pile-up; wear of the ring and its reduction by vibration.
 

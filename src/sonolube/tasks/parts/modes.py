@@ -3,48 +3,30 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.models.fem import ConvergedModes
+from sonolube.models.fem.results import mode_files
 from sonolube.models.fem.results.figures import ShapedSurface, mode_figure, shaped_surface
-from sonolube.models.fem.results.mode_files import (
-    SupportedBody,
-    elastic_rows,
-    mode_animation,
-    mode_title,
-    modes_grid,
-    shapes_table,
-    structure_modes,
-)
 from sonolube.models.fem.results.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
 from sonolube.operating_system import quoted
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block
 from sonolube.report.results.parts import natural_modes as results
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.number_table import number_table
-from sonolube.tasks.parameters import Number, Parameter, Sizes, Stop, Watch
-from sonolube.tasks.parts.named_parts import (
-    ALL_TRANSDUCERS,
-    ELASTIC_PROPERTIES,
-    Axis,
-    Part,
-    PartSizes,
-    named_transducer,
-    part_name,
-)
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
+from sonolube.tasks.parts import named_parts as parts
 from sonolube.tasks.parts.supported_part import DEFAULT_MATERIAL, supported_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import given_arguments, in_si, refuse_unused, shown, task
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 _CHOICES = ("count", "clamp", "tolerance", "contact", "body_mass", "body_stiffness", "body_damping")  # of the modes
@@ -53,49 +35,39 @@ _BODY_UNITS = {"body_mass": "kg", "body_stiffness": "N/m", "body_damping": "N s/
 
 @task
 def modes(
-    part: Part,
+    part: parts.Part,
     *,
     sizes: Sizes = None,
-    material: Annotated[
-        str, Parameter("Material of the part; transducers have their own.", kind="NAME")
-    ] = DEFAULT_MATERIAL,
+    material: Annotated[str, Parameter("Material of the part; transducers have their own.", "NAME")] = DEFAULT_MATERIAL,
     youngs_modulus: Annotated[
         Number | None,
-        Parameter(
-            "Young's modulus instead of the material's.", unit="Pa", quantity="youngs_modulus", option="--young-modulus"
-        ),
+        Quantity("Young's modulus instead of the material's.", "youngs_modulus", option="--young-modulus"),
     ] = None,
     poisson_ratio: Annotated[
-        Number | None,
-        Parameter("Instead of the material's Poisson's ratio.", unit="", quantity="poisson_ratio", kind="RATIO"),
+        Number | None, Quantity("Instead of the material's Poisson's ratio.", "poisson_ratio", kind="RATIO")
     ] = None,
-    density: Annotated[
-        Number | None, Parameter("Density instead of the material's.", unit="kg/m3", quantity="density")
-    ] = None,
-    count: Annotated[int, Parameter("Number of elastic modes.", kind="NUMBER")] = 6,
-    clamp: Annotated[Sequence[str], Parameter("A face held still, such as -x.", kind="FACE")] = (),
-    axis: Annotated[Axis | None, Parameter("The part's axis; its longest by default.")] = None,
-    tolerance: Annotated[Number, Parameter("Largest relative error of a frequency.", unit="", kind="RATIO")] = 0.005,
+    density: Annotated[Number | None, Quantity("Density instead of the material's.", "density")] = None,
+    count: Annotated[int, Parameter("Number of elastic modes.", "NUMBER")] = 6,
+    clamp: Annotated[Sequence[str], Parameter("A face held still, such as -x.", "FACE")] = (),
+    axis: Annotated[parts.Axis | None, Parameter("The part's axis; its longest by default.")] = None,
+    tolerance: Annotated[Number, Quantity("Largest relative error of a frequency.", "", kind="RATIO")] = 0.005,
     points: Annotated[
-        InputFile | None,
-        Parameter("Points x, y, z in mm at which to write the shapes.", kind="POINTS.csv", is_file=True),
+        InputFile | None, File("Points x, y, z in mm at which to write the shapes.", "POINTS.csv")
     ] = None,
-    toward: Annotated[Axis | None, Parameter("Component at the points; that of the axis by default.")] = None,
+    toward: Annotated[parts.Axis | None, Parameter("Component at the points; that of the axis by default.")] = None,
     contact: Annotated[
-        str | None,
-        Parameter("Write the modes for a rig file, with the contact at an output such as tip.", kind="OUTPUT"),
+        str | None, Parameter("Write the modes for a rig file, with the contact at an output such as tip.", "OUTPUT")
     ] = None,
     body_mass: Annotated[
-        Number | None, Parameter("Of a body that rests on the contact; held where absent.", unit="kg")
+        Number | None, Quantity("Of a body that rests on the contact; held where absent.", "kg")
     ] = None,
     body_stiffness: Annotated[
-        Number, Parameter("Of the spring that holds that body; none where absent.", unit="N/m")
+        Number, Quantity("Of the spring that holds that body; none where absent.", "N/m")
     ] = "0N/m",
-    body_damping: Annotated[Number, Parameter("Of the damper beside it.", unit="N s/m")] = "0N s/m",
+    body_damping: Annotated[Number, Quantity("Of the damper beside it.", "N s/m")] = "0N s/m",
     vtu: Annotated[bool, Parameter("Write the modes for ParaView too.")] = False,
     animate: Annotated[bool, Parameter("Draw each mode as an animated GIF too.")] = False,
-    progress: Watch = None,
-    cancelled: Stop = None,
+    **watch: Unpack[Watched],
 ) -> "ModesAnswer":
     """Natural modes of a part: frequencies with their errors, names and pictures.
 
@@ -109,11 +81,11 @@ def modes(
     >>> format_si(float(answer["natural_frequency"].sel(mode="axial 1")), "Hz")  # half a wavelength on 20 mm of steel
     '124 kHz'
     """
-    name = part_name(part)
+    name = parts.part_name(part)
     _refuse_unused(name, points=points, contact=contact, body_mass=body_mass)
     if contact is not None:
         _require_output(name, sizes or {}, contact)
-    given = {name: in_si(name, value) for name, value in given_arguments(ELASTIC_PROPERTIES).items()}
+    given = {name: in_si(name, value) for name, value in given_arguments(parts.ELASTIC_PROPERTIES).items()}
     supported = supported_part(part, sizes or {}, material=material, properties=given, clamp=clamp)
     body = _body(body_mass, body_stiffness, body_damping)
     scanned = None if points is None else _points_in_metres(points)
@@ -124,7 +96,9 @@ def modes(
             meshes = len(solved.found.nodes)
             advance("reduction", meshes, meshes + 1)
             command = _command(name, sizes or {}, _CHOICES)
-            structure = structure_modes(solved.found, supported.transducer, contact=contact, body=body, command=command)
+            structure = mode_files.structure_modes(
+                solved.found, supported.transducer, contact=contact, body=body, command=command
+            )
     return ModesAnswer(
         solved=solved,
         points=scanned,
@@ -137,7 +111,7 @@ def modes(
 
 def _refuse_unused(part: str, *, points: InputFile | None, contact: str | None, body_mass: Number | None) -> None:
     """Refuse arguments that the part and the others leave without effect."""
-    if part in ALL_TRANSDUCERS:
+    if part in parts.ALL_TRANSDUCERS:
         own = ("material", "youngs_modulus", "poisson_ratio", "density")
         refuse_unused(*own, because=f"for {part}, which has its own; it is for other parts")
     if points is None:
@@ -148,21 +122,21 @@ def _refuse_unused(part: str, *, points: InputFile | None, contact: str | None, 
         refuse_unused("body_stiffness", "body_damping", because=f"without {shown('body_mass')}, which it holds")
 
 
-def _require_output(part: str, sizes: PartSizes, contact: str) -> None:
+def _require_output(part: str, sizes: parts.PartSizes, contact: str) -> None:
     """Refuse a contact of a part without a drive, or at an output that it lacks."""
-    if part not in ALL_TRANSDUCERS:
-        known = ", ".join(ALL_TRANSDUCERS)
+    if part not in parts.ALL_TRANSDUCERS:
+        known = ", ".join(parts.ALL_TRANSDUCERS)
         raise InvalidInput(f"{shown('contact')} {contact}: {part} has no drive; it is for transducers: {known}")
-    outputs = named_transducer(part, sizes).outputs
+    outputs = parts.named_transducer(part, sizes).outputs
     if contact not in outputs:
         raise UnknownName.among(outputs, kind=f"output of {part}", name=contact)
 
 
-def _body(mass: Number | None, stiffness: Number, damping: Number) -> SupportedBody | None:
+def _body(mass: Number | None, stiffness: Number, damping: Number) -> mode_files.SupportedBody | None:
     """Body that rests on the contact; None where it is held."""
     if mass is None:
         return None
-    return SupportedBody(
+    return mode_files.SupportedBody(
         body_mass=in_si("body_mass", mass),
         spring_stiffness=in_si("body_stiffness", stiffness),
         viscous_damping=in_si("body_damping", damping),
@@ -173,11 +147,11 @@ def _points_in_metres(points: InputFile) -> Floats:
     """Points in m from a CSV table of x, y and z in mm, shape (p, 3)."""
     table = number_table(file_path(points))
     if table.shape[1] != 3 or not np.all(np.isfinite(table)):
-        raise InvalidInput(f"{part_name(points)}: needs the three columns x, y and z in mm, got {table.shape[1]}")
+        raise InvalidInput(f"{parts.part_name(points)}: needs the three columns x, y and z in mm, got {table.shape[1]}")
     return np.asarray(1e-3 * table)
 
 
-def _command(part: str, sizes: PartSizes, names: Sequence[str]) -> str:
+def _command(part: str, sizes: parts.PartSizes, names: Sequence[str]) -> str:
     """Command that computes the same modes again, without the options of its files."""
     words = ["sonolube", "modes", part]
     for name, size in sizes.items():
@@ -240,27 +214,27 @@ class ModesAnswer(Answer):
         files: dict[str, str | bytes] = {}
         stem = Path(self.part.name).stem
         if self.points is not None:
-            table = shapes_table(self.found, self.names, self.points, direction=self.direction)
+            table = mode_files.shapes_table(self.found, self.names, self.points, direction=self.direction)
             files[f"{stem}-shapes.csv"] = table
         if self.structure is not None:
             files[f"{stem}-modes.toml"] = self.structure
         if self.with_grid:
-            files[f"{stem}-modes.vtu"] = modes_grid(self.found, self.names)
+            files[f"{stem}-modes.vtu"] = mode_files.modes_grid(self.found, self.names)
         if self.with_animations:
             with stage("animating") as advance:
                 for done, row in enumerate(self._rows()):
                     advance(self.names[row], done, len(self._rows()))
-                    animation = mode_animation(self._surface(row), title=self._title(row))
+                    animation = mode_files.mode_animation(self._surface(row), title=self._title(row))
                     files[f"{self._file_name(row)}.gif"] = animation
         return files
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Frequencies, errors and shapes of the elastic modes, with the surface of the part."""
         return modes_dataset(self.solved).assign_attrs(self.notes())
 
     def _rows(self) -> range:
         """Indices of the elastic modes."""
-        return elastic_rows(self.found)
+        return mode_files.elastic_rows(self.found)
 
     def _surface(self, row: int) -> ShapedSurface:
         """Surface of the part with the shape of a mode."""
@@ -272,7 +246,7 @@ class ModesAnswer(Answer):
 
     def _title(self, row: int) -> str:
         """Name and natural frequency of a mode."""
-        return mode_title(self.found, self.names, row)
+        return mode_files.mode_title(self.found, self.names, row)
 
     def _file_name(self, row: int) -> str:
         """Name of the picture of a mode: part, number among the elastic modes, and name of the mode."""

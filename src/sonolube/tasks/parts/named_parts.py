@@ -9,31 +9,19 @@ from typing import Annotated, Any, Literal
 from sonolube.dong2015.transducers import DONG_2015_TRANSDUCERS
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.materials import material, piezo_ceramic_names
-from sonolube.models.fem import (
-    PARTS,
-    TRANSDUCERS,
-    Geometry,
-    Medium,
-    Transducer,
-    isotropic_medium,
-    medium_from_material,
-    poled_part,
-    read_step,
-)
+from sonolube.models import fem
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
-from sonolube.tasks.parameters import Parameter
+from sonolube.tasks.parameters import File
 from sonolube.tasks.task import shown
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
-Part = Annotated[
-    InputFile, Parameter("A part such as block, a transducer such as stack, or a STEP file.", kind="PART", is_file=True)
-]
+Part = Annotated[InputFile, File("A part such as block, a transducer such as stack, or a STEP file.", "PART")]
 Axis = Literal["x", "y", "z"]
 PartSizes = Mapping[str, str | float]
 """Sizes of a part by name, as text with units or as numbers in SI."""
 
-ALL_TRANSDUCERS = {**TRANSDUCERS, **DONG_2015_TRANSDUCERS}
+ALL_TRANSDUCERS = {**fem.TRANSDUCERS, **DONG_2015_TRANSDUCERS}
 """General transducers and those of the dissertation, by name."""
 
 PART_WIRING: Mapping[str, str] = MappingProxyType({"ceramic": "pic255", "poled": "z", "drive": "+z", "ground": "-z"})
@@ -42,7 +30,7 @@ PART_WIRING: Mapping[str, str] = MappingProxyType({"ceramic": "pic255", "poled":
 _LARGEST = 1e6  # m; the CAD kernel fails on larger parts with messages of its own
 
 
-def named_part(part: InputFile, sizes: PartSizes) -> Geometry:
+def named_part(part: InputFile, sizes: PartSizes) -> fem.Geometry:
     """Geometry of a part by its name and sizes, or of a STEP file.
 
     Parameters
@@ -68,16 +56,16 @@ def named_part(part: InputFile, sizes: PartSizes) -> Geometry:
         return step_part(part, sizes)
     if name in ALL_TRANSDUCERS:
         return named_transducer(part, sizes).geometry
-    if name not in PARTS:
-        raise UnknownName.among((*PARTS, *ALL_TRANSDUCERS), kind="part", name=name)
-    return PARTS[name](**sizes_in_si(name, PARTS[name], sizes))
+    if name not in fem.PARTS:
+        raise UnknownName.among((*fem.PARTS, *ALL_TRANSDUCERS), kind="part", name=name)
+    return fem.PARTS[name](**sizes_in_si(name, fem.PARTS[name], sizes))
 
 
 ELASTIC_PROPERTIES = ("youngs_modulus", "poisson_ratio", "density")
 """Properties of a material that its natural modes depend on."""
 
 
-def solid_medium(part: str, material_name: str, properties: Mapping[str, float]) -> Medium:
+def solid_medium(part: str, material_name: str, properties: Mapping[str, float]) -> fem.Medium:
     """Medium of a part of one material.
 
     Parameters
@@ -105,12 +93,12 @@ def solid_medium(part: str, material_name: str, properties: Mapping[str, float])
             " metal here"
         )
     if not properties:
-        return medium_from_material(solid)
+        return fem.medium_from_material(solid)
     elastic = {name: properties[name] if name in properties else solid.value(name) for name in ELASTIC_PROPERTIES}
-    return isotropic_medium(**elastic)
+    return fem.isotropic_medium(**elastic)
 
 
-def named_transducer(part: InputFile, sizes: PartSizes, **wiring: str | None) -> Transducer:
+def named_transducer(part: InputFile, sizes: PartSizes, **wiring: str | None) -> fem.Transducer:
     """Transducer by its name and sizes, or a part or STEP file of one ceramic between two electrodes.
 
     Parameters
@@ -140,7 +128,7 @@ def named_transducer(part: InputFile, sizes: PartSizes, **wiring: str | None) ->
     given = {option: value for option, value in wiring.items() if value is not None}
     if name not in ALL_TRANSDUCERS:
         known = {**PART_WIRING, **given}
-        return poled_part(
+        return fem.poled_part(
             named_part(part, sizes),
             ceramic=known["ceramic"],
             along=known["poled"],
@@ -205,8 +193,8 @@ def is_step(part: InputFile) -> bool:
     return Path(part_name(part)).suffix.lower() in {".step", ".stp"}
 
 
-def step_part(part: InputFile, sizes: PartSizes) -> Geometry:
+def step_part(part: InputFile, sizes: PartSizes) -> fem.Geometry:
     """Geometry of a STEP file, which takes no sizes."""
     if sizes:
         raise InvalidInput(f"{part_name(part)} has its sizes, and takes no other: leave {', '.join(sizes)} out")
-    return read_step(file_path(part))
+    return fem.read_step(file_path(part))

@@ -8,7 +8,7 @@ from sonolube.tasks.parameters import Parameter, RestingRig, rig_of
 from sonolube.tasks.predict.rig_record import RigRecord
 from sonolube.tasks.task import task
 
-_STIFFNESS = Parameter(f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}.", kind="MODEL")
+_STIFFNESS = Parameter(f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}.", "MODEL")
 
 
 @task

@@ -23,7 +23,7 @@ def _described(model: type[FrictionModel]) -> str:
 _MODEL = Parameter(
     "Friction model instead of the rig's own (D is the dissertation):"
     f" {'; '.join(map(_described, FRICTION_MODELS.values()))}.",
-    kind="NAME",
+    "NAME",
 )
 
 

@@ -3,23 +3,19 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.operating_system import quoted
-from sonolube.report.blocks import Block, Table, Verbatim
 from sonolube.rig import Rig
 from sonolube.rig.new_rig.known_surface import KnownSurface
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text, rig_of_known
 from sonolube.rig.new_rig.stated_text import pin_shape, reader, speed_of, surface_of, vibration_of
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Table, Verbatim, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import Number, Parameter
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity
 from sonolube.tasks.task import shown, task
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 DEFAULT_SHAPE = "flat 3mm"
 """End of the pin where none is given."""
@@ -38,64 +34,58 @@ _ONE_OF = (
 @task
 def new(
     *,
-    pin: Annotated[str, Parameter("Material of the pin, or its class: 100Cr6, 304, steel.", kind="MATERIAL")],
-    disc: Annotated[str, Parameter("Material of the disc, or its class.", kind="MATERIAL")],
-    load: Annotated[Number, Parameter("Normal load.", unit="N")],
-    speed: Annotated[Number, Parameter("Sliding speed: 0.2m/s, or '100 rpm' with the track.", unit="m/s")],
-    frequency: Annotated[Number, Parameter("Frequency of the vibration.", unit="Hz")],
+    pin: Annotated[str, Parameter("Material of the pin, or its class: 100Cr6, 304, steel.", "MATERIAL")],
+    disc: Annotated[str, Parameter("Material of the disc, or its class.", "MATERIAL")],
+    load: Annotated[Number, Quantity("Normal load.", "N")],
+    speed: Annotated[Number, Quantity("Sliding speed: 0.2m/s, or '100 rpm' with the track.", "m/s")],
+    frequency: Annotated[Number, Quantity("Frequency of the vibration.", "Hz")],
     amplitude: Annotated[
-        Number | None, Parameter("Vibration amplitude normal to the contact, zero to peak.", unit="m")
+        Number | None, Quantity("Vibration amplitude normal to the contact, zero to peak.", "m")
     ] = None,
     actuator: Annotated[
-        str | None, Parameter("Actuator by its name in sonolube actuators, in place of the amplitude.", kind="NAME")
+        str | None, Parameter("Actuator by its name in sonolube actuators, in place of the amplitude.", "NAME")
     ] = None,
-    voltage: Annotated[Number | None, Parameter("Voltage of the actuator, peak to peak.", unit="V")] = None,
+    voltage: Annotated[Number | None, Quantity("Voltage of the actuator, peak to peak.", "V")] = None,
     shape: Annotated[
         str | None,
         Parameter(
             "End of the pin: 'flat 3mm' (its diameter, default), 'ball 5mm' (its radius), 'ball radius 5mm',"
             " 'ball diameter 10mm'.",
-            kind="SHAPE",
+            "SHAPE",
         ),
     ] = None,
     track_radius: Annotated[
-        Number | None, Parameter("Radius of the track on the disc, for a speed in rpm.", unit="m")
+        Number | None, Quantity("Radius of the track on the disc, for a speed in rpm.", "m")
     ] = None,
-    track_diameter: Annotated[Number | None, Parameter("Its diameter, in place of the radius.", unit="m")] = None,
+    track_diameter: Annotated[Number | None, Quantity("Its diameter, in place of the radius.", "m")] = None,
     finish: Annotated[
         str | None,
         Parameter(
             "Finish of pin and disc: 'ground' (default), N6, 'ground N6', 'Ra 0.4' (in um), 0.4um (as Ra), 'Rz 3.2um'.",
-            kind="FINISH",
+            "FINISH",
         ),
     ] = None,
-    pin_finish: Annotated[str | None, Parameter("Finish of the pin.", kind="FINISH")] = None,
-    disc_finish: Annotated[str | None, Parameter("Finish of the disc.", kind="FINISH")] = None,
-    scan: Annotated[
-        InputFile | None, Parameter("Scan of the disc, in place of its finish.", kind="FILE", is_file=True)
-    ] = None,
-    pin_scan: Annotated[
-        InputFile | None, Parameter("Scan of the pin, in place of its finish.", kind="FILE", is_file=True)
-    ] = None,
+    pin_finish: Annotated[str | None, Parameter("Finish of the pin.", "FINISH")] = None,
+    disc_finish: Annotated[str | None, Parameter("Finish of the disc.", "FINISH")] = None,
+    scan: Annotated[InputFile | None, File("Scan of the disc, in place of its finish.", "FILE")] = None,
+    pin_scan: Annotated[InputFile | None, File("Scan of the pin, in place of its finish.", "FILE")] = None,
     friction: Annotated[
         Number | None,
-        Parameter(
-            "Coefficient of dry friction, where it was measured; else the range of the pair.", unit="", kind="NUMBER"
-        ),
+        Quantity("Coefficient of dry friction, where it was measured; else the range of the pair.", "", kind="NUMBER"),
     ] = None,
     decay_length: Annotated[
         Number | None,
-        Parameter(
+        Quantity(
             "Length over which the force of the worn contact falls by a factor of e, where it is known; else that "
             "of published tests.",
-            unit="m",
+            "m",
         ),
     ] = None,
     stiffness: Annotated[
         Number | None,
-        Parameter(
+        Quantity(
             "Measured normal stiffness of the contact under the load, such as 1.5MN/m, in place of the decay length.",
-            unit="N/m",
+            "N/m",
             kind="STIFFNESS",
         ),
     ] = None,
@@ -174,7 +164,7 @@ class NewRig(Answer):
             "least_known": {one.key: one.remedy for one in self.least_known},
         }
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Uncertain entries of the rig: medians and 80 % intervals in SI, and their distributions."""
         import xarray as xr
 

@@ -1,33 +1,28 @@
 """Task `predict`: what vibration does to friction and wear on a rig, with intervals, updated by own runs."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.predictive import DRAWS
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Table
 from sonolube.report.results import prediction as results
 from sonolube.report.results.measured_on_rig import Measurement, measured_on
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
-from sonolube.tasks.answer import Answer, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Disc, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
+from sonolube.tasks.parameters import Disc, File, KeyValues, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
 from sonolube.tasks.task import task
 from sonolube.text.units import format_si
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 Laboratory: TypeAlias = "Mapping[RigSource, RunsSource] | Sequence[tuple[RigSource, RunsSource]] | None"
 
-_LABORATORY = Parameter(
+_LABORATORY = KeyValues(
     "Another rig of your laboratory with its runs, which tell of the contact's decay length; may be repeated.",
-    kind="RIG.toml=RUNS.csv",
-    is_mapping=True,
+    "RIG.toml=RUNS.csv",
 )
 _MEASURE_HEADS = ["what would narrow it", "leaves of the interval"]
 
@@ -36,7 +31,7 @@ _MEASURE_HEADS = ["what would narrow it", "leaves of the interval"]
 def predict(
     rig: RigFile,
     *,
-    runs: Annotated[RunsSource, Parameter(runs_help("Own measured runs"), kind="RUNS.csv", is_file=True)] = None,
+    runs: Annotated[RunsSource, File(runs_help("Own measured runs"), "RUNS.csv")] = None,
     mapping: MappedRuns = None,
     laboratory: Annotated[Laboratory, _LABORATORY] = None,
     pin: Pin = None,
@@ -73,7 +68,7 @@ def predict(
     return PredictionAnswer(rig=known, prediction=result, measured=measured)
 
 
-def _rigs_with_runs(laboratory: Laboratory) -> "list[tuple[Rig, xr.Dataset]]":
+def _rigs_with_runs(laboratory: Laboratory) -> "list[tuple[Rig, Dataset]]":
     """Rigs of a laboratory with the runs of each."""
     pairs = laboratory.items() if isinstance(laboratory, Mapping) else laboratory or ()
     return [(rig_of(rig), runs_of(table)) for rig, table in pairs if table is not None]

@@ -1,31 +1,25 @@
 """Task `regime`: lubrication regime of a rig, by vibration, lubricant or both, and the kind of wear to expect."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+from sonolube import rig as rigs
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.models.friction import BoundaryLubricant
 from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results import regime as results
-from sonolube.rig import LubricationMap, LubricationPoint, Rig, lubrication_map, lubrication_point, wear_of_materials
 from sonolube.rig.datasets import labels
 from sonolube.rig.figures import lubrication_chart
-from sonolube.tasks.answer import Answer, answer
-from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, rig_of
 from sonolube.tasks.task import in_si, plausible, shown, task
 from sonolube.text.units import format_si
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-_FILM = Parameter("Coefficient of friction of the lubricant film.", unit="", kind="NUMBER")
-_PRESSURE = Parameter("Pressure at which asperities carry all the load.", unit="Pa")
-_GAIN = Parameter(
-    "Least reduction of a lubricant's friction that is worth the power of vibration.", unit="", kind="SHARE"
-)
+_FILM = Quantity("Coefficient of friction of the lubricant film.", "", kind="NUMBER")
+_PRESSURE = Quantity("Pressure at which asperities carry all the load.", "Pa")
+_GAIN = Quantity("Least reduction of a lubricant's friction that is worth the power of vibration.", "", kind="SHARE")
 
 
 @task
@@ -35,8 +29,8 @@ def regime(
     film_coefficient: Annotated[Number, _FILM],
     asperity_pressure: Annotated[Number, _PRESSURE],
     smallest_gain: Annotated[Number, _GAIN] = "0",
-    pin: Annotated[str | None, Parameter("Material of the pin, for its wear.", kind="MATERIAL")] = None,
-    disc: Annotated[str | None, Parameter("Material of the disc, for its wear.", kind="MATERIAL")] = None,
+    pin: Annotated[str | None, Parameter("Material of the pin, for its wear.", "MATERIAL")] = None,
+    disc: Annotated[str | None, Parameter("Material of the disc, for its wear.", "MATERIAL")] = None,
 ) -> "RegimeAnswer":
     """Lubrication regime: dry, vibrated, lubricated or both, and the kind of wear to expect.
 
@@ -60,9 +54,9 @@ def regime(
     gain = in_si("smallest_gain", smallest_gain)
     return RegimeAnswer(
         rig=known,
-        result=lubrication_point(known, lubricant=lubricant, smallest_gain=gain),
-        wear=wear_of_materials(material(pin), material(disc)) if pin is not None and disc is not None else None,
-        surroundings=lubrication_map(known, lubricant=lubricant, smallest_gain=gain),
+        result=rigs.lubrication_point(known, lubricant=lubricant, smallest_gain=gain),
+        wear=rigs.wear_of_materials(material(pin), material(disc)) if pin is not None and disc is not None else None,
+        surroundings=rigs.lubrication_map(known, lubricant=lubricant, smallest_gain=gain),
     )
 
 
@@ -70,10 +64,10 @@ def regime(
 class RegimeAnswer(Answer):
     """Coefficients of friction of a rig dry, vibrated, lubricated and both, the best of them, and its wear."""
 
-    rig: Rig
-    result: LubricationPoint
+    rig: rigs.Rig
+    result: rigs.LubricationPoint
     wear: WearMechanismAssessment | None
-    surroundings: LubricationMap
+    surroundings: rigs.LubricationMap
 
     def blocks(self) -> Sequence[Block]:
         """Coefficient of friction of each method, the best marked, and the kind of wear."""
@@ -97,7 +91,7 @@ class RegimeAnswer(Answer):
         chart = lambda: lubrication_chart(self.rig, self.result, self.surroundings)  # noqa: E731
         return {f"{self.rig.name}-regime": Drawing(chart=chart)}
 
-    def dataset(self) -> "xr.Dataset":
+    def dataset(self) -> Dataset:
         """Coefficients of friction over `lubrication`, and the operating point."""
         methods = self.result.coefficients._asdict()
         found = super().dataset().assign_coords(lubrication=list(methods))

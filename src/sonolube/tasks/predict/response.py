@@ -3,18 +3,17 @@
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
+from sonolube import rig as rigs
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import modes
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
-from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, structure_in_contact
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.figures import response_chart
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import response_arrays
-from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.parameters import Number, Parameter, RestingRig, rig_of
+from sonolube.tasks.answer import Answer, Block, Rows, answer, si
+from sonolube.tasks.parameters import Number, Quantity, RestingRig, rig_of
 from sonolube.tasks.task import in_si, shown, task
 from sonolube.text.units import format_si
 
@@ -23,8 +22,8 @@ from sonolube.text.units import format_si
 def response(
     rig: RestingRig,
     *,
-    lowest: Annotated[Number, Parameter("Lowest frequency.", unit="Hz", option="--from")] = "1kHz",
-    highest: Annotated[Number, Parameter("Highest frequency.", unit="Hz", option="--to")] = "100kHz",
+    lowest: Annotated[Number, Quantity("Lowest frequency.", "Hz", option="--from")] = "1kHz",
+    highest: Annotated[Number, Quantity("Highest frequency.", "Hz", option="--to")] = "100kHz",
 ) -> "ResponseAnswer":
     """Linear response: tip amplitude per volt and electrical impedance over frequency.
 
@@ -43,8 +42,8 @@ def response(
         raise InvalidInput(f"{shown('lowest')} {lowest} must lie above 0 Hz and below {shown('highest')} {highest}")
     known = rig_of(rig)
     resolved = resolved_rig(known)
-    result = frequency_response(resolved, frequency=frequency_grid(resolved, lowest=low, highest=high))
-    natural = modes(structure_in_contact(resolved))
+    result = rigs.frequency_response(resolved, frequency=rigs.frequency_grid(resolved, lowest=low, highest=high))
+    natural = modes(rigs.structure_in_contact(resolved))
     return ResponseAnswer(rig=known, result=result, natural_frequency=natural.natural_frequency[~natural.rigid])
 
 
@@ -52,8 +51,8 @@ def response(
 class ResponseAnswer(Answer):
     """Linear response of a rig: natural frequencies and the largest amplitude per volt."""
 
-    rig: Rig
-    result: FrequencyResponse
+    rig: rigs.Rig
+    result: rigs.FrequencyResponse
     natural_frequency: Floats
 
     def blocks(self) -> Sequence[Block]:

@@ -2,19 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.measured_on_rig import Measurement
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays, result_quantities, result_texts
-from sonolube.tasks.answer import Answer, answer, si
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer, si
 from sonolube.text.units import format_quantity, format_si
 from sonolube.vocabulary import quantities
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
 _MIN_FORCE = 1e-6  # of the load, below which a friction force means nothing
@@ -50,7 +46,7 @@ class RigRecord(Answer):
     rows: Sequence[tuple[str, str]] = ()
     entries: Mapping[str, Any] = field(default_factory=dict)
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
-    datasets: "Mapping[str, xr.Dataset | LabelledArrays]" = field(default_factory=dict)
+    datasets: "Mapping[str, Dataset | LabelledArrays]" = field(default_factory=dict)
 
     def blocks(self) -> Sequence[Block]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
@@ -87,7 +83,7 @@ class RigRecord(Answer):
         """Figures of the record."""
         return self.drawings
 
-    def files(self) -> "Mapping[str, xr.Dataset | LabelledArrays]":
+    def files(self) -> "Mapping[str, Dataset | LabelledArrays]":
         """Datasets of the record."""
         return self.datasets
 

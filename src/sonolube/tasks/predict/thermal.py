@@ -7,23 +7,22 @@ from sonolube.models.thermal.flash_models import FLASH_MODELS
 from sonolube.report import Drawing
 from sonolube.rig import temperature_point, thermal_solid
 from sonolube.rig.figures import temperature_chart
-from sonolube.tasks.parameters import Number, Parameter, RigFile, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, rig_of
 from sonolube.tasks.predict.rig_record import RigRecord
 from sonolube.tasks.task import in_si, plausible, shown, task
 
-_PIN = Parameter("Material of the pin, which the contact stays on; by default the rig's.", kind="MATERIAL")
-_DISC = Parameter("Material of the disc, which the contact moves over; by default the rig's.", kind="MATERIAL")
-_CONDUCTANCE = Parameter("Thermal conductance from the pin to its surroundings.", unit="W/K", kind="CONDUCTANCE")
-_VIBRATION_HEAT = Parameter(
-    "Heat of the vibration in the contact; several, such as 1mW,5mW, one after another, each for as long.", unit="W"
+_PIN = Parameter("Material of the pin, which the contact stays on; by default the rig's.", "MATERIAL")
+_DISC = Parameter("Material of the disc, which the contact moves over; by default the rig's.", "MATERIAL")
+_CONDUCTANCE = Quantity("Thermal conductance from the pin to its surroundings.", "W/K", kind="CONDUCTANCE")
+_VIBRATION_HEAT = Quantity(
+    "Heat of the vibration in the contact; several, such as 1mW,5mW, one after another, each for as long.", "W"
 )
-_RATIO = Parameter(
+_RATIO = Quantity(
     "Friction with vibration over that without, such as a measured one, instead of the friction model's.",
-    unit="",
-    quantity="friction_ratio",
+    "friction_ratio",
     kind="RATIO",
 )
-_FLASH_MODEL = Parameter(f"Model of the flash temperature: {', '.join(FLASH_MODELS)}.", kind="MODEL")
+_FLASH_MODEL = Parameter(f"Model of the flash temperature: {', '.join(FLASH_MODELS)}.", "MODEL")
 
 
 @task
@@ -32,10 +31,10 @@ def thermal(
     *,
     pin: Annotated[str | None, _PIN] = None,
     disc: Annotated[str | None, _DISC] = None,
-    duration: Annotated[Number, Parameter("Duration of the test.", unit="s")] = "50s",
-    heat_capacity: Annotated[Number, Parameter("Heat capacity of the pin.", unit="J/K", kind="CAPACITY")] = "1.5J/K",
+    duration: Annotated[Number, Quantity("Duration of the test.", "s")] = "50s",
+    heat_capacity: Annotated[Number, Quantity("Heat capacity of the pin.", "J/K", kind="CAPACITY")] = "1.5J/K",
     conductance: Annotated[Number, _CONDUCTANCE] = "0.05W/K",
-    dry: Annotated[Number, Parameter("Time at the start of the test without vibration.", unit="s")] = "0s",
+    dry: Annotated[Number, Quantity("Time at the start of the test without vibration.", "s")] = "0s",
     vibration_heat: Annotated[Number, _VIBRATION_HEAT] = "0W",
     friction_ratio: Annotated[Number | None, _RATIO] = None,
     flash_model: Annotated[str, _FLASH_MODEL] = "quadrature",

@@ -1,17 +1,16 @@
 """Task `transient`: start-up of a rig from rest by time integration."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Unpack
 
+from sonolube import rig as rigs
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
-from sonolube.rig import ResolvedVibration, Rig, StartUp, start_up
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.figures import start_up_chart
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.result_datasets import start_up_arrays
-from sonolube.tasks.answer import Answer, answer, si
-from sonolube.tasks.parameters import Number, Parameter, RigFile, Stop, Watch, rig_of
+from sonolube.tasks.answer import Answer, Block, Rows, answer, si
+from sonolube.tasks.parameters import Number, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, task
 from sonolube.text.units import format_si
@@ -23,9 +22,8 @@ _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "bea
 def transient(
     rig: RigFile,
     *,
-    duration: Annotated[Number, Parameter("Time that is integrated.", unit="s")] = "0.1s",
-    progress: Watch = None,
-    cancelled: Stop = None,
+    duration: Annotated[Number, Quantity("Time that is integrated.", "s")] = "0.1s",
+    **watch: Unpack[Watched],
 ) -> "StartUpAnswer":
     """Start-up from rest: settling of the tip's vibration, step by step.
 
@@ -42,7 +40,7 @@ def transient(
     known = rig_of(rig)
     with stage("marching"):
         resolved = resolved_rig(known)
-        result = start_up(resolved, duration=in_si("duration", duration))
+        result = rigs.start_up(resolved, duration=in_si("duration", duration))
     return StartUpAnswer(rig=known, vibration=resolved.vibration, result=result)
 
 
@@ -50,9 +48,9 @@ def transient(
 class StartUpAnswer(Answer):
     """Start-up of a rig: settling time, final amplitude and slow oscillation."""
 
-    rig: Rig
-    vibration: ResolvedVibration
-    result: StartUp
+    rig: rigs.Rig
+    vibration: rigs.ResolvedVibration
+    result: rigs.StartUp
 
     def blocks(self) -> Sequence[Block]:
         """Settling time, amplitude, mean displacement, slow oscillation and status."""
