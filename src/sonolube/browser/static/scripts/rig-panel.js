@@ -2,16 +2,14 @@
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {useReply} from './api.js';
 import {Field, spreadKey} from './fields.js';
+import {Button, FileButton, Loading, Refusal, Select} from './parts.js';
 import {Schematic} from './schematic.js';
-import {addressOf, change, pack, useApp} from './state.js';
+import {addressOf, change, pack, setEntry, settle, useApp} from './state.js';
 
 /** Last view that was read and its rig, so that a page that opens shows it at once. */
 let last = {view: null, rig: {}};
 
-/**
- * The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs; null where refused.
- * @returns {{view: any, failure: Object|null, refused: Object[], isWaiting: boolean}}
- */
+/** The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs; `view` is null where refused. */
 export function useRig() {
   const {state: {rig}, isMoving} = useApp();
   const asked = useRef(rig);
@@ -31,31 +29,25 @@ const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 function RigChoice({view}) {
   const {state} = useApp();
   const [note, setNote] = useState('');
-  const chooser = useRef(null);
-  const names = [...new Set([...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);
   const own = state.rig.text !== undefined;
+  const names = [...new Set([...(own ? [state.rig.name] : []), ...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);
+  const choices = names.map((name) => (own && name === state.rig.name ? ['', `${name} (own file)`] : [name, name]));
   const choose = (event) => {
     setNote('');
     change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
   };
-  const open = async ([file]) => setNote(await openRigText(file.name.replace(/\.toml$/i, ''), await file.text()));
+  const open = async (file) => setNote(await openRigText(file.name.replace(/\.toml$/i, ''), await file.text()));
   return html`<div class="rig-choice">
     <label for="rig-name">Rig</label>
     <div class="row">
-      <select id="rig-name" value=${own ? '' : state.rig.name} onChange=${choose} data-test="rig" class="grow">
-        ${own && html`<option value="" selected>${state.rig.name} (own file)</option>`}
-        ${names.filter((name) => !own || name !== state.rig.name).map((name) => html`<option key=${name} value=${name}
-          selected=${!own && name === state.rig.name}>${name}</option>`)}
-      </select>
-      <button type="button" class="button" onClick=${() => chooser.current.click()} data-test="open-rig">Open…</button>
+      <${Select} id="rig-name" choices=${choices} value=${own ? '' : state.rig.name} onChange=${choose} data-test="rig" class="grow" />
+      <${FileButton} accept=".toml" label="Rig file" onFile=${open} test="rig-file" data-test="open-rig">Open…<//>
       <a class="button" href=${addressOf('new')}>New…</a>
-      <input type="file" accept=".toml" class="hidden" tabindex="-1" aria-label="Rig file" ref=${chooser}
-        onChange=${(event) => event.target.files.length && open(event.target.files)} data-test="rig-file" />
     </div>
     ${view && html`<p class="hint" data-test="rig-title">${view.title}</p>`}
     ${note && html`<p class="hint" role="status">${note}</p>`}
-    ${state.view.lost && html`<p class="refusal" role="alert" data-test="lost">The file of ${state.view.lost} is not in this
-      link and no longer in this browser: open it again.</p>`}
+    <${Refusal} role="alert" data-test="lost" text=${state.view.lost
+      && `The file of ${state.view.lost} is not in this link and no longer in this browser: open it again.`} />
   </div>`;
 }
 
@@ -66,11 +58,9 @@ export async function openRigText(name, text, page = undefined) {
   return fits ? '' : 'This file is too long for a link: it stays in this tab only. Take it away as TOML to keep it.';
 }
 
-/**
- * @param {{extra?: any}} props `extra` stands below the fields of the operating point
- */
+/** Rig with its drawing and fields; `extra` stands below those of the operating point. */
 export function RigPanel({extra}) {
-  const {state, setEntry, settle} = useApp();
+  const {state} = useApp();
   const {view, failure, refused} = useRig();
   const {rig} = state;
   const isAnswered = failure && ['refused', 'busy'].includes(failure.kind); // else the head says it
@@ -89,12 +79,12 @@ export function RigPanel({extra}) {
   const count = Object.keys(rig.changes).length;
   return html`<aside class="rig" aria-label="Rig" data-test="rig-panel">
     <${RigChoice} view=${view} />
-    ${!view && !failure && html`<p class="loading" role="status">Reading the rig…</p>`}
+    ${!view && !failure && html`<${Loading}>Reading the rig…<//>`}
     ${view && html`<${Schematic} drawing=${view.drawing} fields=${fields} textOf=${(field) => textOf(rig, field)} />`}
-    ${homeless.map(([key, text]) => html`<p key=${key} class="refusal" role="alert" data-test="rig-refusal">${text}</p>`)}
+    ${homeless.map(([key, text]) => html`<${Refusal} key=${key} text=${text} role="alert" data-test="rig-refusal" />`)}
     <div class="fields">${list(first)}</div>
-    ${count > 0 && html`<button type="button" class="button is-quiet" data-test="reset-all"
-      onClick=${() => change({rig: {...rig, changes: {}}})}>Take back ${count === 1 ? 'the change' : `all ${count} changes`}</button>`}
+    ${count > 0 && html`<${Button} kind="button is-quiet" onClick=${() => change({rig: {...rig, changes: {}}})} data-test="reset-all">
+      Take back ${count === 1 ? 'the change' : `all ${count} changes`}<//>`}
     ${extra}
     ${others.length > 0 && html`<${AllEntries} isOpen=${isAll}>
       ${[...new Set(others.map(tableOf))].map((table) => html`<fieldset key=${table} class="fields"><legend>${table}</legend>
@@ -113,14 +103,9 @@ function AllEntries({isOpen, children}) {
     ${children}</details>`;
 }
 
-/**
- * Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer.
- * @param {{lead?: any, extra?: any, children?: any}} props
- */
-export function Workspace({lead, extra, children}) {
-  return html`<div class="workspace">
-    <div class="lead" id="answer" tabindex="-1">${lead}</div>
-    <${RigPanel} extra=${extra} />
-    <div class="body">${children}</div>
+/** Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer. */
+export const Workspace = ({lead, extra, children}) => html`<div class="workspace">
+  <div class="lead" id="answer" tabindex="-1">${lead}</div>
+  <${RigPanel} extra=${extra} />
+  <div class="body">${children}</div>
   </div>`;
-}

@@ -28,20 +28,16 @@ function Value({field, text}) {
     <text x=${x} y=${y} text-anchor=${anchor}>${shown}</text></g>`;
 }
 
-/**
- * @param {{drawing: Object, fields: Object[], textOf: (field: Object) => string}} props
- */
+/** Drawing of a rig; `textOf` gives the text of a field. */
 export function Schematic({drawing, fields, textOf}) {
   const shown = fields.filter((field) => field.key in PLACES);
   return html`<svg class="schematic" viewBox="0 0 270 172" role="group" aria-label="Drawing of the rig with its values">
     <g class="schematic-lines" aria-hidden="true">
       ${drawing.has_structure && html`<path d="M20 62 H112" class="thick" /><path d="M20 52 v20 M14 54 l6 6 M14 62 l6 6 M14 70 l6 6" />`}
       <path d="M135 6 v22 m-4 -6 4 6 4 -6" class="force" />
-      ${drawing.has_drive
-    ? html`<rect x="112" y="32" width="46" height="52" rx="3" class="part" />
-        ${[40, 48, 56, 64, 72].map((y) => html`<path key=${y} d=${`M112 ${y + 2} H158`} class="thin" />`)}
-        <path d="M88 36 q4 -8 8 0 t8 0 M104 36 H112" class="wave" />`
-    : html`<rect x="112" y="32" width="46" height="52" rx="3" class="part" />`}
+      <rect x="112" y="32" width="46" height="52" rx="3" class="part" />
+      ${drawing.has_drive && html`<path d="M112 42 H158 M112 50 H158 M112 58 H158 M112 66 H158 M112 74 H158" class="thin" />
+        <path d="M88 36 q4 -8 8 0 t8 0 M104 36 H112" class="wave" />`}
       <path d="M118 84 H152 V100 L144 112 H126 L118 100 Z" class="part is-pin" />
       <path d="M168 90 v22 m-3 -17 3 -5 3 5 m-6 12 3 5 3 -5" class="force" />
       <path d="M126 112 H144" class="contact" />
