@@ -51,13 +51,11 @@ function useChanged(lines, isMoving, of) {
  *   answered; with fields on the page, what is assumed leads to them
  */
 export function Caveats({answer, isMoving, of, hasFields = true}) {
-  const caveats = [...(answer.leading_caveats ?? []), ...(answer.caveats ?? [])];
-  const assumed = Object.entries(answer.assumptions ?? {});
-  const refused = Object.entries(answer.refusals ?? {});
+  const {leading_caveats: leading = [], caveats = [], refusals = {}, assumptions = {}} = answer;
   const lists = [
-    ['Caveats', '', caveats.map((line) => ({line, shown: line}))],
-    ['Refused inputs', '', refused.map(([name, reason]) => ({shown: `${name}: ${reason}`}))],
-    ['Assumed', ' is-assumed', assumed.map(([key, reason]) => ({line: `${key}: ${reason}`, shown: html`${hasFields
+    ['Caveats', '', [...leading, ...caveats].map((line) => ({line, shown: line}))],
+    ['Refused inputs', '', Object.entries(refusals).map(([name, reason]) => ({shown: `${name}: ${reason}`}))],
+    ['Assumed', ' is-assumed', Object.entries(assumptions).map(([key, reason]) => ({line: `${key}: ${reason}`, shown: html`${hasFields
       ? html`<${Button} kind="link" onClick=${() => focusField(key)}>${key}<//>` : html`<code>${key}</code>`} ${reason}`}))],
   ].filter(([, , rows]) => rows.length);
   const changed = useChanged(lists.flatMap(([, , rows]) => rows.map(({line}) => line)).filter(Boolean), isMoving, of);

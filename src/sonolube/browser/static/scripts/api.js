@@ -129,10 +129,7 @@ const accepted = new Map();
 const place = (rig, key) => `${rig.text ?? rig.name} ${key}`;
 
 /** Longest of some keys that a sentence names; empty where it names none. */
-function named(text, keys) {
-  const found = keys.filter((key) => text.includes(`${key}:`));
-  return found.sort((one, other) => other.length - one.length)[0] ?? '';
-}
+const named = (text, keys) => keys.filter((key) => text.includes(`${key}:`)).sort((one, other) => other.length - one.length)[0] ?? '';
 
 /**
  * Ask about a rig; refused entries are replaced by what was accepted last, so that the other fields stay live.
@@ -157,10 +154,7 @@ async function askWithRig(path, body, signal) {
 }
 
 /**
- * Answer to the latest request, while an older answer stays.
- * @param {string} slot distinct among the requests of a page
- * @param {string|null} path null asks nothing
- * @param {Object} [body] without one it is a GET
+ * Answer to the latest request of a slot, while an older answer stays; null for a path asks nothing, no body is a GET.
  * @returns {{content: any, failure: Failure|null, refused: Fault[], isWaiting: boolean, of: Object|null}}
  *   `of` is the body that `content` answers.
  */
@@ -170,12 +164,9 @@ export function useReply(slot, path, body) {
   const text = path === null ? '' : JSON.stringify([path, body, turn]);
   useEffect(() => {
     if (path === null) return;
-    shared(slot, text, (signal) => askWithRig(path, body, signal)).then((reply) => {
-      if (reply === null) return;
-      setFound((old) => (reply.content
-        ? {content: reply.content, failure: null, refused: reply.refused ?? [], of: body, text}
-        : {...old, failure: reply.failure, refused: [], text}));
-    });
+    shared(slot, text, (signal) => askWithRig(path, body, signal)).then((reply) => reply && setFound((old) => (reply.content
+      ? {content: reply.content, failure: null, refused: reply.refused ?? [], of: body, text}
+      : {...old, failure: reply.failure, refused: [], text})));
   }, [text]);
   return {...found, isWaiting: path !== null && found.text !== text};
 }

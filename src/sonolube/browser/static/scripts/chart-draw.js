@@ -35,9 +35,7 @@ function trace(context, line, map) {
 }
 
 /**
- * Draws the parts of a panel.
- * @param {CanvasRenderingContext2D} context
- * @param {Object} panel
+ * Draw the parts of a panel.
  * @param {{map: Object, theme: Object, scale: number, behind: Object[], rule: Object|null, held: number|null}} of
  *   `behind` are kept lines; `held` is where the dragged `rule` stands, null where its data say it
  */
@@ -53,17 +51,15 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
     work();
     context.restore();
   };
-  const order = (part) => ({zone: 0, field: 1, band: 2, points: part.is_faint ? 1 : 4, note: 5}[part.kind] ?? 3);
-  const each = (part) => {
+  const kept = behind.map((part, at) => ({...part, dash: at, weight: 0.9, isKept: true}));
+  const order = (part) => (part.isKept ? 2.5 : {zone: 0, field: 1, band: 2, points: part.is_faint ? 1 : 4, note: 5}[part.kind] ?? 3);
+  [...panel.parts, ...kept].sort((one, other) => order(one) - order(other)).forEach((part) => {
     if (part.kind === 'points' || part.kind === 'note') draw[part.kind](part);
     else inside(() => draw[part.kind](part));
-  };
-  const parts = [...panel.parts].sort((one, other) => order(one) - order(other));
-  parts.filter((part) => order(part) < 3).forEach(each);
-  behind.forEach((part, at) => inside(() => line({...part, dash: at, weight: 0.9}, theme.kept)));
-  parts.filter((part) => order(part) >= 3).forEach(each);
+  });
 
-  function line(part, colour = theme.stroke(part.colour)) {
+  function line(part) {
+    const colour = part.isKept ? theme.kept : theme.stroke(part.colour);
     const places = trace(context, part, map);
     context.lineJoin = 'round';
     if (part.has_halo) stroke('white', LINE * part.weight + 2);
@@ -241,14 +237,10 @@ export function pointText(panel, {part, at}) {
 
 /** Value of a curve at x; null beyond its ends or where it has several. */
 function onCurve(x, values, at, isStepped) {
-  for (let place = 1; place < x.length; place += 1) {
-    const [one, other] = [x[place - 1], x[place]];
-    if (one === null || other === null || at < one || at > other) continue;
-    const [low, high] = [values[place - 1], values[place]];
-    if (low === null || high === null) return null;
-    return isStepped || other === one ? low : low + ((at - one) / (other - one)) * (high - low);
-  }
-  return null;
+  const place = x.findIndex((end, after) => after > 0 && end !== null && x[after - 1] !== null && at >= x[after - 1] && at <= end);
+  const [one, other, low, high] = [x[place - 1], x[place], values[place - 1], values[place]];
+  if (place < 0 || low === null || high === null) return null;
+  return isStepped || other === one ? low : low + ((at - one) / (other - one)) * (high - low);
 }
 
 const ascends = (x) => x.every((value, at) => !at || value === null || x[at - 1] === null || value >= x[at - 1]);

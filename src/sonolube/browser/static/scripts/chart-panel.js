@@ -153,17 +153,14 @@ export function ChartPanel(props) {
     };
     const isPick = onPick && (event.key === 'Enter' || event.key === ' ');
     if (event.key === 'Escape') hide();
-    if (!isPick && !moves[event.key]) return;
+    if (!isPick && !moves[event.key]) return null;
     event.preventDefault();
-    if (isPick) {
-      onPick({panel: place, x: now.x, y: now.y});
-      return;
-    }
+    if (isPick) return onPick({panel: place, x: now.x, y: now.y});
     const [reached, texts = valuesAt(panel, reached.x, reached.y)] = moves[event.key]();
     at.current = reached;
     const map = mapOf(plot.current);
     showTip(map, map.x.to(reached.x), map.y.to(reached.y), texts, true);
-    say(texts.join('; '));
+    return say(texts.join('; '));
   };
 
   const dragged = (event) => valueAt(panel.x, ranges.x, event.target.value / RULE_STEPS);

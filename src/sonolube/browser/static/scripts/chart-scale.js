@@ -109,11 +109,8 @@ export function roundTicks(low, high, most) {
   const rough = (high - low) / Math.max(1, most);
   const decade = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 2.5, 5, 10].map((each) => each * decade).find((each) => each >= rough * (1 - 1e-9)) ?? 10 * decade;
-  const found = [];
-  for (let place = Math.ceil(low / step - 1e-9); place * step <= high + step * 1e-9; place += 1) {
-    found.push(Number((place * step).toPrecision(12)));
-  }
-  return found;
+  const [first, last] = [Math.ceil(low / step - 1e-9), Math.floor(high / step + 1e-9)];
+  return Array.from({length: Math.max(last - first + 1, 0)}, (_, at) => Number(((first + at) * step).toPrecision(12)));
 }
 
 /** Ticks of an axis with room for so many numbers. */
@@ -140,19 +137,15 @@ export function ticksOf(axis, ends, room) {
 export const tickTexts = (axis, ticks) => ticks.map((value) => wordAt(axis, value) ?? short(value, 5));
 
 /** Red, green and blue of "#rrggbb" or "rgb(…)". */
-export function rgb(text) {
-  if (text.startsWith('#')) return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
-  return (text.match(/[\d.]+/g) ?? [0, 0, 0]).slice(0, 3).map(Number);
-}
+export const rgb = (text) => (text.startsWith('#') ? [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16))
+  : (text.match(/[\d.]+/g) ?? [0, 0, 0]).slice(0, 3).map(Number));
 
 export const css = (colour) => `rgb(${colour.map(Math.round).join(' ')})`;
 export const mix = (one, other, share) => one.map((value, place) => value + share * (other[place] - value));
 
 function luminance(colour) {
-  const [red, green, blue] = colour.map((value) => {
-    const part = value / 255;
-    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
-  });
+  const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+  const [red, green, blue] = colour.map((value) => linear(value / 255));
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 }
 

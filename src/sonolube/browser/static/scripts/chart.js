@@ -49,11 +49,9 @@ function scaledOf(panel) {
 
 /** The scale that serves all panels; null where each has its own. */
 function commonScale(chart) {
-  const fields = chart.panels.filter((panel) => panel.parts.length).map(scaledOf);
-  const [first] = fields;
-  const isCommon = fields.length > 1 && fields.every((field) => field?.levels && field.scale_text === first.scale_text
-    && String(field.levels) === String(first.levels));
-  return isCommon ? first : null;
+  const [first, ...others] = chart.panels.filter((panel) => panel.parts.length).map(scaledOf);
+  const isSame = (field) => field?.scale_text === first.scale_text && String(field.levels) === String(first.levels);
+  return first?.levels && others.length && others.every(isSame) ? first : null;
 }
 
 /** Labelled parts of some panels, and names of categories, each label once. */

@@ -1,10 +1,14 @@
-/** Fields of a rig's entries: number and unit as one text, a slider, a spread, and what is refused below them. */
+/** Fields: entries of a rig as number and unit, with slider and spread; materials and uploaded files beside the rig; what is refused below them. */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
-import {Button, classes, Refusal} from './parts.js';
+import {ask, useReply} from './api.js';
+import {Button, classes, FileButton, Refusal, Select} from './parts.js';
+import {change} from './state.js';
 
 const SLIDER_STEPS = 400;
 const PAUSE = 300; // ms after the last key until a text is read
 const REST = 500; // ms without a key until a value is entered into the history
+const BODIES = [['pin', 'Material of the pin'], ['disc', 'Material of the disc']];
+export const NOTHING = {};
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
 export const fieldId = (key) => `field-${key.replaceAll(/[^\w]/g, '-')}`;
@@ -39,8 +43,7 @@ function stepped(text, direction, isLarge) {
   const shown = (parts.digits.split(/e/i)[0].split('.')[1] ?? '').length;
   const power = Math.max(size - 1, -12);
   const number = parts.number + direction * (isLarge ? 10 : 1) * 10 ** power;
-  const isScientific = /e/i.test(parts.digits);
-  const digits = isScientific ? String(Number(number.toPrecision(4))) : number.toFixed(Math.max(-power, shown, 0));
+  const digits = /e/i.test(parts.digits) ? String(Number(number.toPrecision(4))) : number.toFixed(Math.max(-power, shown, 0));
   return `${digits}${parts.rest}`;
 }
 
@@ -65,10 +68,7 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
   const withUnit = (typed) => (unit && split(typed)?.rest.trim() === '' ? `${typed.trim()} ${unit}` : typed);
   const give = (isFinal) => {
     clearTimeout(timer.current);
-    const typed = latest.current;
-    if (typed === null) return;
-    const given = withUnit(typed);
-    if (given !== text) onText(given, !isFinal);
+    if (latest.current !== null && withUnit(latest.current) !== text) onText(withUnit(latest.current), !isFinal);
     if (isFinal) put(null);
   };
   useEffect(() => () => clearTimeout(timer.current), []);
@@ -121,9 +121,8 @@ export const Labelled = ({id, label, refusal, children}) => html`<div class="fie
 export const refusedBy = (id, refusal) => (refusal ? {'aria-invalid': 'true', 'aria-describedby': `${id}-refusal`} : {});
 
 /**
- * Entry of a rig.
- * @param {{field: Object, text: string, spread?: string, isChanged: boolean, refusal?: string, spreadRefusal?: string,
- *   onText: (key: string, text: string|null, isMoving: boolean) => void, onSettle: () => void}} props
+ * Entry of a rig, with its spread.
+ * @param {{onText: (key: string, text: string|null, isMoving: boolean) => void}} props `onText` with null takes a change back
  */
 export function Field({field, text, spread, isChanged, refusal, spreadRefusal, onText, onSettle}) {
   const id = fieldId(field.key);
@@ -161,3 +160,37 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
     ${field.help && html`<span class="hidden" id=${`${id}-help`}>${field.help}</span>`}
   </div>`;
 }
+
+/** Argument of a task by the text of a view that names an upload, which lasts as long as the workbench. */
+export const uploadOf = (text) => ({name: text.slice(text.indexOf(' ') + 1), upload: text.split(' ')[0]});
+
+/** Upload of a file that an entry of the view then names: what was refused of the last one, and what takes one. */
+export function useFile(entry) {
+  const [note, setNote] = useState('');
+  const take = async (file) => {
+    const {content, failure} = file ? await ask('api/uploads', {raw: file}) : {};
+    if (content) change({view: {[entry]: `${content.upload} ${file.name}`}});
+    setNote(failure?.text);
+  };
+  return [note, take];
+}
+
+/** Choices of the materials of pin and disc; `faultOf` gives the refusal of one. */
+export function MaterialChoices({view, faultOf, isAsked = true}) {
+  const known = useReply('materials', isAsked ? 'api/tasks/materials' : null, NOTHING);
+  const names = Object.entries(known.content?.answer ?? {}).map(([name, {title}]) => [name, title]);
+  return BODIES.map(([body, label]) => {
+    const [id, chosen, fault] = [`material-${body}`, view[body], faultOf(body)];
+    const isUnlisted = chosen && !names.some(([name]) => name === chosen);
+    const choices = [['', 'as in the rig'], ...(isUnlisted ? [[chosen, chosen]] : []), ...names];
+    return html`<${Labelled} key=${body} id=${id} label=${label} refusal=${fault}>
+      <${Select} id=${id} choices=${choices} value=${chosen ?? ''} data-test=${`material:${body}`} ...${refusedBy(id, fault)}
+        onChange=${(event) => change({view: {[body]: event.target.value || null}})} /><//>`;
+  });
+}
+
+/** Buttons that choose a table of own runs, and leave it out. */
+export const RunsChoice = ({view, onFile}) => html`<p class="row"><${FileButton} id="own-runs" accept=".csv,.txt" label="Own runs"
+    onFile=${onFile} test="runs-file" data-test="choose-runs">${view.runs ? 'Choose other runs…' : 'Choose own runs…'}<//>
+  ${view.runs && html`<strong class="grow">${uploadOf(view.runs).name}</strong>
+    <${Button} kind="small" onClick=${() => change({view: {runs: null}})} data-test="remove-runs">leave out<//>`}</p>`;

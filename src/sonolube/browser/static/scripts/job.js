@@ -31,9 +31,7 @@ async function found(task, args) {
 }
 
 /**
- * Job of a task with these arguments, and its result.
- * @param {string|null} task null looks for none
- * @param {Object} args
+ * Job of a task with these arguments, and its result; none is sought for null.
  * @returns {{job: Object|null, content: any, isOld: boolean, failure: Object|null, isSought: boolean,
  *   start: (label: string) => void, cancel: () => void}} `isOld` where the result is of other arguments
  */

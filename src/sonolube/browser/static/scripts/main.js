@@ -19,15 +19,9 @@ function setTheme(theme) {
 const drawAgain = () => dispatchEvent(new Event('themechange')); // what is drawn on a canvas
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawAgain);
 
-function ThemeSwitch() {
-  const [theme, change] = useState(storedTheme());
-  const choose = ({target}) => {
-    setTheme(target.value);
-    change(target.value);
-  };
-  return html`<label class="theme"><span class="hidden">Theme</span>
-    <${Select} choices=${THEMES.map((each) => [each, capital(each)])} value=${theme} onChange=${choose} data-test="theme" /></label>`;
-}
+const ThemeSwitch = () => html`<label class="theme"><span class="hidden">Theme</span>
+  <${Select} choices=${THEMES.map((each) => [each, capital(each)])} value=${document.documentElement.dataset.theme}
+    onChange=${(event) => setTheme(event.target.value)} data-test="theme" /></label>`;
 
 function Head() {
   const {state, canUndo, canRedo} = useApp();
@@ -112,8 +106,6 @@ const Broken = ({again}) => html`<${Sheet} title="No answer">
   <${Warning}><p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
     <${Button} onClick=${again}>Draw it again<//><//><//>`;
 
-const Workbench = () => html`<${Head} /><${Connection} /><main id="main"><${Page} /></main>`;
-
 /** Undo and redo by keys, where no text field has its own. */
 function onKey(event) {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
@@ -142,7 +134,7 @@ async function start() {
   await followAddress(reply.content.rig);
   render(null, root);
   root.replaceChildren();
-  render(html`<${Workbench} />`, root);
+  render(html`<${Head} /><${Connection} /><main id="main"><${Page} /></main>`, root);
 }
 
 start();

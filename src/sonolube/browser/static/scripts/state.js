@@ -49,15 +49,13 @@ export function useListening(to) {
 }
 
 /** Text as bytes through a stream of the browser, as base64url or back. */
-async function through(stream, bytes) {
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
-}
+const through = async (stream, bytes) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
 /** Compress the text of a rig so that a link can hold it; `fits` is false where only this tab can keep it. */
 export async function pack(text) {
   const bytes = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(text));
-  let code = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
-  code = code.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+  const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('');
+  let code = btoa(binary).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
   const fits = code.length <= LONGEST_TEXT;
   if (!fits) {
     code = KEPT_PREFIX + code.slice(-24) + code.length;
@@ -110,20 +108,13 @@ export async function decode(of) {
 /** Entries of a record that are not null. */
 export const present = (entries) => Object.fromEntries(Object.entries(entries).filter(([, value]) => value != null));
 
-/** State after a partial change; entries of `view` and `rig.changes` that are null are removed. */
-function merged(partial) {
-  const isNewPage = partial.page !== undefined && partial.page !== state.page;
-  const rig = partial.rig ? {...partial.rig, changes: present(partial.rig.changes ?? {})} : state.rig;
-  const view = present({...(isNewPage ? {} : state.view), ...partial.view});
-  return {page: partial.page ?? state.page, rig, view};
-}
-
 /**
- * Change the state. With `replace` (a value that moves) there is no entry of history until `settle` or the next change.
+ * Change parts of the state; entries of `view` and `rig.changes` that are null are removed. With `replace` (a value that moves) there is no entry of history until `settle` or the next change.
  * @param {Partial<State>} partial
  */
-export function change(partial, {replace = false} = {}) {
-  state = merged(partial);
+export function change({page = state.page, rig = state.rig, view}, {replace = false} = {}) {
+  const shown = page === state.page ? state.view : {};
+  state = {page, rig: {...rig, changes: present(rig.changes)}, view: present({...shown, ...view})};
   if (replace) {
     before ??= fragment;
     isMoving = true;
@@ -133,9 +124,7 @@ export function change(partial, {replace = false} = {}) {
 }
 
 /** Enter what has moved into the history. */
-export function settle() {
-  if (isMoving) commit();
-}
+export const settle = () => isMoving && commit();
 
 function commit() {
   if (enter(encode(state))) history.pushState(null, '', `#${fragment}`);
@@ -156,9 +145,7 @@ function enter(to) {
 }
 
 /** Set an entry of the rig, or take its change back with null; options as of `change`. */
-export function setEntry(key, text, options) {
-  change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
-}
+export const setEntry = (key, text, options) => change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
 
 async function step(from, onto) {
   settle();

@@ -3,11 +3,11 @@ import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.j
 import {TextTable} from '../answer.js';
 import {callTask} from '../api.js';
 import {short} from '../chart-scale.js';
+import {NOTHING} from '../fields.js';
 import {isActive, JobState, useJob} from '../job.js';
 import {Button, fileOf, Loading, Refusal, Section, Select, Sheet, words} from '../parts.js';
 import {addressOf, change, settle, useApp} from '../state.js';
 
-const NO_ARGUMENTS = {};
 const LABEL = 'Reproduction of the dissertation';
 const MOST = 60; // rows shown before all are asked for
 const HEADS = ['Row', 'Source', 'Quantity', 'Published', 'Computed', 'Difference', 'Verdict', 'Note'];
@@ -57,8 +57,6 @@ function Alternatives({of}) {
 
 const rowId = (id) => `row-${id.replaceAll(/[^\w]/g, '-')}`;
 
-const printed = (row) => `${row.printed}${row.unit ? ` ${row.unit}` : ''}`;
-
 function Rows({rows, view}) {
   const [isAll, setAll] = useState(false);
   const found = filtered(rows, view);
@@ -76,7 +74,7 @@ function Rows({rows, view}) {
       <thead><tr>${HEADS.map((head) => html`<th key=${head} scope="col">${head}</th>`)}</tr></thead>
       <tbody>${shown.map((row) => html`<tr key=${row.id} id=${rowId(row.id)} tabindex="-1" class=${row.id === wanted ? 'is-shown' : ''} data-test=${`row:${row.id}`}>
         <th scope="row"><a href=${addressOf('dissertation', {...view, row: row.id})}>${row.id}</a></th>
-        <td>${row.source}</td><td>${words(row.quantity)}</td><td>${printed(row)}</td><td>${row.computed === null ? '–' : short(row.computed)}</td>
+        <td>${row.source}</td><td>${words(row.quantity)}</td><td>${[row.printed, row.unit].filter(Boolean).join(' ')}</td><td>${row.computed === null ? '–' : short(row.computed)}</td>
         <td>${row.relative_error === null ? '–' : `${row.relative_error > 0 ? '+' : ''}${short(100 * row.relative_error, 2)} %`}</td>
         <td><${Verdict} of=${row.verdict} /><br /><span class="hint">${words(row.kind)}</span></td><td class="row-note">${row.note}<${Alternatives} of=${row} /></td></tr>`)}</tbody></table></div>
     ${shown.length < found.length && html`<${Button} onClick=${() => setAll(true)} data-test="all-rows">Show all ${found.length} rows<//>`}
@@ -115,13 +113,12 @@ function Figures({job, files}) {
 
 export default function Dissertation() {
   const {state} = useApp();
-  const job = useJob('reproduce', NO_ARGUMENTS);
+  const job = useJob('reproduce', NOTHING);
   const {content} = job;
-  const isComputing = isActive(job.job);
   const isReady = job.job?.state === 'done' && content;
   return html`<${Sheet} title="Dissertation">
     <p>Every published number of the dissertation beside the computed one, its claims judged by them.</p>
-    ${!isReady && !isComputing && !job.isSought && job.job?.state !== 'done' && html`<p class="row">
+    ${!isReady && !isActive(job.job) && !job.isSought && job.job?.state !== 'done' && html`<p class="row">
       <${Button} kind="button is-main" onClick=${() => job.start(LABEL)} data-test="start-job">Compute<//><span class="hint">Takes some minutes, once; the result stays on this computer.</span></p>`}
     ${!isReady && (job.isSought || job.job?.state === 'done') && html`<${Loading}>Reading the result…<//>`}
     ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}

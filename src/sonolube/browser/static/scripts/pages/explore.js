@@ -4,8 +4,7 @@ import {Blocks, Caveats, Failure, RefusedNote} from '../answer.js';
 import {cancelRequest, taskPath, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {fieldOf as drawnField} from '../chart-scale.js';
-import {Labelled, refusedBy, TextField, typed} from '../fields.js';
-import {MaterialChoices, RunsChoice, uploadOf, useFile} from '../inputs.js';
+import {Labelled, MaterialChoices, refusedBy, RunsChoice, TextField, typed, uploadOf, useFile} from '../fields.js';
 import {isActive, JobState, useJob} from '../job.js';
 import {Button, capital, Card, Refusal, Select} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
@@ -88,7 +87,6 @@ function fieldOf(axis, fields) {
 }
 
 const unitOf = (axis) => (axis.unit ?? '').replace('µ', 'u'); // as it is typed
-const textAt = (value, axis) => typed(value, unitOf(axis));
 
 /** Number of a field in the unit of an axis, as the server gives it; undefined where there is none. */
 const numberOn = (axis, field) => field?.numbers[unitOf(axis)];
@@ -117,25 +115,23 @@ const Choices = ({group, legend, titles, chosen, choose}) => html`<fieldset clas
 /** Choice of a study, and of the kind of a map. */
 function Studies({name, view, rigView}) {
   const choose = (partial) => change({view: {from: null, to: null, duration: null, fixed: null, ...partial}});
-  const {maps} = rigView;
   return html`<${Choices} group="study" legend="Study" chosen=${name} choose=${choose}
       titles=${offeredOf(rigView).map((each) => [each, STUDIES[each]?.title ?? capital(each)])} />
-    ${name === 'map' && html`<${Choices} group="kind" legend="Map over" chosen=${among(maps, view.kind)} choose=${choose}
-      titles=${maps.map((each) => [each, each.replaceAll('-', ' and ')])} />`}`;
+    ${name === 'map' && html`<${Choices} group="kind" legend="Map over" chosen=${among(rigView.maps, view.kind)} choose=${choose}
+      titles=${rigView.maps.map((each) => [each, each.replaceAll('-', ' and ')])} />`}`;
 }
 
 /** Texts that a study takes beside the rig. */
 function StudyTexts({study, view, faults, over}) {
   const fields = study.texts ?? [];
   if (!fields.length) return null;
-  const usual = {from: over?.from, to: over?.to};
   const faultOf = (argument) => faults.find((fault) => fault.key === argument)?.text;
   return html`<div class="study-texts">
     ${over && html`<${Labelled} id="study-key" label="Entry"><${Select} id="study-key" value=${over.field.key} data-test="study-text:key"
       choices=${over.numbers.map(({key, label}) => [key, `${label} (${key.slice(0, key.lastIndexOf('.'))})`])}
       onChange=${(event) => change({view: {key: event.target.value, from: null, to: null}})} /><//>`}
     ${fields.map(([entry, argument, label]) => html`<${Labelled} key=${entry} id=${`study-${entry}`} label=${label} refusal=${faultOf(argument)}>
-      <${TextField} id=${`study-${entry}`} text=${view[entry] ?? ''} placeholder=${usual[entry] ?? 'usual'} data-test=${`study-text:${entry}`}
+      <${TextField} id=${`study-${entry}`} text=${view[entry] ?? ''} placeholder=${over?.[entry] ?? 'usual'} data-test=${`study-text:${entry}`}
         onText=${(text, isMoving) => !isMoving && change({view: {[entry]: text.trim() || null}})} onSettle=${settle}
         ...${refusedBy(`study-${entry}`, faultOf(argument))} /><//>`)}
     ${study.hasBodies && html`<${MaterialChoices} view=${view} faultOf=${faultOf} />`}
@@ -222,7 +218,7 @@ function pickedOf(panel, fields) {
 /** Set the rig to a place of a panel; returns what is said of it. */
 function pick(at, chart, fields, state) {
   const panel = chart.panels[at.panel];
-  const found = pickedOf(panel, fields).map(([name, field]) => [field, textAt(at[name], panel[name])]);
+  const found = pickedOf(panel, fields).map(([name, field]) => [field, typed(at[name], unitOf(panel[name]))]);
   if (!found.length) return '';
   const {rig} = state;
   const drawn = rigOf(state).changes;

@@ -15,16 +15,15 @@ function useJobs() {
   const [turn, look] = useState(0);
   const {generation} = useConnection();
   useEffect(() => {
-    let timer = 0;
-    let isGone = false;
+    let timer = 0; // null when no longer shown
     ask('api/jobs').then(({content}) => {
-      if (isGone) return;
+      if (timer === null) return;
       if (content) setFound(content);
       timer = setTimeout(() => look((old) => old + 1), (content ?? found)?.jobs.some(isActive) ? QUICK : SLOW);
     });
     return () => {
-      isGone = true;
       clearTimeout(timer);
+      timer = null;
     };
   }, [turn, generation]);
   return {found, look: () => look((old) => old + 1)};

@@ -3,8 +3,7 @@ import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
 import {ask, callTask, inTurn, useLate, useReply} from '../api.js';
 import {Chart} from '../chart.js';
-import {focusField, typed} from '../fields.js';
-import {MaterialChoices, RunsChoice, uploadOf, useFile} from '../inputs.js';
+import {focusField, MaterialChoices, RunsChoice, typed, uploadOf, useFile} from '../fields.js';
 import {Button, capital, Card, classes, Refusal, useEvents} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
 import {change, decode, encode, present, setEntry, useApp} from '../state.js';
@@ -13,8 +12,6 @@ import {offer} from '../take-away.js';
 const MOVING_DRAWS = 1000;
 const MAX_KEPT = 3;
 const INTERVAL = '80 %';
-const AMPLITUDE_PANEL = 0;
-const SPEED_PANEL = 1;
 const SPEED = 'sliding.sliding_speed';
 const AMPLITUDE = 'vibration.vibration_amplitude';
 const VOLTAGE = 'drive.voltage_peak_to_peak';
@@ -131,15 +128,12 @@ function useKept(state, content) {
   const [, draw] = useState({});
   const fragments = (state.view.kept ?? '').split('\n').filter(Boolean);
   useEffect(() => {
-    for (const fragment of fragments.filter((each) => !keptAnswers.has(each))) {
-      inTurn(fragment, async () => {
-        const of = await decode(fragment);
-        return {of, ...await callTask('predict', argumentsOf(of, false))};
-      }).then((reply) => {
-        if (reply?.content) keptAnswers.set(fragment, {label: labelOf(reply.of), answer: reply.content});
-        draw({});
-      });
-    }
+    fragments.filter((each) => !keptAnswers.has(each)).forEach(async (fragment) => {
+      const of = await decode(fragment);
+      const reply = await inTurn(fragment, () => callTask('predict', argumentsOf(of, false)));
+      if (reply?.content) keptAnswers.set(fragment, {label: labelOf(of), answer: reply.content});
+      draw({});
+    });
   }, [state.view.kept]);
   const enter = (some) => change({view: {kept: some.join('\n') || null}});
   const keep = () => {
@@ -153,12 +147,12 @@ function useKept(state, content) {
 
 /** What dragging the rule of a panel sets, where a number follows from it without computing. */
 function dragOf(view, chart) {
-  const fieldOf = (key) => view?.fields.find((field) => field.key === key);
-  const entry = {[SPEED_PANEL]: fieldOf(SPEED), [AMPLITUDE_PANEL]: fieldOf(VOLTAGE) ? undefined : fieldOf(AMPLITUDE)};
-  return Object.entries(entry).filter(([, field]) => field).map(([panel, field]) => {
-    const unit = chart.panels[panel]?.x.unit.replace('µ', 'u') ?? '';
-    const set = (x, isMoving) => setEntry(field.key, typed(x, unit), {replace: isMoving});
-    return {panel: Number(panel), onMove: (x) => set(x, true), onRelease: (x) => set(x, false)};
+  const keys = new Set(view?.fields.map((field) => field.key));
+  return [AMPLITUDE, SPEED].flatMap((key, panel) => {
+    if (!keys.has(key) || (key === AMPLITUDE && keys.has(VOLTAGE))) return [];
+    const unit = chart.panels[panel]?.x.unit.replace('µ', 'u');
+    const set = (x, isMoving) => setEntry(key, typed(x, unit), {replace: isMoving});
+    return [{panel, onMove: (x) => set(x, true), onRelease: (x) => set(x, false)}];
   });
 }
 
