@@ -2,6 +2,7 @@
 import {html, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {askAgain} from './api.js';
 import {focusField} from './fields.js';
+import {Button, Warning} from './parts.js';
 
 const MOST = 100; // rows shown before all are asked for
 
@@ -20,27 +21,22 @@ export function TextTable({heads, rows, caption, label, test, kind = 'table-fram
       <tbody>${shown.map((row, at) => html`<tr key=${at}>${row.map((cell, place) => (place === 0 && hasRowHeads
     ? html`<th key=${place} scope="row">${cell}</th>` : html`<td key=${place}>${cell}</td>`))}</tr>`)}</tbody>
     </table>
-    ${shown.length < rows.length && html`<button type="button" class="button is-quiet" onClick=${() => setAll(true)}>
-      Show ${rows.length - shown.length} further rows</button>`}</div>`;
+    ${shown.length < rows.length && html`<${Button} kind="button is-quiet" onClick=${() => setAll(true)}>
+      Show ${rows.length - shown.length} further rows<//>`}</div>`;
 }
 
-/** Block of an answer: text, rows, table or verbatim. */
-export function Block({block}) {
-  if (block.kind === 'rows') return html`<${TextTable} rows=${block.rows} caption=${undefined} heads=${[]} />`;
-  if (block.kind === 'table') return html`<${TextTable} heads=${block.heads} rows=${block.rows} />`;
-  if (block.kind === 'verbatim') return html`<pre class="verbatim" tabindex="0">${block.text}</pre>`;
-  return html`<p>${block.text}</p>`;
-}
+/** Kinds of a block of an answer. */
+const BLOCKS = {
+  rows: ({rows}) => html`<${TextTable} rows=${rows} />`,
+  table: ({heads, rows}) => html`<${TextTable} heads=${heads} rows=${rows} />`,
+  verbatim: ({text}) => html`<pre class="verbatim" tabindex="0">${text}</pre>`,
+  text: ({text}) => html`<p>${text}</p>`,
+};
 
 /** All blocks, or some of them. */
-export const Blocks = ({blocks}) => html`${blocks.map((block, place) => html`<${Block} key=${place} block=${block} />`)}`;
+export const Blocks = ({blocks}) => blocks.map((block, place) => html`<${BLOCKS[block.kind]} key=${place} ...${block} />`);
 
-/**
- * Lines of now, and which of them were not there when the page last rested.
- * @param {string[]} lines
- * @param {boolean} isMoving
- * @param {string} of what is answered at rest; the comparison is with the rest before it
- */
+/** Lines of now that were not there when the page last rested; `of` names what is answered at rest. */
 function useChanged(lines, isMoving, of) {
   const rest = useRef({of: null, now: lines, before: lines});
   if (!isMoving && rest.current.of !== of) {
@@ -55,52 +51,35 @@ function useChanged(lines, isMoving, of) {
  *   answered; with fields on the page, what is assumed leads to them
  */
 export function Caveats({answer, isMoving, of, hasFields = true}) {
-  const caveats = [...(answer.leading_caveats ?? []), ...(answer.caveats ?? [])];
-  const assumed = Object.entries(answer.assumptions ?? {});
-  const refused = Object.entries(answer.refusals ?? {});
-  const changed = useChanged([...caveats, ...assumed.map(([key, reason]) => `${key}: ${reason}`)], isMoving, of);
-  const mark = (line) => (changed.has(line) ? 'is-new' : '');
-  const flag = (line) => changed.has(line) && html`<span class="tag is-new">changed</span> `;
-  if (!caveats.length && !assumed.length && !refused.length) {
-    return html`<p class="hint">No caveats, and nothing assumed.</p>`;
-  }
-  return html`<div class="caveats" data-test="caveats">
-    ${caveats.length > 0 && html`<h3>Caveats</h3><ul class="caveat-list">${caveats.map((line) => html`<li key=${line}
-      class=${mark(line)}>${flag(line)}${line}</li>`)}</ul>`}
-    ${refused.length > 0 && html`<h3>Refused inputs</h3><ul class="caveat-list">${refused.map(([name, reason]) => html`
-      <li key=${name}>${name}: ${reason}</li>`)}</ul>`}
-    ${assumed.length > 0 && html`<h3>Assumed</h3><ul class="caveat-list is-assumed">${assumed.map(([key, reason]) => html`
-      <li key=${key} class=${mark(`${key}: ${reason}`)}>${flag(`${key}: ${reason}`)}${hasFields
-    ? html`<button type="button" class="link" onClick=${() => focusField(key)}>${key}</button>` : html`<code>${key}</code>`}
-      ${' '}${reason}</li>`)}</ul>`}
-  </div>`;
+  const {leading_caveats: leading = [], caveats = [], refusals = {}, assumptions = {}} = answer;
+  const lists = [
+    ['Caveats', '', [...leading, ...caveats].map((line) => ({line, shown: line}))],
+    ['Refused inputs', '', Object.entries(refusals).map(([name, reason]) => ({shown: `${name}: ${reason}`}))],
+    ['Assumed', ' is-assumed', Object.entries(assumptions).map(([key, reason]) => ({line: `${key}: ${reason}`, shown: html`${hasFields
+      ? html`<${Button} kind="link" onClick=${() => focusField(key)}>${key}<//>` : html`<code>${key}</code>`} ${reason}`}))],
+  ].filter(([, , rows]) => rows.length);
+  const changed = useChanged(lists.flatMap(([, , rows]) => rows.map(({line}) => line)).filter(Boolean), isMoving, of);
+  if (!lists.length) return html`<p class="hint">No caveats, and nothing assumed.</p>`;
+  return html`<div class="caveats" data-test="caveats">${lists.map(([title, kind, rows]) => html`<h3>${title}</h3>
+    <ul class=${`caveat-list${kind}`}>${rows.map(({line, shown}, at) => html`<li key=${line ?? at} class=${changed.has(line) ? 'is-new' : ''}>
+      ${changed.has(line) && html`<span class="tag is-new">changed</span> `}${shown}</li>`)}</ul>`)}</div>`;
 }
 
-/**
- * What a failed request shows, beside the last answer.
- * @param {{failure: Object|null, shown?: string[]}} props `shown` are keys whose faults stand under their fields
- */
+/** What a failed request shows, beside the last answer; `shown` are keys whose faults stand under their fields. */
 export function Failure({failure, shown = []}) {
   if (!failure || failure.kind === 'offline' || failure.kind === 'link') return null;
   const faults = failure.faults.filter((fault) => !shown.includes(fault.key));
   const texts = [...new Set(faults.map((fault) => fault.text || failure.text))];
-  if (!texts.length) {
-    return html`<div class="notice is-warning" role="alert" data-test="refused">
-      <strong>Not computed:</strong> an entry is refused; the reason stands under its field.</div>`;
-  }
-  return html`<div class="notice is-warning" role="alert" data-test="refused">
-    <strong>${failure.kind === 'refused' ? 'Refused.' : 'Not computed.'}</strong>
+  const isBelow = !texts.length; // the fields
+  return html`<${Warning} data-test="refused"><strong>${isBelow ? 'Not computed:' : failure.kind === 'refused' ? 'Refused.' : 'Not computed.'}</strong>
+    ${isBelow && ' an entry is refused; the reason stands under its field.'}
     ${texts.map((text) => html`<p key=${text}>${text}</p>`)}
-    ${failure.kind === 'busy' && html`<button type="button" class="button" onClick=${askAgain}>Ask again</button>`}</div>`;
+    ${!isBelow && failure.kind === 'busy' && html`<${Button} onClick=${askAgain}>Ask again<//>`}<//>`;
 }
 
-/**
- * Note that some entries are refused, while the numbers are those of the last accepted ones.
- * @param {{refused: Object[]}} props
- */
+/** Note that some entries are refused, while the numbers are those of the last accepted ones. */
 export function RefusedNote({refused}) {
   if (!refused.length) return null;
   return html`<p class="notice is-warning" role="status" data-test="left-out">The numbers leave out what is refused:${' '}
-    ${refused.map((fault, place) => html`${place > 0 && ', '}<button type="button" class="link" key=${fault.key}
-    onClick=${() => focusField(fault.key)}>${fault.key}</button>`)}. They are of the value that was accepted last.</p>`;
+    ${refused.map(({key}, place) => html`${place > 0 && ', '}<${Button} kind="link" key=${key} onClick=${() => focusField(key)}>${key}<//>`)}. They are of the value that was accepted last.</p>`;
 }

@@ -1,6 +1,6 @@
 /** Fields of a chart: filled contours or cells, contour lines with their values, and the scale of colours. */
 import {html} from '../vendor/htm-preact-3.1.1.js';
-import {mix, rgb, roundTicks, short} from './chart-scale.js';
+import {css, extent, mix, rgb, roundTicks, short} from './chart-scale.js';
 
 const STOPS = {
   cividis: ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'],
@@ -21,27 +21,24 @@ export function colourAt(name, share) {
 
 export const categoryColour = (number) => CATEGORIES[number % CATEGORIES.length];
 
-/** Ends of the values of a field that are known. */
-function known(field) {
-  const values = field.values.flat().filter((value) => value !== null);
-  const [low, high] = values.reduce(([one, other], value) => [Math.min(one, value), Math.max(other, value)], [Infinity, -Infinity]);
-  return [field.lowest ?? low, field.highest ?? high];
+/** Ends of the scale of a field. */
+function endsOf({levels, lowest, highest, values}) {
+  if (levels) return [levels[0], levels.at(-1)];
+  const [low, high] = extent(values.flat());
+  return [lowest ?? low, highest ?? high];
 }
 
 /** Colours of a field: of a value, and the ends of the scale. */
 export function scaleOf(field) {
   const {levels, scale, words} = field;
   if (words) return {ends: [0, words.length - 1], colour: (value) => rgb(categoryColour(Math.round(value)))};
-  const [low, high] = levels ? [levels[0], levels.at(-1)] : known(field);
+  const [low, high] = endsOf(field);
   const share = (value) => (high > low ? (value - low) / (high - low) : 0.5);
   if (!levels) return {ends: [low, high], colour: (value) => colourAt(scale, share(value))};
   const colours = levels.slice(1).map((level, place) => colourAt(scale, share((level + levels[place]) / 2)));
-  const colour = (value) => {
-    let place = 0;
-    while (place < colours.length - 1 && value >= levels[place + 1]) place += 1;
-    return colours[place];
-  };
-  return {ends: [low, high], colour};
+  const inner = levels.slice(1, -1); // below the first and from the last on, the colours of the ends hold
+  const placed = (value) => inner.findIndex((level) => value < level);
+  return {ends: [low, high], colour: (value) => colours.at(placed(value))};
 }
 
 /** Place between the values of an ascending axis, as its number with a fraction; null beyond its ends. */
@@ -51,13 +48,8 @@ function placeOn(axis, value, isCell) {
   const half = isCell && last > 0 ? [(axis[1] - first) / 2, (end - axis[last - 1]) / 2] : [0, 0];
   const slack = 1e-9 * Math.abs(end - first);
   if (value < first - half[0] - slack || value > end + half[1] + slack) return null;
-  let [low, high] = [0, last];
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (axis[middle] <= value) low = middle;
-    else high = middle;
-  }
-  return low + Math.min(Math.max((value - axis[low]) / (axis[high] - axis[low] || 1), -0.5), 1.5);
+  const low = Math.max(0, axis.findLastIndex((each, at) => at < last && each <= value));
+  return low + Math.min(Math.max((value - axis[low]) / (axis[Math.min(low + 1, last)] - axis[low] || 1), -0.5), 1.5);
 }
 
 /** Value of a field at a place of its grid: between the grid's values for contours, of the cell otherwise. */
@@ -73,9 +65,7 @@ function valueAt(field, column, row) {
 }
 
 /** Value of a field over the axes; null where it is not known. */
-export function readField(field, x, y) {
-  return valueAt(field, placeOn(field.x, x, !field.levels), placeOn(field.y, y, !field.levels));
-}
+export const readField = (field, x, y) => valueAt(field, placeOn(field.x, x, !field.levels), placeOn(field.y, y, !field.levels));
 
 const images = new WeakMap();
 
@@ -178,7 +168,7 @@ export function ColourScale({field, height}) {
     : roundTicks(low, high, 6);
   return html`<svg class="chart-colours" width="66" height=${height} role="img" aria-label=${`Colours: ${field.scale_text}, from ${short(low)} to ${short(high)}`}>
     ${edges.slice(1).map((edge, at) => html`<rect key=${at} x="2" width="13" y=${y(edge)} height=${y(edges[at]) - y(edge) + 0.5}
-      fill=${`rgb(${colour((edge + edges[at]) / 2).map(Math.round).join(' ')})`} />`)}
+      fill=${css(colour((edge + edges[at]) / 2))} />`)}
     ${ticks.map((tick) => html`<text key=${tick} x="19" y=${y(tick)} dy="0.35em">${short(tick, 3)}</text>`)}
     <text class="chart-axis-text" transform=${`translate(60 ${top + room / 2}) rotate(-90)`} text-anchor="middle">${field.scale_text}</text>
   </svg>`;

@@ -2,7 +2,7 @@
 import {html, useEffect, useLayoutEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import uPlot from '../vendor/uplot-1.6.32.js';
 import {drawParts, mapping, pointsOf, pointText, readAt, valuesAt} from './chart-draw.js';
-import {tickTexts, ticksOf, withUnit} from './chart-scale.js';
+import {along, fieldOf, flat, tickTexts, ticksOf, withUnit} from './chart-scale.js';
 
 const FONT = '11.5px system-ui, sans-serif';
 const [NUMBER_HEIGHT, NUMBER_WIDTH] = [34, 50]; // px that a number takes along an axis
@@ -14,7 +14,6 @@ const MOVED = 4; // px beyond which a press is no click
 /** What must be made anew, rather than given new data. */
 const structureOf = ({x, y}) => JSON.stringify([x, y].map((axis) => [axis.text, axis.logarithmic, axis.words, axis.reciprocal, axis.proportional, axis.lowest > axis.highest]));
 
-const flat = (text) => text.replaceAll('\n', ' ');
 export const panelName = (panel) => [panel.title, `${flat(panel.y.text)} over ${flat(panel.x.text)}`].filter(Boolean).join(': ');
 
 /** Options of uPlot; everything that changes is read from `latest`. */
@@ -26,7 +25,7 @@ function optionsOf(latest) {
   });
   const axis = (name) => ({
     scale: name, font: FONT, labelFont: FONT, stroke: () => now().theme.muted,
-    grid: {stroke: () => now().theme.grid, width: 1, show: !now().panel.parts.some((part) => part.kind === 'field')},
+    grid: {stroke: () => now().theme.grid, width: 1, show: !fieldOf(now().panel)},
     ticks: {stroke: () => now().theme.grid, size: 4, width: 1},
     border: {show: true, stroke: () => now().theme.kept, width: 1},
     splits: (u) => {
@@ -57,20 +56,11 @@ function optionsOf(latest) {
   };
 }
 
-/** Step along an axis by shares of its length. */
-function stepped(axis, [low, high], value, share) {
-  const [to, from] = axis.logarithmic ? [Math.log, Math.exp] : [(each) => each, (each) => each];
-  const next = to(value) + share * (to(high) - to(low));
-  return from(Math.min(Math.max(next, Math.min(to(low), to(high))), Math.max(to(low), to(high))));
-}
+/** Value at a share of an axis, or at the end that is beyond it. */
+const valueAt = (axis, ends, share) => along(axis, ends).back(Math.min(Math.max(share, 0), 1));
 
-/** Share of the length of an axis at which a value stands. */
-function shareOf(axis, [low, high], value) {
-  const to = axis.logarithmic ? Math.log : (each) => each;
-  return (to(value) - to(low)) / (to(high) - to(low));
-}
-
-const middle = (axis, ends) => stepped(axis, ends, ends[0], 0.5);
+/** Step along an axis by a share of its length. */
+const stepped = (axis, ends, value, share) => valueAt(axis, ends, along(axis, ends).to(value) + share);
 
 /**
  * @param {{panel: Object, place: number, ranges: {x: number[], y: number[]}, behind: Object[], width: number, height: number,
@@ -84,7 +74,7 @@ export function ChartPanel(props) {
   const [held, setHeld] = useState(null);
   const [at, grabbed, pressed] = [useRef(null), useRef(null), useRef(null)];
   const ranges = grabbed.current ?? props.ranges; // an axis that follows the rule stands still under the pointer
-  const rule = drag ? panel.parts.find((part) => part.kind === 'rule' && (part.along ?? 'x') === 'x') : null;
+  const rule = drag ? panel.parts.find((part) => part.kind === 'rule' && part.along === 'x') : null;
 
   const mapOf = (u) => mapping(panel, ranges, u.bbox);
   latest.current = {
@@ -133,9 +123,9 @@ export function ChartPanel(props) {
     plot.current?.setCursor({left: -10, top: -10}, false);
   };
   const hover = (event) => {
-    const {map, left, top, isIn} = placeOf(event);
+    const {map, left, top, isIn, x, y} = placeOf(event);
     if (!isIn) return hide();
-    at.current = {x: map.x.back(left), y: map.y.back(top), number: at.current?.number ?? -1};
+    at.current = {x, y, number: at.current?.number ?? -1};
     return showTip(map, left, top, readAt(panel, map, left, top, devicePixelRatio));
   };
   const pick = (event) => {
@@ -147,46 +137,41 @@ export function ChartPanel(props) {
 
   /** Arrow keys read values, up and down where there are no points, else point after point. */
   const press = (event) => {
-    const {key} = event;
     const points = pointsOf(panel);
-    const isField = panel.parts.some((part) => part.kind === 'field');
-    const now = at.current ?? {x: rule?.value ?? middle(panel.x, ranges.x), y: middle(panel.y, ranges.y), number: -1};
-    const map = mapOf(plot.current);
+    const now = at.current ?? {x: rule?.value ?? valueAt(panel.x, ranges.x, 0.5), y: valueAt(panel.y, ranges.y, 0.5), number: -1};
     const size = (event.shiftKey ? 10 : 1) / STEPS;
-    let texts;
-    if (key === 'ArrowLeft' || key === 'ArrowRight') {
-      at.current = {...now, x: stepped(panel.x, ranges.x, now.x, key === 'ArrowLeft' ? -size : size)};
-    } else if ((key === 'ArrowUp' || key === 'ArrowDown') && points.length && !isField) {
-      const number = (now.number + (key === 'ArrowDown' ? 1 : points.length - 1 + (now.number < 0))) % points.length;
-      at.current = {x: points[number].x, y: points[number].y, number};
-      texts = pointText(panel, points[number]);
-    } else if (key === 'ArrowUp' || key === 'ArrowDown') {
-      at.current = {...now, y: stepped(panel.y, ranges.y, now.y, key === 'ArrowDown' ? -size : size)};
-    } else if (key === 'Escape') {
-      hide();
-      return;
-    } else if ((key === 'Enter' || key === ' ') && onPick) {
-      event.preventDefault();
-      onPick({panel: place, x: now.x, y: now.y});
-      return;
-    } else return;
+    const step = (name, share) => [{...now, [name]: stepped(panel[name], ranges[name], now[name], share)}];
+    const toPoint = (by) => {
+      const number = (now.number + by + points.length) % points.length;
+      return [{x: points[number].x, y: points[number].y, number}, pointText(panel, points[number])];
+    };
+    const isByPoint = points.length > 0 && !fieldOf(panel);
+    const moves = {
+      ArrowLeft: () => step('x', -size), ArrowRight: () => step('x', size),
+      ArrowUp: () => (isByPoint ? toPoint(now.number < 0 ? 0 : -1) : step('y', size)),
+      ArrowDown: () => (isByPoint ? toPoint(1) : step('y', -size)),
+    };
+    const isPick = onPick && (event.key === 'Enter' || event.key === ' ');
+    if (event.key === 'Escape') hide();
+    if (!isPick && !moves[event.key]) return null;
     event.preventDefault();
-    const {x, y} = at.current;
-    texts ??= valuesAt(panel, x, y);
-    showTip(map, map.x.to(x), map.y.to(y), texts, true);
-    say(texts.join('; '));
+    if (isPick) return onPick({panel: place, x: now.x, y: now.y});
+    const [reached, texts = valuesAt(panel, reached.x, reached.y)] = moves[event.key]();
+    at.current = reached;
+    const map = mapOf(plot.current);
+    showTip(map, map.x.to(reached.x), map.y.to(reached.y), texts, true);
+    return say(texts.join('; '));
   };
 
-  const share = (value) => Math.round(RULE_STEPS * shareOf(panel.x, ranges.x, value));
+  const dragged = (event) => valueAt(panel.x, ranges.x, event.target.value / RULE_STEPS);
   const move = (event) => {
     grabbed.current ??= props.ranges;
-    const value = stepped(panel.x, ranges.x, ranges.x[0], event.target.value / RULE_STEPS);
-    setHeld(value);
-    drag.onMove?.(value);
+    setHeld(dragged(event));
+    drag.onMove(dragged(event));
   };
   const release = (event) => {
     grabbed.current = null;
-    drag.onRelease?.(stepped(panel.x, ranges.x, ranges.x[0], event.target.value / RULE_STEPS));
+    drag.onRelease(dragged(event));
   };
 
   const value = rule && (held ?? rule.value);
@@ -195,7 +180,7 @@ export function ChartPanel(props) {
     <div ref=${host} class=${`chart-plot${onPick ? ' is-pickable' : ''}`} role="img" tabindex="0" data-test=${`plot:${place}`}
       aria-label=${`${panelName(panel)}. ${hint}`} onPointerMove=${hover} onPointerLeave=${hide} onKeyDown=${press} onBlur=${hide}
       onPointerDown=${(event) => { pressed.current = [event.clientX, event.clientY]; hover(event); }} onClick=${pick}></div>
-    ${rule && html`<input ref=${handle} type="range" class="chart-handle" min="0" max=${RULE_STEPS} value=${share(value)} aria-valuetext=${withUnit(value, panel.x)}
+    ${rule && html`<input ref=${handle} type="range" class="chart-handle" min="0" max=${RULE_STEPS} value=${Math.round(RULE_STEPS * along(panel.x, ranges.x).to(value))} aria-valuetext=${withUnit(value, panel.x)}
       aria-label=${`${rule.label || 'Value'}, ${flat(panel.x.label)}`} data-test=${`drag:${place}`} onInput=${move} onChange=${release} onPointerDown=${hide} />`}
     ${tip && html`<div class=${`chart-tip${tip.left > width / 2 ? ' is-left' : ''}${tip.top > height / 2 ? ' is-above' : ''}`}
       style=${{left: `${tip.left}px`, top: `${tip.top}px`, maxWidth: `${Math.max(150, Math.max(tip.left, width - tip.left) - 16)}px`}}

@@ -20,75 +20,69 @@ export function short(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+/** Word that stands for a value on an axis; undefined where numbers stand. */
+const wordAt = ({words, ticks}, value) => words?.[ticks ? ticks.indexOf(value) : Math.round(value)];
+
 /** Number of an axis or field with its unit, or the word that stands there. */
-export function withUnit(value, axis) {
-  const word = wordAt(axis, value);
-  if (word !== undefined) return word;
-  return axis.unit ? `${short(value)} ${axis.unit}` : short(value);
+export const withUnit = (value, axis) => wordAt(axis, value) ?? (axis.unit ? `${short(value)} ${axis.unit}` : short(value));
+
+/** Errors of points or bars below and above a place; undefined where there are none. */
+export const errors = (error, place) => error && (Array.isArray(error[0]) ? error.map((ends) => ends[place]) : [error[place], error[place]]);
+
+/** Label on one line. */
+export const flat = (text = '') => text.replaceAll('\n', ' ');
+
+/** Field of a panel; undefined where it has none. */
+export const fieldOf = (panel) => panel.parts.find((part) => part.kind === 'field');
+
+/** Lowest and highest of some values, without those that are not known. */
+export const extent = (values) => values.filter((value) => value !== null)
+  .reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+
+/** Way from values of an axis to a scale on which they lie evenly, and back. */
+const evenly = (axis) => (axis.logarithmic ? [Math.log10, (value) => 10 ** value] : [(value) => value, (value) => value]);
+
+/** Places of values along an axis that begins at `start`, and back; by default as shares of its length. */
+export function along(axis, ends, start = 0, length = 1) {
+  const [to, from] = evenly(axis);
+  const [low, high] = ends.map(to);
+  return {
+    ends, to: (value) => start + ((to(value) - low) / (high - low)) * length,
+    back: (place) => from(low + ((place - start) / length) * (high - low)),
+  };
 }
 
-function wordAt(axis, value) {
-  if (!axis.words?.length) return undefined;
-  const place = axis.ticks ? axis.ticks.indexOf(value) : Math.round(value);
-  return axis.words[place];
-}
-
-/** Errors of points or bars below and above a place. */
-export function errors(error, place) {
-  if (!error) return null;
-  return Array.isArray(error[0]) ? [error[0][place], error[1][place]] : [error[place], error[place]];
-}
-
-/** Values of a part along an axis; `isEdge` where no margin is wanted beyond them. */
-function valuesOf(part, name) {
-  const {kind} = part;
-  const other = name === 'x' ? part.y : part.x;
-  if (kind === 'field') return {values: part[name], isEdge: true};
-  if (kind === 'line') return {values: part[name].filter((_, place) => other[place] !== null)};
-  if (kind === 'band') return {values: name === 'x' ? part.x.filter((_, place) => part.low[place] !== null) : [...part.low, ...part.high]};
-  if (kind === 'points') {
-    const error = part[`${name}_error`];
-    const ends = error ? part[name].flatMap((value, place) => {
-      const [below, above] = errors(error, place);
-      return [value - below, value + above];
-    }) : [];
-    return {values: [...part[name], ...ends]};
-  }
-  if (kind === 'rule') return {values: part.along === name ? [part.value] : []};
-  if (kind === 'zone') return {values: part.along === name ? [...part.first, ...part.last] : []};
-  if (kind === 'bars') {
-    if (part.along === name) return {values: [0, ...part.lengths]};
-    const half = (part.breadth ?? 0.6) / 2;
-    return {values: part.places.flatMap((place) => [place - half, place + half])};
-  }
-  return {values: []};
-}
+/** Values of a part along an axis, by its kind. */
+const VALUES = {
+  field: (part, name) => part[name],
+  line: (part, name) => part[name].filter((_, place) => part[name === 'x' ? 'y' : 'x'][place] !== null),
+  band: ({x, low, high}, name) => (name === 'x' ? x.filter((_, place) => low[place] !== null) : [...low, ...high]),
+  points: (part, name) => part[name].flatMap((value, place) => {
+    const [below, above] = errors(part[`${name}_error`], place) ?? [];
+    return below === undefined ? [value] : [value, value - below, value + above];
+  }),
+  rule: (part, name) => (part.along === name ? [part.value] : []),
+  zone: (part, name) => (part.along === name ? [...part.first, ...part.last] : []),
+  bars: (part, name) => (part.along === name ? [0, ...part.lengths]
+    : part.places.flatMap((place) => [place - part.breadth / 2, place + part.breadth / 2])),
+  note: () => [],
+};
 
 /** Ends of an axis over some panels. */
 function ends(panels, name) {
   const axis = panels[0][name];
   const {logarithmic} = axis;
-  let [low, high, isEdge, isFromZero] = [Infinity, -Infinity, false, false];
-  for (const panel of panels) {
-    for (const part of panel.parts) {
-      const found = valuesOf(part, name);
-      isEdge ||= found.isEdge;
-      isFromZero ||= part.kind === 'bars' && part.along === name;
-      for (const value of found.values) {
-        if (value === null || (logarithmic && value <= 0)) continue;
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-    }
-  }
+  const parts = panels.flatMap((panel) => panel.parts);
+  const isFromZero = parts.some((part) => part.kind === 'bars' && part.along === name);
+  let [low, high] = extent(parts.flatMap((part) => VALUES[part.kind](part, name)).filter((value) => !logarithmic || value > 0));
   if (low > high) [low, high] = logarithmic ? [1, 10] : [0, 1];
-  const [to, from] = logarithmic ? [Math.log10, (value) => 10 ** value] : [(value) => value, (value) => value];
+  const [to, from] = evenly(axis);
   let [first, last] = [to(low), to(high)];
   if (first === last) {
     const half = first === 0 || logarithmic ? 0.5 : Math.abs(first) * MARGIN;
     [first, last] = [first - half, last + half];
   }
-  const margin = isEdge ? 0 : MARGIN * (last - first);
+  const margin = panels.some(fieldOf) ? 0 : MARGIN * (last - first);
   const isZero = (end) => isFromZero && end === 0;
   const found = [axis.lowest ?? from(isZero(first) ? 0 : first - margin), axis.highest ?? from(isZero(last) ? 0 : last + margin)];
   if (axis.ticks) found.splice(0, 2, Math.min(found[0], ...axis.ticks), Math.max(found[1], ...axis.ticks));
@@ -96,14 +90,9 @@ function ends(panels, name) {
   return found;
 }
 
-/**
- * Ends of both axes of each panel, common where the chart shares them.
- * @param {Object} chart
- * @param {Object[]} kept charts drawn behind
- * @returns {{x: number[], y: number[]}[]}
- */
-export function rangesOf(chart, kept = []) {
-  const columns = chart.columns ?? 1;
+/** Ends of x and y of each panel, common where the chart shares them; `kept` are charts drawn behind. */
+export function rangesOf(chart, kept) {
+  const {columns} = chart;
   const joined = chart.panels.map((panel, place) => {
     const behind = kept.flatMap((each) => (each.panels[place]?.parts ?? []).filter((part) => part.kind === 'line'));
     return {...panel, parts: [...panel.parts, ...behind]};
@@ -120,18 +109,15 @@ export function roundTicks(low, high, most) {
   const rough = (high - low) / Math.max(1, most);
   const decade = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 2.5, 5, 10].map((each) => each * decade).find((each) => each >= rough * (1 - 1e-9)) ?? 10 * decade;
-  const found = [];
-  for (let place = Math.ceil(low / step - 1e-9); place * step <= high + step * 1e-9; place += 1) {
-    found.push(Number((place * step).toPrecision(12)));
-  }
-  return found;
+  const [first, last] = [Math.ceil(low / step - 1e-9), Math.floor(high / step + 1e-9)];
+  return Array.from({length: Math.max(last - first + 1, 0)}, (_, at) => Number(((first + at) * step).toPrecision(12)));
 }
 
 /** Ticks of an axis with room for so many numbers. */
 export function ticksOf(axis, ends, room) {
   const [low, high] = [...ends].sort((one, other) => one - other);
-  if (axis.ticks?.length) return axis.ticks;
-  if (axis.words?.length) return axis.words.map((_, place) => place);
+  if (axis.ticks) return axis.ticks;
+  if (axis.words) return axis.words.map((_, place) => place);
   if (!axis.logarithmic || high / low < LOG_RATIO) return roundTicks(low, high, Math.min(room, 8));
   const decades = Math.log10(high / low);
   const within = [];
@@ -151,19 +137,15 @@ export function ticksOf(axis, ends, room) {
 export const tickTexts = (axis, ticks) => ticks.map((value) => wordAt(axis, value) ?? short(value, 5));
 
 /** Red, green and blue of "#rrggbb" or "rgb(…)". */
-export function rgb(text) {
-  if (text.startsWith('#')) return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
-  return (text.match(/[\d.]+/g) ?? [0, 0, 0]).slice(0, 3).map(Number);
-}
+export const rgb = (text) => (text.startsWith('#') ? [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16))
+  : (text.match(/[\d.]+/g) ?? [0, 0, 0]).slice(0, 3).map(Number));
 
 export const css = (colour) => `rgb(${colour.map(Math.round).join(' ')})`;
 export const mix = (one, other, share) => one.map((value, place) => value + share * (other[place] - value));
 
 function luminance(colour) {
-  const [red, green, blue] = colour.map((value) => {
-    const part = value / 255;
-    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
-  });
+  const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+  const [red, green, blue] = colour.map((value) => linear(value / 255));
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 }
 
@@ -172,28 +154,17 @@ function contrast(one, other) {
   return (high + 0.05) / (low + 0.05);
 }
 
-/**
- * Colours of a theme, read from the style of an element.
- * @param {Element} element
- * @returns {{ink: string, surface: string, grid: string, stroke: (colour: string) => string, fill: (colour: string) => string}}
- */
+/** Colours of a theme, read from the style of an element; `stroke` and `fill` give those that stand for a colour of a chart. */
 export function themeOf(element) {
   const style = getComputedStyle(element);
   const [ink, surface] = [rgb(style.color), rgb(style.backgroundColor)];
   const least = luminance(surface) < 0.2 ? MIN_CONTRAST.dark : MIN_CONTRAST.light;
-  const known = new Map();
   const shown = (colour, isStroke) => {
-    const key = `${colour} ${isStroke}`;
-    if (!known.has(key)) {
-      let found = rgb(colour ?? '#000000');
-      const isGrey = found[0] === found[1] && found[1] === found[2];
-      if (isGrey) found = mix(surface, ink, 1 - found[0] / 255);
-      for (let step = 0; isStroke && !isGrey && step < 12 && contrast(found, surface) < least; step += 1) {
-        found = mix(found, ink, 0.1);
-      }
-      known.set(key, css(found));
-    }
-    return known.get(key);
+    let found = rgb(colour);
+    const isGrey = found[0] === found[1] && found[1] === found[2];
+    if (isGrey) found = mix(surface, ink, 1 - found[0] / 255);
+    for (let step = 0; isStroke && !isGrey && step < 12 && contrast(found, surface) < least; step += 1) found = mix(found, ink, 0.1);
+    return css(found);
   };
   return {
     ink: css(ink), surface: css(surface), grid: css(mix(surface, ink, 0.13)), muted: css(mix(surface, ink, 0.72)),

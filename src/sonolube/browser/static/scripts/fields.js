@@ -1,9 +1,14 @@
-/** Fields of a rig's entries: number and unit as one text, a slider, a spread, and what is refused below them. */
+/** Fields: entries of a rig as number and unit, with slider and spread; materials and uploaded files beside the rig; what is refused below them. */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {ask, useReply} from './api.js';
+import {Button, classes, FileButton, Refusal, Select} from './parts.js';
+import {change} from './state.js';
 
 const SLIDER_STEPS = 400;
 const PAUSE = 300; // ms after the last key until a text is read
 const REST = 500; // ms without a key until a value is entered into the history
+const BODIES = [['pin', 'Material of the pin'], ['disc', 'Material of the disc']];
+export const NOTHING = {};
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
 export const fieldId = (key) => `field-${key.replaceAll(/[^\w]/g, '-')}`;
@@ -27,10 +32,8 @@ export function split(text) {
   return Number.isFinite(number) ? {number, rest: found[2], digits: found[1]} : null;
 }
 
-/** Number as a short text with three significant digits. */
-export function short(number) {
-  return String(Number(number.toPrecision(3)));
-}
+/** Number as it is typed, with three significant digits, and its unit. */
+export const typed = (number, unit) => [String(Number(number.toPrecision(3))), unit].filter(Boolean).join(' ');
 
 /** Text with its number one step up or down: one in its second digit, or ten of these. */
 function stepped(text, direction, isLarge) {
@@ -40,8 +43,7 @@ function stepped(text, direction, isLarge) {
   const shown = (parts.digits.split(/e/i)[0].split('.')[1] ?? '').length;
   const power = Math.max(size - 1, -12);
   const number = parts.number + direction * (isLarge ? 10 : 1) * 10 ** power;
-  const isScientific = /e/i.test(parts.digits);
-  const digits = isScientific ? String(Number(number.toPrecision(4))) : number.toFixed(Math.max(-power, shown, 0));
+  const digits = /e/i.test(parts.digits) ? String(Number(number.toPrecision(4))) : number.toFixed(Math.max(-power, shown, 0));
   return `${digits}${parts.rest}`;
 }
 
@@ -55,17 +57,19 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
   const timer = useRef(0);
   const latest = useRef(null);
   latest.current = draft;
+  const later = (work, pause) => {
+    clearTimeout(timer.current);
+    timer.current = setTimeout(work, pause);
+  };
+  const put = (typed) => {
+    latest.current = typed;
+    setDraft(typed);
+  };
   const withUnit = (typed) => (unit && split(typed)?.rest.trim() === '' ? `${typed.trim()} ${unit}` : typed);
   const give = (isFinal) => {
     clearTimeout(timer.current);
-    const typed = latest.current;
-    if (typed === null) return;
-    const given = withUnit(typed);
-    if (given !== text) onText(given, !isFinal);
-    if (isFinal) {
-      latest.current = null;
-      setDraft(null);
-    }
+    if (latest.current !== null && withUnit(latest.current) !== text) onText(withUnit(latest.current), !isFinal);
+    if (isFinal) put(null);
   };
   useEffect(() => () => clearTimeout(timer.current), []);
   const leave = () => {
@@ -73,26 +77,23 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
     onSettle();
   };
   const type = (event) => {
-    latest.current = event.target.value;
-    setDraft(event.target.value);
-    clearTimeout(timer.current);
-    timer.current = setTimeout(() => {
+    put(event.target.value);
+    later(() => {
       give(false);
-      timer.current = setTimeout(onSettle, REST);
+      later(onSettle, REST);
     }, PAUSE);
   };
   const press = (event) => {
     if (event.key === 'Enter') leave();
-    else if (event.key === 'ArrowUp' || event.key === 'ArrowDown') {
-      const next = stepped(latest.current ?? text, event.key === 'ArrowUp' ? 1 : -1, event.shiftKey);
-      event.preventDefault();
-      if (next === (latest.current ?? text)) return;
-      clearTimeout(timer.current);
-      latest.current = null;
-      setDraft(null);
-      onText(withUnit(next), true);
-      timer.current = setTimeout(onSettle, REST);
-    }
+    const direction = {ArrowUp: 1, ArrowDown: -1}[event.key];
+    if (!direction) return;
+    const typed = latest.current ?? text;
+    const next = stepped(typed, direction, event.shiftKey);
+    event.preventDefault();
+    if (next === typed) return;
+    put(null);
+    onText(withUnit(next), true);
+    later(onSettle, REST);
   };
   return html`<input type="text" id=${id} value=${draft ?? text} onInput=${type} onKeyDown=${press} onBlur=${leave}
     autocomplete="off" spellcheck=${false} maxlength="20000" ...${rest} />`;
@@ -105,17 +106,23 @@ function Slider({field, text, onText, onSettle}) {
   const place = parts ? Math.log(Math.max(parts.number, lowest) / lowest) / Math.log(highest / lowest) : 0;
   const move = (event) => {
     const number = lowest * (highest / lowest) ** (event.target.value / SLIDER_STEPS);
-    onText(unit ? `${short(number)} ${unit}` : short(number), true);
+    onText(typed(number, unit), true);
   };
   return html`<input type="range" class="slider" min="0" max=${SLIDER_STEPS} step="1"
     value=${Math.round(SLIDER_STEPS * Math.min(Math.max(place, 0), 1))} onInput=${move} onChange=${onSettle}
     aria-label=${`${label}, slider`} aria-valuetext=${text} data-test=${`slider:${key}`} />`;
 }
 
+/** Field below its label, with its refusal. */
+export const Labelled = ({id, label, refusal, children}) => html`<div class="field"><label for=${id}>${label}</label>${children}
+  <${Refusal} text=${refusal} id=${`${id}-refusal`} /></div>`;
+
+/** What a field says of its refusal, which stands below it by the id of the field. */
+export const refusedBy = (id, refusal) => (refusal ? {'aria-invalid': 'true', 'aria-describedby': `${id}-refusal`} : {});
+
 /**
- * Entry of a rig.
- * @param {{field: Object, text: string, spread?: string, isChanged: boolean, refusal?: string, spreadRefusal?: string,
- *   onText: (key: string, text: string|null, isMoving: boolean) => void, onSettle: () => void}} props
+ * Entry of a rig, with its spread.
+ * @param {{onText: (key: string, text: string|null, isMoving: boolean) => void}} props `onText` with null takes a change back
  */
 export function Field({field, text, spread, isChanged, refusal, spreadRefusal, onText, onSettle}) {
   const id = fieldId(field.key);
@@ -129,22 +136,20 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
     if (spread !== undefined) onText(spreadKey(field.key), null, false);
     setSpread(!shown);
   };
-  return html`<div class=${`field${refusal ? ' is-refused' : ''}${isChanged ? ' is-changed' : ''}`}>
+  return html`<div class=${classes('field', {'is-refused': refusal, 'is-changed': isChanged})}>
     <div class="field-head">
       <label for=${id}>${field.label}${field.assumed && html` <span class="tag" title=${field.assumed}>assumed</span>`}</label>
-      ${isChanged && html`<button type="button" class="small" onClick=${() => onText(field.key, null, false)}
-        aria-label=${`Take back the change of ${field.label}`} data-test=${`reset:${field.key}`}>take back</button>`}
+      ${isChanged && html`<${Button} kind="small" onClick=${() => onText(field.key, null, false)}
+        aria-label=${`Take back the change of ${field.label}`} data-test=${`reset:${field.key}`}>take back<//>`}
     </div>
     <div class="field-row">
-      <${TextField} id=${id} text=${text} unit=${field.unit} onText=${give} onSettle=${onSettle}
-        aria-invalid=${refusal ? 'true' : undefined} aria-describedby=${described} title=${field.help || undefined}
-        data-test=${`field:${field.key}`} />
-      ${isNumber && html`<button type="button" class="spread-button" aria-expanded=${shown} onClick=${open}
-        aria-label=${`Spread of ${field.label}`} title="Give the spread of this value" data-test=${`spread-button:${field.key}`}>
-        ±</button>`}
+      <${TextField} id=${id} text=${text} unit=${field.unit} onText=${give} onSettle=${onSettle} title=${field.help || undefined}
+        aria-invalid=${refusal ? 'true' : undefined} aria-describedby=${described} data-test=${`field:${field.key}`} />
+      ${isNumber && html`<${Button} kind="spread-button" aria-expanded=${shown} onClick=${open} aria-label=${`Spread of ${field.label}`}
+        title="Give the spread of this value" data-test=${`spread-button:${field.key}`}>±<//>`}
     </div>
     ${hasSlider && html`<${Slider} field=${field} text=${text} onText=${give} onSettle=${onSettle} />`}
-    ${refusal && html`<p class="refusal" id=${`${id}-refusal`} data-test=${`refusal:${field.key}`}>${refusal}</p>`}
+    <${Refusal} text=${refusal} id=${`${id}-refusal`} data-test=${`refusal:${field.key}`} />
     ${shown && html`<div class="field-spread"><label for=${`${id}-spread`}>Spread</label>
       <${TextField} id=${`${id}-spread`} text=${spread ?? ''} placeholder="normal 5 %"
         onText=${(given, isMoving) => onText(spreadKey(field.key), given.trim() === '' ? null : given, isMoving)}
@@ -155,3 +160,37 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
     ${field.help && html`<span class="hidden" id=${`${id}-help`}>${field.help}</span>`}
   </div>`;
 }
+
+/** Argument of a task by the text of a view that names an upload, which lasts as long as the workbench. */
+export const uploadOf = (text) => ({name: text.slice(text.indexOf(' ') + 1), upload: text.split(' ')[0]});
+
+/** Upload of a file that an entry of the view then names: what was refused of the last one, and what takes one. */
+export function useFile(entry) {
+  const [note, setNote] = useState('');
+  const take = async (file) => {
+    const {content, failure} = file ? await ask('api/uploads', {raw: file}) : {};
+    if (content) change({view: {[entry]: `${content.upload} ${file.name}`}});
+    setNote(failure?.text);
+  };
+  return [note, take];
+}
+
+/** Choices of the materials of pin and disc; `faultOf` gives the refusal of one. */
+export function MaterialChoices({view, faultOf, isAsked = true}) {
+  const known = useReply('materials', isAsked ? 'api/tasks/materials' : null, NOTHING);
+  const names = Object.entries(known.content?.answer ?? {}).map(([name, {title}]) => [name, title]);
+  return BODIES.map(([body, label]) => {
+    const [id, chosen, fault] = [`material-${body}`, view[body], faultOf(body)];
+    const isUnlisted = chosen && !names.some(([name]) => name === chosen);
+    const choices = [['', 'as in the rig'], ...(isUnlisted ? [[chosen, chosen]] : []), ...names];
+    return html`<${Labelled} key=${body} id=${id} label=${label} refusal=${fault}>
+      <${Select} id=${id} choices=${choices} value=${chosen ?? ''} data-test=${`material:${body}`} ...${refusedBy(id, fault)}
+        onChange=${(event) => change({view: {[body]: event.target.value || null}})} /><//>`;
+  });
+}
+
+/** Buttons that choose a table of own runs, and leave it out. */
+export const RunsChoice = ({view, onFile}) => html`<p class="row"><${FileButton} id="own-runs" accept=".csv,.txt" label="Own runs"
+    onFile=${onFile} test="runs-file" data-test="choose-runs">${view.runs ? 'Choose other runs…' : 'Choose own runs…'}<//>
+  ${view.runs && html`<strong class="grow">${uploadOf(view.runs).name}</strong>
+    <${Button} kind="small" onClick=${() => change({view: {runs: null}})} data-test="remove-runs">leave out<//>`}</p>`;

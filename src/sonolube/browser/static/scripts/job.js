@@ -1,6 +1,7 @@
 /** Long tasks as jobs: found again by what was asked, started, followed, stopped. */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useConnection} from './api.js';
+import {Button, capital, Warning} from './parts.js';
 
 const BETWEEN = 400; // ms from one look at a job to the next
 const MAX_COMPARED = 12; // latest jobs of a task whose arguments are compared
@@ -30,9 +31,7 @@ async function found(task, args) {
 }
 
 /**
- * Job of a task with these arguments, and its result.
- * @param {string|null} task null looks for none
- * @param {Object} args
+ * Job of a task with these arguments, and its result; none is sought for null.
  * @returns {{job: Object|null, content: any, isOld: boolean, failure: Object|null, isSought: boolean,
  *   start: (label: string) => void, cancel: () => void}} `isOld` where the result is of other arguments
  */
@@ -72,22 +71,19 @@ export function useJob(task, args) {
 /** What is said of the progress of a job. */
 export function progressText(job) {
   if (job.state === 'waiting') return 'Waits until a running job has ended';
-  if (!isActive(job)) return job.state[0].toUpperCase() + job.state.slice(1);
+  if (!isActive(job)) return capital(job.state);
   const parts = job.total ? `, ${job.done} of ${job.total}` : '';
-  const stage = job.total && job.stage ? job.stage : 'running';
-  return `${stage[0].toUpperCase()}${stage.slice(1)}${parts}${isOwn(job) ? '' : ', in another workbench'}`;
+  return `${capital((job.total && job.stage) || 'running')}${parts}${isOwn(job) ? '' : ', in another workbench'}`;
 }
 
 /** Progress of a job with what stops it; the reason where it failed. */
 export function JobState({job, cancel}) {
   if (!isActive(job)) {
-    return job.reason ? html`<div class="notice is-warning" role="alert" data-test="job-failed"><strong>${progressText(job)}.</strong>
-      <p>${job.reason}</p></div>` : null;
+    return job.reason ? html`<${Warning} data-test="job-failed"><strong>${progressText(job)}.</strong><p>${job.reason}</p><//>` : null;
   }
   return html`<div class="job-state" data-test="job-state"><${JobProgress} job=${job} />
     <span role="status">${progressText(job)}</span><span class="hint">${duration(secondsOf(job))}</span>
-    ${isOwn(job) && html`<button type="button" class="button" onClick=${cancel} data-test="cancel-job">Cancel</button>`}</div>`;
+    ${isOwn(job) && html`<${Button} onClick=${cancel} data-test="cancel-job">Cancel<//>`}</div>`;
 }
 
-export const JobProgress = ({job}) => (job.total
-  ? html`<progress max=${job.total} value=${job.done} aria-label="Progress" />` : html`<progress aria-label="Progress" />`);
+export const JobProgress = ({job}) => html`<progress ...${job.total && {max: job.total, value: job.done}} aria-label="Progress" />`;

@@ -1,17 +1,24 @@
 /** Left column: which rig, its drawing, and its entries as fields; and the frame of a page that has it beside its answer. */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {useReply} from './api.js';
-import {Field, spreadKey} from './fields.js';
-import {Schematic} from './schematic.js';
-import {addressOf, change, pack, useApp} from './state.js';
+import {Field, focusField, spreadKey} from './fields.js';
+import {Button, FileButton, Loading, Refusal, Select} from './parts.js';
+import {addressOf, change, pack, setEntry, settle, useApp} from './state.js';
+
+/** Where the drawing of a rig shows values. */
+const PLACES = {
+  'drive.voltage_peak_to_peak': {x: 8, y: 22, anchor: 'start'},
+  'drive.frequency': {x: 8, y: 40, anchor: 'start'},
+  'contact.normal_load': {x: 262, y: 22, anchor: 'end'},
+  'vibration.vibration_amplitude': {x: 262, y: 84, anchor: 'end'},
+  'friction.friction_coefficient': {x: 8, y: 104, anchor: 'start', sign: 'µ '},
+  'sliding.sliding_speed': {x: 262, y: 155, anchor: 'end'},
+};
 
 /** Last view that was read and its rig, so that a page that opens shows it at once. */
 let last = {view: null, rig: {}};
 
-/**
- * The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs; null where refused.
- * @returns {{view: any, failure: Object|null, refused: Object[], isWaiting: boolean}}
- */
+/** The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs; `view` is null where refused. */
 export function useRig() {
   const {state: {rig}, isMoving} = useApp();
   const asked = useRef(rig);
@@ -23,7 +30,7 @@ export function useRig() {
 }
 
 /** Text of an entry: as it was typed, else as the file has it. */
-export const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
+const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
 
 const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 
@@ -31,33 +38,59 @@ const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 function RigChoice({view}) {
   const {state} = useApp();
   const [note, setNote] = useState('');
-  const chooser = useRef(null);
-  const names = [...new Set([...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);
   const own = state.rig.text !== undefined;
+  const names = [...new Set([...(own ? [state.rig.name] : []), ...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);
+  const choices = names.map((name) => (own && name === state.rig.name ? ['', `${name} (own file)`] : [name, name]));
   const choose = (event) => {
     setNote('');
     change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
   };
-  const open = async ([file]) => setNote(await openRigText(file.name.replace(/\.toml$/i, ''), await file.text()));
+  const open = async (file) => setNote(await openRigText(file.name.replace(/\.toml$/i, ''), await file.text()));
   return html`<div class="rig-choice">
     <label for="rig-name">Rig</label>
     <div class="row">
-      <select id="rig-name" value=${own ? '' : state.rig.name} onChange=${choose} data-test="rig" class="grow">
-        ${own && html`<option value="" selected>${state.rig.name} (own file)</option>`}
-        ${names.filter((name) => !own || name !== state.rig.name).map((name) => html`<option key=${name} value=${name}
-          selected=${!own && name === state.rig.name}>${name}</option>`)}
-      </select>
-      <button type="button" class="button" onClick=${() => chooser.current.click()} data-test="open-rig">Open…</button>
+      <${Select} id="rig-name" choices=${choices} value=${own ? '' : state.rig.name} onChange=${choose} data-test="rig" class="grow" />
+      <${FileButton} accept=".toml" label="Rig file" onFile=${open} test="rig-file" data-test="open-rig">Open…<//>
       <a class="button" href=${addressOf('new')}>New…</a>
-      <input type="file" accept=".toml" class="hidden" tabindex="-1" aria-label="Rig file" ref=${chooser}
-        onChange=${(event) => event.target.files.length && open(event.target.files)} data-test="rig-file" />
     </div>
     ${view && html`<p class="hint" data-test="rig-title">${view.title}</p>`}
     ${note && html`<p class="hint" role="status">${note}</p>`}
-    ${state.view.lost && html`<p class="refusal" role="alert" data-test="lost">The file of ${state.view.lost} is not in this
-      link and no longer in this browser: open it again.</p>`}
+    <${Refusal} role="alert" data-test="lost" text=${state.view.lost
+      && `The file of ${state.view.lost} is not in this link and no longer in this browser: open it again.`} />
   </div>`;
 }
+
+/** Value of an entry beside its part. */
+function Value({field, text}) {
+  const {x, y, anchor, sign = ''} = PLACES[field.key];
+  const shown = sign + (text.length > 13 ? `${text.slice(0, 12)}…` : text);
+  const width = 7 * shown.length + 10;
+  const edit = (event) => {
+    if (event.type === 'keydown' && event.key !== 'Enter' && event.key !== ' ') return;
+    event.preventDefault();
+    focusField(field.key);
+  };
+  return html`<g role="button" tabindex="0" class="schematic-value" aria-label=${`${shown}, ${field.label}. Edit`}
+    onClick=${edit} onKeyDown=${edit} data-test=${`drawn:${field.key}`}>
+    <rect x=${anchor === 'end' ? x - width + 5 : x - 5} y=${y - 13} width=${width} height="18" rx="4" />
+    <text x=${x} y=${y} text-anchor=${anchor}>${shown}</text></g>`;
+}
+
+/** Drawing of a rig with its values; a click on a value opens its field. */
+const Schematic = ({drawing, fields, rig}) => html`<svg class="schematic" viewBox="0 0 270 172" role="group" aria-label="Drawing of the rig with its values">
+    <g class="schematic-lines" aria-hidden="true">
+      ${drawing.has_structure && html`<path d="M20 62 H112" class="thick" /><path d="M20 52 v20 M14 54 l6 6 M14 62 l6 6 M14 70 l6 6" />`}
+      <path d="M135 6 v22 m-4 -6 4 6 4 -6 M168 90 v22 m-3 -17 3 -5 3 5 m-6 12 3 5 3 -5 M96 150 H166 m-6 -4 6 4 -6 4" class="force" />
+      <rect x="112" y="32" width="46" height="52" rx="3" class="part" />
+      ${drawing.has_drive && html`<path d="M112 42 H158 M112 50 H158 M112 58 H158 M112 66 H158 M112 74 H158" class="thin" />
+        <path d="M88 36 q4 -8 8 0 t8 0 M104 36 H112" class="wave" />`}
+      <path d="M118 84 H152 V100 L144 112 H126 L118 100 Z" class="part is-pin" />
+      <path d="M126 112 H144" class="contact" />
+      <path d="M74 103 L122 111" class="thin" />
+      <rect x="40" y="113" width="190" height="20" rx="3" class="part is-disc" />
+    </g>
+    ${fields.filter(({key}) => key in PLACES).map((field) => html`<${Value} key=${field.key} field=${field} text=${textOf(rig, field)} />`)}
+  </svg>`;
 
 /** Make the text of a rig file the rig of the state, and go to a page; returns a note where a link cannot hold it. */
 export async function openRigText(name, text, page = undefined) {
@@ -66,13 +99,10 @@ export async function openRigText(name, text, page = undefined) {
   return fits ? '' : 'This file is too long for a link: it stays in this tab only. Take it away as TOML to keep it.';
 }
 
-/**
- * @param {{extra?: any}} props `extra` stands below the fields of the operating point
- */
+/** Rig with its drawing and fields; `extra` stands below those of the operating point. */
 export function RigPanel({extra}) {
-  const {state, setEntry, settle} = useApp();
+  const {state: {rig}} = useApp();
   const {view, failure, refused} = useRig();
-  const {rig} = state;
   const isAnswered = failure && ['refused', 'busy'].includes(failure.kind); // else the head says it
   const faults = new Map([...(isAnswered ? failure.faults : []), ...refused].map((fault) => [fault.key, fault.text]));
   const onText = (key, text, isMoving) => setEntry(key, text, {replace: isMoving});
@@ -82,6 +112,10 @@ export function RigPanel({extra}) {
   const placed = new Set(fields.flatMap((field) => [field.key, spreadKey(field.key)]));
   const homeless = [...faults].filter(([key]) => !placed.has(key));
   const isAll = others.some((field) => faults.has(field.key));
+  const entries = useRef(null);
+  useEffect(() => {
+    if (isAll) entries.current.open = true; // an entry beyond the operating point is refused
+  }, [isAll]);
   const list = (some) => some.map((field) => html`<${Field} key=${`${rig.name} ${field.key}`} field=${field}
     text=${textOf(rig, field)} spread=${rig.changes[spreadKey(field.key)]} isChanged=${field.key in rig.changes}
     refusal=${faults.get(field.key)} spreadRefusal=${faults.get(spreadKey(field.key))} onText=${onText}
@@ -89,38 +123,23 @@ export function RigPanel({extra}) {
   const count = Object.keys(rig.changes).length;
   return html`<aside class="rig" aria-label="Rig" data-test="rig-panel">
     <${RigChoice} view=${view} />
-    ${!view && !failure && html`<p class="loading" role="status">Reading the rig…</p>`}
-    ${view && html`<${Schematic} drawing=${view.drawing} fields=${fields} textOf=${(field) => textOf(rig, field)} />`}
-    ${homeless.map(([key, text]) => html`<p key=${key} class="refusal" role="alert" data-test="rig-refusal">${text}</p>`)}
+    ${!view && !failure && html`<${Loading}>Reading the rig…<//>`}
+    ${view && html`<${Schematic} drawing=${view.drawing} fields=${fields} rig=${rig} />`}
+    ${homeless.map(([key, text]) => html`<${Refusal} key=${key} text=${text} role="alert" data-test="rig-refusal" />`)}
     <div class="fields">${list(first)}</div>
-    ${count > 0 && html`<button type="button" class="button is-quiet" data-test="reset-all"
-      onClick=${() => change({rig: {...rig, changes: {}}})}>Take back ${count === 1 ? 'the change' : `all ${count} changes`}</button>`}
+    ${count > 0 && html`<${Button} kind="button is-quiet" onClick=${() => change({rig: {...rig, changes: {}}})} data-test="reset-all">
+      Take back ${count === 1 ? 'the change' : `all ${count} changes`}<//>`}
     ${extra}
-    ${others.length > 0 && html`<${AllEntries} isOpen=${isAll}>
+    ${others.length > 0 && html`<details ref=${entries} class="all-entries" data-test="all-entries"><summary>All entries</summary>
       ${[...new Set(others.map(tableOf))].map((table) => html`<fieldset key=${table} class="fields"><legend>${table}</legend>
-        ${list(others.filter((field) => tableOf(field) === table))}</fieldset>`)}<//>`}
+        ${list(others.filter((field) => tableOf(field) === table))}</fieldset>`)}</details>`}
     ${view?.source && html`<p class="hint source">Source: ${view.source}</p>`}
   </aside>`;
 }
 
-/** Entries beyond the operating point; opened where one of them is refused. */
-function AllEntries({isOpen, children}) {
-  const details = useRef(null);
-  useEffect(() => {
-    if (isOpen) details.current.open = true;
-  }, [isOpen]);
-  return html`<details ref=${details} class="all-entries" data-test="all-entries"><summary>All entries</summary>
-    ${children}</details>`;
-}
-
-/**
- * Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer.
- * @param {{lead?: any, extra?: any, children?: any}} props
- */
-export function Workspace({lead, extra, children}) {
-  return html`<div class="workspace">
-    <div class="lead" id="answer" tabindex="-1">${lead}</div>
-    <${RigPanel} extra=${extra} />
-    <div class="body">${children}</div>
+/** Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer. */
+export const Workspace = ({lead, extra, children}) => html`<div class="workspace">
+  <div class="lead" id="answer" tabindex="-1">${lead}</div>
+  <${RigPanel} extra=${extra} />
+  <div class="body">${children}</div>
   </div>`;
-}

@@ -7,7 +7,8 @@
  */
 import {useLayoutEffect, useState} from '../vendor/htm-preact-3.1.1.js';
 
-export const PAGES = ['predict', 'explore', 'dissertation', 'jobs', 'new'];
+/** Pages by their names in an address, with their titles. */
+export const PAGES = {predict: 'Predict', explore: 'Explore', dissertation: 'Dissertation', jobs: 'Jobs', new: 'New rig'};
 const STEPS = 100; // of undo
 const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
 const KEPT_PREFIX = 'kept-';
@@ -33,13 +34,9 @@ export function stored(store, name, value) {
     return value;
   }
 }
-let past = JSON.parse(stored('sessionStorage', 'past') ?? '[]');
-let future = JSON.parse(stored('sessionStorage', 'future') ?? '[]');
-
-function keep() {
-  stored('sessionStorage', 'past', JSON.stringify(past));
-  stored('sessionStorage', 'future', JSON.stringify(future));
-}
+/** Fragments to undo and to redo. */
+let [past, future] = JSON.parse(stored('sessionStorage', 'history') ?? '[[], []]');
+const keep = () => stored('sessionStorage', 'history', JSON.stringify([past, future]));
 
 /** Draw a component again whenever a set of listeners is told. */
 export function useListening(to) {
@@ -52,24 +49,17 @@ export function useListening(to) {
 }
 
 /** Text as bytes through a stream of the browser, as base64url or back. */
-async function through(stream, bytes) {
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
-}
+const through = async (stream, bytes) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
-/**
- * Compress the text of a rig so that a link can hold it.
- * @param {string} text
- * @returns {Promise<{code: string, fits: boolean}>} `fits` is false where only this tab can keep it.
- */
+/** Compress the text of a rig so that a link can hold it; `fits` is false where only this tab can keep it. */
 export async function pack(text) {
   const bytes = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(text));
-  let code = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
-  code = code.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+  const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('');
+  let code = btoa(binary).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
   const fits = code.length <= LONGEST_TEXT;
   if (!fits) {
-    const name = KEPT_PREFIX + code.slice(-24) + code.length;
-    stored('sessionStorage', name, text);
-    code = name;
+    code = KEPT_PREFIX + code.slice(-24) + code.length;
+    stored('sessionStorage', code, text);
   }
   packed.set(text, code);
   return {code, fits};
@@ -86,11 +76,7 @@ async function unpack(code) {
 
 const quoted = (text) => encodeURIComponent(text).replaceAll('%20', '+').replaceAll('%3A', ':').replaceAll('%2F', '/');
 
-/**
- * Fragment of a state, without its hash.
- * @param {State} of
- * @returns {string}
- */
+/** Fragment of a state, without its hash. */
 export function encode(of) {
   const parts = [
     ...(of.rig.name ? [['rig', of.rig.name]] : []),
@@ -102,16 +88,12 @@ export function encode(of) {
   return `/${of.page}${query && `?${query}`}`;
 }
 
-/**
- * State of a fragment; what it lacks is empty.
- * @param {string} of
- * @returns {Promise<State>}
- */
+/** State of a fragment; what it lacks is empty. */
 export async function decode(of) {
   const [path, query = ''] = of.replace(/^#/, '').split(/\?(.*)/s);
   const page = path.replace(/^\//, '');
   /** @type {State} */
-  const found = {page: PAGES.includes(page) ? page : 'predict', rig: {name: '', changes: {}}, view: {}};
+  const found = {page: Object.hasOwn(PAGES, page) ? page : 'predict', rig: {name: '', changes: {}}, view: {}};
   for (const [name, text] of new URLSearchParams(query)) {
     if (name === 'rig') found.rig.name = text;
     else if (name === 'text') found.rig.text = await unpack(text).catch(() => undefined);
@@ -123,36 +105,26 @@ export async function decode(of) {
   return found;
 }
 
-/** State after a partial change; entries of `view` and `rig.changes` that are null are removed. */
-function merged(partial) {
-  const without = (entries) => Object.fromEntries(Object.entries(entries).filter(([, text]) => text != null));
-  const isNewPage = partial.page !== undefined && partial.page !== state.page;
-  const rig = partial.rig ? {...partial.rig, changes: without(partial.rig.changes ?? {})} : state.rig;
-  const view = without({...(isNewPage ? {} : state.view), ...partial.view});
-  return {page: partial.page ?? state.page, rig, view};
-}
+/** Entries of a record that are not null. */
+export const present = (entries) => Object.fromEntries(Object.entries(entries).filter(([, value]) => value != null));
 
 /**
- * Change the state. With `replace` (a value that moves) there is no entry of history until `settle` or the next change.
+ * Change parts of the state; entries of `view` and `rig.changes` that are null are removed. With `replace` (a value that moves) there is no entry of history until `settle` or the next change.
  * @param {Partial<State>} partial
- * @param {{replace?: boolean}} [options]
  */
-export function change(partial, {replace = false} = {}) {
-  state = merged(partial);
-  if (!replace) {
-    commit();
-    return;
-  }
-  before ??= fragment;
-  isMoving = true;
-  fragment = encode(state);
-  tell();
+export function change({page = state.page, rig = state.rig, view}, {replace = false} = {}) {
+  const shown = page === state.page ? state.view : {};
+  state = {page, rig: {...rig, changes: present(rig.changes)}, view: present({...shown, ...view})};
+  if (replace) {
+    before ??= fragment;
+    isMoving = true;
+    fragment = encode(state);
+    tell();
+  } else commit();
 }
 
 /** Enter what has moved into the history. */
-export function settle() {
-  if (isMoving) commit();
-}
+export const settle = () => isMoving && commit();
 
 function commit() {
   if (enter(encode(state))) history.pushState(null, '', `#${fragment}`);
@@ -172,15 +144,8 @@ function enter(to) {
   return true;
 }
 
-/**
- * Set an entry of the rig, or take its change back with null.
- * @param {string} key
- * @param {string|null} text
- * @param {{replace?: boolean}} [options]
- */
-export function setEntry(key, text, options) {
-  change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
-}
+/** Set an entry of the rig, or take its change back with null; options as of `change`. */
+export const setEntry = (key, text, options) => change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
 
 async function step(from, onto) {
   settle();
@@ -198,17 +163,9 @@ export const undo = () => step(past, future);
 export const redo = () => step(future, past);
 
 /** Address of a page with the rig of now, for a link. */
-export function addressOf(page, view = {}) {
-  return `#${encode({page, rig: state.rig, view})}`;
-}
+export const addressOf = (page, view = {}) => `#${encode({page, rig: state.rig, view})}`;
 
-/** The state as it is now, for what runs outside of a component. */
-export const current = () => state;
-
-/**
- * Read the state from the address, and follow it; an address without a rig gets the one that was opened.
- * @param {string} opened
- */
+/** Read the state from the address, and follow it; an address without a rig gets the one that was opened. */
 export async function followAddress(opened) {
   const read = async () => {
     const found = await decode(location.hash);
@@ -232,14 +189,8 @@ export async function followAddress(opened) {
   tell();
 }
 
-/**
- * State and what changes it, for a component that is drawn again when it changes.
- * @returns {{state: State, isMoving: boolean, change: typeof change, setEntry: typeof setEntry, settle: typeof settle,
- *   undo: () => Promise<void>, redo: () => Promise<void>, canUndo: boolean, canRedo: boolean}}
- */
+/** State, for a component that is drawn again when it changes. */
 export function useApp() {
   useListening(listeners);
-  return {
-    state, isMoving, change, setEntry, settle, undo, redo, canUndo: past.length > 0, canRedo: future.length > 0,
-  };
+  return {state, isMoving, canUndo: past.length > 0, canRedo: future.length > 0};
 }

@@ -1,22 +1,17 @@
 /** What a page gives to take away: the link, and files that give the numbers on screen. */
-import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {html, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask} from './api.js';
+import {Button, useEvents} from './parts.js';
 
 const FORMS = [
-  ['command', 'Command line', 'copies'], ['python', 'Python', 'copies'], ['toml', 'Rig file (TOML)', 'saves'],
-  ['notebook', 'Notebook', 'saves'], ['csv', 'Table (CSV)', 'saves'], ['svg', 'Figure (SVG)', 'saves'],
-  ['report', 'Report (HTML)', 'saves'],
+  ['command', 'Command line', 'copy'], ['python', 'Python', 'copy'], ['toml', 'Rig file (TOML)', 'save'], ['notebook', 'Notebook', 'save'],
+  ['csv', 'Table (CSV)', 'save'], ['svg', 'Figure (SVG)', 'save'], ['report', 'Report (HTML)', 'save'],
 ];
 
 /** @type {{task: string, args: Object}|null} What the page shows. */
 let offered = null;
 
-/**
- * State the task and arguments whose answer a page shows; call it in an effect, whose end takes it back.
- * @param {string} task
- * @param {Object} args
- * @returns {() => void}
- */
+/** State the task and arguments whose answer a page shows; call it in an effect, whose end takes it back. */
 export function offer(task, args) {
   const mine = {task, args};
   offered = mine;
@@ -40,16 +35,11 @@ export function TakeAway() {
   const [shown, setShown] = useState(null);
   const [note, setNote] = useState('');
   const place = useRef(null);
-  useEffect(() => {
-    const close = (event) => {
-      const isEscape = event.key === 'Escape' && place.current.contains(document.activeElement);
-      if (isEscape) place.current.querySelector('button').focus();
-      if (event.key ? isEscape : !place.current.contains(event.target)) setOpen(false);
-    };
-    const kinds = ['keydown', 'pointerdown'];
-    kinds.forEach((kind) => addEventListener(kind, close));
-    return () => kinds.forEach((kind) => removeEventListener(kind, close));
-  }, []);
+  useEvents(['keydown', 'pointerdown'], (event) => {
+    const isEscape = event.key === 'Escape' && place.current.contains(document.activeElement);
+    if (isEscape) place.current.querySelector('button').focus();
+    if (event.key ? isEscape : !place.current.contains(event.target)) setOpen(false);
+  });
   const copy = async (what, text) => {
     setShown({what, text});
     const done = await navigator.clipboard?.writeText(text).then(() => true, () => false);
@@ -60,7 +50,7 @@ export function TakeAway() {
     setNote(`${label}: being made…`);
     const {content, failure} = await ask('api/take', {body: {form, task: offered.task, arguments: offered.args}});
     if (failure) setNote(failure.faults[0]?.text || failure.text);
-    else if (how === 'copies') await copy(label, content.text);
+    else if (how === 'copy') await copy(label, content.text);
     else {
       save(content);
       setNote(`${content.name}: saved.`);
@@ -72,15 +62,12 @@ export function TakeAway() {
     setShown(null);
   };
   return html`<div class="take" ref=${place}>
-    <button type="button" class="button" aria-expanded=${isOpen} aria-haspopup="true" onClick=${toggle} data-test="take">
-      Take away</button>
+    <${Button} aria-expanded=${isOpen} aria-haspopup="true" onClick=${toggle} data-test="take">Take away<//>
     ${isOpen && html`<div class="menu" role="group" aria-label="Take away">
-      <button type="button" class="menu-item" onClick=${() => copy('Link', location.href)} data-test="take:link">Link to this
-        screen</button>
-      ${offered
-    ? FORMS.map(([form, label, how]) => html`<button type="button" key=${form} class="menu-item" data-test=${`take:${form}`}
-        onClick=${() => take(form, label, how)}>${label}<span class="hint">${how === 'copies' ? 'copy' : 'save'}</span></button>`)
-    : html`<p class="hint">This page has no answer to take away.</p>`}
+      <${Button} kind="menu-item" onClick=${() => copy('Link', location.href)} data-test="take:link">Link to this screen<//>
+      ${offered && FORMS.map(([form, label, how]) => html`<${Button} key=${form} kind="menu-item" onClick=${() => take(form, label, how)}
+        data-test=${`take:${form}`}>${label}<span class="hint">${how}</span><//>`)}
+      ${!offered && html`<p class="hint">This page has no answer to take away.</p>`}
       ${shown && html`<textarea readonly rows="4" aria-label=${shown.what} onFocus=${(event) => event.target.select()}
         data-test="taken">${shown.text}</textarea>`}
       <p class="hint" role="status" data-test="take-note">${note}</p>

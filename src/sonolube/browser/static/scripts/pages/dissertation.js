@@ -3,14 +3,15 @@ import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.j
 import {TextTable} from '../answer.js';
 import {callTask} from '../api.js';
 import {short} from '../chart-scale.js';
+import {NOTHING} from '../fields.js';
 import {isActive, JobState, useJob} from '../job.js';
+import {Button, fileOf, Loading, Refusal, Section, Select, Sheet, words} from '../parts.js';
 import {addressOf, change, settle, useApp} from '../state.js';
 
-const NO_ARGUMENTS = {};
 const LABEL = 'Reproduction of the dissertation';
 const MOST = 60; // rows shown before all are asked for
+const HEADS = ['Row', 'Source', 'Quantity', 'Published', 'Computed', 'Difference', 'Verdict', 'Note'];
 const FILTERS = [['chapter', 'Chapter'], ['verdict', 'Verdict'], ['kind', 'Class']];
-const words = (name) => String(name).replaceAll('_', ' ');
 
 const Verdict = ({of}) => html`<span class=${`verdict is-${of.replaceAll(' ', '_')}`}>${words(of)}</span>`;
 
@@ -19,15 +20,13 @@ const RowLinks = ({ids, title}) => (ids.length ? html`<p class="hint">${title}: 
   href=${addressOf('dissertation', {row: id})}>${id}</a>`)}</p>` : null);
 
 /** Scorecard: each claim with its verdict, and what it rests on. */
-function Claims({claims}) {
-  return html`<section aria-labelledby="claims-title"><h2 id="claims-title">Claims</h2>
-    <ul class="claims" data-test="claims">${claims.map((claim) => html`<li key=${claim.id} class="card" data-test=${`claim:${claim.id}`}>
-      <div class="claim-head"><h3>${claim.statement}</h3><${Verdict} of=${claim.verdict} /></div>
-      <p>Claimed ${claim.claimed}; found ${claim.found}. <span class="hint">${claim.source}</span></p>
-      <details><summary>How it is judged</summary><p>${claim.judged}</p>
-        <${RowLinks} title="Decisive rows" ids=${claim.decisive_rows} /><${RowLinks} title="Supporting rows" ids=${claim.supporting_rows} /></details>
-    </li>`)}</ul></section>`;
-}
+const Claims = ({claims}) => html`<${Section} id="claims-title" title="Claims">
+  <ul class="claims" data-test="claims">${claims.map((claim) => html`<li key=${claim.id} class="card" data-test=${`claim:${claim.id}`}>
+    <div class="claim-head"><h3>${claim.statement}</h3><${Verdict} of=${claim.verdict} /></div>
+    <p>Claimed ${claim.claimed}; found ${claim.found}. <span class="hint">${claim.source}</span></p>
+    <details><summary>How it is judged</summary><p>${claim.judged}</p>
+      <${RowLinks} title="Decisive rows" ids=${claim.decisive_rows} /><${RowLinks} title="Supporting rows" ids=${claim.supporting_rows} /></details>
+  </li>`)}</ul><//>`;
 
 /** Rows that the view asks for. */
 function filtered(rows, view) {
@@ -37,15 +36,14 @@ function filtered(rows, view) {
 }
 
 function Filters({rows, view, count}) {
-  const choices = (name) => [...new Set(rows.map((row) => String(row[name])))].sort();
+  const choices = (name) => [['', 'all'], ...[...new Set(rows.map((row) => String(row[name])))].sort().map((each) => [each, words(each)])];
   const set = (name) => (event) => change({view: {[name]: event.target.value || null, row: null}});
   const search = (event) => change({view: {search: event.target.value || null, row: null}}, {replace: true});
   return html`<div class="filters" role="search" aria-label="Rows"><div><label for="row-search">Search</label>
       <input type="text" id="row-search" value=${view.search ?? ''} onInput=${search} onBlur=${settle} onChange=${settle} autocomplete="off"
         maxlength="200" data-test="row-search" /></div>
     ${FILTERS.map(([name, label]) => html`<div key=${name}><label for=${`row-${name}`}>${label}</label>
-      <select id=${`row-${name}`} value=${view[name] ?? ''} onChange=${set(name)} data-test=${`row-filter:${name}`}><option value="">all</option>
-        ${choices(name).map((each) => html`<option key=${each} value=${each} selected=${view[name] === each}>${words(each)}</option>`)}</select></div>`)}
+      <${Select} id=${`row-${name}`} choices=${choices(name)} value=${view[name] ?? ''} onChange=${set(name)} data-test=${`row-filter:${name}`} /></div>`)}
     <p role="status" data-test="row-count">${count} of ${rows.length} rows</p></div>`;
 }
 
@@ -59,8 +57,6 @@ function Alternatives({of}) {
 
 const rowId = (id) => `row-${id.replaceAll(/[^\w]/g, '-')}`;
 
-const printed = (row) => `${row.printed}${row.unit ? ` ${row.unit}` : ''}`;
-
 function Rows({rows, view}) {
   const [isAll, setAll] = useState(false);
   const found = filtered(rows, view);
@@ -72,18 +68,17 @@ function Rows({rows, view}) {
     place?.scrollIntoView({block: 'center'});
     place?.focus({preventScroll: true});
   }, [wanted, rows]);
-  return html`<section aria-labelledby="rows-title"><h2 id="rows-title">Numbers</h2>
+  return html`<${Section} id="rows-title" title="Numbers">
     <${Filters} rows=${rows} view=${view} count=${found.length} />
     <div class="table-frame card" tabindex="0" role="group" aria-label="Published and computed numbers"><table class="table result-rows" data-test="rows">
-      <thead><tr><th scope="col">Row</th><th scope="col">Source</th><th scope="col">Quantity</th><th scope="col">Published</th><th scope="col">Computed</th>
-        <th scope="col">Difference</th><th scope="col">Verdict</th><th scope="col">Note</th></tr></thead>
+      <thead><tr>${HEADS.map((head) => html`<th key=${head} scope="col">${head}</th>`)}</tr></thead>
       <tbody>${shown.map((row) => html`<tr key=${row.id} id=${rowId(row.id)} tabindex="-1" class=${row.id === wanted ? 'is-shown' : ''} data-test=${`row:${row.id}`}>
         <th scope="row"><a href=${addressOf('dissertation', {...view, row: row.id})}>${row.id}</a></th>
-        <td>${row.source}</td><td>${words(row.quantity)}</td><td>${printed(row)}</td><td>${row.computed === null ? '–' : short(row.computed)}</td>
+        <td>${row.source}</td><td>${words(row.quantity)}</td><td>${[row.printed, row.unit].filter(Boolean).join(' ')}</td><td>${row.computed === null ? '–' : short(row.computed)}</td>
         <td>${row.relative_error === null ? '–' : `${row.relative_error > 0 ? '+' : ''}${short(100 * row.relative_error, 2)} %`}</td>
         <td><${Verdict} of=${row.verdict} /><br /><span class="hint">${words(row.kind)}</span></td><td class="row-note">${row.note}<${Alternatives} of=${row} /></td></tr>`)}</tbody></table></div>
-    ${shown.length < found.length && html`<button type="button" class="button" onClick=${() => setAll(true)} data-test="all-rows">Show all ${found.length} rows</button>`}
-  </section>`;
+    ${shown.length < found.length && html`<${Button} onClick=${() => setAll(true)} data-test="all-rows">Show all ${found.length} rows<//>`}
+  <//>`;
 }
 
 /** Corrections of single cells of the published tables, read when they are opened. */
@@ -98,43 +93,41 @@ function Errata() {
     for (const table of Object.keys(content?.answer ?? {})) tables.push((await callTask('published', {table})).content?.answer);
     setFound(tables.filter(Boolean).flatMap((table) => table.corrections.map((each) => ({...each, table: table.id}))));
   };
-  return html`<section aria-labelledby="errata-title"><h2 id="errata-title">Errata</h2><details onToggle=${read} data-test="errata">
+  return html`<${Section} id="errata-title" title="Errata"><details onToggle=${read} data-test="errata">
     <summary>Corrections of the printed tables, with their evidence</summary>
-    ${!found && html`<p class="loading" role="status">Reading the tables…</p>`}
+    ${!found && html`<${Loading}>Reading the tables…<//>`}
     ${found && html`<${TextTable} label="Corrections" kind="table-frame card" heads=${['Table', 'Erratum', 'Column', 'Printed', 'Corrected', 'Evidence']}
       rows=${found.map((each) => [each.table, each.erratum, `${words(each.column)}${each.row === null ? '' : `, row ${each.row + 1}`}`,
-    each.printed, each.corrected, each.evidence])} />`}</details></section>`;
+    each.printed, each.corrected, each.evidence])} />`}</details><//>`;
 }
 
 function Figures({job, files}) {
   const names = files.filter((name) => name.endsWith('.svg'));
-  const address = (name) => `api/jobs/${job.id}/files/${name.split('/').map(encodeURIComponent).join('/')}`;
   const title = (name) => words(name.split('/').at(-1).replace(/\.svg$/, '').replaceAll('-', ' '));
   if (!names.length) return null;
-  return html`<section aria-labelledby="figures-title"><h2 id="figures-title">Figures</h2><div class="figures" data-test="figures">
-    ${names.map((name) => html`<figure key=${name} aria-label=${title(name)}><img src=${address(name)} alt=${`${title(name)}; its numbers are among the rows above`} loading="lazy" />
-      <figcaption>${title(name)} <a href=${address(name)} download=${name.split('/').at(-1)}>SVG</a></figcaption></figure>`)}</div>
-    <p><a href=${address('reproduction.html')} download="reproduction.html">The whole report as one page (HTML)</a></p></section>`;
+  return html`<${Section} id="figures-title" title="Figures"><div class="figures" data-test="figures">
+    ${names.map((name) => html`<figure key=${name} aria-label=${title(name)}><img src=${fileOf(job.id, name)} alt=${`${title(name)}; its numbers are among the rows above`} loading="lazy" />
+      <figcaption>${title(name)} <a href=${fileOf(job.id, name)} download=${name.split('/').at(-1)}>SVG</a></figcaption></figure>`)}</div>
+    <p><a href=${fileOf(job.id, 'reproduction.html')} download="reproduction.html">The whole report as one page (HTML)</a></p><//>`;
 }
 
 export default function Dissertation() {
   const {state} = useApp();
-  const job = useJob('reproduce', NO_ARGUMENTS);
+  const job = useJob('reproduce', NOTHING);
   const {content} = job;
-  const isComputing = isActive(job.job);
   const isReady = job.job?.state === 'done' && content;
-  return html`<div class="page" id="answer" tabindex="-1"><h1>Dissertation</h1>
+  return html`<${Sheet} title="Dissertation">
     <p>Every published number of the dissertation beside the computed one, its claims judged by them.</p>
-    ${!isReady && !isComputing && !job.isSought && job.job?.state !== 'done' && html`<p class="row"><button type="button" class="button is-main" onClick=${() => job.start(LABEL)}
-      data-test="start-job">Compute</button><span class="hint">Takes some minutes, once; the result stays on this computer.</span></p>`}
-    ${!isReady && (job.isSought || job.job?.state === 'done') && html`<p class="loading" role="status">Reading the result…</p>`}
+    ${!isReady && !isActive(job.job) && !job.isSought && job.job?.state !== 'done' && html`<p class="row">
+      <${Button} kind="button is-main" onClick=${() => job.start(LABEL)} data-test="start-job">Compute<//><span class="hint">Takes some minutes, once; the result stays on this computer.</span></p>`}
+    ${!isReady && (job.isSought || job.job?.state === 'done') && html`<${Loading}>Reading the result…<//>`}
     ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}
-    ${job.failure && html`<p class="refusal" role="alert">${job.failure.text}</p>`}
+    <${Refusal} text=${job.failure?.text} role="alert" />
     ${isReady && html`<p class="hint" data-test="verdicts">${content.answer.count} numbers: ${Object.entries(content.answer.verdicts).filter(([, count]) => count).map(([name, count]) => `${count} ${words(name)}`).join(', ')}.
       sonolube ${content.answer.version}.</p>
       ${content.answer.caveats.map((line) => html`<p key=${line} class="notice is-warning">${line}</p>`)}
       <${Claims} claims=${content.answer.claims} /><${Rows} rows=${content.answer.rows} view=${state.view} />`}
     <${Errata} />
     ${isReady && html`<${Figures} job=${job.job} files=${content.files ?? []} />`}
-  </div>`;
+  <//>`;
 }

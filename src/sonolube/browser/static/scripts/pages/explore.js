@@ -3,11 +3,12 @@ import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preac
 import {Blocks, Caveats, Failure, RefusedNote} from '../answer.js';
 import {cancelRequest, taskPath, useReply} from '../api.js';
 import {Chart} from '../chart.js';
-import {short, TextField} from '../fields.js';
-import {MaterialChoices, RunsChoice, takeFile, uploadOf} from '../inputs.js';
+import {fieldOf as drawnField} from '../chart-scale.js';
+import {Labelled, MaterialChoices, refusedBy, RunsChoice, TextField, typed, uploadOf, useFile} from '../fields.js';
 import {isActive, JobState, useJob} from '../job.js';
+import {Button, capital, Card, Refusal, Select} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
-import {change, settle, useApp} from '../state.js';
+import {change, present, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
 const ENDS = [['from', 'lowest', 'From'], ['to', 'highest', 'To']];
@@ -21,7 +22,6 @@ const STUDIES = {
   heat: {title: 'Temperature', task: 'thermal', texts: [['duration', 'duration', 'Duration']], hasBodies: true},
 };
 const OVER_POINTS = 41;
-const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
 /** Names of the studies that a rig has. */
 const offeredOf = ({studies, drawing}) => [...studies, ...Object.keys(STUDIES).filter((name) => drawing.has_structure || !STUDIES[name].needsStructure)];
@@ -46,12 +46,8 @@ function fixedOf({view, rig}) {
 
 /** Rig that a study is of: that of the state, or the one before the clicks in its map. */
 function rigOf(state) {
-  const changes = {...state.rig.changes};
-  for (const [key, [, before]] of Object.entries(fixedOf(state))) {
-    if (before === null) delete changes[key];
-    else changes[key] = before;
-  }
-  return {...state.rig, changes};
+  const before = Object.entries(fixedOf(state)).map(([key, [, text]]) => [key, text]);
+  return {...state.rig, changes: present({...state.rig.changes, ...Object.fromEntries(before)})};
 }
 
 /** One of some names, or else the first of them. */
@@ -91,7 +87,6 @@ function fieldOf(axis, fields) {
 }
 
 const unitOf = (axis) => (axis.unit ?? '').replace('µ', 'u'); // as it is typed
-const textAt = (value, axis) => [short(value), unitOf(axis)].filter(Boolean).join(' ');
 
 /** Number of a field in the unit of an axis, as the server gives it; undefined where there is none. */
 const numberOn = (axis, field) => field?.numbers[unitOf(axis)];
@@ -99,7 +94,7 @@ const numberOn = (axis, field) => field?.numbers[unitOf(axis)];
 /** Chart with the operating point of the rig: a rule where only x is of the rig, a point where both axes are. */
 function withPoint(chart, fields) {
   const panels = chart.panels.map((panel) => {
-    const isMap = panel.parts.some((part) => part.kind === 'field');
+    const isMap = Boolean(drawnField(panel));
     const x = numberOn(panel.x, fieldOf(panel.x, fields));
     const y = isMap ? numberOn(panel.y, fieldOf(panel.y, fields)) : undefined;
     const known = panel.parts.find((part) => part.kind === 'field' || part.kind === 'line')?.x.filter((value) => value !== null) ?? [];
@@ -112,36 +107,33 @@ function withPoint(chart, fields) {
   return {...chart, panels};
 }
 
-const Choice = ({group, name, title, isChosen, choose}) => html`<label class="choice"><input type="radio" name=${group} checked=${isChosen}
-  onChange=${choose} data-test=${`${group}:${name}`} /><span>${title}</span></label>`;
+/** Choice among names, each with its title, as a row of buttons. */
+const Choices = ({group, legend, titles, chosen, choose}) => html`<fieldset class="choices"><legend>${legend}</legend>
+  ${titles.map(([name, title]) => html`<label key=${name} class="choice"><input type="radio" name=${group} checked=${name === chosen}
+    onChange=${() => choose({[group]: name})} data-test=${`${group}:${name}`} /><span>${title}</span></label>`)}</fieldset>`;
 
 /** Choice of a study, and of the kind of a map. */
 function Studies({name, view, rigView}) {
-  const choose = (partial) => () => change({view: {from: null, to: null, duration: null, fixed: null, ...partial}});
-  const studies = offeredOf(rigView).map((each) => [each, STUDIES[each]?.title ?? capital(each)]);
-  const {maps} = rigView;
-  return html`<fieldset class="choices"><legend>Study</legend>${studies.map(([each, title]) => html`<${Choice} key=${each} group="study" name=${each}
-      title=${title} isChosen=${each === name} choose=${choose({study: each})} />`)}</fieldset>
-    ${name === 'map' && html`<fieldset class="choices"><legend>Map over</legend>${maps.map((each) => html`<${Choice} key=${each} group="kind" name=${each}
-      title=${each.replaceAll('-', ' and ')} isChosen=${each === among(maps, view.kind)} choose=${choose({kind: each})} />`)}</fieldset>`}`;
+  const choose = (partial) => change({view: {from: null, to: null, duration: null, fixed: null, ...partial}});
+  return html`<${Choices} group="study" legend="Study" chosen=${name} choose=${choose}
+      titles=${offeredOf(rigView).map((each) => [each, STUDIES[each]?.title ?? capital(each)])} />
+    ${name === 'map' && html`<${Choices} group="kind" legend="Map over" chosen=${among(rigView.maps, view.kind)} choose=${choose}
+      titles=${rigView.maps.map((each) => [each, each.replaceAll('-', ' and ')])} />`}`;
 }
 
 /** Texts that a study takes beside the rig. */
 function StudyTexts({study, view, faults, over}) {
   const fields = study.texts ?? [];
   if (!fields.length) return null;
-  const usual = {from: over?.from, to: over?.to};
   const faultOf = (argument) => faults.find((fault) => fault.key === argument)?.text;
   return html`<div class="study-texts">
-    ${over && html`<div class="field"><label for="study-key">Entry</label><select id="study-key" value=${over.field.key} data-test="study-text:key"
-      onChange=${(event) => change({view: {key: event.target.value, from: null, to: null}})}>${over.numbers.map(({key, label}) => html`<option key=${key}
-        value=${key} selected=${key === over.field.key}>${label} (${key.slice(0, key.lastIndexOf('.'))})</option>`)}</select></div>`}
-    ${fields.map(([entry, argument, label]) => html`<div key=${entry} class="field">
-      <label for=${`study-${entry}`}>${label}</label>
-      <${TextField} id=${`study-${entry}`} text=${view[entry] ?? ''} onText=${(text, isMoving) => !isMoving && change({view: {[entry]: text.trim() || null}})}
-        onSettle=${settle} placeholder=${usual[entry] ?? 'usual'} aria-invalid=${faultOf(argument) ? 'true' : undefined}
-        aria-describedby=${faultOf(argument) ? `study-${entry}-refusal` : undefined} data-test=${`study-text:${entry}`} />
-      ${faultOf(argument) && html`<p class="refusal" id=${`study-${entry}-refusal`}>${faultOf(argument)}</p>`}</div>`)}
+    ${over && html`<${Labelled} id="study-key" label="Entry"><${Select} id="study-key" value=${over.field.key} data-test="study-text:key"
+      choices=${over.numbers.map(({key, label}) => [key, `${label} (${key.slice(0, key.lastIndexOf('.'))})`])}
+      onChange=${(event) => change({view: {key: event.target.value, from: null, to: null}})} /><//>`}
+    ${fields.map(([entry, argument, label]) => html`<${Labelled} key=${entry} id=${`study-${entry}`} label=${label} refusal=${faultOf(argument)}>
+      <${TextField} id=${`study-${entry}`} text=${view[entry] ?? ''} placeholder=${over?.[entry] ?? 'usual'} data-test=${`study-text:${entry}`}
+        onText=${(text, isMoving) => !isMoving && change({view: {[entry]: text.trim() || null}})} onSettle=${settle}
+        ...${refusedBy(`study-${entry}`, faultOf(argument))} /><//>`)}
     ${study.hasBodies && html`<${MaterialChoices} view=${view} faultOf=${faultOf} />`}
   </div>`;
 }
@@ -157,7 +149,7 @@ function Waiting({isWaiting}) {
   }, [isWaiting]);
   return html`<span class="status" role="status" data-test="status">${isWaiting && html`Computing…${seconds > 0 && html` ${seconds} s
     <progress aria-label="Computing" />`}`}</span>
-    ${isWaiting && seconds > 0 && html`<button type="button" class="button" onClick=${cancelRequest} data-test="cancel-study">Cancel</button>`}`;
+    ${isWaiting && seconds > 0 && html`<${Button} onClick=${cancelRequest} data-test="cancel-study">Cancel<//>`}`;
 }
 
 /** Answer of a study: at once, or as a job where it takes long; while the rig moves, that of the last rest. */
@@ -178,30 +170,30 @@ function Study({study, args, fields, title}) {
   const {state, isMoving} = useApp();
   const {content, failure, refused, isWaiting, isOld, job, of} = useStudy(study, args, isMoving);
   const [note, setNote] = useState('');
-  const [runsNote, setRunsNote] = useState('');
+  const [runsNote, takeRuns] = useFile('runs');
   const charts = useMemo(() => (content?.charts ?? []).filter((one) => one.chart).map((one) => ({...one, chart: withPoint(one.chart, fields)})), [content, fields]);
   const own = argumentsOf(study).map(([, argument]) => argument);
   const faults = (failure?.faults ?? []).map((fault) => ({...fault, key: fault.key || (own.find((argument) => fault.text.startsWith(argument)) ?? '')}));
   return html`<${StudyTexts} study=${study} view=${state.view} faults=${faults} over=${study.isOver ? overOf(state.view, fields) : undefined} />
-    ${study.runs && html`<div class="study-runs"><${RunsChoice} view=${state.view} onFile=${async (file) => setRunsNote(await takeFile(file))} />
-      ${runsNote && html`<p class="refusal" role="alert">${runsNote}</p>`}</div>`}
-    ${job && html`<div class="row">${job.isOld && !isActive(job.job) && !job.isSought && html`<button type="button" class="button is-main"
-        onClick=${() => job.start(`${study.title}: ${title}`)} data-test="start-job">${content ? 'Compute again' : 'Compute'}</button>
+    ${study.runs && html`<div class="study-runs"><${RunsChoice} view=${state.view} onFile=${takeRuns} />
+      <${Refusal} text=${runsNote} role="alert" /></div>`}
+    ${job && html`<div class="row">${job.isOld && !isActive(job.job) && !job.isSought && html`<${Button} kind="button is-main"
+        onClick=${() => job.start(`${study.title}: ${title}`)} data-test="start-job">${content ? 'Compute again' : 'Compute'}<//>
       <span class="hint">${content ? 'The figure is of the rig before.' : 'Takes some seconds.'}</span>`}
       ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}</div>`}
     <div class="row study-status">${!job && html`<${Waiting} isWaiting=${isWaiting} />`}
       ${note && html`<span role="status" class="status" data-test="picked">${note}</span>`}
       ${Object.keys(fixedOf(state)).length > 0 && html`<span class="hint">Map and caveats are of the rig before the click.</span>
-        <button type="button" class="small" onClick=${() => change({view: {fixed: null}})} data-test="draw-anew">Draw anew</button>`}</div>
+        <${Button} kind="small" onClick=${() => change({view: {fixed: null}})} data-test="draw-anew">Draw anew<//>`}</div>
     <${Failure} failure=${failure && {...failure, faults}} shown=${[...Object.keys(state.rig.changes), ...own]} /><${RefusedNote} refused=${refused} />
     ${!content && !failure && !job && html`<div class="skeleton" aria-hidden="true"></div>`}
     ${content && html`<div aria-busy=${isWaiting} data-test="study">
-      ${charts.map((one) => html`<${Chart} key=${one.name} name=${one.name} caption=${one.caption} chart=${one.chart} tables=${one.tables} dimmed=${isOld}
+      ${charts.map((one) => html`<${Chart} key=${one.name} ...${one} dimmed=${isOld}
         onPick=${(at) => setNote(pick(at, one.chart, fields, state))} canPick=${(panel) => Boolean(pickedOf(one.chart.panels[panel], fields).length)} />`)}
-      <div class="columns"><div class="stack"><section class=${`card${isOld ? ' is-dim' : ''}`} aria-labelledby="study-numbers">
-        <h2 id="study-numbers">Result</h2><${Blocks} blocks=${content.blocks} /></section></div>
-        <div class="stack"><section class="card" aria-labelledby="study-caveats"><h2 class="hidden" id="study-caveats">Caveats and assumptions</h2>
-          <${Caveats} answer=${content} isMoving=${isMoving || isWaiting} of=${JSON.stringify(of)} /></section></div></div>
+      <div class="columns">
+        <div class="stack"><${Card} id="study-numbers" title="Result" isDim=${isOld}><${Blocks} blocks=${content.blocks} /><//></div>
+        <div class="stack"><${Card} id="study-caveats" title="Caveats and assumptions" isTitleHidden=${true}>
+          <${Caveats} answer=${content} isMoving=${isMoving || isWaiting} of=${JSON.stringify(of)} /><//></div></div>
     </div>`}`;
 }
 
@@ -219,18 +211,18 @@ export default function Explore() {
 
 /** Axes of a panel that are of the rig: those of x, and of y where a field lies over both. */
 function pickedOf(panel, fields) {
-  const names = panel.parts.some((part) => part.kind === 'field') ? ['x', 'y'] : ['x'];
+  const names = drawnField(panel) ? ['x', 'y'] : ['x'];
   return names.map((name) => [name, fieldOf(panel[name], fields)]).filter(([, field]) => field);
 }
 
 /** Set the rig to a place of a panel; returns what is said of it. */
 function pick(at, chart, fields, state) {
   const panel = chart.panels[at.panel];
-  const found = pickedOf(panel, fields).map(([name, field]) => [field, textAt(at[name], panel[name])]);
+  const found = pickedOf(panel, fields).map(([name, field]) => [field, typed(at[name], unitOf(panel[name]))]);
   if (!found.length) return '';
   const {rig} = state;
   const drawn = rigOf(state).changes;
-  const isMap = panel.parts.some((part) => part.kind === 'field');
+  const isMap = Boolean(drawnField(panel));
   const fixed = {...fixedOf(state), ...Object.fromEntries(found.map(([field, text]) => [field.key, [text, drawn[field.key] ?? null]]))};
   const changes = {...rig.changes, ...Object.fromEntries(found.map(([field, text]) => [field.key, text]))};
   change({rig: {...rig, changes}, ...(isMap && {view: {fixed: JSON.stringify(fixed)}})});

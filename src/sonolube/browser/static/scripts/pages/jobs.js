@@ -4,6 +4,7 @@ import {Blocks, Caveats} from '../answer.js';
 import {ask, useConnection} from '../api.js';
 import {Chart} from '../chart.js';
 import {duration, isActive, isOwn, JobProgress, progressText, secondsOf} from '../job.js';
+import {Button, classes, fileOf, Loading, Refusal, Sheet} from '../parts.js';
 import {change, useApp} from '../state.js';
 
 const [QUICK, SLOW] = [700, 5000]; // ms between looks while a job is active, and otherwise
@@ -14,65 +15,60 @@ function useJobs() {
   const [turn, look] = useState(0);
   const {generation} = useConnection();
   useEffect(() => {
-    let timer = 0;
-    let isGone = false;
+    let timer = 0; // null when no longer shown
     ask('api/jobs').then(({content}) => {
-      if (isGone) return;
+      if (timer === null) return;
       if (content) setFound(content);
       timer = setTimeout(() => look((old) => old + 1), (content ?? found)?.jobs.some(isActive) ? QUICK : SLOW);
     });
     return () => {
-      isGone = true;
       clearTimeout(timer);
+      timer = null;
     };
   }, [turn, generation]);
   return {found, look: () => look((old) => old + 1)};
 }
 
 /** Result of a job: figures, text, caveats, files. */
-export function JobResult({id}) {
+function JobResult({id}) {
   const [reply, setReply] = useState({});
   useEffect(() => {
     setReply({});
     ask(`api/jobs/${id}/result`).then(setReply);
   }, [id]);
   const {content, failure} = reply;
-  if (failure) return html`<p class="refusal" role="alert">${failure.text}</p>`;
-  if (!content) return html`<p class="loading" role="status">Reading the result…</p>`;
+  if (failure) return html`<${Refusal} text=${failure.text} role="alert" />`;
+  if (!content) return html`<${Loading}>Reading the result…<//>`;
   return html`<div data-test="job-result">
     ${content.charts.filter((one) => one.chart).map((one) => html`<${Chart} key=${one.name} ...${one} />`)}
     <${Blocks} blocks=${content.blocks} />
     <${Caveats} answer=${content} isMoving=${false} of=${id} />
     ${content.files?.length > 0 && html`<h3>Files</h3><ul class="caveat-list">${content.files.map((name) => html`<li key=${name} class="is-file">
-      <a href=${`api/jobs/${id}/files/${name.split('/').map(encodeURIComponent).join('/')}`} download=${name.split('/').at(-1)}>${name}</a></li>`)}</ul>`}
+      <a href=${fileOf(id, name)} download=${name.split('/').at(-1)}>${name}</a></li>`)}</ul>`}
   </div>`;
 }
 
 function Job({job, isOpen, look}) {
   const [isAsked, setAsked] = useState(false);
   const name = job.label || job.task;
-  const remove = async () => {
+  const remove = () => {
     if (isOpen) change({view: {job: null}});
-    await ask(`api/jobs/${job.id}`, {method: 'DELETE'});
-    look();
+    ask(`api/jobs/${job.id}`, {method: 'DELETE'}).then(look);
   };
-  const cancel = async () => {
-    await ask(`api/jobs/${job.id}/cancel`, {body: {}});
-    look();
-  };
-  return html`<li class=${`card job${isOpen ? ' is-open' : ''}`} data-test=${`job:${job.id}`}>
+  const cancel = () => ask(`api/jobs/${job.id}/cancel`, {body: {}}).then(look);
+  return html`<li class=${classes('card job', {'is-open': isOpen})} data-test=${`job:${job.id}`}>
     <div><h2>${name}</h2>
       <p class="hint">${job.task}, ${new Date(job.created * 1000).toLocaleString(undefined, {dateStyle: 'medium', timeStyle: 'short'})}</p>
       <p class="row"><span class=${`tag${job.state === 'done' ? ' is-new' : ''}`} data-test="job-state">${job.state}</span>
         ${isActive(job) && html`<${JobProgress} job=${job} /><span>${progressText(job)}</span>`}
         ${secondsOf(job) >= 0.05 && html`<span class="hint">${duration(secondsOf(job))}</span>`}</p>
-      ${job.reason && html`<p class="refusal">${job.reason}</p>`}</div>
+      <${Refusal} text=${job.reason} /></div>
     <div class="row">
-      ${job.state === 'done' && html`<button type="button" class="button" aria-expanded=${isOpen} aria-label=${`${isOpen ? 'Close' : 'Open'} ${name}`}
-        onClick=${() => change({view: {job: isOpen ? null : job.id}})} data-test="open-job">${isOpen ? 'Close' : 'Open'}</button>`}
-      ${isActive(job) && isOwn(job) && html`<button type="button" class="button" onClick=${cancel} aria-label=${`Cancel ${name}`} data-test="cancel-job">Cancel</button>`}
-      ${isOwn(job) && html`<button type="button" class="button is-quiet" onClick=${isAsked ? remove : () => setAsked(true)} onBlur=${() => setAsked(false)}
-        aria-label=${`${isAsked ? 'Delete for good:' : 'Delete'} ${name}`} data-test="delete-job">${isAsked ? 'Delete for good' : 'Delete'}</button>`}
+      ${job.state === 'done' && html`<${Button} aria-expanded=${isOpen} aria-label=${`${isOpen ? 'Close' : 'Open'} ${name}`}
+        onClick=${() => change({view: {job: isOpen ? null : job.id}})} data-test="open-job">${isOpen ? 'Close' : 'Open'}<//>`}
+      ${isActive(job) && isOwn(job) && html`<${Button} onClick=${cancel} aria-label=${`Cancel ${name}`} data-test="cancel-job">Cancel<//>`}
+      ${isOwn(job) && html`<${Button} kind="button is-quiet" onClick=${isAsked ? remove : () => setAsked(true)} onBlur=${() => setAsked(false)}
+        aria-label=${`${isAsked ? 'Delete for good:' : 'Delete'} ${name}`} data-test="delete-job">${isAsked ? 'Delete for good' : 'Delete'}<//>`}
     </div>
     ${isOpen && html`<div class="job-opened"><${JobResult} id=${job.id} /></div>`}
   </li>`;
@@ -81,14 +77,14 @@ function Job({job, isOpen, look}) {
 export default function Jobs() {
   const {state} = useApp();
   const {found, look} = useJobs();
-  return html`<div class="page" id="answer" tabindex="-1"><h1>Jobs</h1>
+  return html`<${Sheet} title="Jobs">
     <p class="hint">Computations that take longer than a second. They go on when this page is closed, and are found again after the workbench is
       started again.${found && ` Each is a folder in sonolube/${found.folder}, in the folder in which this computer keeps states of programs
       (XDG_STATE_HOME, or ~/.local/state); it is deleted ${found.days} days after its end, or here.`}</p>
-    ${!found && html`<p class="loading" role="status">Reading the jobs…</p>`}
+    ${!found && html`<${Loading}>Reading the jobs…<//>`}
     ${found && !found.jobs.length && html`<p class="notice" data-test="no-jobs">There are no jobs. The start-up of a rig, on the page Explore, and the
       page Dissertation start some.</p>`}
     ${found && html`<ul class="jobs" data-test="jobs">${found.jobs.map((job) => html`<${Job} key=${job.id} job=${job}
       isOpen=${state.view.job === job.id && job.state === 'done'} look=${look} />`)}</ul>`}
-  </div>`;
+  <//>`;
 }

@@ -1,9 +1,9 @@
 /** Page New rig: the questions of the task `new`, whose answer is a first rig file with what is least known of it. */
-import {html, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {html} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats, Failure} from '../answer.js';
 import {useReply} from '../api.js';
-import {TextField} from '../fields.js';
-import {NOTHING, takeFile, uploadOf} from '../inputs.js';
+import {Labelled, NOTHING, TextField, uploadOf, useFile} from '../fields.js';
+import {Button, capital, Card, classes, Loading, Refusal, Sheet, words} from '../parts.js';
 import {openRigText} from '../rig-panel.js';
 import {change, settle, useApp} from '../state.js';
 
@@ -14,28 +14,26 @@ const FILES = ['scan', 'pin_scan'];
 const LISTS = {pin: 'materials', disc: 'materials', actuator: 'actuators'};
 const NAME = 'name';
 
-const words = (name) => name[0].toUpperCase() + name.slice(1).replaceAll('_', ' ');
-
 /** Argument of a view: an upload for a file, else its text. */
 const argument = (name, text) => (FILES.includes(name) ? uploadOf(text) : text);
+
+const give = (name) => (text, isMoving) => change({view: {[name]: text || null}}, {replace: isMoving});
 
 /** One question. */
 function Question({name, schema, view, isNeeded, refusal, list}) {
   const id = `new-${name}`;
-  const [note, setNote] = useState('');
-  const give = (text, isMoving) => change({view: {[name]: text || null}}, {replace: isMoving});
-  const take = async (event) => setNote(await takeFile(event.target.files[0], name));
+  const [note, take] = useFile(name);
   const described = [`${id}-help`, refusal && `${id}-refusal`].filter(Boolean).join(' ');
-  return html`<div class=${`field${refusal ? ' is-refused' : ''}`}>
-    <div class="field-head"><label for=${id}>${words(name)}${isNeeded && html` <span class="tag">needed</span>`}</label></div>
+  return html`<div class=${classes('field', {'is-refused': refusal})}>
+    <div class="field-head"><label for=${id}>${capital(words(name))}${isNeeded && html` <span class="tag">needed</span>`}</label></div>
     <div class="field-row">${FILES.includes(name)
-    ? html`<input type="file" id=${id} onChange=${take} aria-describedby=${described} data-test=${`new:${name}`} />`
-    : html`<${TextField} id=${id} text=${view[name] ?? ''} unit=${schema['x-unit']} onText=${give} onSettle=${settle}
+    ? html`<input type="file" id=${id} onChange=${(event) => take(event.target.files[0])} aria-describedby=${described} data-test=${`new:${name}`} />`
+    : html`<${TextField} id=${id} text=${view[name] ?? ''} unit=${schema['x-unit']} onText=${give(name)} onSettle=${settle}
         list=${list} aria-describedby=${described} aria-invalid=${refusal ? 'true' : undefined} data-test=${`new:${name}`} />`}</div>
     ${FILES.includes(name) && view[name] && html`<p class="row"><span class="grow">${argument(name, view[name]).name}</span>
-      <button type="button" class="small" onClick=${() => give('', false)}>leave out</button></p>`}
+      <${Button} kind="small" onClick=${() => give(name)('', false)}>leave out<//></p>`}
     <p class="hint" id=${`${id}-help`}>${schema.description}</p>
-    ${(refusal || note) && html`<p class="refusal" id=${`${id}-refusal`} data-test=${`refusal:${name}`}>${refusal || note}</p>`}
+    <${Refusal} text=${refusal || note} id=${`${id}-refusal`} data-test=${`refusal:${name}`} />
   </div>`;
 }
 
@@ -46,15 +44,14 @@ const fieldOf = (fault, names) => (names.includes(fault.key) ? fault.key
 /** The rig that was made. */
 function Made({answer, name, isDim}) {
   const {text, rig} = answer.answer;
-  const use = () => openRigText(name, text, 'predict');
-  return html`<section class=${`card${isDim ? ' is-dim' : ''}`} aria-labelledby="made-title" data-test="made">
-    <h2 id="made-title">${rig}</h2>
-    <p class="row"><button type="button" class="button is-main" onClick=${use} data-test="use-rig">Predict with this rig</button>
+  return html`<${Card} id="made-title" title=${rig} isDim=${isDim} data-test="made">
+    <p class="row">
+      <${Button} kind="button is-main" onClick=${() => openRigText(name, text, 'predict')} data-test="use-rig">Predict with this rig<//>
       <span class="hint">Every entry can be changed there, and the file taken away.</span></p>
     <${Blocks} blocks=${answer.blocks.filter((block) => block.kind !== 'verbatim' && block.text !== rig)} />
     <details><summary>Rig file</summary><pre class="verbatim" tabindex="0" aria-label="Rig file">${text}</pre></details>
     <${Caveats} answer=${answer} isMoving=${false} of="" hasFields=${false} />
-  </section>`;
+  <//>`;
 }
 
 export default function NewRig() {
@@ -69,15 +66,14 @@ export default function NewRig() {
   const isReady = schema && !needed.length && EITHER.some((name) => args[name]);
   const {content, failure, isWaiting} = useReply('new', isReady ? 'api/tasks/new' : null, args);
   if (!schema) {
-    return html`<div class="page" id="answer" tabindex="-1"><h1>New rig</h1><${Failure} failure=${description.failure} />
-      ${!description.failure && html`<p class="loading" role="status">Reading the questions…</p>`}</div>`;
+    return html`<${Sheet} title="New rig"><${Failure} failure=${description.failure} />
+      ${!description.failure && html`<${Loading}>Reading the questions…<//>`}<//>`;
   }
   const refused = isReady && failure
     ? {...failure, faults: failure.faults.map((fault) => ({...fault, key: fieldOf(fault, names)}))} : null;
   const faults = new Map(refused?.faults.map((fault) => [fault.key, fault.text]));
   const first = [...schema.required, ...FIRST];
   const others = names.filter((name) => !first.includes(name));
-  const rigName = (view[NAME] ?? '').trim() || 'my-rig';
   const ask = (some) => some.map((name) => html`<${Question} key=${name} name=${name} schema=${schema.properties[name]} view=${view}
     isNeeded=${schema.required.includes(name) || EITHER[0] === name} refusal=${faults.get(name)}
     list=${LISTS[name] && `known-${LISTS[name]}`} />`);
@@ -93,16 +89,15 @@ export default function NewRig() {
       <form class="card" onSubmit=${(event) => event.preventDefault()} aria-label="Questions">
         <div class="fields two">${ask(first)}</div>
         <details><summary>Surfaces and what else is known</summary><div class="fields two">${ask(others)}</div></details>
-        <div class="field"><label for="new-rig-name">Name of the rig</label>
+        <${Labelled} id="new-rig-name" label="Name of the rig">
           <${TextField} id="new-rig-name" text=${view[NAME] ?? ''} placeholder="my-rig" data-test="new:name"
-            onText=${(text, isMoving) => change({view: {[NAME]: text || null}}, {replace: isMoving})} onSettle=${settle} /></div>
+            onText=${give(NAME)} onSettle=${settle} /><//>
       </form>
       <div class="stack">
-        ${missing.length > 0 && html`<p class="notice" role="status" data-test="missing">Still needed: ${missing.map((name) => name
-    .replaceAll('_', ' ')).join(', ')}.</p>`}
+        ${missing.length > 0 && html`<p class="notice" role="status" data-test="missing">Still needed: ${missing.map(words).join(', ')}.</p>`}
         <${Failure} failure=${refused} shown=${names} />
-        ${isWaiting && !content && html`<p class="loading" role="status">Making the rig…</p>`}
-        ${content && html`<${Made} answer=${content} name=${rigName} isDim=${isWaiting || !isReady || Boolean(failure)} />`}
+        ${isWaiting && !content && html`<${Loading}>Making the rig…<//>`}
+        ${content && html`<${Made} answer=${content} name=${view[NAME]?.trim() || 'my-rig'} isDim=${isWaiting || !isReady || Boolean(failure)} />`}
       </div>
     </div>
   </div>`;

@@ -1,19 +1,17 @@
 /** Page Predict: how much friction and wear fall on the rig, how sure that is, and what would sharpen it. */
-import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
 import {ask, callTask, inTurn, useLate, useReply} from '../api.js';
 import {Chart} from '../chart.js';
-import {focusField, short} from '../fields.js';
-import {MaterialChoices, RunsChoice, takeFile, uploadOf} from '../inputs.js';
+import {focusField, MaterialChoices, RunsChoice, typed, uploadOf, useFile} from '../fields.js';
+import {Button, capital, Card, classes, Refusal, useEvents} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
-import {change, decode, encode, setEntry, useApp} from '../state.js';
+import {change, decode, encode, present, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
 const MOVING_DRAWS = 1000;
 const MAX_KEPT = 3;
 const INTERVAL = '80 %';
-const AMPLITUDE_PANEL = 0;
-const SPEED_PANEL = 1;
 const SPEED = 'sliding.sliding_speed';
 const AMPLITUDE = 'vibration.vibration_amplitude';
 const VOLTAGE = 'drive.voltage_peak_to_peak';
@@ -30,47 +28,49 @@ const ADVISED = [
 /** Arguments of the task for a state. */
 function argumentsOf(state, isMoving) {
   const {pin, disc, lubricant, runs} = state.view;
-  const given = {runs: runs && uploadOf(runs), pin, disc, lubricant: Boolean(lubricant), draws: isMoving && MOVING_DRAWS};
-  return {rig: state.rig, ...Object.fromEntries(Object.entries(given).filter(([, value]) => value))};
+  return present({
+    rig: state.rig, runs: runs && uploadOf(runs), pin, disc, lubricant: lubricant ? true : null, draws: isMoving ? MOVING_DRAWS : null,
+  });
 }
 
-/** Numbers of an answer: the table of quantities by name, with its median and interval, and the operating point. */
+const isTable = (block) => block.kind === 'table';
+
+/** Numbers of an answer by their labels, each as its median and interval: quantities, then the operating point. */
+function numbersOf(answer) {
+  const {heads, rows} = answer.blocks.find(isTable);
+  const at = heads.indexOf(INTERVAL);
+  const point = (answer.answer.operating_point ?? []).map(({label, text}) => [label, text.split(/ (?=within )/)]);
+  return {quantities: new Map(rows.map((row) => [row[0], [row[1], row[at]]])), point: new Map(point)};
+}
+
+/** The numbers on screen. */
 function Numbers({answer}) {
-  const table = answer.blocks.find((block) => block.kind === 'table');
-  const at = table.heads.indexOf(INTERVAL);
-  const point = answer.answer.operating_point ?? [];
-  return html`<dl class="numbers" data-test="numbers">
-    ${table.rows.map((row) => html`<div key=${row[0]} class="number"><dt>${row[0]}</dt>
-      <dd class="median">${row[1]}</dd><dd class="interval">${row[at]}</dd></div>`)}
-    ${point.map(({name, label, text}) => {
-    const [value, within] = text.split(/ (?=within )/);
-    return html`<div key=${name} class="number"><dt>${label}</dt><dd class="median">${value}</dd>
-      ${within && html`<dd class="interval">${within}</dd>`}</div>`;
-  })}
+  const {quantities, point} = numbersOf(answer);
+  return html`<dl class="numbers" data-test="numbers">${[...quantities, ...point].map(([label, [median, interval]]) => html`
+    <div key=${label} class="number"><dt>${label}</dt><dd class="median">${median}</dd>
+      ${interval && html`<dd class="interval">${interval}</dd>`}</div>`)}
   </dl>
   <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>`;
 }
 
 /** What would narrow the interval, most first; a click opens what it is about. */
 function Sharpen({answer}) {
-  const table = answer.blocks.find((block) => block.kind === 'table' && block.heads[0] === MEASURES_HEAD);
-  const inputs = answer.blocks.filter((block) => block.kind === 'table').at(-1);
-  const [what, left] = table?.heads ?? [];
-  if (!table?.rows.length) return null;
-  return html`<section class="card" aria-labelledby="sharpen-title" data-test="sharpen">
-    <h2 id="sharpen-title">What would sharpen this</h2>
-    <ul class="measures">${table.rows.map(([label, share]) => {
+  const tables = answer.blocks.filter(isTable);
+  const {heads: [what, left], rows} = tables.find(({heads}) => heads[0] === MEASURES_HEAD) ?? {heads: [], rows: []};
+  if (!rows.length) return null;
+  return html`<${Card} id="sharpen-title" title="What would sharpen this" data-test="sharpen">
+    <ul class="measures">${rows.map(([label, share]) => {
     const keys = ADVISED.find(([word]) => word.test(label))?.[1] ?? [];
     const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : keys.some(focusField));
-    return html`<li key=${label}><button type="button" class="measure" onClick=${open} disabled=${!keys.length}>
+    return html`<li key=${label}><${Button} kind="measure" onClick=${open} disabled=${!keys.length}>
         <span class="measure-name">${label}</span><span class="measure-share">
         <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
-        ${share}</span></button></li>`;
+        ${share}</span><//></li>`;
   })}</ul>
-    <p class="hint">${what[0].toUpperCase() + what.slice(1)}, and what each ${left}.</p>
-    <details><summary>Least known inputs</summary><${TextTable} heads=${inputs.heads} rows=${inputs.rows} />
+    <p class="hint">${capital(what)}, and what each ${left}.</p>
+    <details><summary>Least known inputs</summary><${TextTable} ...${tables.at(-1)} kind="table-frame" />
       ${answer.answer.stiffness_probes?.map((line) => html`<p key=${line} class="hint">${line}</p>`)}</details>
-  </section>`;
+  <//>`;
 }
 
 /** Files of own runs: dropped anywhere on the page, or chosen. */
@@ -81,12 +81,11 @@ function OwnRuns({view, onFile, note}) {
     const schema = content?.paths['/api/tasks/predict'].post.requestBody.content['application/json'].schema;
     setHelp(schema?.properties.runs.description ?? failure.text);
   };
-  return html`<section class="card" aria-labelledby="runs-title" data-test="own-runs">
-    <h2 id="runs-title">Own runs</h2><${RunsChoice} view=${view} onFile=${onFile} />
+  return html`<${Card} id="runs-title" title="Own runs" data-test="own-runs"><${RunsChoice} view=${view} onFile=${onFile} />
     <p class="hint">Or drop a CSV file on this page.</p>
-    ${note && html`<p class="refusal" role="alert">${note}</p>`}
+    <${Refusal} text=${note} role="alert" />
     <details onToggle=${read}><summary>What the file holds</summary><p class="hint">${help || 'Reading…'}</p></details>
-  </section>`;
+  <//>`;
 }
 
 /** Materials and lubrication, which the task takes beside the rig. */
@@ -94,40 +93,29 @@ const Materials = ({view, faultOf, isFirst}) => html`<fieldset class="fields mat
   <${MaterialChoices} view=${view} faultOf=${faultOf} isAsked=${!isFirst} />
   <label class="check"><input type="checkbox" checked=${Boolean(view.lubricant)} data-test="lubricant"
     onChange=${(event) => change({view: {lubricant: event.target.checked ? 'yes' : null}})} /> The contact is lubricated</label>
-  ${faultOf('lubricant') && html`<p class="refusal">${faultOf('lubricant')}</p>`}
+  <${Refusal} text=${faultOf('lubricant')} />
 </fieldset>`;
 
 /** Answers that were kept, beside the answer of now. */
 function Kept({kept, now, onRemove}) {
   if (!kept.length) return null;
-  const tables = [...kept.map((one) => one.answer), now].map((answer) => answer.blocks.find((block) => block.kind === 'table'));
-  const at = tables[0].heads.indexOf(INTERVAL);
-  const names = tables.at(-1).rows.map(([name]) => name);
-  const cell = (table, name) => {
-    const row = table.rows.find(([each]) => each === name);
-    return row ? `${row[1]} (${row[at]})` : '–';
-  };
-  const points = [...kept.map((one) => one.answer), now].map((answer) => answer.answer.operating_point ?? []);
-  const labels = points.at(-1).map((one) => one.label);
+  const found = [...kept.map((one) => one.answer), now].map(numbersOf);
+  const {quantities, point} = found.at(-1);
   const rows = [
-    ...names.map((name) => [name, ...tables.map((table) => cell(table, name))]),
-    ...labels.map((label) => [label, ...points.map((some) => some.find((one) => one.label === label)?.text ?? '–')]),
+    ...[...quantities.keys()].map((name) => [name, ...found.map((each) => each.quantities.get(name)).map((of) => (of ? `${of[0]} (${of[1]})` : '–'))]),
+    ...[...point.keys()].map((label) => [label, ...found.map((each) => each.point.get(label)?.join(' ') ?? '–')]),
   ];
-  return html`<section class="card" aria-labelledby="kept-title" data-test="kept">
-    <h2 id="kept-title">Kept answers</h2>
+  return html`<${Card} id="kept-title" title="Kept answers" data-test="kept">
     <ul class="kept-list">${kept.map((one, place) => html`<li key=${one.id}><span class=${`swatch is-${place}`}></span>
-      <span class="grow">${one.label}</span><button type="button" class="small" onClick=${() => onRemove(one.id)}
-      aria-label=${`Remove ${one.label}`}>remove</button></li>`)}</ul>
+      <span class="grow">${one.label}</span>
+      <${Button} kind="small" onClick=${() => onRemove(one.id)} aria-label=${`Remove ${one.label}`}>remove<//></li>`)}</ul>
     <${TextTable} heads=${['', ...kept.map((one) => one.label), 'now']} rows=${rows} test="differences" />
     <p class="hint">Median, and the interval of ${INTERVAL}.</p>
-  </section>`;
+  <//>`;
 }
 
 /** Answers that were kept, by the fragment of their state. */
 const keptAnswers = new Map();
-
-/** State without what was kept beside it. */
-const alone = (state) => ({...state, view: Object.fromEntries(Object.entries(state.view).filter(([name]) => name !== 'kept'))});
 
 /** Name of a kept state: its changes, else its rig. */
 function labelOf(state) {
@@ -140,19 +128,16 @@ function useKept(state, content) {
   const [, draw] = useState({});
   const fragments = (state.view.kept ?? '').split('\n').filter(Boolean);
   useEffect(() => {
-    for (const fragment of fragments.filter((each) => !keptAnswers.has(each))) {
-      inTurn(fragment, async () => {
-        const of = await decode(fragment);
-        return {of, ...await callTask('predict', argumentsOf(of, false))};
-      }).then((reply) => {
-        if (reply?.content) keptAnswers.set(fragment, {label: labelOf(reply.of), answer: reply.content});
-        draw({});
-      });
-    }
+    fragments.filter((each) => !keptAnswers.has(each)).forEach(async (fragment) => {
+      const of = await decode(fragment);
+      const reply = await inTurn(fragment, () => callTask('predict', argumentsOf(of, false)));
+      if (reply?.content) keptAnswers.set(fragment, {label: labelOf(of), answer: reply.content});
+      draw({});
+    });
   }, [state.view.kept]);
   const enter = (some) => change({view: {kept: some.join('\n') || null}});
   const keep = () => {
-    const fragment = encode(alone(state));
+    const fragment = encode({...state, view: present({...state.view, kept: null})});
     keptAnswers.set(fragment, {label: labelOf(state), answer: content});
     enter([...fragments.filter((each) => each !== fragment), fragment].slice(-MAX_KEPT));
   };
@@ -162,29 +147,27 @@ function useKept(state, content) {
 
 /** What dragging the rule of a panel sets, where a number follows from it without computing. */
 function dragOf(view, chart) {
-  const fieldOf = (key) => view?.fields.find((field) => field.key === key);
-  const entry = {[SPEED_PANEL]: fieldOf(SPEED), [AMPLITUDE_PANEL]: fieldOf(VOLTAGE) ? undefined : fieldOf(AMPLITUDE)};
-  return Object.entries(entry).filter(([, field]) => field).map(([panel, field]) => {
-    const unit = chart.panels[panel]?.x.unit.replace('µ', 'u') ?? '';
-    const set = (x, isMoving) => setEntry(field.key, `${short(x)} ${unit}`, {replace: isMoving});
-    return {panel: Number(panel), onMove: (x) => set(x, true), onRelease: (x) => set(x, false)};
+  const keys = new Set(view?.fields.map((field) => field.key));
+  return [AMPLITUDE, SPEED].flatMap((key, panel) => {
+    if (!keys.has(key) || (key === AMPLITUDE && keys.has(VOLTAGE))) return [];
+    const unit = chart.panels[panel]?.x.unit.replace('µ', 'u');
+    const set = (x, isMoving) => setEntry(key, typed(x, unit), {replace: isMoving});
+    return [{panel, onMove: (x) => set(x, true), onRelease: (x) => set(x, false)}];
   });
 }
 
 export default function Predict() {
   const {state, isMoving} = useApp();
   const {view} = useRig();
-  const [note, setNote] = useState('');
+  const [note, onFile] = useFile('runs');
   const body = argumentsOf(state, isMoving);
   const reply = useReply('predict', state.rig.name ? 'api/tasks/predict' : null, body);
   const {content, failure, refused, isWaiting} = reply;
   const {kept, keep, remove} = useKept(state, content);
   useEffect(() => offer('predict', argumentsOf(state, false)), [JSON.stringify(body)]);
-  const onFile = async (file) => setNote(await takeFile(file));
   const isDropping = useDrop(onFile);
-  const changed = new Set(Object.keys(state.rig.changes));
   const faultOf = (key) => failure?.faults.find((fault) => fault.key === key)?.text;
-  const shown = [...changed, 'pin', 'disc', 'lubricant'];
+  const shown = [...Object.keys(state.rig.changes), 'pin', 'disc', 'lubricant'];
   const extra = html`<${Materials} view=${state.view} faultOf=${faultOf} isFirst=${!content && !failure} />`;
   const ownRuns = html`<${OwnRuns} view=${state.view} onFile=${onFile} note=${note} />`;
   const isDim = useLate(isWaiting || Boolean(failure));
@@ -197,27 +180,25 @@ export default function Predict() {
   const [first, rest] = outcome.split(/(?<=\.) (?=[A-Z])(.*)/s);
   const chart = content.charts[0];
   const lead = html`<p class="overline">${content.answer.rig}</p>
-    <h1 class=${`statement${isDim ? ' is-dim' : ''}`} aria-live=${isMoving ? 'off' : 'polite'}
-      data-test="statement">${first}</h1>
-    <div class="row lead-tools"><button type="button" class="button" onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">
-      Keep this</button><span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
+    <h1 class=${classes('statement', {'is-dim': isDim})} aria-live=${isMoving ? 'off' : 'polite'} data-test="statement">${first}</h1>
+    <div class="row lead-tools">
+      <${Button} onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">Keep this<//>
+      <span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
     <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
   return html`<${Workspace} lead=${lead} extra=${extra}>
     <div class=${isDim ? 'is-dim' : ''} aria-busy=${isWaiting}>
       <${Numbers} answer=${content} />
       <section class="card" aria-label="Friction over amplitude and over speed">
-        ${chart && html`<${Chart} name=${chart.name} caption=${chart.caption} chart=${chart.chart} tables=${chart.tables}
-          dimmed=${isDim} kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))}
-          drag=${dragOf(view, chart.chart)} />`}
+        ${chart && html`<${Chart} ...${chart} dimmed=${isDim} drag=${dragOf(view, chart.chart)}
+          kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))} />`}
       </section>
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
       <div class="columns">
         <div class="stack"><${Sharpen} answer=${content} />${ownRuns}</div>
         <div class="stack">
-          <section class="card" aria-labelledby="more-title"><h2 id="more-title">In words</h2>
+          <${Card} id="more-title" title="In words">
             ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
-            ${content.blocks.slice(-2).filter((block) => block.kind === 'text').map((block) => html`<p class="hint"
-              key=${block.text}>${block.text}</p>`)}</section>
+            ${content.blocks.slice(-2).filter(({kind}) => kind === 'text').map(({text}) => html`<p class="hint" key=${text}>${text}</p>`)}<//>
           <section class="card" aria-label="Caveats and assumptions"><${Caveats} answer=${content}
             isMoving=${isMoving || isWaiting} of=${JSON.stringify(reply.of)} /></section>
         </div>
@@ -230,18 +211,11 @@ export default function Predict() {
 /** Take a file that is dropped anywhere on the page. */
 function useDrop(onFile) {
   const [isOver, setOver] = useState(false);
-  const latest = useRef(onFile);
-  latest.current = onFile;
-  useEffect(() => {
-    const follow = (event) => {
-      if (!event.dataTransfer?.types.includes('Files')) return;
-      event.preventDefault();
-      setOver(event.type === 'dragover');
-      if (event.type === 'drop') latest.current(event.dataTransfer.files[0]);
-    };
-    const kinds = ['dragover', 'dragleave', 'drop'];
-    kinds.forEach((kind) => addEventListener(kind, follow));
-    return () => kinds.forEach((kind) => removeEventListener(kind, follow));
-  }, []);
+  useEvents(['dragover', 'dragleave', 'drop'], (event) => {
+    if (!event.dataTransfer?.types.includes('Files')) return;
+    event.preventDefault();
+    setOver(event.type === 'dragover');
+    if (event.type === 'drop') onFile(event.dataTransfer.files[0]);
+  });
   return isOver;
 }

@@ -1,0 +1,54 @@
+/** What several pages draw: buttons, choices, cards, notices; and texts and events that they have in common. */
+import {html, useEffect, useRef} from '../vendor/htm-preact-3.1.1.js';
+
+export const words = (name) => String(name).replaceAll('_', ' ');
+export const capital = (text) => text[0].toUpperCase() + text.slice(1);
+
+/** Class of an element, with those that hold now. */
+export const classes = (kind, more) => [kind, ...Object.keys(more).filter((name) => more[name])].join(' ');
+
+/** Button; further properties go to the element. */
+export const Button = ({kind = 'button', children, ...rest}) => html`<button type="button" class=${kind} ...${rest}>${children}</button>`;
+
+/** Choice among names, each with its title. */
+export const Select = ({choices, value, ...rest}) => html`<select value=${value} ...${rest}>${choices.map(([name, title]) => html`
+  <option key=${name} value=${name} selected=${name === value}>${title}</option>`)}</select>`;
+
+/** Page without the rig beside it. */
+export const Sheet = ({title, children}) => html`<div class="page" id="answer" tabindex="-1"><h1>${title}</h1>${children}</div>`;
+
+/** Section under a title. */
+export const Section = ({id, title, kind, isTitleHidden, children, ...rest}) => html`<section class=${kind} aria-labelledby=${id} ...${rest}>
+  <h2 id=${id} class=${isTitleHidden ? 'hidden' : undefined}>${title}</h2>${children}</section>`;
+
+/** Section as a card; dimmed while it is of another state. */
+export const Card = ({isDim, ...rest}) => html`<${Section} kind=${classes('card', {'is-dim': isDim})} ...${rest} />`;
+
+export const Loading = ({children}) => html`<p class="loading" role="status">${children}</p>`;
+
+export const Warning = ({children, ...rest}) => html`<div class="notice is-warning" role="alert" ...${rest}>${children}</div>`;
+
+/** Why something is refused; nothing where it is not. */
+export const Refusal = ({text, ...rest}) => (text ? html`<p class="refusal" ...${rest}>${text}</p>` : null);
+
+/** Button that asks for a file of this computer. */
+export function FileButton({accept, label, onFile, test, children, ...rest}) {
+  const chooser = useRef(null);
+  const take = (event) => event.target.files.length && onFile(event.target.files[0]);
+  return html`<${Button} onClick=${() => chooser.current.click()} ...${rest}>${children}<//>
+    <input type="file" accept=${accept} class="hidden" tabindex="-1" aria-label=${label} ref=${chooser} onChange=${take} data-test=${test} />`;
+}
+
+/** Listen to events of the window while a component is shown. */
+export function useEvents(kinds, listener) {
+  const latest = useRef(listener);
+  latest.current = listener;
+  useEffect(() => {
+    const listen = (event) => latest.current(event);
+    kinds.forEach((kind) => addEventListener(kind, listen));
+    return () => kinds.forEach((kind) => removeEventListener(kind, listen));
+  }, []);
+}
+
+/** Address of a file of a job. */
+export const fileOf = (id, name) => `api/jobs/${id}/files/${name.split('/').map(encodeURIComponent).join('/')}`;
