@@ -15,11 +15,9 @@ from scipy.optimize import brentq
 
 from sonolube.models.contact import GaussianHeights, separation
 from sonolube.models.friction import sine_stick_slip_ratio
-from sonolube.validation.assessment import FITTED_SETS, assess_variant, leave_one_set_out_fits
+from sonolube.validation.assessment import FITTED_SETS, assess_variant, leave_one_set_out_fits, root_mean_square
 from sonolube.validation.comparison import compared_models
-from sonolube.validation.fitting import root_mean_square
-from sonolube.validation.free_parameters import MEMORY_LENGTH, FreeParameter, per_rig
-from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.model_variant import MEMORY_LENGTH, FreeParameter, ModelVariant, per_rig
 from sonolube.validation.published_tests import FrictionTest, friction_tests, with_printed_roughness
 
 PHASES = np.cos(2 * np.pi * np.arange(240) / 240)

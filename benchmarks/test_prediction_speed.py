@@ -16,7 +16,7 @@ from sonolube.models.friction import (
     sine_stick_slip_ratio,
 )
 from sonolube.prediction import LivePrediction, predict
-from sonolube.prediction.closures import CLOSURES, Closure, Conditions
+from sonolube.prediction.evidence import CLOSURES, Closure, Conditions
 from sonolube.rig import Rig, read_rig
 
 DRAWS, POINTS = 4096, 40

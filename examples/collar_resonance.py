@@ -5,8 +5,8 @@ Run: python examples/collar_resonance.py (needs netgen-mesher)
 
 from dataclasses import replace
 
+from sonolube.dong2015.collar import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR
 from sonolube.dong2015.collar_analysis import reduced_collar_model
-from sonolube.dong2015.collar_designs import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.models.fem import harmonic_response
 

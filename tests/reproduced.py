@@ -6,7 +6,7 @@ from functools import cache
 from unittest.mock import patch
 
 from sonolube.reproduction import SECTIONS, Reproduction, Row, chapters, reproduction
-from sonolube.reproduction.section import Section
+from sonolube.reproduction.chapters import Section
 
 
 def _computed_once(section: Section) -> Section:

@@ -13,7 +13,7 @@ import pytest
 
 import sonolube
 from sonolube.cli import main
-from sonolube.cli.commands import COMMANDS as TABLE
+from sonolube.cli.app import COMMANDS as TABLE
 from sonolube.rig import rig_schema
 
 ROOT = Path(__file__).parents[1]

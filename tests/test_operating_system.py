@@ -13,7 +13,7 @@ from typing import Any
 from pytest import MonkeyPatch, fixture, mark, raises
 
 from sonolube import operating_system
-from sonolube.cli.console.questions import Operator
+from sonolube.cli.console.options import Operator
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Prompt
 from sonolube.laboratory import RunControl

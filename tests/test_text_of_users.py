@@ -15,7 +15,7 @@ from sonolube.errors import InvalidInput
 from sonolube.figure import render_figure
 from sonolube.report.page import Page, rendered_files
 from sonolube.rig import read_rig
-from sonolube.text.printable_text import active_character, printable
+from sonolube.text.plain_text import active_character, printable
 from sonolube.text.toml_text import require_plain_content, toml_content
 
 HOSTILE = "$x_{$ \x1b[2J \x00 \u202e \udcff <b> & {{ 7 }} 漢字"

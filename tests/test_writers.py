@@ -16,11 +16,11 @@ MODULES = {"shutil", "tempfile", "sqlite3"}  # made to write
 READING = {"which", "get_terminal_size"}  # of these modules
 EXCEPTED = {  # calls of modules that replace nothing of users: a file without a name, and folders of their own
     "browser/jobs.py": ("import shutil", "mkdir(", "shutil.rmtree("),
-    "browser/pool.py": ("import tempfile", "TemporaryDirectory("),
+    "browser/worker.py": ("import tempfile", "TemporaryDirectory("),
     "browser/server.py": ("webbrowser.open(",),
     "browser/uploads.py": ("import ", "mkdtemp(", "rmtree(", "path.open('xb')", "path.unlink("),
     "models/fem/mesh/": ("TemporaryFile", "import TemporaryDirectory"),
-    "storage/input_files.py": ("os.O_RDONLY",),  # reads pipes
+    "storage/user_files.py": ("os.O_RDONLY",),  # reads pipes
     "operating_system.py": ("source.replace(target)", "path.unlink(missing_ok=True)"),  # for files
     "tasks/files.py": ("tempfile", "TemporaryDirectory", "path.write_bytes(file.content)"),
     "execution/compilation.py": ("import tempfile", "tempfile.gettempdir()", "folder.mkdir(mode=stat.S_IRWXU"),

@@ -26,7 +26,7 @@ from sphinx.util.docutils import SphinxDirective
 
 import sonolube
 from sonolube.cli import main
-from sonolube.cli.commands import COMMANDS, Command
+from sonolube.cli.app import COMMANDS, Command
 from sonolube.facts.materials import (
     DryFriction,
     Material,
@@ -39,20 +39,20 @@ from sonolube.facts.materials import (
     material_names,
 )
 from sonolube.facts.published import errata
-from sonolube.measurement.file_format import FileFormat
-from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
-from sonolube.measurement.recordings.formats import RECORDING_FORMATS
+from sonolube.measurement.impedance.spectrum import IMPEDANCE_FORMATS
+from sonolube.measurement.measured_files import FileFormat
+from sonolube.measurement.recordings.reader import RECORDING_FORMATS
 from sonolube.measurement.run_columns import RUN_COLUMNS
-from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
+from sonolube.measurement.surface_files.reader import SURFACE_FORMATS
 from sonolube.models.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
 from sonolube.models.friction import FRICTION_MODELS
 from sonolube.models.surfaces import surface_finish, surface_finish_names
 from sonolube.models.wear import WEAR_MODELS
 from sonolube.prediction import Calibration, calibrations
-from sonolube.prediction.published_figures import blind_caption
-from sonolube.prediction.scores import PROBABILITIES
+from sonolube.prediction.figures import blind_caption
+from sonolube.prediction.hierarchy import PROBABILITIES
 from sonolube.rig import Rig, available_sources, read_rig, rig_schema
-from sonolube.rig.file.json_schema import tables_of
+from sonolube.rig.file.toml_file import tables_of
 from sonolube.text.units import format_si, unit_description
 from sonolube.vocabulary import quantities, quantity
 

@@ -20,7 +20,7 @@ from sonolube.design.control import (
     design_control,
     stability_margins,
 )
-from sonolube.design.control.figures import closed_loop_chart
+from sonolube.design.control.stick_slip import closed_loop_chart
 from sonolube.figure import publication_style, shown_in_notebooks
 
 rig = sl.read_rig("../rigs/tribometer.toml")

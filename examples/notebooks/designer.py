@@ -13,9 +13,8 @@ import numpy as np
 
 import sonolube as sl
 from sonolube.charts import draw_chart
-from sonolube.design.horns.figure import horn_axis_chart
 from sonolube.design.horns.shapes import horn_body
-from sonolube.design.horns.tuning import amplitude_limits, tuned_horn
+from sonolube.design.horns.tuning import amplitude_limits, horn_axis_chart, tuned_horn
 from sonolube.facts.materials import material
 from sonolube.figure import publication_style, shown_in_notebooks
 from sonolube.models import fem

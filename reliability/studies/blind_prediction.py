@@ -13,8 +13,7 @@ from sonolube.prediction.calibration import (
     mean_ratio_calibration,
     population_calibration,
 )
-from sonolube.prediction.closures import CLOSURES
-from sonolube.prediction.evidence import TestedRig, published_rigs
+from sonolube.prediction.evidence import CLOSURES, TestedRig, published_rigs
 from sonolube.prediction.hierarchy import Prior
 from sonolube.prediction.posterior import Population
 

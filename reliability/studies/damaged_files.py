@@ -13,7 +13,7 @@ import numpy as np
 from reliability.damage import mutated
 from reliability.study import Measure, Record, Study
 from sonolube.errors import SonolubeError
-from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import read_impedance
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.measurement.surface_files.reader import read_height_map
 

@@ -7,10 +7,9 @@ import numpy as np
 
 from reliability import decay_length_recordings as made
 from reliability.study import Measure, Record, Study
-from sonolube.identification.decay_length.conditions import SwitchConditions
 from sonolube.identification.decay_length.decision import decide_decay_length
 from sonolube.identification.decay_length.recorded_switches import recorded_switches
-from sonolube.identification.decay_length.switch_table import SwitchTable
+from sonolube.identification.decay_length.switch_table import SwitchConditions, SwitchTable
 
 _CLEAR = ("long_sliding", "zero_error", "detuning", "none")
 _RECORDED = 4  # one run in so many is a recording, the others are tables

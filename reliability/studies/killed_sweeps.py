@@ -13,7 +13,7 @@ from pathlib import Path
 
 from reliability.study import Measure, Record, Study
 from sonolube.design import grid_plan, sweep
-from sonolube.tasks.ranges import values_by_key
+from sonolube.tasks.own_tables import values_by_key
 
 _RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 _KEY, _VALUES, _CHUNK, _CHUNKS = "sliding.sliding_speed", "10mm/s:90mm/s:400", 10, 40
@@ -119,7 +119,7 @@ STUDY = Study(
     sources=(
         "storage/files.py",
         "storage/interruption.py",
-        "design/chunk_store.py",
+        "design/sweep_dataset.py",
         "design/sweep_dataset.py",
         "cli/__init__.py",
     ),

@@ -63,7 +63,7 @@ STUDY = Study(
     title="Hostile text as an option",
     question="A command whose option or argument is a formula, markup, control characters, bytes that are no UTF-8 or "
     "an endless number or unit answers or refuses in one line, within 5 s.",
-    sources=("cli/**/*.py", "text/units.py", "text/unit_grammar.py", "text/printable_text.py"),
+    sources=("cli/**/*.py", "text/units.py", "text/unit_grammar.py", "text/plain_text.py"),
     trials=1500,
     sample=20,
     trial=_trial,

@@ -13,8 +13,8 @@ from pathlib import Path
 
 from reliability.study import Measure, Record, Study
 from sonolube.cli import main
-from sonolube.cli.commands import COMMANDS
-from sonolube.cli.console.outputs import OutputFile, OutputFolder, output_marks
+from sonolube.cli.app import COMMANDS
+from sonolube.cli.console.options import OutputFile, OutputFolder, output_marks
 
 INPUT = "in.dat"
 ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat being an input
@@ -179,7 +179,7 @@ STUDY = Study(
     title="Outputs that must not be replaced",
     question="A command is told to write to a pipe, a device, a folder, a broken link, or to its own input under any"
     " name. It refuses in one line before it computes, and destroys nothing.",
-    sources=("storage/files.py", "storage/targets.py", "cli/console/*.py"),
+    sources=("storage/files.py", "storage/user_files.py", "cli/console/*.py"),
     trials=1000,
     sample=12,
     trial=_trial,

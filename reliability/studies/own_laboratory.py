@@ -8,10 +8,9 @@ from reliability.studies.own_runs import SOURCES, stated_conditions
 from reliability.study import Measure, Record, Study
 from reliability.synthetic_rigs import synthetic_rig
 from sonolube.prediction.evidence import TestedRig
-from sonolube.prediction.laboratory import laboratory
+from sonolube.prediction.hierarchy import binomial_interval, central_interval
 from sonolube.prediction.posterior import learned
-from sonolube.prediction.predictive import ratio_draws
-from sonolube.prediction.scores import binomial_interval, central_interval
+from sonolube.prediction.predictive import laboratory, ratio_draws
 
 _RIGS, _RUNS = 4, 3  # of which the runs teach, and how many on each
 _DRAWS = 4000
@@ -81,7 +80,7 @@ STUDY = Study(
     title="A further rig of a laboratory",
     question=f"Laboratories of {_RIGS + 1} rigs are drawn by code outside the package, with decay lengths that are"
     f" alike within a laboratory or not. One rig is predicted before and after {_RUNS} runs on each other.",
-    sources=(*SOURCES, "prediction/laboratory.py"),
+    sources=(*SOURCES, "prediction/predictive.py"),
     trials=200,
     sample=1,
     trial=_trial,

@@ -8,12 +8,10 @@ import numpy as np
 from reliability.study import Measure, Record, Study
 from reliability.synthetic_rigs import SyntheticRig, synthetic_rig
 from sonolube.checks import Floats
-from sonolube.prediction.closures import Conditions, UncertainConditions
-from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, TestedRig
-from sonolube.prediction.posterior import learned
+from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, Conditions, TestedRig, UncertainConditions
+from sonolube.prediction.hierarchy import binomial_interval, central_interval
+from sonolube.prediction.posterior import learned, rig_draws
 from sonolube.prediction.predictive import RigPrediction, rig_prediction
-from sonolube.prediction.rig_draws import rig_draws
-from sonolube.prediction.scores import binomial_interval, central_interval
 
 COUNTS = (0, 1, 3, 10, 30)
 _BARS = {1: 0.85, 3: 0.65, 10: 0.45, 30: 0.30}  # median width over that without runs

@@ -9,8 +9,7 @@ from scipy.stats import kstest
 
 from reliability.study import Measure, Record, Study
 from sonolube.checks import Floats
-from sonolube.prediction.closures import CLOSURES, Closure
-from sonolube.prediction.evidence import TestedRig, published_rigs
+from sonolube.prediction.evidence import CLOSURES, Closure, TestedRig, published_rigs
 from sonolube.prediction.hierarchy import (
     HYPERPARAMETERS,
     OWN_DEVIATES,

@@ -368,7 +368,11 @@ STUDY = Study(
         " segments and sections, as LabVIEW, MATLAB, HDF5 and the software of tribometers write them, are read with the"
         " values, units and times they were written with."
     ),
-    sources=("measurement/recordings/*.py", "measurement/recordings/instruments/*.toml", "measurement/numeric_text.py"),
+    sources=(
+        "measurement/recordings/*.py",
+        "measurement/recordings/instruments/*.toml",
+        "measurement/measured_files.py",
+    ),
     trials=1000,
     sample=80,
     trial=_trial,

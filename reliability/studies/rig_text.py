@@ -60,14 +60,7 @@ STUDY = Study(
     title="Hostile text in a rig file",
     question="A rig file with formulas, markup, control characters, endless numbers or deep tables in a key, a value, "
     "its title or its name is answered or refused in one line, within 5 s.",
-    sources=(
-        "rig/file/*.py",
-        "text/toml_text.py",
-        "text/printable_text.py",
-        "figure.py",
-        "cli/app.py",
-        "cli/console/*.py",
-    ),
+    sources=("rig/file/*.py", "text/toml_text.py", "text/plain_text.py", "figure.py", "cli/app.py", "cli/console/*.py"),
     trials=1000,
     sample=8,
     trial=_trial,

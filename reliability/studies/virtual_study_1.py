@@ -14,9 +14,9 @@ from sonolube.laboratory import DriveSetting, connect_devices
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.measurement.friction.voltage_steps import friction_at_voltage_steps
 from sonolube.prediction.evidence import published_rigs
+from sonolube.prediction.hierarchy import central_interval
 from sonolube.prediction.posterior import published_population
 from sonolube.prediction.predictive import ratio_draws
-from sonolube.prediction.scores import central_interval
 from sonolube.rig import Rig, read_rig
 
 _RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"

@@ -97,7 +97,7 @@ STUDY = Study(
     title="Uncertainty of friction at voltage steps",
     question="Mean friction and reduction at the steps of a voltage err by as much as their standard errors state, "
     "under a wobble of 60 and 24 mN at a known or unknown speed, bursts of stick-slip, run-in, drift and noise.",
-    sources=("measurement/friction/*.py", "measurement/statistics/correlated_regression.py"),
+    sources=("measurement/friction/*.py", "measurement/statistics/autocorrelation.py"),
     trials=200,
     sample=5,
     trial=_trial,

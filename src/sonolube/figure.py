@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from sonolube.errors import UnknownName
 from sonolube.storage.files import write_atomically
-from sonolube.text.printable_text import printable, with_micro_sign
+from sonolube.text.plain_text import printable, with_micro_sign
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

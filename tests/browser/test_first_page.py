@@ -10,9 +10,8 @@ from pytest import approx
 from starlette.responses import Response
 
 from sonolube.browser.first_page import REQUESTS, computed_answers, shipped_answer, shipped_answers
-from sonolube.browser.pool import Pool
 from sonolube.browser.routes import Workbench
-from sonolube.browser.worker import encoded
+from sonolube.browser.worker import Pool, encoded
 
 CHANGED = {"rig": {"name": "tribometer", "changes": {"contact.normal_load": "4 N"}}}
 

@@ -24,7 +24,7 @@ from sonolube.charts import (
     draw_chart,
 )
 from sonolube.figure import publication_style, render_figure
-from sonolube.text.printable_text import with_micro_sign
+from sonolube.text.plain_text import with_micro_sign
 
 X = np.array([1.0, 2.0, 4.0])
 SPEED = Axis(label="Sliding speed", unit="mm/s", logarithmic=True)

@@ -13,14 +13,14 @@ import pytest
 from pytest import CaptureFixture, MonkeyPatch, raises
 
 from sonolube.cli import main
-from sonolube.cli.console import delivery, progress
-from sonolube.cli.console.outputs import OutputFolder
+from sonolube.cli.console import delivery, options as progress
+from sonolube.cli.console.options import OutputFolder
 from sonolube.execution.compilation import Kernel
 from sonolube.models.fem import electromechanical_model, tuning
-from sonolube.models.fem.results import mode_files
-from sonolube.models.fem.solver import convergence
+from sonolube.models.fem.results import part_modes as mode_files
+from sonolube.models.fem.solver import modes as convergence
 from sonolube.models.fem.solver.model import Model
-from sonolube.storage.targets import expect_target
+from sonolube.storage.user_files import expect_target
 
 ROOT = Path(__file__).parents[2]
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from sonolube.cli.commands import COMMANDS, Command
+from sonolube.cli.app import COMMANDS, Command
 
 ROOT = Path(__file__).parents[2]
 Program = Callable[..., Any]

@@ -18,7 +18,7 @@ from matplotlib import pyplot as plt
 from tests.cli.option_uses import EXECUTION, MODES, PLACES, TESTED_ELSEWHERE, write_inputs
 
 from sonolube.cli import main
-from sonolube.cli.commands import COMMANDS
+from sonolube.cli.app import COMMANDS
 from sonolube.report import Drawing
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("compiled_kernels")]

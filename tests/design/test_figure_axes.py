@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.design.figure_axes import contour_levels, scaled_axis
+from sonolube.design.sweep_figures import contour_levels, scaled_axis
 
 
 def test_a_wear_rate_has_an_axis_in_mm3_per_metre() -> None:

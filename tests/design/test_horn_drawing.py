@@ -10,8 +10,7 @@ import pytest
 from matplotlib.transforms import Bbox
 from pytest import approx, mark
 
-from sonolube.design.horns.drawing import horn_drawing
-from sonolube.design.horns.profile import HornProfile, horn_profile, profile_dxf
+from sonolube.design.horns.profile import HornProfile, horn_drawing, horn_profile, profile_dxf
 from sonolube.design.horns.shapes import SHAPES, TunableBody, body_from_geometry, horn_body
 
 NOTES = ["horn of brass, 1 kg", "⌀ in mm"]

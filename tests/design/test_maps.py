@@ -17,7 +17,7 @@ from sonolube.design import (
     velocity_power_map,
     velocity_stress_map,
 )
-from sonolube.design.map_layouts import panels_text
+from sonolube.design.map_figures import panels_text
 from sonolube.errors import InvalidInput
 from sonolube.rig import operating_points, read_rig
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from pytest import approx
 
-from sonolube.design.sobol import saltelli_sample
+from sonolube.design.statistics import saltelli_sample
 from sonolube.design.uncertainty_summary import contact_loss_probability, outcome_band, ranked_entries
 
 

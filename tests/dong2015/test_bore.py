@@ -8,7 +8,7 @@ from pytest import approx
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
-from sonolube.dong2015.bore import BoreMotion, bore_motion
+from sonolube.dong2015.collar_analysis import BoreMotion, bore_motion
 from sonolube.models.fem import Model, generate_mesh, isotropic_medium, natural_modes, ring
 
 STEEL = isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.29, density=8000.0)

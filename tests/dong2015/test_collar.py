@@ -7,7 +7,7 @@ from pytest import raises
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
-from sonolube.dong2015.collar_designs import FINAL_COLLAR
+from sonolube.dong2015.collar import FINAL_COLLAR
 from sonolube.errors import InvalidInput
 
 

@@ -13,10 +13,15 @@ pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from tests.models.fem.direct_response import direct_response
 
-from sonolube.dong2015.bore import BoreMotion
-from sonolube.dong2015.collar import collar_geometry
-from sonolube.dong2015.collar_analysis import Parity, collar_media, collar_model, collar_modes, reduced_collar_model
-from sonolube.dong2015.collar_designs import FINAL_COLLAR, FIRST_COLLAR, THIN_RING_COLLAR
+from sonolube.dong2015.collar import FINAL_COLLAR, FIRST_COLLAR, THIN_RING_COLLAR, collar_geometry
+from sonolube.dong2015.collar_analysis import (
+    BoreMotion,
+    Parity,
+    collar_media,
+    collar_model,
+    collar_modes,
+    reduced_collar_model,
+)
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.errors import InvalidInput
 from sonolube.models.fem import Electrodes, Model, Output, generate_mesh, harmonic_response, natural_modes, reduce_model

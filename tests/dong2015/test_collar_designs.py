@@ -4,8 +4,13 @@ import pytest
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
-from sonolube.dong2015.collar import dimension_names
-from sonolube.dong2015.collar_designs import ASSUMED_RANGES, COLLAR_DIMENSION_SOURCES, FINAL_COLLAR, NOMINAL_COLLAR
+from sonolube.dong2015.collar import (
+    ASSUMED_RANGES,
+    COLLAR_DIMENSION_SOURCES,
+    FINAL_COLLAR,
+    NOMINAL_COLLAR,
+    dimension_names,
+)
 
 
 def test_assumed_dimensions_are_within_their_ranges_and_each_has_a_source() -> None:

@@ -8,8 +8,8 @@ from pytest import approx, raises
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
+from sonolube.dong2015.collar import ASSUMED_RANGES, FINAL_COLLAR, NOMINAL_COLLAR
 from sonolube.dong2015.collar_analysis import reduced_collar_model
-from sonolube.dong2015.collar_designs import ASSUMED_RANGES, FINAL_COLLAR, NOMINAL_COLLAR
 from sonolube.dong2015.collar_tuning import main_resonance, tuned_collar
 from sonolube.errors import InvalidInput
 

@@ -20,7 +20,7 @@ from sonolube.execution.compilation import few_points, kernel
 from sonolube.execution.threads import map_chunks
 from sonolube.models.contact import GaussianHeights, normal_force
 from sonolube.models.contact.greenwood_williamson import log_normal_force_function
-from sonolube.models.dynamics.harmonic_balance.bessel import wright_omega
+from sonolube.models.dynamics.harmonic_balance.initial_guess import wright_omega
 from sonolube.models.friction import sine_stick_slip_ratio
 from sonolube.models.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.rig import read_rig, simulate

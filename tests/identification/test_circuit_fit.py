@@ -9,9 +9,8 @@ from pytest import approx, fixture, mark, raises, skip
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.identification.circuit_fit import fit_circuit
-from sonolube.identification.spectral_residual import RESIDUALS
-from sonolube.measurement.impedance.reader import read_impedance
-from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.identification.stack_fit import RESIDUALS
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, read_impedance
 from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"

@@ -9,10 +9,8 @@ from pytest import approx, mark, skip
 
 from sonolube.checks import Complexes
 from sonolube.identification.circuit_fit import CircuitFit, fit_circuit
-from sonolube.identification.minimum_phase import minimum_phase_admittance
-from sonolube.measurement.impedance.passivity import passive_spectrum
-from sonolube.measurement.impedance.reader import read_impedance
-from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.identification.stack_fit import minimum_phase_admittance
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, passive_spectrum, read_impedance
 from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"

@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, protocol_by_name_or_file, protocol_from, protocol_names
 from sonolube.laboratory import Channel, run_protocol
 from sonolube.laboratory.block import quantity_of
-from sonolube.laboratory.drive_sampling import drive_sampling, recorded_channels
+from sonolube.laboratory.interlocks import drive_sampling, recorded_channels
 
 AT_400_HZ = "voltage and current at 400 Hz do not resolve the drive (fewer than five samples a period)"
 SHIPPED = {  # sample rates and drives as printed in the dissertation's tables

@@ -31,7 +31,7 @@ from sonolube.laboratory import (
 from sonolube.laboratory.records import RunObserver, drop_raw_blocks, export_run, new_run, read_run, recover_run
 from sonolube.laboratory.run_plan import RunPlan
 from sonolube.measurement import read_recording
-from sonolube.measurement.file_selection import selected_files
+from sonolube.measurement.measured_files import selected_files
 
 RATE, SLOW = 400.0, 50.0  # Hz, of the run and of the other clock
 

@@ -12,7 +12,7 @@ from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 from sonolube.facts.protocol import Prompt, protocol_from
 from sonolube.laboratory import Devices, DriveSetting, RunControl, run_protocol
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
-from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
+from sonolube.laboratory.virtual_tribometer.truth import FrictionDraw
 from sonolube.rig import read_rig
 
 RIG = Path(__file__).parents[2] / "examples" / "rigs" / "power_map.toml"

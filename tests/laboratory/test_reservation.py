@@ -15,8 +15,8 @@ from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 from sonolube.facts.protocol import protocol_from
 from sonolube.laboratory import reservation, run_protocol
 from sonolube.laboratory.drivers.daqmx_library import daqmx_resource
-from sonolube.laboratory.drivers.readiness import first_readings
-from sonolube.laboratory.drivers.resources import visa_resource
+from sonolube.laboratory.drivers.device_map import first_readings
+from sonolube.laboratory.drivers.visa_connection import visa_resource
 from sonolube.laboratory.reservation import DeviceInUse, require_free, reserved
 
 CARD = "ni-daqmx dev1"

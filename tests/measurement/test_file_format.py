@@ -7,8 +7,8 @@ import numpy as np
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.file_format import HEAD_SIZE, detect_format, first_lines, read_head
-from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import read_impedance
+from sonolube.measurement.measured_files import HEAD_SIZE, detect_format, first_lines, read_head
 from sonolube.measurement.recordings.reader import read_recording, recording_format_name
 
 

@@ -13,7 +13,7 @@ import pytest
 from scipy.io import savemat
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.limits import MAX_CHANNELS, MAX_VALUES, ClippedReader, require_values
+from sonolube.measurement.measured_files import MAX_CHANNELS, MAX_VALUES, ClippedReader, require_values
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.measurement.surface_files.reader import read_height_map
 
@@ -184,7 +184,7 @@ def test_bytes_of_a_square_number_are_no_height_map_unless_their_suffix_says_so(
 
 
 def test_more_columns_than_channels_may_be_are_refused(tmp_path: Path) -> None:
-    from sonolube.measurement.impedance.reader import read_impedance
+    from sonolube.measurement.impedance.spectrum import read_impedance
 
     path = tmp_path / "wide.csv"
     path.write_text("f," * (MAX_CHANNELS + 1) + "\n1")

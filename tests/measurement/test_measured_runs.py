@@ -7,9 +7,15 @@ import pytest
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import read_runs, run_caveats
+from sonolube.measurement.measured_runs import (
+    checked_ratios,
+    copies_caveat,
+    read_runs,
+    run_caveats,
+    setting,
+    with_columns,
+)
 from sonolube.measurement.run_columns import RUN_COLUMNS
-from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting, with_columns
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 

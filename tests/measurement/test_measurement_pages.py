@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sonolube.cli import main
-from sonolube.cli.commands import COMMANDS as TABLE
+from sonolube.cli.app import COMMANDS as TABLE
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "measurements.md").read_text(encoding="utf-8")

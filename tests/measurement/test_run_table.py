@@ -9,8 +9,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, run_caveats
-from sonolube.measurement.recordings.mapping import read_mapping
-from sonolube.measurement.recordings.mapping_toml import mapping_toml
+from sonolube.measurement.recordings.mapping import mapping_toml, read_mapping
 from sonolube.measurement.run_headings import meaning_at_stake, run_heading
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from sonolube.prediction.closures import Closure, Conditions, UncertainConditions
-from sonolube.prediction.evidence import TestedRig
+from sonolube.prediction.evidence import Closure, Conditions, TestedRig, UncertainConditions
 
 LINEAR = Closure(
     name="linear",

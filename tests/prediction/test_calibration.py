@@ -14,8 +14,8 @@ from sonolube.prediction.calibration import (
     blind_calibration,
     calibrations,
 )
-from sonolube.prediction.published_figures import blind_caption
-from sonolube.prediction.scores import (
+from sonolube.prediction.figures import blind_caption
+from sonolube.prediction.hierarchy import (
     PROBABILITIES,
     binomial_interval,
     central_interval,

@@ -10,12 +10,11 @@ from scipy.integrate import quad
 from scipy.stats import chi2, multivariate_normal
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 
-from sonolube.prediction.closures import CLOSURES, Closure, Conditions
-from sonolube.prediction.evidence import distance_from_tests, published_rigs
+from sonolube.prediction.evidence import CLOSURES, Closure, Conditions, distance_from_tests, published_rigs
 from sonolube.prediction.hierarchy import RigLikelihood, discrepancy_deviation, squared_distances
 from sonolube.prediction.learning import sampled_hyperparameters
 from sonolube.prediction.posterior import Population, evidence_fingerprint, learned, published_population
-from sonolube.rig.worn_contact import PUBLISHED_DECAY_LENGTH
+from sonolube.rig.friction_and_wear import PUBLISHED_DECAY_LENGTH
 
 
 def test_of_a_linear_closure_the_likelihood_is_that_of_a_normal_discrepancy_with_students_scale() -> None:

@@ -11,10 +11,9 @@ from tests.prediction.linear_rigs import LINEAR, conditions
 
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.prediction import LivePrediction, interval
-from sonolube.prediction.closures import UncertainConditions
-from sonolube.prediction.evidence import TestedRig
-from sonolube.prediction.laboratory import laboratory
+from sonolube.prediction.evidence import TestedRig, UncertainConditions
 from sonolube.prediction.posterior import Posterior
+from sonolube.prediction.predictive import laboratory
 from sonolube.rig import read_rig
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"

@@ -8,8 +8,7 @@ from scipy.stats import multivariate_normal
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 
 from sonolube.checks import Floats
-from sonolube.prediction.closures import UncertainConditions
-from sonolube.prediction.evidence import TestedRig, published_rigs
+from sonolube.prediction.evidence import TestedRig, UncertainConditions, published_rigs
 from sonolube.prediction.hierarchy import log_normal_density
 from sonolube.prediction.posterior import Posterior, learned
 from sonolube.prediction.predictive import ratio_draws, rig_prediction

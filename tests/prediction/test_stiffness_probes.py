@@ -7,7 +7,7 @@ import numpy as np
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.prediction.stiffness_probes import Probe, probe_sentences, stiffness_probes, told_probes
+from sonolube.prediction.further_measurements import Probe, probe_sentences, stiffness_probes, told_probes
 from sonolube.rig import read_rig
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"

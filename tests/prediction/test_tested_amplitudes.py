@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from pytest import approx
 
-from sonolube.prediction.tested_amplitudes import amplitude_ratios_of_tests, large_amplitude_caveats
+from sonolube.prediction.evidence import amplitude_ratios_of_tests, large_amplitude_caveats
 from sonolube.rig import read_rig
 from sonolube.rig.resolved_rig import resolved_rig
 

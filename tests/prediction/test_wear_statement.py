@@ -7,8 +7,8 @@ from pytest import mark
 from scipy.stats import norm
 
 from sonolube.checks import Floats
+from sonolube.prediction.bodies import WornBody, pair_of, wear_statement, worn_body
 from sonolube.prediction.posterior import learned
-from sonolube.prediction.wear_statement import WornBody, pair_of, wear_statement, worn_body
 from sonolube.rig import Rig, read_rig
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"

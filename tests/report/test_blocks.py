@@ -4,7 +4,7 @@ from hypothesis import given, strategies as st
 from pytest import mark
 
 from sonolube.report.blocks import Rows, Table, text_lines
-from sonolube.text.text_layout import aligned, grid
+from sonolube.text.plain_text import aligned, grid
 
 WORD = st.text("abcdefgh", min_size=1, max_size=9)
 CELL = st.lists(WORD, min_size=1, max_size=12).map(" ".join)

@@ -106,7 +106,7 @@ def test_an_unforeseen_error_at_one_file_does_not_lose_the_others(
             raise ZeroDivisionError("float division by zero")
         return friction_sheet(path, settings=settings)
 
-    monkeypatch.setattr("sonolube.tasks.measure.recorded_friction.friction_sheet", failing)
+    monkeypatch.setattr("sonolube.tasks.measure.recordings.friction_sheet", failing)
     answer = friction(paths)
     assert [each["title"] for each in answer.object()["results"]] == ["a.csv", "c.csv"]
     ((name, reason),) = answer.refusals().items()

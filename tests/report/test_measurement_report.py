@@ -24,10 +24,10 @@ from sonolube.report import (
     read_pin_on_disc_sheet,
 )
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
-from sonolube.report.measured.friction_comparison import comparison_sheet
-from sonolube.report.measured.groove_figures import worn_map_chart
-from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
+from sonolube.report.measured.friction_steps import comparison_sheet
+from sonolube.report.measured.groove import worn_map_chart
 from sonolube.report.measured.sheet import Sheet, Value, quantity_value
+from sonolube.report.measured.spectra import ImpedanceSettings, impedance_sheet
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
 
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
@@ -161,7 +161,7 @@ def test_one_test_of_each_kind_gives_a_reduction_that_nobody_can_vouch_for(tmp_p
 
 
 def test_friction_by_the_motor_balances_its_torque(tmp_path: Path) -> None:
-    from sonolube.measurement.friction.motor_current import MotorCalibration
+    from sonolube.measurement.friction.rotation import MotorCalibration
 
     path = tmp_path / "motor.csv"
     lines = [f"{0.1 * i:.1f},{1.5 + 0.001 * (-1) ** i}" for i in range(100)]

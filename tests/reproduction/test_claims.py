@@ -9,8 +9,7 @@ from tests.reproduced import reproduced
 
 from sonolube.facts.published import statement
 from sonolube.reproduction import CLAIMS, Claim, ClaimVerdict, Reproduction, Row, RowKind, Verdict
-from sonolube.reproduction.claim import finding, verdict_of
-from sonolube.reproduction.claims import findings
+from sonolube.reproduction.claims import finding, findings, verdict_of
 from sonolube.reproduction.row import comparison_row
 
 

@@ -13,7 +13,7 @@ import xarray as xr
 from sonolube.prediction import LivePrediction
 from sonolube.rig import read_rig, simulate, write_netcdf
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
-from sonolube.rig.result_datasets import simulation_arrays
+from sonolube.rig.responses import simulation_arrays
 
 ROOT = Path(__file__).parents[2]
 RIG = ROOT / "examples" / "rigs" / "tribometer.toml"

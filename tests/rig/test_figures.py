@@ -21,7 +21,7 @@ from sonolube.rig import (
     thermal_solid,
 )
 from sonolube.rig.figures import lubrication_chart, response_chart, simulation_chart, start_up_chart, temperature_chart
-from sonolube.rig.result_datasets import response_arrays, simulation_arrays, start_up_arrays
+from sonolube.rig.responses import response_arrays, simulation_arrays, start_up_arrays
 
 
 @pytest.fixture(scope="module")

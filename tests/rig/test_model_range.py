@@ -27,7 +27,7 @@ from sonolube.rig import (
     thermal_solid,
     voltage_study,
 )
-from sonolube.rig.result_datasets import simulation_arrays
+from sonolube.rig.responses import simulation_arrays
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = read_rig(RIGS / "tribometer.toml")

@@ -14,8 +14,15 @@ from sonolube.facts.materials import material
 from sonolube.models.actuator import catalogue_actuator
 from sonolube.models.surfaces import typical_summits
 from sonolube.rig import PUBLISHED_DECAY_LENGTH, Rig, friction_point, rig_from
-from sonolube.rig.new_rig.known_surface import finished_surface, scanned_surface, surfaces_in_contact
-from sonolube.rig.new_rig.pin_and_vibration import DrivenActuator, FlatPin, RoundPin, StatedAmplitude
+from sonolube.rig.new_rig.pin_and_vibration import (
+    DrivenActuator,
+    FlatPin,
+    RoundPin,
+    StatedAmplitude,
+    finished_surface,
+    scanned_surface,
+    surfaces_in_contact,
+)
 from sonolube.rig.new_rig.rig_text import KnownRig, least_known, new_rig_text
 from sonolube.rig.new_rig.stated_text import pin_shape, speed_of, surface_of
 from sonolube.rig.resolved_rig import resolved_rig

@@ -14,7 +14,7 @@ from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.contact import decay_length
 from sonolube.models.friction.models import FRICTION_MODELS
 from sonolube.rig import Rig, available_sources, friction_point, operating_points, read_rig, simulate
-from sonolube.rig.excitation import voltage_harmonics, waveform_of
+from sonolube.rig.driven_rig import voltage_harmonics, waveform_of
 from sonolube.rig.resolved_rig import ResolvedRig, gap_law_of, resolved_rig, resolved_vibration, rest_separation
 
 RIGS = Path("examples/rigs")

@@ -19,8 +19,7 @@ from sonolube.models.dynamics import (
 from sonolube.models.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
-from sonolube.rig.driven_rig import driven_rig
-from sonolube.rig.excitation import DriveVoltage, waveform_of
+from sonolube.rig.driven_rig import DriveVoltage, driven_rig, waveform_of
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.vibration import steady_vibration
 

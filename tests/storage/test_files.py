@@ -20,7 +20,7 @@ from sonolube.storage.files import (
     unfinished_file,
     write_atomically,
 )
-from sonolube.storage.targets import command_files, expect_target, record_input
+from sonolube.storage.user_files import command_files, expect_target, record_input
 
 LargestFile = Callable[[int], AbstractContextManager[None]]
 
@@ -104,7 +104,9 @@ def test_what_is_no_regular_file_is_refused_and_stays(tmp_path: Path, kind: str)
 
 def test_a_write_protected_file_is_refused(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
     (tmp_path / "kept").touch(mode=0o444)
-    monkeypatch.setattr("sonolube.storage.targets.os.access", lambda path, mode: False)  # root may write to every file
+    monkeypatch.setattr(
+        "sonolube.storage.user_files.os.access", lambda path, mode: False
+    )  # root may write to every file
     with raises(InvalidInput, match="it is write-protected"):
         write_atomically(tmp_path / "kept", "new")
 

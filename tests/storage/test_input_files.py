@@ -14,12 +14,12 @@ import pytest
 from sonolube.cli import main
 from sonolube.errors import InvalidInput
 from sonolube.measurement.contact_stiffness.resonance_spectrum import read_resonance_spectrum
-from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import read_impedance
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.measurement.surface_files.reader import read_surface_file
 from sonolube.rig import read_rig
-from sonolube.storage.input_files import input_bytes, input_text, open_input, require_file
+from sonolube.storage.user_files import input_bytes, input_text, open_input, require_file
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pipes among its paths")
 

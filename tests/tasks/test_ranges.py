@@ -4,7 +4,7 @@ import numpy as np
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.tasks.ranges import ends_by_key, values_by_key
+from sonolube.tasks.own_tables import ends_by_key, values_by_key
 
 
 def test_a_range_has_both_ends_and_even_steps() -> None:

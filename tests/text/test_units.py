@@ -10,9 +10,16 @@ from hypothesis import given, strategies as st
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.text.common_units import COMMON_FACTORS
 from sonolube.text.unit_grammar import canonical_unit
-from sonolube.text.units import convert, format_like, format_quantity, format_si, temperature_difference_to_si, to_si
+from sonolube.text.units import (
+    COMMON_FACTORS,
+    convert,
+    format_like,
+    format_quantity,
+    format_si,
+    temperature_difference_to_si,
+    to_si,
+)
 
 
 @pytest.mark.parametrize(

@@ -15,11 +15,10 @@ from sonolube.errors import InvalidInput, UnknownName
 from sonolube.models.contact import decay_length
 from sonolube.models.friction import sine_stick_slip_ratio
 from sonolube.rig import read_rig, steady_vibration
-from sonolube.validation.assessment import FITTED_SETS
+from sonolube.validation.assessment import FITTED_SETS, Fit
 from sonolube.validation.comparison import COMPARED_MODELS, ComparedFit, compare_models, compared_models, predict_rig
-from sonolube.validation.fitting import Fit
+from sonolube.validation.model_variant import VibratedRig, vibrated_rig
 from sonolube.validation.published_tests import FrictionTest, friction_tests, in_plane_tests
-from sonolube.validation.rig_conditions import VibratedRig, vibrated_rig
 from sonolube.validation.tables import comparison_csv, comparison_dataset
 
 NAMED = {model.name: model for model in COMPARED_MODELS}

@@ -10,10 +10,9 @@ from pytest import approx
 from sonolube.errors import OutsideRange
 from sonolube.rig import read_rig
 from sonolube.validation.comparison import COMPARED_MODELS
-from sonolube.validation.condition_columns import ConditionColumns, condition_columns
-from sonolube.validation.model_variant import ModelVariant
-from sonolube.validation.ranked_models import own_rig_variants
+from sonolube.validation.model_variant import ConditionColumns, ModelVariant, condition_columns
 from sonolube.validation.run_conditions import RunConditions
+from sonolube.validation.runs_fit import own_rig_variants
 
 RIG = read_rig(Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml")
 AT_ONCE = [variant for variant in own_rig_variants(COMPARED_MODELS) if variant.takes_columns]

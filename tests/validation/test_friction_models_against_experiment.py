@@ -9,20 +9,22 @@ from scipy.optimize import minimize
 from scipy.special import i0
 
 from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
-from sonolube.reproduction.friction_models.variant_predictions import reported_fits
+from sonolube.reproduction.friction_models.variants import reported_fits
 from sonolube.validation.assessment import (
     FITTED_SETS,
     SETS_WITHOUT_POWER_MAP,
+    Fit,
     assess_variant,
     cross_validation_errors,
+    fit_variant,
     gaussian_criteria,
     information_criteria,
     leave_one_set_out_fits,
     prediction_errors,
+    profile_likelihood_interval,
 )
-from sonolube.validation.fitting import Fit, fit_variant, profile_likelihood_interval
-from sonolube.validation.free_parameters import RIGS
 from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
+from sonolube.validation.model_variant import RIGS
 from sonolube.validation.published_tests import (
     NORMAL_VIBRATION_SETS,
     FrictionTest,

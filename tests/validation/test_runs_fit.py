@@ -17,12 +17,11 @@ from sonolube.charts import Points
 from sonolube.errors import InvalidInput
 from sonolube.rig import read_rig
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.validation.comparison import compare_models, compared_models
+from sonolube.validation.comparison import compare_models, compared_models, predict_runs
+from sonolube.validation.figures import runs_fit_chart
 from sonolube.validation.run_conditions import run_conditions
-from sonolube.validation.runs_comparison import predict_runs
-from sonolube.validation.runs_figures import runs_fit_chart
 from sonolube.validation.runs_fit import RunsFit, fit_runs
-from sonolube.validation.runs_tables import runs_fit_dataset
+from sonolube.validation.tables import runs_fit_dataset
 
 RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 FREQUENCY = 22e3

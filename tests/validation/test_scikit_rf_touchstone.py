@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pytest import approx, importorskip, mark
 
-from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import read_impedance
 
 skrf = importorskip("skrf")
 

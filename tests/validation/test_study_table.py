@@ -8,8 +8,7 @@ from pytest import approx
 from sonolube.charts import Note, Points
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.measurement.measured_runs import read_runs
-from sonolube.validation.previous_study_map import StudyPoint, study_chart
-from sonolube.validation.study_table import STUDY_COLUMNS, studies_of_runs, study_table
+from sonolube.validation.previous_study_map import STUDY_COLUMNS, StudyPoint, studies_of_runs, study_chart, study_table
 
 OWN = "study,direction,sliding_speed [mm/s],normal_load [N],nominal_area [mm2],friction_ratio,source\n{}\n"
 

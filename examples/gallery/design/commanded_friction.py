@@ -9,7 +9,7 @@ from pathlib import Path
 import sonolube as sl
 from sonolube.charts import draw_chart
 from sonolube.design.control import Amplifier, ControlSettings, Disturbance, design_control
-from sonolube.design.control.figures import closed_loop_chart
+from sonolube.design.control.stick_slip import closed_loop_chart
 from sonolube.figure import publication_style
 
 rig = sl.read_rig(Path(__file__).parents[2] / "rigs" / "tribometer.toml")

@@ -11,8 +11,8 @@ import numpy as np
 import sonolube as sl
 from sonolube.charts import draw_chart
 from sonolube.design.test_plan.candidates import Factors
-from sonolube.design.test_plan.figure import plan_chart
 from sonolube.design.test_plan.plan import Procedure, Question, plan_tests, published_distances
+from sonolube.design.test_plan.run_protocols import plan_chart
 from sonolube.figure import publication_style
 
 rig = sl.read_rig(Path(__file__).parents[2] / "rigs" / "power_map.toml")

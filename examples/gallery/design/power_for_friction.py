@@ -8,8 +8,7 @@ from pathlib import Path
 
 import sonolube as sl
 from sonolube.charts import draw_chart
-from sonolube.design.efficiency import calibrate_efficiency
-from sonolube.design.efficiency_figures import efficiency_chart
+from sonolube.design.efficiency import calibrate_efficiency, efficiency_chart
 from sonolube.figure import publication_style
 
 examples = Path(__file__).parents[2]

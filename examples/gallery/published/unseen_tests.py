@@ -6,7 +6,7 @@ is worth something where the points fall inside as often as the bands say.
 
 from sonolube.charts import draw_chart
 from sonolube.figure import publication_style
-from sonolube.prediction.published_figures import unseen_chart
+from sonolube.prediction.figures import unseen_chart
 
 with publication_style():
     figure = draw_chart(unseen_chart())

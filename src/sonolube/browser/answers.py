@@ -15,9 +15,8 @@ from sonolube.charts import chart_object, chart_tables
 from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError, UnknownName
 from sonolube.example_files import example_file
 from sonolube.tasks.answer import Answer, Block, Rows, Table, Verbatim
-from sonolube.tasks.call import Mark
 from sonolube.tasks.files import NamedBytes, file_path, private_files, with_names_only
-from sonolube.tasks.parameters import DoorParameter, File, KeyValues, OwnFolder, Parameter, RigParameter
+from sonolube.tasks.parameters import DoorParameter, File, KeyValues, Mark, OwnFolder, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
 

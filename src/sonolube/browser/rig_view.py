@@ -12,9 +12,9 @@ from sonolube.design import map_kinds
 from sonolube.errors import InvalidInput
 from sonolube.example_files import example_files
 from sonolube.rig import Rig, commanded_quantity
-from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.reader import rig_contents, rig_of_file
-from sonolube.tasks.design.parametric_study import studies_of
+from sonolube.rig.file.section import guidance
+from sonolube.tasks.design.sweep import studies_of
 from sonolube.text.units import convert, to_si
 from sonolube.vocabulary import quantities
 

@@ -1,9 +1,17 @@
-"""Routes of the workbench: pages and their files, tasks, rigs, uploads and jobs."""
+"""Routes of the workbench: pages and their files, tasks, rigs, uploads and jobs.
 
+Scripts, styles and drawings are kept in memory as they are sent: compressed and tagged by content.
+"""
+
+import gzip
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from functools import cache
+from hashlib import sha256
 from importlib.resources import files
+from pathlib import Path, PurePosixPath
+from types import MappingProxyType
 from typing import Any, Final
 
 from starlette.applications import Starlette
@@ -16,10 +24,62 @@ from starlette.routing import Route
 from sonolube.browser.first_page import shipped_answer
 from sonolube.browser.jobs import KEPT_DAYS, Jobs
 from sonolube.browser.places import Places
-from sonolube.browser.pool import Pool
-from sonolube.browser.static_files import static_file
 from sonolube.browser.uploads import Uploads
+from sonolube.browser.worker import Pool
 from sonolube.errors import InvalidInput, SonolubeError
+
+_FOLDER: Final = Path(str(files("sonolube.browser"))) / "static"
+_KINDS: Final = MappingProxyType(
+    {
+        ".js": "text/javascript; charset=utf-8",
+        ".css": "text/css; charset=utf-8",
+        ".html": "text/html; charset=utf-8",
+        ".json": "application/json",
+        ".svg": "image/svg+xml",
+    }
+)
+_PLAIN: Final = "text/plain; charset=utf-8"
+_LEVEL: Final = 6  # of the compression, once a file
+
+
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """File as it is sent."""
+
+    content: bytes
+    compressed: bytes
+    kind: str
+    tag: str
+
+
+async def static_file(request: Request) -> Response:
+    """File below `static` of a request, by its path; 404 where there is none, 304 where the browser has it."""
+    name = request.path_params["name"]
+    if name not in _names():
+        return Response("There is no such file.", status_code=404, media_type="text/plain")
+    kept = _kept(name)
+    headers = {"cache-control": "no-cache", "etag": kept.tag, "vary": "Accept-Encoding"}
+    if request.headers.get("if-none-match") == kept.tag:
+        return Response(status_code=304, headers=headers)
+    if "gzip" not in request.headers.get("accept-encoding", ""):
+        return Response(kept.content, media_type=kept.kind, headers=headers)
+    return Response(kept.compressed, media_type=kept.kind, headers=headers | {"content-encoding": "gzip"})
+
+
+@cache
+def _names() -> frozenset[str]:
+    """Paths of all files, with slashes."""
+    return frozenset(path.relative_to(_FOLDER).as_posix() for path in _FOLDER.rglob("*") if path.is_file())
+
+
+@cache
+def _kept(name: str) -> _Kept:
+    """Content of a file, read and compressed once."""
+    content = (_FOLDER / name).read_bytes()
+    kind = _KINDS.get(PurePosixPath(name).suffix, _PLAIN)
+    compressed = gzip.compress(content, _LEVEL, mtime=0)
+    return _Kept(content, compressed, kind, f'"{sha256(content).hexdigest()[:16]}"')
+
 
 _LARGEST_REQUEST: Final = 4 * 2**20  # bytes of JSON
 _JSON: Final = "application/json"

@@ -1,9 +1,8 @@
 """Figures as data: panels with axes, curves, bands and points, drawn by Matplotlib or by a browser."""
 
 from sonolube.charts.chart import Axis, Band, Bars, Chart, Field, Line, Note, Panel, Part, Points, Rule, Zone, one_panel
-from sonolube.charts.chart_object import chart_object, chart_tables
+from sonolube.charts.chart_object import chart_object, chart_tables, envelope
 from sonolube.charts.draw import draw_chart
-from sonolube.charts.thinning import envelope
 
 __all__ = [
     "Axis",

@@ -1,4 +1,4 @@
-"""A chart as an object for JSON, and its numbers as tables."""
+"""A chart as an object for JSON, its numbers as tables, and curves of more values than a page resolves."""
 
 from dataclasses import fields, is_dataclass
 from math import isfinite
@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from sonolube.charts.chart import Axis, Band, Bars, Chart, Field, Line, Panel, Part, Points
+from sonolube.checks import Floats
 from sonolube.figure import COLOURS
-from sonolube.text.printable_text import with_micro_sign
+from sonolube.text.plain_text import with_micro_sign
 
 _DIGITS = 6  # significant ones, more than a screen resolves
 
@@ -125,3 +126,30 @@ def _texts(values: Any, axis: Axis | None = None) -> list[str]:
     words = {} if axis is None else dict(zip(axis.ticks or range(len(axis.words)), axis.words, strict=False))
     numbers = np.asarray(values, dtype=np.float64).tolist()
     return [words[value] if value in words else f"{value:.4g}" if isfinite(value) else "" for value in numbers]
+
+
+_BINS = 1500  # more than a page resolves
+
+
+def envelope(x: Floats, y: Floats, *, bins: int = _BINS) -> tuple[Floats, Floats]:
+    """Curve through the lowest and highest value of each of some bins of equal numbers of values.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Ascending.
+    y : ndarray, shape (n,)
+    bins : int
+
+    Returns
+    -------
+    x, y : ndarray, shape (m,)
+        As given where there are no more than two values a bin; else with both ends of a bin at its middle.
+    """
+    size = -(-x.size // bins)
+    if size <= 2:
+        return x, y
+    starts = np.arange(0, x.size, size)
+    middle = (x[starts] + x[np.minimum(starts + size, x.size) - 1]) / 2
+    ends = np.column_stack([np.fmin.reduceat(y, starts), np.fmax.reduceat(y, starts)])
+    return np.repeat(middle, 2), ends.ravel()

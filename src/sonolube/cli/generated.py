@@ -11,14 +11,21 @@ import typer
 
 from sonolube.cli.console import options
 from sonolube.cli.console.delivery import deliver
-from sonolube.cli.console.gpu_warning import gpu_warning
-from sonolube.cli.console.outputs import ContinuedFolder, OutputFile, OutputFolder
-from sonolube.cli.console.progress import progress
-from sonolube.cli.console.questions import operator_arguments
+from sonolube.cli.console.figure_style import gpu_warning
+from sonolube.cli.console.options import ContinuedFolder, OutputFile, OutputFolder, operator_arguments, progress
 from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import few_points
-from sonolube.tasks.call import Mark, item_of, members_of
-from sonolube.tasks.parameters import DoorParameter, File, KeyValues, OwnFolder, Parameter, RigParameter
+from sonolube.tasks.parameters import (
+    DoorParameter,
+    File,
+    KeyValues,
+    Mark,
+    OwnFolder,
+    Parameter,
+    RigParameter,
+    item_of,
+    members_of,
+)
 from sonolube.tasks.progress import observed
 from sonolube.tasks.table import Task
 from sonolube.tasks.task import argument_names, marks_of

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Final
 import typer
 
 from sonolube.cli.console.delivery import deliver
-from sonolube.cli.console.outputs import OutputFile
+from sonolube.cli.console.options import OutputFile
 from sonolube.cli.generated import argument, command_of
 from sonolube.tasks.identify.rig_of_facts import IdentificationAnswer
 from sonolube.tasks.table import task_named
-from sonolube.text.printable_text import printable
+from sonolube.text.plain_text import printable
 
 _OUT: Final = Annotated[Path | None, typer.Option(help="File to write; standard output by default."), OutputFile()]
 

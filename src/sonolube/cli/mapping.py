@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
-from sonolube.cli.console.questions import Question, ask, is_terminal
+from sonolube.cli.console.options import Question, ask, is_terminal
 from sonolube.cli.generated import command_of
 from sonolube.errors import InvalidInput
+from sonolube.measurement.run_headings import LEFT_OUT, meaning, samples, stated_columns
 from sonolube.measurement.run_table import run_text
-from sonolube.measurement.stated_columns import LEFT_OUT, meaning, samples, stated_columns
 from sonolube.tasks.table import task_named
 
 

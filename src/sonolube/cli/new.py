@@ -7,8 +7,7 @@ from typing import Annotated, Any, Final
 import typer
 
 from sonolube.cli.console.delivery import deliver
-from sonolube.cli.console.outputs import OutputFile
-from sonolube.cli.console.questions import Question, ask, is_terminal
+from sonolube.cli.console.options import OutputFile, Question, ask, is_terminal
 from sonolube.cli.generated import argument, command_of
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material

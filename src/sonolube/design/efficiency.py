@@ -1,10 +1,11 @@
-"""Efficiency line of a rig from measured runs (D 4.1 to 4.3), and the power that a friction force requires."""
+"""Efficiency line of a rig from measured runs (D 4.1 to 4.3) with its figure, and the power for a friction force."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sonolube.charts import Axis, Band, Chart, Line, Part, Points, Rule, one_panel
 from sonolube.checks import Floats
 from sonolube.facts.metrics import (
     EfficiencyFit,
@@ -16,8 +17,7 @@ from sonolube.facts.metrics import (
     power_estimate,
     require_fitted_speed,
 )
-from sonolube.measurement.measured_runs import run_caveats
-from sonolube.measurement.run_selection import setting, with_columns
+from sonolube.measurement.measured_runs import run_caveats, setting, with_columns
 from sonolube.rig import Rig, dataset
 
 if TYPE_CHECKING:
@@ -140,3 +140,27 @@ def efficiency_dataset(calibration: EfficiencyCalibration) -> "xr.Dataset":
         results[f"lowest_{name}"] = ("sliding_speed", low, {"units": "m2/N"})
         results[f"highest_{name}"] = ("sliding_speed", high, {"units": "m2/N"})
     return results
+
+
+_PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
+
+
+def efficiency_chart(calibration: EfficiencyCalibration) -> Chart:
+    """Efficiency coefficients of runs over sliding speed, with the line, its band and the prediction band."""
+    line = efficiency_dataset(calibration)
+    v = 1e3 * line["sliding_speed"].values
+    level = f"{100 * calibration.confidence_level:g} %"
+    bands: list[Part] = []
+    for name, opacity, label in (("run", 0.12, f"one more run, {level}"), ("line", 0.3, f"line, {level}")):
+        low, high = (_PRINTED_UNIT * line[f"{end}_{name}"].values for end in ("lowest", "highest"))
+        bands.append(Band(x=v, low=low, high=high, label=label, opacity=opacity))
+    speeds, coefficients = calibration.sliding_speed, calibration.efficiency_coefficient
+    parts = (
+        *bands,
+        Line(x=v, y=_PRINTED_UNIT * line["efficiency_coefficient"].values, label="least squares"),
+        Points(x=1e3 * speeds, y=_PRINTED_UNIT * coefficients, label="runs", colour=1),
+        Rule(value=0.0, along="y", dash=0),
+    )
+    return one_panel(
+        Axis("Sliding speed", "mm/s"), Axis("Efficiency coefficient", "mW mm²/(N W)"), parts, size=(5.4, 3.5)
+    )

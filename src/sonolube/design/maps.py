@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_positive
-from sonolube.design.saturation import saturation_power
+from sonolube.design.point_statistics import saturation_power
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.rig import (

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.design.chunk_store import ChunkStore
 from sonolube.design.progress import ProgressCallback
-from sonolube.design.sweep_dataset import MemoryDatasetWriter, NetCDFDatasetWriter
+from sonolube.design.sweep_dataset import ChunkStore, MemoryDatasetWriter, NetCDFDatasetWriter
 from sonolube.design.sweep_plan import OPERATING_CONDITIONS, SweepPlan
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.execution.threads import thread_pool
@@ -20,7 +19,7 @@ from sonolube.extras import EXTRAS, missing_package
 from sonolube.models.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.models.friction import SINE_TOLERANCE
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
-from sonolube.rig.operating_vibrations import REFUSED
+from sonolube.rig.operating_conditions import REFUSED
 
 if TYPE_CHECKING:
     import xarray as xr

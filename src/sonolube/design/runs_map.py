@@ -1,24 +1,180 @@
-"""Map of friction reduction between measured runs, interpolated by a Gaussian process."""
+"""Map of friction reduction between measured runs, by Gaussian process regression with its uncertainty."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
+from scipy.linalg import cho_factor, cho_solve
+from scipy.optimize import minimize
 
-from sonolube.checks import Floats
-from sonolube.design.gaussian_process import MIN_RUNS, gaussian_process_map
-from sonolube.design.map_layouts import MAP_LAYOUTS, map_layout, same_panels
+from sonolube.checks import Floats, require_finite, require_non_negative
+from sonolube.design.map_figures import MAP_LAYOUTS, map_layout, same_panels
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import run_caveats
-from sonolube.measurement.run_selection import setting, with_columns
+from sonolube.measurement.measured_runs import run_caveats, setting, with_columns
 from sonolube.rig import VOLTAGE, CommandedQuantity, Rig, own_level
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
+MIN_RUNS = 6
+"""Least number of measured runs that are interpolated."""
+
+# logarithms of the hyperparameters: both length scales, signal variance, noise variance
+_BOUNDS = ((-2.5, 2.5), (-2.5, 2.5), (-7.0, 1.0), (-12.0, 0.0))
+_STARTS = ((0.0, 0.0, -2.0, -6.0), (-1.0, 0.5, -2.0, -8.0), (0.5, -1.0, -3.0, -5.0))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class GaussianProcessMap:
+    """Friction reduction predicted by a Gaussian process from measured runs.
+
+    Parameters
+    ----------
+    friction_reduction : ndarray, shape (...)
+        Predictive mean at each point. []
+    friction_reduction_uncertainty : ndarray, shape (...)
+        Predictive standard deviation of the mean, without the scatter from run to run. []
+    scatter : float
+        Standard deviation of runs about the mean, estimated from the runs themselves.
+    leave_one_out_error : float
+        Root-mean-square error of the prediction of each run from all others.
+    """
+
+    friction_reduction: Floats
+    friction_reduction_uncertainty: Floats
+    scatter: float
+    leave_one_out_error: float
+
+
+def gaussian_process_map(
+    *,
+    runs: ArrayLike,
+    friction_reduction: ArrayLike,
+    points: ArrayLike,
+    friction_reduction_uncertainty: ArrayLike = 0.0,
+) -> GaussianProcessMap:
+    r"""Friction reduction between measured runs by Gaussian process regression (ordinary kriging).
+
+    Parameters
+    ----------
+    runs : array_like, shape (n, 2)
+        Both coordinates of each run, such as sliding speed and power; six runs or more.
+    friction_reduction : array_like, shape (n,)
+        Measured friction reduction of each run. []
+    points : array_like, shape (..., 2)
+        Coordinates of the predictions.
+    friction_reduction_uncertainty : array_like, shape () or (n,)
+        Standard uncertainty of each run. []
+
+    Returns
+    -------
+    GaussianProcessMap
+
+    Raises
+    ------
+    InvalidInput
+        If there are too few runs, shapes do not match, all runs agree in a coordinate, or a value is not finite.
+
+    Notes
+    -----
+    The process has an unknown constant mean and the squared-exponential covariance
+
+    .. math::
+
+        k(x, x') = \sigma_f^2 \exp\Bigl(-\tfrac12 \sum_{j=1}^2 \frac{(x_j - x'_j)^2}{\ell_j^2}\Bigr)
+
+    between coordinates in units of their standard deviation. With :math:`K = k(X, X) + \operatorname{diag}(u^2) +
+    \sigma_n^2 I`, the generalised least-squares mean :math:`m = 1^T K^{-1} z / (1^T K^{-1} 1)` and
+    :math:`k_* = k(X, x_*)`,
+
+    .. math::
+
+        \bar z_* &= m + k_*^T K^{-1} (z - m 1)
+
+        \operatorname{Var} z_* &= \sigma_f^2 - k_*^T K^{-1} k_*
+            + \frac{(1 - 1^T K^{-1} k_*)^2}{1^T K^{-1} 1}
+
+    (equations 2.25, 2.26 and, for the mean, 2.42 of [1]_). Length scales, variance and scatter :math:`\sigma_n`
+    maximise the likelihood of the runs (5.8). Far from all runs the prediction returns to their mean, with the
+    uncertainty of the whole process.
+
+    References
+    ----------
+    .. [1] C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, MIT Press (2006), equations
+       2.25, 2.26, 2.42, 5.8 and 5.12.
+    """
+    z = require_finite(friction_reduction=friction_reduction)
+    uncertainty = require_non_negative(friction_reduction_uncertainty=friction_reduction_uncertainty)
+    x, x_star = (np.asarray(array, dtype=np.float64) for array in (runs, points))
+    if (
+        x.ndim != 2
+        or x.shape[1] != 2
+        or x_star.shape[-1:] != (2,)
+        or z.shape != x.shape[:1]
+        or uncertainty.shape not in ((), z.shape)
+    ):
+        raise InvalidInput(
+            f"runs and points must be pairs, one reduction to a run, got shapes {x.shape}, {x_star.shape}, {z.shape}"
+        )
+    if not (np.isfinite(x).all() and np.isfinite(x_star).all()):
+        raise InvalidInput("runs and points must be finite")
+    if z.size < MIN_RUNS:
+        raise InvalidInput(f"a map needs {MIN_RUNS} runs or more, got {z.size}")
+    centre, width = x.mean(axis=0), x.std(axis=0)
+    if not np.all(width > 0):
+        raise InvalidInput("all runs agree in a coordinate: a map needs runs that differ in both")
+    x, x_star = (x - centre) / width, (x_star - centre) / width
+    noise = np.broadcast_to(uncertainty**2, z.shape)
+    fits = [
+        minimize(_negative_log_likelihood, start, args=(x, z, noise), method="L-BFGS-B", bounds=_BOUNDS)
+        for start in _STARTS
+    ]
+    logs = min(fits, key=lambda fit: float(fit.fun)).x
+    inverse = np.linalg.inv(_covariance(logs, x, noise))
+    ones = np.ones(z.size)
+    precision = ones @ inverse @ ones  # of the estimated mean
+    mean = float(ones @ inverse @ z / precision)
+    weights = inverse @ (z - mean)
+    k_star = _kernel(logs, x_star.reshape(-1, 2), x)
+    mean_residual = 1 - k_star @ inverse @ ones
+    explained = np.einsum("ij,jk,ik->i", k_star, inverse, k_star)
+    variance = np.exp(logs[2]) - explained + mean_residual**2 / precision
+    reduced = inverse - np.outer(inverse @ ones, ones @ inverse) / precision
+    leave_one_out = (reduced @ z) / np.diag(reduced)
+    shape = x_star.shape[:-1]
+    return GaussianProcessMap(
+        friction_reduction=(mean + k_star @ weights).reshape(shape),
+        friction_reduction_uncertainty=np.sqrt(np.maximum(variance, 0.0)).reshape(shape),
+        scatter=float(np.exp(logs[3] / 2)),
+        leave_one_out_error=float(np.sqrt(np.mean(leave_one_out**2))),
+    )
+
+
+def _kernel(logs: Floats, a: Floats, b: Floats) -> Floats:
+    """Squared-exponential covariance between the points of two sets."""
+    distance = (a[:, np.newaxis] - b) / np.exp(logs[:2])
+    return np.asarray(np.exp(logs[2] - 0.5 * np.sum(distance**2, axis=-1)))
+
+
+def _covariance(logs: Floats, x: Floats, noise: Floats) -> Floats:
+    """Covariance matrix of the runs: kernel, measurement uncertainty and scatter."""
+    return _kernel(logs, x, x) + np.diag(noise + np.exp(logs[3]))
+
+
+def _negative_log_likelihood(logs: Floats, x: Floats, z: Floats, noise: Floats) -> float:
+    """Negative log marginal likelihood of the runs but for a constant, with the mean that maximises it."""
+    factor = cho_factor(_covariance(logs, x, noise), lower=True)
+    ones = np.ones(z.size)
+    weights = cho_solve(factor, ones)
+    residual = z - (weights @ z) / (weights @ ones)
+    return float(0.5 * residual @ cho_solve(factor, residual) + np.sum(np.log(np.diag(factor[0]))))
+
+
 _STAND_INS = {"actuator_power": "voltage_peak_to_peak"}  # that give an axis
 _BY_THE_RIG = ("nominal_pressure",)  # axes that a rig gives where no column does
-_POINTS = 61  # of the interpolated map along each axis
+_GRID_POINTS = 61  # of the interpolated map along each axis
 _MATCH = 1e-3  # relative difference of a load or voltage below which a run belongs to a panel as it is
 _UNCERTAINTY = "friction_reduction_uncertainty"
 
@@ -120,7 +276,7 @@ def runs_map(runs: "xr.Dataset", *, kind: str) -> "xr.Dataset | None":
     if runs.sizes["run"] < MIN_RUNS:
         return None
     across, up, _ = MAP_LAYOUTS[kind]
-    x, y = (np.linspace(float(runs[axis].min()), float(runs[axis].max()), _POINTS) for axis in (across, up))
+    x, y = (np.linspace(float(runs[axis].min()), float(runs[axis].max()), _GRID_POINTS) for axis in (across, up))
     interpolated = gaussian_process_map(
         runs=np.stack([runs[across].values, runs[up].values], axis=1),
         friction_reduction=runs["friction_reduction"].values,

@@ -16,7 +16,7 @@ from sonolube.checks import require_finite, require_non_negative, require_positi
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig import NUMBERS, Rig, read_rig, rig_from
 from sonolube.rig.file.entries import set_entry
-from sonolube.rig.file.uncertainty import number_keys
+from sonolube.rig.file.toml_file import number_keys
 
 OPERATING_CONDITIONS = {
     "contact.normal_load": require_positive,

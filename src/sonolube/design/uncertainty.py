@@ -1,7 +1,7 @@
-"""Uncertainty propagation: distributions of rig-file entries through the models of a rig by quasi-Monte Carlo."""
+"""Uncertainty propagation: distributions of rig-file entries, or draws of an identified structure, through a rig."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,15 +12,22 @@ from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.design.parameter_sweep import sweep
 from sonolube.design.progress import ProgressCallback
-from sonolube.design.sobol import SUBSEQUENCES, saltelli_sample, sobol_sample
+from sonolube.design.statistics import SUBSEQUENCES, saltelli_sample, sobol_sample
 from sonolube.design.sweep_plan import SweepPlan, list_plan
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
+from sonolube.identification import Posterior, SingularDirection, posterior
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig import NUMBERS, Rig, read_rig
 from sonolube.rig.datasets import labels
+from sonolube.rig.operating_conditions import REFUSED
 from sonolube.rig.operating_point import COMPUTED, ContactPoint, FrictionPoint, WearPoint, contact_point
-from sonolube.rig.operating_vibrations import REFUSED
 from sonolube.rig.simulation import friction_point, wear_point
+from sonolube.validation.tribometer import (
+    tribometer_identification,
+    tribometer_model,
+    tribometer_problem,
+    tribometer_stack,
+)
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -258,3 +265,43 @@ def _labels(key: str) -> dict[str, str]:
     """Attributes of the coordinate of a key: key, and unit and meaning where the vocabulary has them."""
     name = key.rpartition(".")[2]
     return {"key": key, **(labels(name) if name in quantities() else {})}
+
+
+_STACK_FIELDS = 5  # leading fields of a stack that must agree with the tribometer's
+_STACK_TOLERANCE = 0.01  # relative
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class IdentifiedStructure:
+    """Draws of the parameters of a structure, and the directions in which the facts leave them free.
+
+    Parameters
+    ----------
+    posterior : Posterior
+    unidentifiable_directions : tuple of SingularDirection
+    """
+
+    posterior: Posterior
+    unidentifiable_directions: tuple[SingularDirection, ...]
+
+    def draws_by_key(self) -> dict[str, Floats]:
+        """Draws by the keys of a rig file."""
+        return {f"structure.{name}": values for name, values in self.posterior.draws.items()}
+
+
+def identified_structure(
+    rig: Rig, *, seed: int, advance: Callable[[int, int], None] | None = None
+) -> IdentifiedStructure:
+    """Posterior of the tribometer's masses, springs and dampers, given the published facts that are consistent."""
+    stack, expected = rig.stack, astuple(tribometer_stack())[:_STACK_FIELDS]
+    if stack is None or not all(
+        own == other or (own and other and abs(own / other - 1) < _STACK_TOLERANCE)
+        for own, other in zip(astuple(stack)[:_STACK_FIELDS], expected, strict=True)
+    ):
+        raise InvalidInput(
+            f"{rig.file or rig.title}: an identified structure needs the tribometer's stack, which the facts are of"
+        )
+    identification, bounds = tribometer_identification(seed=seed), tribometer_problem().bounds
+    consistent = [fact for fact in identification.facts if fact.name in identification.satisfied]
+    drawn = posterior(tribometer_model(), facts=consistent, bounds=bounds, seed=seed, advance=advance)
+    return IdentifiedStructure(posterior=drawn, unidentifiable_directions=identification.unidentifiable_directions)

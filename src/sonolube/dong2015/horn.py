@@ -13,12 +13,10 @@ from typing import Any, Final
 
 from sonolube.dong2015.sizes import sized
 from sonolube.errors import UnknownName
-from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel
-from sonolube.models.fem.mesh.geometry import Geometry, single_body
+from sonolube.models.fem.mesh.geometry import MILLIMETRE, Geometry, cad_kernel, single_body
 from sonolube.models.fem.parts.bodies import extruded_polygon
 from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
-from sonolube.models.fem.solver.medium import Medium, isotropic_medium
-from sonolube.models.fem.solver.model import FixedSupport
+from sonolube.models.fem.solver.model import FixedSupport, Medium, isotropic_medium
 from sonolube.models.fem.solver.reduction import Output
 
 _FAR: Final = 1e3  # mm, beyond any horn

@@ -7,17 +7,16 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
-from sonolube.identification.minimum_phase import admittance_with_phase
-from sonolube.identification.spectral_residual import (
+from sonolube.identification.stack_fit import (
     LOG_COMPLEX,
     RESIDUALS,
+    admittance_with_phase,
     caveats_of_spectrum,
     inductive_caveats,
     residual_for,
     residual_named,
 )
-from sonolube.measurement.impedance.passivity import passive_spectrum
-from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, passive_spectrum
 from sonolube.measurement.statistics.log_parameter_fit import (
     ConfidenceInterval,
     LogParameterFit,

@@ -1,17 +1,18 @@
-"""Parameters of a piezoelectric stack in a known structure, by least squares on its measured impedance spectrum."""
+"""Residuals of a model's admittance against a measured spectrum, and parameters of a stack by least squares on them.
+
+Where only the magnitude of the admittance was measured, its phase is that of minimum phase, for initial values.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from scipy.optimize import nnls
 
 from sonolube.checks import Complexes, Floats, require_within
-from sonolube.errors import InvalidInput
-from sonolube.identification.minimum_phase import admittance_with_phase
-from sonolube.identification.spectral_residual import LOG_COMPLEX, caveats_of_spectrum, residual_for, residual_named
-from sonolube.measurement.impedance.passivity import passive_spectrum
-from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, passive_spectrum
 from sonolube.measurement.statistics.log_parameter_fit import (
     ConfidenceInterval,
     confidence_intervals,
@@ -20,6 +21,131 @@ from sonolube.measurement.statistics.log_parameter_fit import (
 )
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.dynamics.structure import Structure, electrical_admittance
+
+_INDUCTIVE_SHARE = 0.05  # of the points
+_MOSTLY = 0.5  # of the points
+_HARDLY_DETERMINED = 4.0  # upper end of an interval over the lower
+
+LOG_COMPLEX = "log-complex"
+LOG_MAGNITUDE = "log-magnitude"
+LINEAR_MAGNITUDE = "linear-magnitude"
+
+
+def _log_complex(model: Complexes, measured: Complexes) -> Floats:
+    """Logarithms of the magnitude ratio, then phase differences in rad, shape (2n,)."""
+    ratio = np.log(model / measured)  # principal branch: phase differences lie between -pi and pi
+    return np.concatenate([ratio.real, ratio.imag])
+
+
+def _log_magnitude(model: Complexes, measured: Complexes) -> Floats:
+    """Logarithms of the magnitude ratio, shape (n,)."""
+    return np.asarray(np.log(np.abs(model) / np.abs(measured)))
+
+
+def _linear_magnitude(model: Complexes, measured: Complexes) -> Floats:
+    """Differences of the magnitudes over the largest measured one, shape (n,)."""
+    magnitude = np.abs(measured)
+    return np.asarray((np.abs(model) - magnitude) / magnitude.max())
+
+
+RESIDUALS: Mapping[str, Callable[[Complexes, Complexes], Floats]] = MappingProxyType(
+    {LOG_COMPLEX: _log_complex, LOG_MAGNITUDE: _log_magnitude, LINEAR_MAGNITUDE: _linear_magnitude}
+)
+
+
+def residual_for(spectrum: ImpedanceSpectrum, name: str) -> str:
+    """Name of the residual for a spectrum: "log-magnitude" in place of "log-complex" where no phase was measured."""
+    return LOG_MAGNITUDE if name == LOG_COMPLEX and not spectrum.has_phase else name
+
+
+def caveats_of_spectrum(spectrum: ImpedanceSpectrum, intervals: Mapping[str, ConfidenceInterval]) -> tuple[str, ...]:
+    """Warnings about a spectrum of magnitudes only, and about parameters that a spectrum hardly determines."""
+    loose = [name for name, found in intervals.items() if not found.upper < _HARDLY_DETERMINED * found.lower]
+    named = f"hardly determined: {', '.join(loose)}" if loose else "it determines every parameter"
+    if not spectrum.has_phase:
+        return (f"the spectrum has no phase, so the fit is to the magnitude of the admittance alone; {named}",)
+    return (f"{named}; the spectrum is not that of the model",) if loose else ()
+
+
+def inductive_caveats(spectrum: ImpedanceSpectrum, fitted: Complexes) -> tuple[str, ...]:
+    """Warning about a part of a spectrum that is inductive where the fitted admittance is capacitive."""
+    f, inductive = spectrum.frequency, spectrum.admittance.imag < 0
+    apart = inductive if np.mean(inductive) > _MOSTLY else inductive & (fitted.imag > 0)
+    if not np.mean(apart) > _INDUCTIVE_SHARE:
+        return ()
+    return (
+        f"the impedance is inductive at {np.mean(apart):.0%} of the points, from {f[apart][0]:.6g} to"
+        f" {f[apart][-1]:.6g} Hz, where a transducer is capacitive: leads or a coil in series, which the circuit lacks",
+    )
+
+
+def residual_named(name: str) -> Callable[[Complexes, Complexes], Floats]:
+    r"""Residual function of a name, which takes a model's admittance and the measured one.
+
+    For the model's admittance :math:`Y_i` and the measured one :math:`\hat Y_i`, "log-complex" is
+
+    .. math:: \left(\operatorname{Re} \ln \frac{Y_i}{\hat Y_i},\ \operatorname{Im} \ln \frac{Y_i}{\hat Y_i}\right),
+
+    which gives every point the same relative weight, "log-magnitude" its first part, and "linear-magnitude" is
+
+    .. math:: \frac{|Y_i| - |\hat Y_i|}{\max_j |\hat Y_j|},
+
+    in which points about the resonance have nearly all the weight.
+    """
+    if name not in RESIDUALS:
+        raise UnknownName.among(RESIDUALS, kind="residual", name=name)
+    return RESIDUALS[name]
+
+
+_MAX_POINTS = 5000  # of which the phase is computed; between them it is interpolated
+
+
+def admittance_with_phase(spectrum: ImpedanceSpectrum) -> Complexes:
+    """Measured admittance, its phase that of minimum phase where only the magnitude was measured."""
+    if spectrum.has_phase:
+        return spectrum.admittance
+    return minimum_phase_admittance(np.abs(spectrum.admittance), frequency=spectrum.frequency)
+
+
+def minimum_phase_admittance(magnitude: Floats, *, frequency: Floats) -> Complexes:
+    r"""Admittance of a capacitive one-port from its magnitude, by the relation of gain and phase.
+
+    Complex, of the given magnitude.
+
+    An admittance of passive parts has neither poles nor zeros in the right half-plane, so that its phase follows from
+    its magnitude With :math:`g = \ln(|Y|/f)`, which is constant far from resonances,
+
+    .. math:: \varphi(f) = \frac{\pi}{2} + \frac{2f}{\pi} \int_0^\infty \frac{g(\nu) - g(f)}{\nu^2 - f^2}\,d\nu .
+
+    Beyond the sweep g is continued as constant, so the phase is approximate near the ends of a sweep that begins or
+    ends close to a resonance.
+
+    Source: H. W. Bode, Network Analysis and Feedback Amplifier Design, Van Nostrand (1945), chapter 14.
+    """
+    step = -(-frequency.size // _MAX_POINTS)
+    f = frequency[::step]
+    phase = np.interp(frequency, f, _phase(np.log(magnitude[::step] / f), f))
+    return np.asarray(magnitude * np.exp(1j * np.clip(phase, -np.pi / 2, np.pi / 2)))
+
+
+def _phase(gain: Floats, frequency: Floats) -> Floats:
+    """Phase in rad, by the trapezoidal rule within the sweep and in closed form beyond."""
+    phase = np.empty_like(gain)
+    width = np.gradient(frequency)
+    lowest, highest = frequency[0], frequency[-1]
+    slope = np.gradient(gain, frequency)
+    for at, f in enumerate(frequency):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            kernel = (gain - gain[at]) / (frequency**2 - f**2)
+            below = np.log((f + lowest) / (f - lowest)) / (2 * f)
+            above = np.log((highest + f) / (highest - f)) / (2 * f)
+        kernel[at] = slope[at] / (2 * f)
+        inside = float(np.sum(kernel * width)) - 0.5 * float(kernel[0] * width[0] + kernel[-1] * width[-1])
+        beyond = (gain[-1] - gain[at]) * above if at < gain.size - 1 else 0.0
+        before = (gain[0] - gain[at]) * below if at else 0.0
+        phase[at] = np.pi / 2 + 2 * f / np.pi * (inside + beyond - before)
+    return phase
+
 
 _STIFFNESS_FACTORS = np.geomspace(1 / 30, 30, 121)
 _DAMPING_FACTORS = (0.1, 1.0, 10.0)

@@ -19,17 +19,17 @@ from .devices import (
 )
 from .interlocks import Interlock as Interlock, Trip as Trip, first_trip as first_trip, interlocks_for as interlocks_for
 from .own_clocks import OwnClocks as OwnClocks
-from .run_control import RunControl as RunControl
 from .runner import RunResult as RunResult, run_protocol as run_protocol
-from .sampling import Sampling as Sampling
 from .set_points import impossibilities as impossibilities, require_possible as require_possible
 from .states import (
     OUTCOMES as OUTCOMES,
     TRANSITIONS as TRANSITIONS,
     Action as Action,
     Event as Event,
+    RunControl as RunControl,
     RunState as RunState,
     State as State,
     Transition as Transition,
     after as after,
 )
+from .supervised_run import Sampling as Sampling

@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.models.actuator import AmplifierRequirements, Drive, amplifier_requirements
-from sonolube.rig.excitation import DriveVoltage
+from sonolube.rig.driven_rig import DriveVoltage
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

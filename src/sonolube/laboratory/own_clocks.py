@@ -1,6 +1,6 @@
-"""Acquisitions with clocks of their own: each is read by a thread of its own, which also holds it to its limits.
+"""Acquisitions watched by threads: those with clocks of their own, and of a standing rig while an operator works at it.
 
-The thread has its device from the first call to the last, so that one that hangs keeps no other waiting. A run takes
+A thread has its device from the first call to the last, so that one that hangs keeps no other waiting. A run takes
 what was read, and looks for what is wrong, with every block of its own clock: a sample beyond a limit, an error, lost
 samples or a block that is late by more than two seconds end the run with motor and drive off.
 """
@@ -9,21 +9,114 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from math import inf
 from threading import Event as Signal, Lock, Thread
 from typing import Final
 
 import numpy as np
 
 from sonolube.errors import SonolubeError
+from sonolube.facts.protocol import Limits
 from sonolube.laboratory import supervision
 from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, require_gapless
-from sonolube.laboratory.ending import RunEnded
-from sonolube.laboratory.interlocks import Interlock, first_trip
-from sonolube.laboratory.run_control import RunControl
-from sonolube.laboratory.standing_rig import SETTLING, still_on
-from sonolube.laboratory.states import Event
+from sonolube.laboratory.interlocks import IDLE_RATE, Interlock, Trip, first_trip
+from sonolube.laboratory.states import Event, RunControl, RunEnded, ending
 from sonolube.text.units import format_si
+
+_VIRTUAL: Final = 2.0  # s, of the time of virtual devices
+_OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
+_OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
+_STILL_SHARE: Final = 0.01  # of the speed of the motor, below which the disc counts as at rest
+SETTLING: Final = {"drive": 1.0, "motor": 10.0}
+"""Time in which amplifier and disc come to rest. [s]"""
+
+
+class StandingRig:
+    """Watch over devices whose motor and drive were switched off.
+
+    Parameters
+    ----------
+    devices : Devices
+        Virtual ones, whose time does not go on by itself, are watched for two seconds.
+    locks : sequence of Interlock
+        Of the protocol; those of the temperature hold here too.
+    limits : Limits
+    sample_rate : float
+        Highest that the protocol uses. [Hz]
+    """
+
+    def __init__(self, devices: Devices, locks: Sequence[Interlock], limits: Limits, *, sample_rate: float) -> None:
+        self._acquisition = devices.acquisition
+        channels, self._lasts = devices.acquisition.channels, inf if devices.clock is None else _VIRTUAL
+        self._off = [(what, lock) for what, lock in off_bounds(devices, limits) if lock.channel.name in channels]
+        self._always = [lock for lock in locks if lock.channel.is_watched_at_rest and lock.channel.name in channels]
+        self._names = [lock.channel.name for lock in (*self._always, *(lock for _, lock in self._off))]
+        self._wanted_rate, self._rate, self._time = min(sample_rate, IDLE_RATE), 0.0, 0.0
+        self._failure: BaseException | None = None
+
+    @contextmanager
+    def watched(self, control: RunControl) -> Iterator[None]:
+        """Watch inside a `with` block, by a thread, from when outputs were switched off."""
+        if not self._names:
+            yield
+            return
+        self._rate, self._time = self._acquisition.start(self._names, sample_rate=self._wanted_rate), 0.0
+        ended = Signal()
+        thread = Thread(target=self._look_on, args=(ended, control), daemon=True, name="sonolube standing rig")
+        thread.start()
+        try:
+            yield
+        finally:
+            if self._lasts == inf:
+                ended.set()
+            thread.join()
+            self._acquisition.stop()
+        if self._failure is not None:
+            raise self._failure
+
+    def _look_on(self, ended: Signal, control: RunControl) -> None:
+        """Read block after block until the end, or until something is wrong."""
+        try:
+            while not ended.is_set() and self._time < self._lasts:
+                trip = self._look()
+                if trip is not None:
+                    raise RunEnded(Event.TRIP, trip)
+        except BaseException as failure:  # whatever a driver raises, the rig is watched no more
+            self._failure = failure
+            control.stop(ending(failure)[1])
+
+    def _look(self) -> str | None:
+        """Read a block, and return what is wrong."""
+        block = self._acquisition.read(max(1, round(BLOCK_DURATION * self._rate)))
+        self._time += block.samples / self._rate
+        trip = first_trip(block, self._names, self._always)
+        if trip is not None:
+            return trip.reason
+        for what, lock in self._off:
+            trip = first_trip(block, self._names, [lock])
+            if trip is not None and self._time > SETTLING[what]:
+                return still_on(what, lock, trip)
+        return None
+
+
+def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
+    """Bounds of channels that show whether motor or drive are off, with what is off within them."""
+    channels = devices.channels
+    volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
+    at_rest = {
+        "voltage": ("drive", volts),
+        "voltage_peak_to_peak": ("drive", 2 * volts),
+        "rotation_speed": ("motor", _STILL_SHARE * devices.motor.rotation_speed_maximum),
+    }
+    return [(what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels]
+
+
+def still_on(what: str, lock: Interlock, trip: Trip) -> str:
+    """Why an output that was switched off counts as on."""
+    most = format_si(lock.limit, lock.channel.unit)
+    return f"the {what} was switched off, but {trip.reason.partition(';')[0]} (off is up to {most}): cut the power"
+
 
 _CONNECTING: Final = 60.0  # s
 _ENDING: Final = 10.0  # s, to stop and release a device

@@ -7,13 +7,12 @@ from typing import Final
 
 from sonolube.facts.protocol import Protocol, protocol_text
 from sonolube.laboratory.devices import Devices
-from sonolube.laboratory.drive_sampling import DriveSampling, drive_sampling, recorded_channels
-from sonolube.laboratory.interlocks import interlocks_for
+from sonolube.laboratory.interlocks import DriveSampling, drive_sampling, interlocks_for, recorded_channels
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
 from sonolube.laboratory.set_points import groove_diameter
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import Rig
-from sonolube.storage.input_files import input_text
+from sonolube.storage.user_files import input_text
 
 _STATED: Final = ("specimen", "operator", "humidity", "calibrated", "block", "run")  # of the metadata of a protocol
 

@@ -9,18 +9,23 @@ from typing import Final
 
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.laboratory.block import BLOCK_DURATION
-from sonolube.laboratory.checked_quantity import SETTLING, SPEED_CHANNEL, SPEEDS, CheckedValue, speed_checks, speed_of
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.drive_sampling import drive_sampling, idle_rate
-from sonolube.laboratory.ending import RunEnded
-from sonolube.laboratory.interlocks import interlocks_for
-from sonolube.laboratory.own_clocks import OwnClocks
-from sonolube.laboratory.run_control import RunControl
-from sonolube.laboratory.sampling import Sampling
-from sonolube.laboratory.set_points import drive_setting, groove_diameter, require_possible, rotation_speed
-from sonolube.laboratory.standing_rig import StandingRig, off_bounds
-from sonolube.laboratory.states import Event, State
-from sonolube.laboratory.supervised_run import Advance, SupervisedRun
+from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for
+from sonolube.laboratory.own_clocks import OwnClocks, StandingRig, off_bounds
+from sonolube.laboratory.set_points import (
+    SETTLING,
+    SPEED_CHANNEL,
+    SPEEDS,
+    CheckedValue,
+    drive_setting,
+    groove_diameter,
+    require_possible,
+    rotation_speed,
+    speed_checks,
+    speed_of,
+)
+from sonolube.laboratory.states import Event, RunControl, RunEnded, State
+from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 from sonolube.text.units import format_si
 

@@ -1,12 +1,17 @@
-"""States of a run without input or output: what may happen in each, and what must be done then."""
+"""States of a run: what may happen in each and what must be done then, requests of others, and how it ends.
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+The states have no input and no output; the end of a run follows from what was raised.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from threading import Event as Signal
 from types import MappingProxyType
 from typing import Final
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.laboratory.devices import DeviceError, Devices
 
 
 class State(Enum):
@@ -164,3 +169,75 @@ def after(present: RunState, event: Event, *, reason: str = "") -> tuple[RunStat
     elif event in OUTCOMES and not present.outcome and transition.state is State.STOPPING:
         found = replace(found, outcome=OUTCOMES[event], reason=reason)
     return found, transition.action
+
+
+@dataclass(slots=True)
+class RunControl:
+    """Requests to a running protocol.
+
+    Parameters
+    ----------
+    stop_reason : str
+        Why the run is to end; empty while it is not.
+    """
+
+    stop_reason: str = ""
+    _pause: Signal = field(default_factory=Signal)
+
+    def stop(self, reason: str) -> None:
+        """End the run after the present block."""
+        self.stop_reason = self.stop_reason or reason
+
+    def pause(self) -> None:
+        """Switch motor and drive off after the present block, and let the clock stand."""
+        self._pause.set()
+
+    def resume(self) -> None:
+        """Resume after a pause."""
+        self._pause.clear()
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether a pause is wanted."""
+        return self._pause.is_set()
+
+
+class RunEnded(SonolubeError):
+    """End of a run before its time: by a limit, a request or the operator.
+
+    Parameters
+    ----------
+    event : Event
+    reason : str
+    """
+
+    def __init__(self, event: Event, reason: str) -> None:
+        self.event = event
+        super().__init__(reason)
+
+
+def ending(failure: BaseException) -> tuple[Event, str]:
+    """Event and reason by which a run ends."""
+    if isinstance(failure, RunEnded):
+        return failure.event, str(failure)
+    if isinstance(failure, DeviceError):
+        return Event.DEVICE_ERROR, str(failure)
+    if isinstance(failure, SonolubeError):
+        return Event.CRASH, str(failure)
+    return Event.CRASH, f"{type(failure).__name__}: {failure}"
+
+
+def release_devices(devices: Devices, *before: Callable[[], object]) -> list[str]:
+    """Failures while all devices are released, each whatever becomes of the others; never raises."""
+    return tried(*before, devices.drive.close, devices.motor.close, devices.acquisition.close)
+
+
+def tried(*calls: Callable[[], object]) -> list[str]:
+    """Failures of calls, each made whatever becomes of the others; never raises."""
+    failures = []
+    for call in calls:
+        try:
+            call()
+        except Exception as failure:  # whatever a driver raises, the others must be released
+            failures.append(str(failure))
+    return failures

@@ -1,20 +1,197 @@
-"""Runs on supervised devices: connected with their outputs off, and off and released again however a run ends."""
+"""Runs on supervised devices: connected with their outputs off, sampled, and off and released again however a run ends.
+
+Blocks are held to the sample counter and to the limits, and recorded where a step says so.
+"""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
+import numpy as np
+
+from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Limits
-from sonolube.laboratory.devices import Devices, DriveSetting, Recorder, connect_devices, switch_outputs_off
-from sonolube.laboratory.ending import RunEnded, ending, release_devices, tried
-from sonolube.laboratory.interlocks import Trip, set_point_trip
+from sonolube.laboratory.block import BLOCK_DURATION, Block
+from sonolube.laboratory.devices import (
+    Acquisition,
+    Devices,
+    DriveSetting,
+    Recorder,
+    connect_devices,
+    require_gapless,
+    switch_outputs_off,
+)
+from sonolube.laboratory.interlocks import Interlock, Trip, first_trip, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.reservation import reserved
-from sonolube.laboratory.run_control import RunControl
-from sonolube.laboratory.sampling import Sampling
-from sonolube.laboratory.states import Event, RunState, State, after
+from sonolube.laboratory.states import (
+    Event,
+    RunControl,
+    RunEnded,
+    RunState,
+    State,
+    after,
+    ending,
+    release_devices,
+    tried,
+)
 from sonolube.laboratory.supervision import Supervisor
+
+
+class Sampling:
+    """Acquisition of a run, whose sample counter is the clock of the protocol.
+
+    Parameters
+    ----------
+    acquisition : Acquisition
+    recorder : Recorder or None
+    locks : sequence of Interlock
+        Those of other acquisitions are left to `beside`.
+    beside : OwnClocks
+        Acquisitions with clocks of their own, which were begun.
+    also : sequence of str
+        Channels that are sampled with them where the acquisition has them.
+    """
+
+    def __init__(
+        self,
+        acquisition: Acquisition,
+        recorder: Recorder | None,
+        locks: Sequence[Interlock],
+        *,
+        beside: OwnClocks,
+        also: Sequence[str] = (),
+    ) -> None:
+        self._acquisition, self._recorder, self._beside = acquisition, recorder, beside
+        self._locks = [lock for lock in locks if lock.channel.name in acquisition.channels]
+        self._watched = [lock.channel.name for lock in self._locks]
+        self._watched += [name for name in also if name in acquisition.channels and name not in self._watched]
+        self._names: list[str] = []
+        self._recorded = 0  # of them, the first ones
+        self._origin = 0.0  # time of the protocol at sample 0
+        self._recording = False
+        self._latest: Block | None = None
+        self.rate = 0.0
+        self.sample = 0
+        self.time = 0.0
+
+    @property
+    def is_running(self) -> bool:
+        """Whether samples are taken."""
+        return self.rate > 0
+
+    @property
+    def is_recording(self) -> bool:
+        """Whether samples are recorded."""
+        return self._recording
+
+    def start(self, channels: Sequence[str], *, sample_rate: float) -> None:
+        """Sample channels to be recorded, and those that limits watch, from sample 0 on.
+
+        Parameters
+        ----------
+        channels : sequence of str
+        sample_rate : float
+            [Hz]
+        """
+        own = self._own(channels)
+        watched = [name for name in self._watched if name not in own]
+        self._names = [*own, *watched] or [next(iter(self._acquisition.channels))]
+        self._recorded = len(own)
+        self.rate = self._acquisition.start(self._names, sample_rate=sample_rate)
+        self.sample, self._origin, self._latest = 0, self.time, None
+
+    def stop(self) -> None:
+        """Stop to sample and to record."""
+        self.end_recording()
+        if self.is_running:
+            self.rate = 0.0
+            self._acquisition.stop()
+
+    def record(self, channels: Sequence[str], *, sample_rate: float) -> None:
+        """Record channels from now on; the acquisition starts anew where it samples otherwise.
+
+        Parameters
+        ----------
+        channels : sequence of str
+        sample_rate : float
+            [Hz]
+        """
+        own = self._own(channels)
+        as_it_runs = self._names[: self._recorded] == own and bool(np.isclose(self.rate, sample_rate))
+        if not as_it_runs:
+            self.stop()
+            self.start(channels, sample_rate=sample_rate)
+        found = [self._acquisition.channels[name] for name in own]
+        if self._recorder is not None:
+            self._recorder.begin(found, sample_rate=self.rate)
+        self._recording = True
+        self._beside.record(channels)
+
+    def end_recording(self) -> None:
+        """Record no more."""
+        if self._recording:
+            self._recording = False
+            if self._recorder is not None:
+                self._beside.end_recording(self._recorder)
+                self._recorder.end()
+
+    def read_until(self, time: float) -> Trip | None:
+        """Read the samples up to a time of the protocol, and return the first one beyond a limit. [s]"""
+        count = round((time - self._origin) * self.rate) - self.sample
+        trip = self._take(count) if count > 0 else None
+        self.time = time
+        return trip
+
+    def measure(self, channel: str) -> tuple[float | None, Trip | None]:
+        """Mean of a channel over a block that is read for it while the clock of the protocol stands.
+
+        Parameters
+        ----------
+        channel : str
+
+        Returns
+        -------
+        float or None
+            In SI; None where the channel is not sampled.
+        Trip or None
+        """
+        if self.mean(channel) is None and channel not in self._names:
+            return None, None
+        count = max(1, round(BLOCK_DURATION * self.rate))
+        trip = self._take(count)
+        self._origin -= count / self.rate
+        return self.mean(channel), trip
+
+    def mean(self, channel: str) -> float | None:
+        """Mean of a channel over the latest block, in SI; None where it is not sampled."""
+        if channel not in self._names:
+            return self._beside.mean(channel)
+        return None if self._latest is None else float(np.mean(self.samples(channel)))
+
+    def samples(self, channel: str) -> Floats:
+        """Samples of a channel of the latest block, in SI."""
+        assert self._latest is not None
+        return self._latest.values[:, self._names.index(channel)]
+
+    def _own(self, channels: Sequence[str]) -> list[str]:
+        """Those of channels that the acquisition has."""
+        return [name for name in channels if name in self._acquisition.channels]
+
+    def _take(self, count: int) -> Trip | None:
+        """Read samples, hold them to the counter and to the limits, and record them."""
+        block = self._acquisition.read(count)
+        require_gapless(block, self.sample, device=self._acquisition.name)
+        self.sample, self._latest = block.next_sample, block
+        if self._recording and self._recorder is not None:
+            values = block.values[:, : self._recorded]
+            self._recorder.append(Block(first_sample=block.first_sample, sample_rate=self.rate, values=values))
+        trip = first_trip(block, self._names, self._locks)
+        if trip is None:
+            self._beside.keep(self._recorder)
+        return trip
+
 
 Advance = Callable[[str, int, int], None]
 """Takes what happens now, the time done and the whole time, in ms."""

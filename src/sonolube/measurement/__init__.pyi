@@ -21,25 +21,27 @@ from .contact_stiffness.stiffness_estimate import (
     LogEstimate as LogEstimate,
     single_mode as single_mode,
 )
-from .friction.force_cycle import ForceCycle as ForceCycle, find_cycle as find_cycle
+from .friction.force_cycle import (
+    ForceCycle as ForceCycle,
+    StickSlipBurst as StickSlipBurst,
+    StickSlipEstimate as StickSlipEstimate,
+    find_cycle as find_cycle,
+)
 from .friction.loops import (
     FrictionLoops as FrictionLoops,
     FrictionWork as FrictionWork,
     friction_loops as friction_loops,
     friction_work as friction_work,
 )
-from .friction.motor_current import (
-    MotorCalibration as MotorCalibration,
-    MotorFrictionTrace as MotorFrictionTrace,
-    friction_from_motor_current as friction_from_motor_current,
-)
 from .friction.rotation import (
     DiscRotation as DiscRotation,
+    MotorCalibration as MotorCalibration,
+    MotorFrictionTrace as MotorFrictionTrace,
     disc_rotation as disc_rotation,
+    friction_from_motor_current as friction_from_motor_current,
     hall_pulse_times as hall_pulse_times,
     revolutions_at as revolutions_at,
 )
-from .friction.running_in import SteadyStateOnset as SteadyStateOnset, steady_state_onset as steady_state_onset
 from .friction.sliding import at_rest as at_rest
 from .friction.slip_events import SlipChain as SlipChain, find_slips as find_slips, noise_spectra as noise_spectra
 from .friction.step_means import (
@@ -51,7 +53,6 @@ from .friction.step_means import (
     wobble_columns as wobble_columns,
 )
 from .friction.stick_slip import estimate_stick_slip as estimate_stick_slip, stick_slip_of_parts as stick_slip_of_parts
-from .friction.stick_slip_estimate import StickSlipBurst as StickSlipBurst, StickSlipEstimate as StickSlipEstimate
 from .friction.voltage_steps import (
     VoltageStep as VoltageStep,
     friction_at_voltage_steps as friction_at_voltage_steps,
@@ -60,15 +61,18 @@ from .friction.voltage_steps import (
 )
 from .friction.windows import (
     DEFAULT_WINDOW_DURATION as DEFAULT_WINDOW_DURATION,
+    SteadyStateOnset as SteadyStateOnset,
     WindowStatistics as WindowStatistics,
+    steady_state_onset as steady_state_onset,
     streamed_window_statistics as streamed_window_statistics,
     window_statistics as window_statistics,
 )
-from .friction.wobble import WobbleCorrection as WobbleCorrection, remove_wobble as remove_wobble
-from .friction.wobble_search import (
+from .friction.wobble import (
+    WobbleCorrection as WobbleCorrection,
     find_rotation_speed as find_rotation_speed,
     harmonic_columns as harmonic_columns,
     refined_speed as refined_speed,
+    remove_wobble as remove_wobble,
 )
 from .friction_analysis import (
     FrictionCycles as FrictionCycles,
@@ -101,20 +105,14 @@ from .gauge.preisach import (
     preisach_output as preisach_output,
     relay_fractions as relay_fractions,
 )
-from .impedance.formats import IMPEDANCE_FORMATS as IMPEDANCE_FORMATS, ImpedanceFormat as ImpedanceFormat
-from .impedance.passivity import passive_spectrum as passive_spectrum
-from .impedance.reader import read_impedance as read_impedance
-from .impedance.spectrum import ImpedanceSpectrum as ImpedanceSpectrum
-from .recordings.formats import (
-    RECORDING_FORMATS as RECORDING_FORMATS,
-    RecordingFormat as RecordingFormat,
-    StreamedRecordingFormat as StreamedRecordingFormat,
+from .impedance.spectrum import (
+    IMPEDANCE_FORMATS as IMPEDANCE_FORMATS,
+    ImpedanceFormat as ImpedanceFormat,
+    ImpedanceSpectrum as ImpedanceSpectrum,
+    passive_spectrum as passive_spectrum,
+    read_impedance as read_impedance,
 )
-from .recordings.instrument_mappings import (
-    instrument_mappings as instrument_mappings,
-    mapping_by_name as mapping_by_name,
-)
-from .recordings.joined_recording import join_recordings as join_recordings
+from .recordings.channels_and_parts import join_recordings as join_recordings
 from .recordings.mapping import (
     ChannelSource as ChannelSource,
     RecordingMapping as RecordingMapping,
@@ -123,6 +121,11 @@ from .recordings.mapping import (
     read_mapping as read_mapping,
 )
 from .recordings.reader import (
+    RECORDING_FORMATS as RECORDING_FORMATS,
+    RecordingFormat as RecordingFormat,
+    StreamedRecordingFormat as StreamedRecordingFormat,
+    instrument_mappings as instrument_mappings,
+    mapping_by_name as mapping_by_name,
     read_recording as read_recording,
     recording_blocks as recording_blocks,
     recording_format_name as recording_format_name,
@@ -130,12 +133,10 @@ from .recordings.reader import (
 )
 from .statistics.autocorrelation import (
     CorrelatedMean as CorrelatedMean,
-    correlated_mean as correlated_mean,
-    statistical_inefficiency as statistical_inefficiency,
-)
-from .statistics.correlated_regression import (
     CorrelatedRegression as CorrelatedRegression,
+    correlated_mean as correlated_mean,
     correlated_regression as correlated_regression,
+    statistical_inefficiency as statistical_inefficiency,
 )
 from .statistics.log_parameter_fit import (
     ConfidenceInterval as ConfidenceInterval,
@@ -152,9 +153,10 @@ from .statistics.repeated_tests import (
     mean_estimate as mean_estimate,
     ratio_interval as ratio_interval,
 )
-from .surface_files.formats import SURFACE_FORMATS as SURFACE_FORMATS, SurfaceFormat as SurfaceFormat
 from .surface_files.reader import (
+    SURFACE_FORMATS as SURFACE_FORMATS,
     SurfaceFile as SurfaceFile,
+    SurfaceFormat as SurfaceFormat,
     read_height_map as read_height_map,
     read_surface_file as read_surface_file,
 )

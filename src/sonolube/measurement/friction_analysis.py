@@ -6,24 +6,32 @@ from typing import TYPE_CHECKING
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.friction.force_cycle import StickSlipEstimate
 from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, friction_work
-from sonolube.measurement.friction.motor_current import (
+from sonolube.measurement.friction.rotation import (
+    DiscRotation,
     MotorCalibration,
     MotorFrictionTrace,
+    disc_rotation,
     friction_from_motor_current,
+    hall_pulse_times,
+    revolutions_at,
 )
-from sonolube.measurement.friction.rotation import DiscRotation, disc_rotation, hall_pulse_times, revolutions_at
-from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
 from sonolube.measurement.friction.stick_slip import estimate_stick_slip
-from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate
 from sonolube.measurement.friction.voltage_steps import (
     VoltageStep,
     friction_at_voltage_steps,
     rotation_speed_at_voltage_steps,
 )
-from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, window_statistics
+from sonolube.measurement.friction.windows import (
+    DEFAULT_WINDOW_DURATION,
+    SteadyStateOnset,
+    WindowStatistics,
+    steady_state_onset,
+    window_statistics,
+)
 from sonolube.measurement.friction.wobble import WobbleCorrection, remove_wobble
-from sonolube.measurement.recorded_sliding import recorded_voltage, speed_changes, speed_of_one_direction
+from sonolube.measurement.recorded_conditions import recorded_voltage, speed_changes, speed_of_one_direction
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.limits import require_channels, require_values
+from sonolube.measurement.measured_files import require_channels, require_values
 
 _MAX_LINKS = 30_000  # names of groups and datasets in a file
 _DEEPEST = 64  # groups within groups
@@ -29,7 +29,7 @@ def numeric_datasets(
     """Yield label and dataset of each wanted array of numbers in an HDF5 file, once each, in order of the labels.
 
     `label`: Names of the groups and of the dataset, divided by "/". `dataset`: Stored in this file; all of them
-    together are within the limits of `sonolube.measurement.limits`.
+    together are within the limits of `sonolube.measurement.measured_files`.
     """
     values = channels = 0
     for label, dataset in _datasets(file, path):

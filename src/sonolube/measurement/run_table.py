@@ -11,15 +11,17 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.file_format import read_head
-from sonolube.measurement.numeric_text import detected_decimal_sign, parse_number
-from sonolube.measurement.recordings.delimited import DelimitedText
+from sonolube.measurement.measured_files import detected_decimal_sign, parse_number, read_head
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, TextLayout
-from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
-from sonolube.measurement.recordings.text_columns import NumberedCells
-from sonolube.measurement.recordings.text_file import decoded_text
-from sonolube.measurement.recordings.text_tables import TextTable, require_rows, text_tables
-from sonolube.measurement.recordings.written_units import si_conversion
+from sonolube.measurement.recordings.raw_table import column_of_label, numbered_labels, si_conversion
+from sonolube.measurement.recordings.text_recordings import DelimitedText
+from sonolube.measurement.recordings.text_tables import (
+    NumberedCells,
+    TextTable,
+    decoded_text,
+    require_rows,
+    text_tables,
+)
 from sonolube.measurement.run_columns import TEXT_NAMES, heading
 from sonolube.measurement.run_headings import meaning_at_stake, run_heading
 from sonolube.text.units import unit_description

@@ -1,14 +1,23 @@
-"""Limits of a prediction: rigs that it refuses, and conditions of which the published tests tell less or nothing."""
+"""Limits of a prediction, its interval of the friction ratio alone, and the heating of a contact.
+
+Rigs that a prediction refuses, and conditions of which the published tests tell less or nothing.
+"""
 
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from sonolube.errors import InvalidInput, MissingProperty, SonolubeError
+from sonolube.models.thermal import EllipticSource, contact_rise
 from sonolube.prediction.bodies import named_bodies
 from sonolube.prediction.evidence import published_rigs
-from sonolube.prediction.inputs import RigInputs
-from sonolube.rig import Rig
+from sonolube.prediction.hierarchy import central_interval
+from sonolube.prediction.inputs import RigInputs, rig_inputs
+from sonolube.prediction.posterior import learned
+from sonolube.prediction.predictive import DRAWS, ratio_draws
+from sonolube.rig import ResolvedRig, Rig, thermal_solid
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.text.units import format_si
 from sonolube.validation.published_tests import friction_tests
 
@@ -147,3 +156,63 @@ def _conditions(rig: Rig, inputs: RigInputs) -> list[tuple[str, float, str, np.n
         ("sliding speed", inputs.sliding_speed, "m/s", np.concatenate([each.sliding_speed for each in tested])),
         ("effective modulus", rig.contact.pair.effective_modulus, "Pa", np.array(moduli)),
     ]
+
+
+def contact_heating(rig: Rig, pin: str | None, disc: str | None) -> float | str:
+    """Mean temperature rise of the contact, taken as circular, for a watt of friction, in K/W; or why it is unknown."""
+    named = pin is not None or disc is not None
+    pin, disc = pin or rig.pin_material, disc or rig.disc_material
+    if pin is None or disc is None:
+        if named:
+            raise InvalidInput("the temperature rise needs both materials; give pin and disc, or neither")
+        return "name the materials of pin and disc"
+    try:
+        solids = thermal_solid(pin), thermal_solid(disc)
+    except MissingProperty as missing:
+        if named:
+            raise
+        return str(missing)
+    radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
+    source = EllipticSource(half_length=radius, half_width=radius)
+    rise = contact_rise(*solids, source, heat_rate=1.0, sliding_speed=rig.sliding_speed)
+    return float(rise.mean_temperature_rise)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionInterval:
+    """Central 80 % interval of the friction ratio, with the error of the model, as `predict` gives it.
+
+    Parameters
+    ----------
+    low, high : float or None
+        Ends; None where there is no prediction.
+    reason : str
+        Why there is none.
+    """
+
+    low: float | None = None
+    high: float | None = None
+    reason: str = ""
+
+    @property
+    def text(self) -> str:
+        """Interval in words, or why there is none."""
+        if self.low is None or self.high is None:
+            return f"not predicted: {self.reason}"
+        return f"{self.low:.2g} to {self.high:.2g} (80 %, `sonolube predict`)"
+
+
+def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
+    """Interval of the friction ratio of a rig at its operating point, without own runs; equal to that of `predict`."""
+    resolved = resolved_rig(rig)
+    try:
+        limits = applicability(resolved.rig)
+        if limits.refusal:
+            return FrictionInterval(reason=limits.refusal)
+        if limits.any_ratio:
+            return FrictionInterval(reason=limits.caveats[0])
+        at = rig_inputs(resolved).at()
+    except SonolubeError as refusal:
+        return FrictionInterval(reason=str(refusal))
+    low, high = central_interval(ratio_draws(learned().friction, at, count=DRAWS)[:, 0], 0.8)
+    return FrictionInterval(low=float(low), high=float(high))

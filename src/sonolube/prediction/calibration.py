@@ -8,17 +8,16 @@ from typing import Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.prediction.closures import CLOSURES
-from sonolube.prediction.evidence import TestedRig, published_rigs, rigs_by_records
-from sonolube.prediction.hierarchy import Prior
-from sonolube.prediction.posterior import Population, published_population
-from sonolube.prediction.predictive import ratio_draws
-from sonolube.prediction.scores import (
+from sonolube.prediction.evidence import CLOSURES, TestedRig, published_rigs, rigs_by_records
+from sonolube.prediction.hierarchy import (
+    Prior,
     binomial_interval,
     central_interval,
     continuous_ranked_probability_score,
     interval_score,
 )
+from sonolube.prediction.posterior import Population, published_population
+from sonolube.prediction.predictive import ratio_draws
 
 BLIND: Final = "decay length unknown"
 """Name of the way that predicts: nothing enters that a user would not have before a test."""

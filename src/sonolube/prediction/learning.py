@@ -10,8 +10,7 @@ from typing import Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.prediction.closures import CLOSURES, Closure
-from sonolube.prediction.evidence import TestedRig, published_rigs
+from sonolube.prediction.evidence import CLOSURES, Closure, TestedRig, published_rigs
 from sonolube.prediction.hierarchy import POPULATION_PRIOR, RigLikelihood, log_hyperprior
 from sonolube.prediction.posterior import LEARNED_FILE, write_learned
 from sonolube.prediction.wear import WEAR_PRIOR, log_wear_posterior, published_wear

@@ -10,19 +10,25 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import Structure
-from sonolube.prediction.applicability import Applicability, applicability
-from sonolube.prediction.contact_heating import contact_heating
-from sonolube.prediction.inputs import Input, RigInputs, decay_length_of, rig_inputs
-from sonolube.prediction.laboratory import Laboratory, laboratory
-from sonolube.prediction.own_runs import OwnRuns, own_runs
+from sonolube.prediction.applicability import Applicability, applicability, contact_heating
+from sonolube.prediction.bodies import pair_of
+from sonolube.prediction.further_measurements import (
+    KNOWN_WELL,
+    Measure,
+    Probe,
+    Target,
+    measures,
+    own_logarithms,
+    probe_sentences,
+    stiffness_probes,
+    told_probes,
+)
+from sonolube.prediction.hierarchy import LEVELS
+from sonolube.prediction.inputs import Input, OwnRuns, RigInputs, decay_length_of, own_runs, rig_inputs
 from sonolube.prediction.posterior import learned
-from sonolube.prediction.predictive import DRAWS, RigPrediction, rig_prediction
-from sonolube.prediction.remaining_width import KNOWN_WELL, Measure, Target, measures, own_logarithms
+from sonolube.prediction.predictive import DRAWS, Laboratory, RigPrediction, laboratory, rig_prediction
 from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
-from sonolube.prediction.scores import LEVELS
-from sonolube.prediction.stiffness_probes import Probe, probe_sentences, stiffness_probes, told_probes
 from sonolube.prediction.wear import vibration_weight
-from sonolube.prediction.wear_statement import pair_of
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays, labels
 

@@ -1,8 +1,17 @@
-"""Posterior of the hyperparameters given the published tests: draws by friction model, shipped as data."""
+"""Posterior given the published tests, shipped as draws, and draws of the parameters of one rig from it.
+
+Tests of a rig weigh the draws. Where few of them would be left, sequential Monte Carlo conditions them: the likelihood
+is raised step by step to its full power, and after each step the draws are resampled and moved by Metropolis steps.
+Deviates are standard normal before the tests, so that a step costs one evaluation of the likelihood.
+
+References
+----------
+P. Del Moral, A. Doucet and A. Jasra, J. R. Stat. Soc. B 68, 411 (2006). doi:10.1111/j.1467-9868.2006.00553.x
+"""
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from hashlib import sha256
 from importlib.resources import files
@@ -11,10 +20,30 @@ from typing import Any, Final
 
 import numpy as np
 
-from sonolube.checks import Floats
-from sonolube.prediction.closures import CLOSURES, Closure
-from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, TestedRig, published_rigs
-from sonolube.prediction.hierarchy import HYPERPARAMETERS, POPULATION_PRIOR, Prior, RigLikelihood, standard_normals
+from sonolube.checks import Floats, Integers
+from sonolube.prediction.evidence import (
+    CLOSURES,
+    REFERENCE_DECAY_LENGTH,
+    Closure,
+    Conditions,
+    TestedRig,
+    UncertainConditions,
+    published_rigs,
+)
+from sonolube.prediction.hierarchy import (
+    HYPERPARAMETERS,
+    OWN_DEVIATES,
+    POPULATION_PRIOR,
+    OwnParameters,
+    Prior,
+    RigLikelihood,
+    covariance_of_tests,
+    discrepancy_correlation,
+    discrepancy_deviation,
+    log_normal_density,
+    own_parameters,
+    standard_normals,
+)
 from sonolube.prediction.wear import WEAR_HYPERPARAMETERS, WearPosterior, published_wear
 from sonolube.storage.files import write_atomically
 
@@ -152,3 +181,181 @@ def _digits(rig: TestedRig) -> list[Any]:
     arrays = (at.vibration_amplitude, at.frequency, at.sliding_speed, at.decay_length, rig.friction_ratio)
     logs = [f"{value:.6g}" for array in (*arrays, rig.uncertainty) for value in array]
     return [rig.name, *logs, rig.at.decay_length_spread, rig.at.amplitude_spread, rig.at.amplitude_factor]
+
+
+_POOL: Final = 8192  # draws that are weighed
+_ENOUGH: Final = 1000  # effective draws from which weighing alone does
+_MOVED: Final = 2048  # draws that are moved, for up to some tens of tests
+_MIN_MOVED: Final = 256  # for very many
+_ENTRIES: Final = 4e6  # of all covariances of the tests, to bound time and memory
+_KEPT: Final = 0.5  # effective share of the draws that a step keeps
+_MOVES: Final = 4  # of each kind after each step
+_LAST_MOVES: Final = 8
+_STRIDE: Final = 1.2  # of a move, in standard deviations of the draws
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RigDraws:
+    """Equally probable draws of one friction model for one rig.
+
+    Parameters
+    ----------
+    posterior : Posterior
+    at : UncertainConditions
+        Whose spreads are those of the rig.
+    rows : ndarray of int, shape (p,)
+        Of the hyperparameters.
+    deviates : ndarray, shape (p, 3)
+        What the rig has of its own.
+    own : TestedRig or None
+        Tests on which the draws, and the discrepancy, are conditioned.
+    log_evidence : float
+        Logarithm of the density of these tests.
+    """
+
+    posterior: Posterior
+    at: UncertainConditions
+    rows: Integers
+    deviates: Floats
+    own: TestedRig | None = None
+    log_evidence: float = 0.0
+
+    @property
+    def hyperparameters(self) -> Floats:
+        """Hyperparameters of each draw, shape (p, 6)."""
+        return self.posterior.hyperparameters[self.rows]
+
+    @property
+    def parameters(self) -> OwnParameters:
+        """Parameters of each draw."""
+        return own_parameters(self.hyperparameters, self.deviates, self.at)
+
+    def means(self, conditions: Conditions) -> Floats:
+        """Friction ratios of the friction model without discrepancy, shape (p, m). []"""
+        own = self.parameters
+        scaled = conditions.scaled(decay_length=np.exp(own.log_factor)[:, None])
+        return np.asarray(self.posterior.closure.ratio(own.log_parameter[:, None], scaled))
+
+    def normals(self, conditions: Conditions) -> tuple[Floats, Floats]:
+        """Means and standard deviations of the normal distribution of the ratio by each draw, each of shape (p, m)."""
+        mean = self.means(conditions)
+        side = self._deviation(mean, conditions)
+        if self.own is None:
+            return mean, side
+        tested = self.own.at.conditions
+        seen = self.means(tested)
+        near = discrepancy_correlation(conditions, tested, log_length=self.hyperparameters[:, 5])
+        across = near * side[:, :, None] * self._deviation(seen, tested)[:, None, :]
+        gain = np.swapaxes(np.linalg.solve(self.covariance(seen), np.swapaxes(across, 1, 2)), 1, 2)
+        mean = mean + np.einsum("pmn,pn->pm", gain, self.own.friction_ratio - seen)
+        return mean, np.sqrt(np.maximum(side**2 - np.einsum("pmn,pmn->pm", gain, across), 0.0))
+
+    def _deviation(self, ratio: Floats, at: Conditions) -> Floats:
+        """Standard deviation of the discrepancy by each draw, shape (p, m)."""
+        return discrepancy_deviation(ratio, at, log_discrepancy=self.parameters.log_discrepancy)
+
+    def covariance(self, seen: Floats) -> Floats:
+        """Covariance of the rig's own tests about the ratios of the friction model, shape (p, n, n)."""
+        assert self.own is not None
+        return covariance_of_tests(
+            seen, self.own, log_discrepancy=self.parameters.log_discrepancy, log_length=self.hyperparameters[:, 5]
+        )
+
+    def log_density(self) -> Floats:
+        """Logarithm of the density of the rig's own tests by each draw, shape (p,)."""
+        assert self.own is not None
+        seen = self.means(self.own.at.conditions)
+        return log_normal_density(self.own.friction_ratio - seen, self.covariance(seen))
+
+    def taken(self, rows: Integers) -> "RigDraws":
+        """Some of the draws, with repetition."""
+        return replace(self, rows=self.rows[rows], deviates=self.deviates[rows])
+
+
+def rig_draws(
+    posterior: Posterior, at: UncertainConditions, *, count: int, seed: int = 0, own: TestedRig | None = None
+) -> RigDraws:
+    """Draws of a friction model for a rig that is none of those learned from, conditioned on its own tests.
+
+    Of `count` draws without own tests, else of as many as are moved: from 256 to 2048.
+    """
+    if own is None:
+        return _from_population(posterior, at, count=count, seed=seed)
+    moved = int(np.clip(_ENTRIES / own.friction_ratio.size**2, _MIN_MOVED, _MOVED))
+    pool = replace(_from_population(posterior, at, count=_POOL * moved // _MOVED, seed=seed), own=own)
+    density = pool.log_density()
+    if _effective(density) * _MOVED >= _ENOUGH * moved:
+        rows = systematic_rows(density, moved, np.random.default_rng(seed + 11))
+        return replace(pool.taken(rows), log_evidence=float(np.logaddexp.reduce(density) - np.log(density.size)))
+    return _conditioned(pool.taken(np.arange(moved)), density[:moved], seed=seed)
+
+
+def _from_population(posterior: Posterior, at: UncertainConditions, *, count: int, seed: int) -> RigDraws:
+    """Draws before any test of the rig."""
+    rows = np.random.default_rng(seed).permutation(np.arange(count) % len(posterior.hyperparameters))
+    return RigDraws(posterior, at, rows, standard_normals(count, columns=OWN_DEVIATES, seed=seed + 3))
+
+
+def _conditioned(draws: RigDraws, density: Floats, *, seed: int) -> RigDraws:
+    """Draws conditioned on the own tests by sequential Monte Carlo, with the density of these."""
+    rng = np.random.default_rng(seed + 11)
+    power, evidence = 0.0, 0.0
+    while power < 1.0:
+        step = _step(density, power)
+        weights = step * density
+        evidence += float(np.logaddexp.reduce(weights) - np.log(weights.size))
+        chosen = systematic_rows(weights, weights.size, rng)
+        draws, density, power = draws.taken(chosen), density[chosen], min(power + step, 1.0)
+        for _ in range(_MOVES if power < 1.0 else _LAST_MOVES):
+            draws, density = _moved(draws, density, power, rng)
+    return replace(draws, log_evidence=evidence)
+
+
+def _step(density: Floats, power: float) -> float:
+    """Largest rise of the power of the likelihood that keeps the effective number of draws."""
+
+    def kept(step: float) -> float:
+        return _effective(step * density) / density.size
+
+    low, high = 0.0, 1.0 - power
+    if kept(high) >= _KEPT:
+        return high
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if kept(middle) >= _KEPT else (low, middle)
+    return max(low, 1e-6)
+
+
+def _moved(draws: RigDraws, density: Floats, power: float, rng: np.random.Generator) -> tuple[RigDraws, Floats]:
+    """Draws after a Metropolis step of the deviates, and one of the hyperparameters."""
+    count = density.size
+    spread = np.linalg.cholesky(np.cov(draws.deviates.T) + 1e-9 * np.eye(OWN_DEVIATES))
+    stride = _STRIDE * rng.choice([0.3, 1.0], size=(count, 1))
+    nearby = replace(draws, deviates=draws.deviates + stride * rng.standard_normal((count, OWN_DEVIATES)) @ spread.T)
+    prior = 0.5 * np.sum(draws.deviates**2 - nearby.deviates**2, axis=1)
+    draws, density = _accepted(draws, nearby, density, prior, power, rng)
+    other = replace(draws, rows=rng.integers(0, len(draws.posterior.hyperparameters), count))
+    return _accepted(draws, other, density, np.zeros(count), power, rng)
+
+
+def _accepted(
+    draws: RigDraws, tried: RigDraws, density: Floats, prior: Floats, power: float, rng: np.random.Generator
+) -> tuple[RigDraws, Floats]:
+    """Draws with those of a proposal that Metropolis's rule accepts."""
+    found = tried.log_density()
+    taken = np.log(rng.random(density.size)) < prior + power * (found - density)
+    rows = np.where(taken, tried.rows, draws.rows)
+    deviates = np.where(taken[:, None], tried.deviates, draws.deviates)
+    return replace(draws, rows=rows, deviates=deviates), np.where(taken, found, density)
+
+
+def _effective(log_weights: Floats) -> float:
+    """Effective number of draws by their weights."""
+    return float(np.exp(2 * np.logaddexp.reduce(log_weights) - np.logaddexp.reduce(2 * log_weights)))
+
+
+def systematic_rows(log_weights: Floats, count: int, rng: np.random.Generator) -> Integers:
+    """Rows drawn systematically by weight, in their order, shape (count,)."""
+    cumulative = np.cumsum(np.exp(log_weights - np.logaddexp.reduce(log_weights)))
+    rows = np.searchsorted(cumulative, (np.arange(count) + rng.random()) / count)
+    return np.minimum(rows, log_weights.size - 1)

@@ -7,13 +7,10 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability, extrapolation_caveats
-from sonolube.prediction.inputs import RigInputs
-from sonolube.prediction.laboratory import Laboratory
-from sonolube.prediction.own_runs import OwnRuns
-from sonolube.prediction.predictive import RigPrediction
-from sonolube.prediction.run_check import RunCheck
-from sonolube.prediction.scores import PROBABILITIES, central_interval
-from sonolube.prediction.wear_statement import pair_of, wear_statement, worn_body
+from sonolube.prediction.bodies import pair_of, wear_statement, worn_body
+from sonolube.prediction.hierarchy import PROBABILITIES, central_interval
+from sonolube.prediction.inputs import OwnRuns, RigInputs
+from sonolube.prediction.predictive import Laboratory, RigPrediction, RunCheck
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
 

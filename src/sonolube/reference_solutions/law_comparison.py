@@ -1,14 +1,16 @@
-"""Statistical contact laws and Persson's theory compared with boundary elements on one surface."""
+"""Statistical contact laws and Persson's theory compared with boundary elements on one surface, as table and figure."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.figure import COLOURS, LINES, MARKERS, subplots
 from sonolube.models import surfaces
 from sonolube.models.contact import (
     ASPERITY_LAWS,
@@ -26,6 +28,9 @@ from sonolube.models.contact import (
     separation,
 )
 from sonolube.reference_solutions.boundary_element import boundary_element_contact
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 QUANTITIES = ("separation", "real_contact_area", "normal_stiffness")
 """Quantities in which the contact laws are compared."""
@@ -244,3 +249,90 @@ def _longest_range(within: NDArray[np.bool_], fraction: Floats) -> tuple[float, 
     runs = np.flatnonzero(np.diff(np.concatenate([[0], within.astype(int), [0]]))).reshape(-1, 2)
     first, last = max(runs.tolist(), key=lambda run: run[1] - run[0], default=(0, 0))
     return (float(fraction[first]), float(fraction[last - 1])) if last - first > 1 else None
+
+
+_TITLES = {
+    "exponential": "exponential heights",
+    "gaussian": "Gaussian heights",
+    "persson": "Persson",
+    REFERENCE_SOLUTION: "boundary elements",
+}
+
+
+def comparison_table(comparison: LawComparison) -> list[str]:
+    """Contact laws side by side as lines of text: gap over rms height, area fraction, and dimensionless stiffness.
+
+    Parameters
+    ----------
+    comparison : LawComparison
+
+    Returns
+    -------
+    list of str
+        A heading of two lines, then one line per load.
+    """
+    laws = comparison.laws
+    columns = [dimensionless_curve(comparison, curve) for curve in laws.values()]
+    width = 8 * len(laws)
+    heading = f"{'p/(E* h)':>10}  {'gap/Rq':^{width}}  {'area fraction':^{width}}  {'k Rq/F':^{width}}"
+    names = "".join(f"{name[:7]:>8}" for name in laws)
+    return [
+        heading,
+        f"{'':>10}  {names}  {names}  {names}",
+        *[
+            f"{pressure:>10.2g}  "
+            + "  ".join("".join(f"{column[quantity][index]:>8.3g}" for column in columns) for quantity in range(3))
+            for index, pressure in enumerate(comparison.reduced_pressure)
+        ],
+    ]
+
+
+def comparison_figure(comparison: LawComparison) -> "Figure":
+    """Figure of gap, real contact area and stiffness over the nominal pressure by every contact law.
+
+    Parameters
+    ----------
+    comparison : LawComparison
+
+    Returns
+    -------
+    Figure
+    """
+    figure, axes = subplots(1, 3, figsize=(9.6, 3.4))
+    for index, (name, curve) in enumerate(comparison.laws.items()):
+        style = (
+            {"marker": MARKERS[0], "ls": "", "color": "black", "zorder": 3}
+            if name == REFERENCE_SOLUTION
+            else {"ls": LINES[index], "color": COLOURS[index]}
+        )
+        for panel, values in zip(axes, dimensionless_curve(comparison, curve), strict=True):
+            panel.plot(comparison.reduced_pressure, values, label=_TITLES[name], **style)
+    labels = ("Mean gap / rms height", "Real / nominal contact area", "Stiffness × rms height / load")
+    for panel, label in zip(axes, labels, strict=True):
+        panel.set(xscale="log", xlabel="Nominal pressure p / (E* h')", ylabel=label)
+    axes[0].axhline(0, color="0.6", lw=0.8)
+    axes[1].set_yscale("log")
+    axes[2].set_ylim(0, 5)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return figure
+
+
+def dimensionless_curve(comparison: LawComparison, curve: LawCurve) -> tuple[Floats, Floats, Floats]:
+    r"""Dimensionless gap, area and stiffness of one law.
+
+    Parameters
+    ----------
+    comparison : LawComparison
+    curve : LawCurve
+
+    Returns
+    -------
+    tuple of three ndarray, shape (n,)
+        Gap over rms height, real over nominal contact area, and stiffness times rms height over load,
+        :math:`\bar u/R_q`, :math:`A_r/A_n` and :math:`k_n R_q/F_N`.
+    """
+    return (
+        curve.separation / comparison.rms_height,
+        curve.real_contact_area / comparison.nominal_area,
+        np.asarray(curve.normal_stiffness * comparison.rms_height / comparison.normal_load),
+    )

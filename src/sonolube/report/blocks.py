@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from sonolube.text.text_layout import aligned, grid, wrapped
+from sonolube.text.plain_text import aligned, grid, wrapped
 
 Row = tuple[str, str]
 """Name and value, both as text."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from sonolube import __version__
 from sonolube.charts import Chart, draw_chart
 from sonolube.figure import fit_to_style, publication_style, render_figure
-from sonolube.text.printable_text import printable
+from sonolube.text.plain_text import printable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,56 +1,102 @@
-"""Table of the reproduced sections, and the reproduction of a chapter or of the whole dissertation."""
+"""Reproduced sections, and the reproduction of a chapter or of the whole dissertation."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass
 from functools import cache, partial
 from typing import Final
 
 from sonolube.charts import draw_chart
 from sonolube.errors import UnknownName
 from sonolube.figure import ReportFigure
-from sonolube.prediction.published_figures import published_prediction_figures
-from sonolube.reproduction.chapter2.flextensional import flextensional_rows
-from sonolube.reproduction.chapter2.flextensional_figures import flextensional_figures
-from sonolube.reproduction.chapter2.material_pairs import material_pair_figures, material_pair_rows
-from sonolube.reproduction.chapter2.metal_forming_figures import metal_forming_figures
+from sonolube.prediction.figures import published_prediction_figures
+from sonolube.reproduction.chapter2.flextensional import flextensional_figures, flextensional_rows
 from sonolube.reproduction.chapter2.poisson_effect import poisson_effect_figures, poisson_effect_rows
-from sonolube.reproduction.chapter2.tribometer import tribometer_rows
-from sonolube.reproduction.chapter2.tribometer_figures import tribometer_figures
-from sonolube.reproduction.chapter2.welder import welder_rows
-from sonolube.reproduction.chapter2.welder_figures import welder_figures
-from sonolube.reproduction.chapter2.welder_motor import welder_motor_rows
-from sonolube.reproduction.chapter3.cube_figures import cube_figures
-from sonolube.reproduction.chapter3.cube_rows import cube_rows
-from sonolube.reproduction.chapter3.parametric_study_figures import parametric_study_figures
-from sonolube.reproduction.chapter3.parametric_study_rows import parametric_study_rows
-from sonolube.reproduction.chapter3.vibration_period_figures import vibration_period_figures
-from sonolube.reproduction.chapter4.coated_plate_figures import coated_plate_figures
-from sonolube.reproduction.chapter4.collar_figures import collar_figures
-from sonolube.reproduction.chapter4.collar_rows import collar_rows
-from sonolube.reproduction.chapter4.cutter_head_figures import cutter_head_figures
-from sonolube.reproduction.chapter4.dry_temperature_figures import dry_temperature_figures
-from sonolube.reproduction.chapter4.load import load_figures, load_rows
-from sonolube.reproduction.chapter4.lubrication import lubrication_figures, lubrication_rows
-from sonolube.reproduction.chapter4.lubrication_method_figures import lubrication_method_figures
-from sonolube.reproduction.chapter4.maps import map_figures, map_rows
-from sonolube.reproduction.chapter4.power_figures import power_figures
-from sonolube.reproduction.chapter4.power_rows import power_map_rows
-from sonolube.reproduction.chapter4.skin_replica import skin_replica_figures, skin_replica_rows
-from sonolube.reproduction.chapter4.temperature_figures import temperature_figures
+from sonolube.reproduction.chapter2.tribometer import tribometer_figures, tribometer_rows
+from sonolube.reproduction.chapter2.welder import (
+    material_pair_figures,
+    material_pair_rows,
+    welder_motor_rows,
+    welder_rows,
+)
+from sonolube.reproduction.chapter2.welder_figures import metal_forming_figures, welder_figures
+from sonolube.reproduction.chapter3.cube import cube_figures, cube_rows
+from sonolube.reproduction.chapter3.parametric_study import parametric_study_figures, parametric_study_rows
+from sonolube.reproduction.chapter3.tribometer_response import vibration_period_figures
+from sonolube.reproduction.chapter4.collar_rows import collar_figures, collar_rows
+from sonolube.reproduction.chapter4.lubrication import lubrication_figures, lubrication_method_figures, lubrication_rows
+from sonolube.reproduction.chapter4.maps import coated_plate_figures, load_figures, load_rows, map_figures, map_rows
+from sonolube.reproduction.chapter4.power_rows import power_figures, power_map_rows
+from sonolube.reproduction.chapter4.skin_replica import cutter_head_figures, skin_replica_figures, skin_replica_rows
 from sonolube.reproduction.chapter4.temperature_rows import temperature_rows
-from sonolube.reproduction.claims import findings
-from sonolube.reproduction.friction_models.computed_motion import computed_motion_figures
-from sonolube.reproduction.friction_models.friction_test_rows import (
+from sonolube.reproduction.chapter4.temperature_tests import dry_temperature_figures, temperature_figures
+from sonolube.reproduction.claims import Finding, findings
+from sonolube.reproduction.friction_models.computed_motion import (
+    computed_motion_figures,
     power_map_test_rows,
     roughness_caveat,
     tribometer_test_rows,
 )
 from sonolube.reproduction.friction_models.mechanisms import mechanism_figures
-from sonolube.reproduction.friction_models.variant_figures import variant_figures
+from sonolube.reproduction.friction_models.variants import variant_figures
 from sonolube.reproduction.row import Row
-from sonolube.reproduction.section import ChapterFigure, Reproduction, Section
 from sonolube.validation.comparison import ComparedFit, compare_models
 from sonolube.validation.figures import comparison_figures
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ChapterFigure(ReportFigure):
+    """Figure of the reproduction report with its chapter.
+
+    Parameters
+    ----------
+    chapter : int
+        Chapter of the dissertation.
+    """
+
+    chapter: int
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Reproduction:
+    """Rows and figures of the reproduction, with the findings on the claims that the rows decide about.
+
+    Parameters
+    ----------
+    findings : tuple of Finding
+    rows : tuple of Row
+    figures : tuple of ChapterFigure
+    caveats : tuple of str
+        What the rows rest on that the dissertation speaks against.
+    """
+
+    findings: tuple[Finding, ...]
+    rows: tuple[Row, ...]
+    figures: tuple[ChapterFigure, ...]
+    caveats: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Section:
+    """Section of the dissertation with the functions that compute its rows and its figures.
+
+    Parameters
+    ----------
+    number : str
+        Number of the section, such as "2.3"; its first digit is the chapter of the figures.
+    rows : callable
+        Function that returns the rows.
+    figures : callable
+        Function that returns the figures.
+    """
+
+    number: str
+    rows: Callable[[], Iterable[Row]] = tuple
+    figures: Callable[[], Iterable[ReportFigure]] = tuple
+
+    @property
+    def chapter(self) -> int:
+        """Chapter of the section."""
+        return int(self.number[0])
 
 
 @cache

@@ -6,24 +6,24 @@ from .contact_temperature import (
 )
 from .datasets import dataset as dataset, gridded as gridded, write_netcdf as write_netcdf
 from .distribution import Distribution as Distribution, LogNormal as LogNormal, Normal as Normal, Uniform as Uniform
-from .excitation import energy_balance as energy_balance
-from .file.edit import with_tables as with_tables
-from .file.json_schema import rig_schema as rig_schema
+from .driven_rig import energy_balance as energy_balance
+from .figures import STUDY_CHARTS as STUDY_CHARTS
 from .file.reader import (
     read_rig as read_rig,
     rig_content as rig_content,
     rig_from as rig_from,
     structure_by_stack as structure_by_stack,
     structure_entries as structure_entries,
+    with_tables as with_tables,
 )
-from .friction_and_wear import friction_ratios as friction_ratios
+from .file.toml_file import rig_schema as rig_schema
+from .friction_and_wear import (
+    PUBLISHED_DECAY_LENGTH as PUBLISHED_DECAY_LENGTH,
+    DecayLengthPopulation as DecayLengthPopulation,
+    decay_length_caveat as decay_length_caveat,
+    friction_ratios as friction_ratios,
+)
 from .least_power import least_power_study as least_power_study
-from .linear_response import (
-    FrequencyResponse as FrequencyResponse,
-    frequency_grid as frequency_grid,
-    frequency_response as frequency_response,
-    structure_in_contact as structure_in_contact,
-)
 from .lubrication import (
     LubricationMap as LubricationMap,
     LubricationPoint as LubricationPoint,
@@ -75,6 +75,14 @@ from .record import (
     Rig as Rig,
 )
 from .resolved_rig import ResolvedRig as ResolvedRig, amplitude_labels as amplitude_labels
+from .responses import (
+    FrequencyResponse as FrequencyResponse,
+    StartUp as StartUp,
+    frequency_grid as frequency_grid,
+    frequency_response as frequency_response,
+    start_up as start_up,
+    structure_in_contact as structure_in_contact,
+)
 from .simulation import (
     Simulation as Simulation,
     friction_point as friction_point,
@@ -82,15 +90,8 @@ from .simulation import (
     simulate as simulate,
     wear_point as wear_point,
 )
-from .start_up_transient import StartUp as StartUp, start_up as start_up
-from .study_figures import STUDY_CHARTS as STUDY_CHARTS
 from .vibration import (
     SteadyVibration as SteadyVibration,
     gap_motion as gap_motion,
     steady_vibration as steady_vibration,
-)
-from .worn_contact import (
-    PUBLISHED_DECAY_LENGTH as PUBLISHED_DECAY_LENGTH,
-    DecayLengthPopulation as DecayLengthPopulation,
-    decay_length_caveat as decay_length_caveat,
 )

@@ -10,8 +10,7 @@ import numpy as np
 from sonolube.errors import InvalidInput
 from sonolube.models.contact import RoughContact, separation
 from sonolube.models.dynamics import GapLaw, Status, Structure, static_contact, steady_state
-from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import DriveVoltage
+from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, driven_rig
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, MeasuredUnder, Rig
 from sonolube.text.units import format_si
 

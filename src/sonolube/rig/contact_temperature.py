@@ -11,7 +11,7 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.models import thermal
 from sonolube.models.thermal import contact_history
-from sonolube.models.thermal.flash_models import FLASH_MODELS
+from sonolube.models.thermal.flash import FLASH_MODELS
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.simulation import vibrated_friction
@@ -128,7 +128,7 @@ def temperature_point(
     friction_ratio : float, optional
         Friction with vibration over that without, instead of that of the friction model. []
     flash_model : str
-        Of `sonolube.models.thermal.flash_models.FLASH_MODELS`.
+        Of `sonolube.models.thermal.flash.FLASH_MODELS`.
 
     Returns
     -------

@@ -1,13 +1,24 @@
-"""Driven rig: a rig whose stack, structure and drive voltage are known, so that its motion can be computed."""
+"""Driven rig, whose stack, structure and drive voltage are known, so that its motion can be computed; its excitation.
+
+Of the drive voltage: waveform, harmonics, extremes, power of the amplifier and its balance.
+"""
 
 from dataclasses import dataclass, fields
+from functools import cached_property
+from math import isfinite
 from typing import final
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Complexes, Floats, require_non_negative
 from sonolube.errors import InvalidInput
 from sonolube.models.actuator import PiezoStack
-from sonolube.models.actuator.drive import Drive
-from sonolube.models.dynamics import Structure
+from sonolube.models.actuator.drive import Drive, linear_amplifier_power
+from sonolube.models.dynamics import WAVEFORMS, Sine, Structure, Waveform
+from sonolube.models.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
 from sonolube.rig.record import Rig
+from sonolube.text.units import format_si
 
 
 @final
@@ -70,3 +81,117 @@ def driven_rig(rig: Rig) -> DrivenRig:
     if isinstance(rig, DrivenRig):
         return rig
     return DrivenRig(**{field.name: getattr(rig, field.name) for field in fields(rig) if field.init})
+
+
+_VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first
+
+NO_DISSIPATED_POWER = (
+    "no dissipated power: the vibration is a sine of a stated amplitude, which no structure with losses gives; take the"
+    " amplitude computed, from the tables stack and structure"
+)
+"""Reason for which a stated vibration has no dissipated power, and advice."""
+
+
+def waveform_of(drive: Drive) -> Waveform:
+    """Shape of the drive voltage."""
+    return WAVEFORMS[drive.waveform] if drive.waveform_samples is None else sampled_waveform(drive.waveform_samples)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DriveVoltage:
+    """Voltage of a drive over time, its waveform evaluated once.
+
+    Parameters
+    ----------
+    drive : Drive
+    """
+
+    drive: Drive
+
+    @cached_property
+    def waveform(self) -> Waveform:
+        """Shape of the voltage."""
+        return waveform_of(self.drive)
+
+    @cached_property
+    def harmonics_per_volt(self) -> Complexes:
+        """Harmonics V_k of V = offset + Re sum V_k exp(2 pi i k f t) over the voltage peak to peak. []"""
+        return voltage_harmonics(self.waveform)
+
+    def harmonics(self, *, voltage_peak_to_peak: ArrayLike | None = None) -> Complexes:
+        """Harmonics of the voltage along the last axis, at other voltages peak to peak where given. [V]"""
+        return self._swing(voltage_peak_to_peak)[..., np.newaxis] * self.harmonics_per_volt
+
+    def range(
+        self, *, voltage_peak_to_peak: ArrayLike | None = None, voltage_offset: ArrayLike | None = None
+    ) -> tuple[Floats, Floats]:
+        """Lowest and highest voltage, at other voltages peak to peak and offsets where given. [V]"""
+        offset = np.asarray(self.drive.voltage_offset if voltage_offset is None else voltage_offset, dtype=np.float64)
+        swing, (lowest, highest) = self._swing(voltage_peak_to_peak), self._extremes_per_volt
+        return offset + swing * lowest, offset + swing * highest
+
+    def amplifier_power(
+        self,
+        *,
+        capacitance: float,
+        voltage_peak_to_peak: ArrayLike | None = None,
+        voltage_offset: ArrayLike | None = None,
+        frequency: ArrayLike | None = None,
+    ) -> Floats:
+        """Power that a linear amplifier supplies to a capacitance, its rail at the highest voltage, D 1.9. [W]"""
+        lowest, highest = self.range(voltage_peak_to_peak=voltage_peak_to_peak, voltage_offset=voltage_offset)
+        return linear_amplifier_power(
+            capacitance=capacitance,
+            voltage_maximum=np.maximum(np.abs(lowest), np.abs(highest)),
+            voltage_peak_to_peak=self._swing(voltage_peak_to_peak),
+            frequency=self.drive.frequency if frequency is None else frequency,
+        )
+
+    @cached_property
+    def _extremes_per_volt(self) -> tuple[float, float]:
+        return waveform_extremes(self.waveform)
+
+    def _swing(self, voltage_peak_to_peak: ArrayLike | None) -> Floats:
+        own = self.drive.voltage_peak_to_peak or 0.0
+        return require_non_negative(voltage_peak_to_peak=own if voltage_peak_to_peak is None else voltage_peak_to_peak)
+
+
+def voltage_harmonics(waveform: Waveform) -> Complexes:
+    """Harmonics V_k, V = offset + Re sum V_k exp(2 pi i k f t), of a voltage of 1 V peak to peak. [V]"""
+    count = 1 if isinstance(waveform, Sine) else _VOLTAGE_HARMONICS
+    return 2 * fourier_coefficients(waveform, count)[1:]
+
+
+def actuator_capacitance(rig: Rig) -> float | None:
+    """Capacitance that an amplifier drives: that of the stack, else of the actuator. [F]"""
+    return rig.capacitance if rig.stack is None else rig.stack.free_capacitance
+
+
+def energy_balance(*, actuator_power: float | None, dissipated_power: float | None) -> str | None:
+    """Comparison of the power of the amplifier with the dissipated power, and its reason, in one line.
+
+    Parameters
+    ----------
+    actuator_power : float or None
+        That a linear amplifier supplies, D 1.9; None or NaN where it is not known. [W]
+    dissipated_power : float or None
+        That the computed motion turns into heat; None or NaN where no structure gives it. [W]
+
+    Returns
+    -------
+    str or None
+        None where only the dissipated power is known.
+    """
+    if dissipated_power is None or not isfinite(dissipated_power):
+        return NO_DISSIPATED_POWER
+    if actuator_power is None or not isfinite(actuator_power):
+        return None
+    supplied, dissipated = actuator_power, dissipated_power
+    capacitive, motional = format_si(supplied, "W"), format_si(dissipated, "W")
+    which = (
+        f"{capacitive} charges the actuator's capacitance alone, from the supply of a linear amplifier (D 1.9);"
+        f" {motional} is what the computed motion turns into heat in stack, dampers and contact"
+    )
+    if dissipated <= supplied:
+        return which
+    return f"{which}: D 1.9 leaves the current of the motion out, so that the amplifier must supply the larger"

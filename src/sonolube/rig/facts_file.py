@@ -18,13 +18,12 @@ from sonolube.identification import (
     rig_tables,
 )
 from sonolube.identification.fact import Bounds, Fact, ForwardModel, Relation, parameter_unit
-from sonolube.identification.observation import IdentificationProblem, Observation, observable_unit, structure_model
+from sonolube.identification.observables import IdentificationProblem, Observation, observable_unit, structure_model
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.dynamics import Structure
 from sonolube.rig.file.contact_section import Text
-from sonolube.rig.file.plausible import plausible_si
 from sonolube.rig.file.reader import rig_content, rig_from
-from sonolube.rig.file.section import Section
+from sonolube.rig.file.section import Section, plausible_si
 from sonolube.rig.file.sections import RigFile, StackSection
 from sonolube.rig.file.structures import ChainSection, ModesSection, PinOnDiscSection
 from sonolube.rig.file.toml_file import prefixed, validated

@@ -1,22 +1,25 @@
-"""Figures of results of a rig: steady vibration, linear response, start-up, temperature and lubrication regime."""
+"""Figures of results of a rig: vibration, response, start-up, temperature, regime, and parametric studies."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sonolube.charts import Axis, Chart, Field, Line, Panel, Part, Points, Rule, Zone
+from sonolube.charts import Axis, Bars, Chart, Field, Line, Panel, Part, Points, Rule, Zone
 from sonolube.checks import Floats
 from sonolube.models.friction import LubricationMethod
+from sonolube.rig.datasets import Dataset
+from sonolube.rig.operating_conditions import CommandedQuantity, quantity_of_axis
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from sonolube.rig.contact_temperature import TemperaturePoint
     from sonolube.rig.datasets import LabelledArrays
-    from sonolube.rig.linear_response import FrequencyResponse
     from sonolube.rig.lubrication import LubricationMap, LubricationPoint
     from sonolube.rig.record import Rig
-    from sonolube.rig.start_up_transient import StartUp
+    from sonolube.rig.responses import FrequencyResponse, StartUp
 
 _CONTACT_LOSS_FORCE = 0.01  # force over load below which contact counts as lost
 _LAST_PERIODS = 4  # periods of the drive shown enlarged at the end of a start-up
@@ -146,3 +149,182 @@ def lubrication_chart(rig: "Rig", result: "LubricationPoint", surroundings: "Lub
         parts=parts,
     )
     return Chart(panels=(panel,), size=(5.2, 4.0), title=rig.title, legend="bottom", legend_columns=5)
+
+
+_PERIODS = 4  # voltages or amplitudes of which a period is drawn
+_RATIO = Axis(label="Friction ratio", lowest=0.0)
+_FREQUENCY = Axis(label="Drive frequency", unit="kHz", logarithmic=True)
+_PERIOD = Axis(label="Time over the period")
+_LOAD = Axis(label="Normal load", unit="N")
+_TIP = Axis(label="Tip displacement", unit="µm")
+
+
+def command_chart(study: Dataset) -> Chart:
+    """Displacement and normal force over a period, friction ratio and amplitude over voltage or amplitude."""
+    quantity, levels = _level(study)
+    motions, forces = [], []
+    for place, point in enumerate(np.unique(np.linspace(0, levels.size - 1, _PERIODS + 1).astype(int)[1:])):
+        style: dict[str, Any] = {"dash": place, "colour": place, "label": quantity.text(float(levels[point]))}
+        turns, motion = _whole_period(study["displacement"].values[point])
+        motions.append(Line(x=turns, y=1e6 * motion, **style))
+        forces.append(Line(x=turns, y=_whole_period(study["normal_force"].values[point])[1], **style))
+    across = quantity.axis_scale * levels
+    vibration = (
+        Line(x=across, y=1e6 * study["vibration_amplitude"].values, label="amplitude"),
+        Line(x=across, y=1e6 * study["mean_displacement"].values, dash=1, colour=1, label="rise of the mean"),
+    )
+    return Chart(
+        panels=(
+            Panel(x=_PERIOD, y=_TIP, parts=tuple(motions)),
+            Panel(x=_PERIOD, y=Axis(label="Normal contact force", unit="N"), parts=tuple(forces)),
+            Panel(x=quantity.axis, y=_RATIO, parts=(Line(x=across, y=study["friction_ratio"].values),)),
+            Panel(x=quantity.axis, y=Axis(label="Vibration of the tip", unit="µm"), parts=vibration),
+        ),
+        size=(7.2, 5.6),
+        columns=2,
+    )
+
+
+def speed_chart(study: Dataset) -> Chart:
+    """Friction ratio over sliding speed and over velocity ratio."""
+    axes = (
+        ("sliding_speed", Axis(label="Sliding speed", unit="m/s", logarithmic=True)),
+        ("velocity_ratio", Axis(label="Sliding speed over peak vibration velocity", logarithmic=True)),
+    )
+    panels = tuple(Panel(x=axis, y=_RATIO, parts=_family(study, name, "friction_ratio")) for name, axis in axes)
+    return Chart(panels=panels, size=(7.2, 3.4), columns=2, legend="top", legend_columns=6, shares_y=True)
+
+
+def frequency_chart(study: Dataset) -> Chart:
+    """Amplitude and friction ratio over frequency, and friction ratio over the power of the amplifier."""
+    tips = [
+        (float(curve["actuator_power"][best]), float(curve["friction_ratio"][best]))
+        for curve in _curves(study)
+        if (best := _best(curve["friction_ratio"].values)) is not None
+    ]
+    over_power = _family(study, "actuator_power", "friction_ratio")
+    if len(tips) > 1:
+        x, y = np.array(tips).T
+        over_power = (*over_power, Points(x=x, y=y, colour="0", is_hollow=True, label="tips"))
+    amplitude = Axis(label="Vibration amplitude", unit="µm", logarithmic=True)
+    power = Axis(label="Power of the\namplifier, D 1.9", unit="W", logarithmic=True)
+    return Chart(
+        panels=(
+            Panel(x=_FREQUENCY, y=amplitude, parts=_family(study, "frequency", "vibration_amplitude", 1e-3, 1e6)),
+            Panel(x=_FREQUENCY, y=_RATIO, parts=_family(study, "frequency", "friction_ratio", 1e-3)),
+            Panel(x=power, y=_RATIO, parts=over_power),
+        ),
+        size=(6.85, 2.9),
+        columns=3,
+        legend="top",
+        legend_columns=6,
+    )
+
+
+def power_chart(study: Dataset) -> Chart:
+    """Voltage and the power that one friction ratio takes over frequency."""
+    kilohertz = 1e-3 * study["frequency"].values
+    watts = (
+        Line(x=kilohertz, y=study["actuator_power"].values, label="amplifier, D 1.9"),
+        Line(x=kilohertz, y=study["dissipated_power"].values, dash=1, colour=1, label="stays in rig and contact"),
+    )
+    x = Axis(label="Drive frequency", unit="kHz")
+    volts = Axis(label="Voltage,\npeak to peak", unit="V", lowest=0.0)
+    return Chart(
+        panels=(
+            Panel(x=x, y=volts, parts=(Line(x=kilohertz, y=study["voltage_peak_to_peak"].values),)),
+            Panel(x=x, y=Axis(label="Power", unit="W", logarithmic=True), parts=watts),
+        ),
+        size=(5.0, 5.2),
+        shares_x=True,
+    )
+
+
+def waveform_chart(study: Dataset) -> Chart:
+    """One period of the tip under each waveform, and the friction ratio each gives."""
+    names = [str(name) for name in study["waveform"].values]
+    periods = []
+    for place, name in enumerate(names):
+        turns, motion = _whole_period(study["displacement"].values[place])
+        periods.append(Line(x=turns, y=1e6 * motion, dash=place, colour=place, label=name))
+    ratios = study["friction_ratio"].values
+    order = np.argsort(ratios)
+    bars = [
+        Bars(
+            places=np.array([float(place)]),
+            lengths=ratios[[each]],
+            along="y",
+            colour=int(each),
+            texts=(f"{ratios[each]:.3g}",),
+        )
+        for place, each in enumerate(order)
+    ]
+    x = Axis(label="Waveform, all of the same swing", words=tuple(names[each] for each in order))
+    y = Axis(label="Friction ratio", lowest=0.0, highest=1.1 * float(np.nanmax(ratios)))
+    return Chart(
+        panels=(Panel(x=_PERIOD, y=_TIP, parts=tuple(periods)), Panel(x=x, y=y, parts=tuple(bars))),
+        size=(7.2, 3.4),
+        columns=2,
+    )
+
+
+def load_chart(study: Dataset) -> Chart:
+    """Friction reduction and, of a structure, the arm's natural frequency over normal load."""
+    loads = study["normal_load"].values
+    reduction = Axis(label="Friction reduction", unit="%", lowest=0.0, highest=100.0)
+    panels = [Panel(x=_LOAD, y=reduction, parts=(Line(x=loads, y=100 * study["friction_reduction"].values),))]
+    if "natural_frequency" in study:
+        arm = Axis(label="Natural frequency of the arm", unit="Hz")
+        panels.append(Panel(x=_LOAD, y=arm, parts=(Line(x=loads, y=study["natural_frequency"].values, colour=1),)))
+    size = (7.2, 3.3) if len(panels) > 1 else (4.0, 3.3)
+    return Chart(panels=tuple(panels), size=size, columns=len(panels))
+
+
+STUDY_CHARTS: Mapping[str, Callable[[Dataset], Chart]] = MappingProxyType(
+    {
+        "voltage": command_chart,
+        "amplitude": command_chart,
+        "speed": speed_chart,
+        "frequency": frequency_chart,
+        "power": power_chart,
+        "waveform": waveform_chart,
+        "load": load_chart,
+    }
+)
+"""Function that returns the chart of the dataset of each study."""
+
+
+def _level(study: Dataset) -> tuple[CommandedQuantity, Floats]:
+    """Quantity that sets the vibration of a study, with its values."""
+    quantity = quantity_of_axis(study.dims)
+    return quantity, study[quantity.name].values
+
+
+def _curves(study: Dataset) -> list[Dataset]:
+    quantity, levels = _level(study)
+    return [study.isel({quantity.name: index}) for index in range(levels.size)]
+
+
+def _family(study: Dataset, x: str, y: str, x_scale: float = 1.0, y_scale: float = 1.0) -> tuple[Any, ...]:
+    """Curve for each voltage or amplitude of a study."""
+    quantity, levels = _level(study)
+    return tuple(
+        Line(
+            x=x_scale * curve[x].values,
+            y=y_scale * curve[y].values,
+            dash=place,
+            colour=place,
+            label=quantity.text(float(levels[place])),
+        )
+        for place, curve in enumerate(_curves(study))
+    )
+
+
+def _whole_period(values: Floats) -> tuple[Floats, Floats]:
+    """Time over the period, and the values with the first one again at its end."""
+    return np.linspace(0, 1, values.size + 1), np.append(values, values[0])
+
+
+def _best(ratios: Floats) -> int | None:
+    """Place of the least ratio; None where there is none."""
+    return None if np.all(np.isnan(ratios)) else int(np.nanargmin(ratios))

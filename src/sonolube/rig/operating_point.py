@@ -7,9 +7,9 @@ from sonolube.models.contact.rough import contact_count, normal_stiffness, real_
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
 from sonolube.models.wear import cube_wear_rate
+from sonolube.rig.friction_and_wear import resting_caveats
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
-from sonolube.rig.worn_contact import resting_caveats
 
 COMPUTED = "computed"
 """Status of a result within the range of its model."""

@@ -11,11 +11,11 @@ from sonolube.errors import SonolubeError
 from sonolube.models.contact import GapMotionBatch, separation
 from sonolube.models.dynamics import Status, SteadyStates
 from sonolube.models.dynamics.backend import Backend
-from sonolube.models.dynamics.kernels.peak_velocity import peak_velocities
+from sonolube.models.dynamics.kernels.simd import peak_velocities
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, checked_ratio
 from sonolube.rig import operating_conditions as conditions, operating_point_grid as grid
 from sonolube.rig.friction_and_wear import friction_at_speeds
-from sonolube.rig.operating_vibrations import REFUSED, steady_states_of
+from sonolube.rig.operating_conditions import REFUSED, steady_states_of
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.vibration import gap_motion

@@ -11,10 +11,18 @@ from sonolube.models.contact import separation
 from sonolube.models.dynamics import SteadyStates
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
-from sonolube.rig.excitation import actuator_capacitance
+from sonolube.rig.driven_rig import actuator_capacitance
 from sonolube.rig.friction_and_wear import friction_at_speeds
-from sonolube.rig.operating_conditions import CONDITIONS, OperatingConditions, conditions_of, points_by_vibration
-from sonolube.rig.operating_vibrations import REFUSED, computed_vibrations, stated_vibrations, steady_states_of
+from sonolube.rig.operating_conditions import (
+    CONDITIONS,
+    REFUSED,
+    OperatingConditions,
+    computed_vibrations,
+    conditions_of,
+    points_by_vibration,
+    stated_vibrations,
+    steady_states_of,
+)
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 

@@ -14,11 +14,11 @@ from sonolube.rig import operating_conditions as conditions
 from sonolube.rig.datasets import Dataset, gridded
 from sonolube.rig.driven_rig import DrivenRig, require_drive
 from sonolube.rig.friction_and_wear import prescribed_sine
-from sonolube.rig.linear_response import structure_in_contact
 from sonolube.rig.operating_point_batch import NUMBERS
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, amplitude_labels, resolved_rig
+from sonolube.rig.responses import structure_in_contact
 
 _GRAVITY = 9.80665  # m/s2
 _PHASES = 128

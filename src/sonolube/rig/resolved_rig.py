@@ -13,8 +13,7 @@ from sonolube.models.contact.rough import decay_length, normal_force, normal_sti
 from sonolube.models.dynamics import ExponentialGap, GapLaw, StartUpRamp, TabulatedGap
 from sonolube.models.friction.models import FrictionModel
 from sonolube.rig import amplitude_source
-from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import DriveVoltage
+from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, driven_rig
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, Rig
 from sonolube.text.units import format_si
 

@@ -11,11 +11,12 @@ from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
 from sonolube.models.wear import WEAR_MODELS
 from sonolube.rig.amplitude_source import ResolvedVibration
-from sonolube.rig.excitation import actuator_capacitance, energy_balance
+from sonolube.rig.driven_rig import actuator_capacitance, energy_balance
 from sonolube.rig.friction_and_wear import (
     mean_friction,
     mean_wear,
     range_text,
+    resting_caveats,
     rise_caveats,
     wear_model_of,
     wear_model_that_holds,
@@ -24,7 +25,6 @@ from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoi
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig, source_caveats
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
-from sonolube.rig.worn_contact import resting_caveats
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from sonolube.errors import InvalidInput
 from sonolube.operating_system import ON_WINDOWS, lock_file, replace_file
 from sonolube.storage.interruption import undone_at_signal
-from sonolube.storage.targets import expect_target, refusal, resolved_target
+from sonolube.storage.user_files import expect_target, refusal, resolved_target
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from sonolube.errors import InvalidInput
 from sonolube.operating_system import replace_file
-from sonolube.storage.targets import expect_target, refusal
+from sonolube.storage.user_files import expect_target, refusal
 
 if TYPE_CHECKING:
     from sqlite3 import Connection as Connection

@@ -16,7 +16,7 @@ from sonolube.report.blocks import (
     block_html,
     text_lines as text_lines,
 )
-from sonolube.report.results.facts_dataset import scalar_dataset
+from sonolube.report.results.record_object import scalar_dataset
 from sonolube.vocabulary import si as si
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from sonolube.report import Drawing, Page
     from sonolube.rig import Rig
     from sonolube.rig.datasets import LabelledArrays
-    from sonolube.tasks.call import Call
+    from sonolube.tasks.parameters import Call
     from sonolube.tasks.progress import Advance
 
     Content: TypeAlias = str | bytes | xr.Dataset | LabelledArrays | Path

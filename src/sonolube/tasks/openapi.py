@@ -7,8 +7,7 @@ from typing import Any, Final, Literal, get_args, get_origin
 
 from sonolube import __version__
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.call import item_of, members_of
-from sonolube.tasks.parameters import DoorParameter, File, KeyValues, Parameter, RigParameter
+from sonolube.tasks.parameters import DoorParameter, File, KeyValues, Parameter, RigParameter, item_of, members_of
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
 from sonolube.text.units import unit_description

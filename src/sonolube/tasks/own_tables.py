@@ -1,17 +1,27 @@
-"""Own tables as arguments of tasks: measured runs, and the mapping of their columns."""
+"""Tables and values as arguments: measured runs, mappings of columns, tables of numbers, values of keys of a rig.
 
+Values of a key are a text such as "20kHz:24kHz:50", or numbers in SI.
+"""
+
+import io
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, overload
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, overload
 
+from sonolube.design.ranges import ends_of, values_of
 from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.instrument_mappings import mapping_by_name
 from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.reader import mapping_by_name
+from sonolube.storage.user_files import input_text
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.parameters import File, OwnRuns, RunsSource
 from sonolube.tasks.task import refuse_unused, shown
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from sonolube.checks import Floats
+    from sonolube.rig import Rig
 
 Mapped = Annotated[
     InputFile | None, File("Of the columns: umt, anton-paar, t-11, rtec, pin-on-disc, or a file.", "NAME|MAPPING.toml")
@@ -55,3 +65,73 @@ def runs_of(runs: RunsSource, mapping: InputFile | None = None) -> "xr.Dataset |
     from sonolube.measurement.measured_runs import read_runs
 
     return read_runs(file_path(runs), mapping=mapping_of(mapping))
+
+
+def number_table(path: Path) -> "Floats":
+    """Numbers of a CSV file without header, comments behind #, shape (rows, columns).
+
+    Raises
+    ------
+    InvalidInput
+        If the file is no table of numbers.
+    """
+    import numpy as np
+
+    try:
+        return np.loadtxt(io.StringIO(input_text(path)), delimiter=",", comments="#", ndmin=2, dtype=np.float64)
+    except (OSError, ValueError) as failure:
+        raise InvalidInput(f"{path}: is no table of numbers with commas between: {failure}") from None
+
+
+Values: TypeAlias = Mapping[str, Any]
+"""By dotted key of the rig file: first:last:count, first:last:count:log, one,two,..., or numbers in SI."""
+
+
+def values_by_key(over: Values) -> dict[str, Any]:
+    """Values of each key: numbers in SI, or text for keys that are no quantity.
+
+    Raises
+    ------
+    InvalidInput
+        If a text cannot be read.
+    """
+    return {
+        key: values_of(key, values, option=shown("over")) if isinstance(values, str) else values
+        for key, values in over.items()
+    }
+
+
+def ends_by_key(over: Values) -> dict[str, tuple[float, float]]:
+    """Lowest and highest value of each key, in SI.
+
+    Raises
+    ------
+    InvalidInput
+        If a text cannot be read, or there are not two numbers.
+    """
+    return {key: _ends(key, values) for key, values in over.items()}
+
+
+def refuse_replaced(rig: "Rig", over: Values) -> None:
+    """Refuse a key of which the rig has an entry that was replaced when it was read.
+
+    Raises
+    ------
+    InvalidInput
+        For the first such key.
+    """
+    for key in (change.partition("=")[0].strip() for change in rig.changes):
+        if key in over:
+            raise InvalidInput(f"--set {key}: takes the values of {shown('over')} {key}; give it once")
+
+
+def _ends(key: str, values: Any) -> tuple[float, float]:
+    """Lowest and highest value of a key, as text or as numbers in SI."""
+    if isinstance(values, str):
+        return ends_of(key, values, option=shown("over"))
+    import numpy as np
+
+    numbers = np.asarray(values, float).ravel()
+    if numbers.size != 2:
+        raise InvalidInput(f"{shown('over')} {key}: points are drawn between two ends, got {numbers.size} numbers")
+    return float(numbers[0]), float(numbers[1])

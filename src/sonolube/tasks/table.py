@@ -1,14 +1,35 @@
-"""Table of all tasks, one line each: panel of the help, name, module and function, and the files of its answer."""
+"""Table of all tasks, one line each: panel of the help, name, module and function, and the files of its answer.
 
+Docstrings for help texts are read from the source, without their section `Examples` and without an import.
+"""
+
+import ast
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Final
-
-from sonolube.tasks.docstrings import docstring
 
 if TYPE_CHECKING:
     from sonolube.tasks.answer import Answer
+
+_EXAMPLES: Final = "\n\nExamples\n--------\n"
+
+
+def docstring(package: str, where: str) -> str:
+    """Docstring, without examples, of a function such as "predict.rig_record:wear"; its module is not imported."""
+    module, _, name = f"{package}.{where}".strip(".").partition(":")
+    root, _, inner = module.partition(".")
+    source = files(root).joinpath(f"{inner.replace('.', '/')}.py").read_text(encoding="utf-8")
+    nodes = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef) and node.name == name)
+    return split_examples(ast.get_docstring(next(nodes)) or "")[0]
+
+
+def split_examples(text: str) -> tuple[str, str]:
+    """Docstring without its section Examples, which has `>>>` of Python, and that section."""
+    before, heading, examples = text.partition(_EXAMPLES)
+    return before, f"{heading}{examples}".strip()
+
 
 PREDICT: Final = "Predict a rig"
 _PART: Final = "Predict a part"
@@ -30,7 +51,7 @@ class Task:
     name : str
         As typed on a terminal; two words for a task of a group, in Python joined by a dot.
     where : str
-        Module below `sonolube.tasks` and function in it, as "predict.friction:friction".
+        Module below `sonolube.tasks` and function in it, as "predict.rig_record:friction".
     writes : str
         Names of the files of its answer with spaces between, * for what is not known before the computation; an
         argument in braces stands for its name without folder and ending.
@@ -66,14 +87,14 @@ class Task:
 TASKS: Final = (
     Task(PREDICT, "new", "predict.new:new"),
     Task(PREDICT, "predict", "predict.predict:predict", "{rig}-prediction.*"),
-    Task(PREDICT, "contact", "predict.contact:contact"),
-    Task(PREDICT, "friction", "predict.friction:friction"),
-    Task(PREDICT, "wear", "predict.wear:wear"),
-    Task(PREDICT, "simulate", "predict.simulate:simulate", "{rig}-simulation.*"),
-    Task(PREDICT, "response", "predict.response:response", "{rig}-response.*"),
-    Task(PREDICT, "transient", "predict.transient:transient", "{rig}-transient.*"),
-    Task(PREDICT, "thermal", "predict.thermal:thermal", "{rig}-thermal.*"),
-    Task(PREDICT, "regime", "predict.regime:regime", "{rig}-regime.*"),
+    Task(PREDICT, "contact", "predict.rig_record:contact"),
+    Task(PREDICT, "friction", "predict.rig_record:friction"),
+    Task(PREDICT, "wear", "predict.rig_record:wear"),
+    Task(PREDICT, "simulate", "predict.rig_record:simulate", "{rig}-simulation.*"),
+    Task(PREDICT, "response", "predict.response_and_regime:response", "{rig}-response.*"),
+    Task(PREDICT, "transient", "predict.response_and_regime:transient", "{rig}-transient.*"),
+    Task(PREDICT, "thermal", "predict.rig_record:thermal", "{rig}-thermal.*"),
+    Task(PREDICT, "regime", "predict.response_and_regime:regime", "{rig}-regime.*"),
     Task(_PART, "modes", "parts.modes:modes", "{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.*"),
     Task(
         _PART,
@@ -93,24 +114,19 @@ TASKS: Final = (
     Task(_DESIGN, "optimise", "design.optimise:optimise", "optimise.html {rig}-optimum.* {rig}-optimum-*.*"),
     Task(_DESIGN, "control", "design.control:control", "control.html {rig}-control.* {rig}-control-*.*"),
     Task(_DESIGN, "efficiency", "design.efficiency:efficiency", "efficiency.html {runs}-efficiency.*"),
-    Task(
-        _DESIGN,
-        "horn design",
-        "horn.tuned_horn:design",
-        "{part}-axis.* {part}-mode.* {part}-drawing.* {part}-tuned.step",
-    ),
-    Task(_DESIGN, "horn face", "horn.poisson_horn_face:face", "horn-{horn}-face.*"),
-    Task(_MEASURE, "measure friction", "measure.recorded_friction:friction", has_report=True),
-    Task(_MEASURE, "measure rotation", "measure.hall_rotation:rotation", has_report=True),
-    Task(_MEASURE, "measure temperature", "measure.recorded_temperature:temperature", has_report=True),
-    Task(_MEASURE, "measure calibration", "measure.gauge_calibration:calibration", has_report=True),
+    Task(_DESIGN, "horn design", "horn.horns:design", "{part}-axis.* {part}-mode.* {part}-drawing.* {part}-tuned.step"),
+    Task(_DESIGN, "horn face", "horn.horns:face", "horn-{horn}-face.*"),
+    Task(_MEASURE, "measure friction", "measure.recordings:friction", has_report=True),
+    Task(_MEASURE, "measure rotation", "measure.recordings:rotation", has_report=True),
+    Task(_MEASURE, "measure temperature", "measure.recordings:temperature", has_report=True),
+    Task(_MEASURE, "measure calibration", "measure.recordings:calibration", has_report=True),
     Task(_MEASURE, "measure surface", "measure.scanned_surface:surface", has_report=True),
     Task(_MEASURE, "measure groove", "measure.worn_groove:groove", has_report=True),
-    Task(_MEASURE, "measure impedance", "measure.impedance_fit:impedance", has_report=True),
-    Task(_MEASURE, "measure vibration", "measure.driven_vibration:vibration", has_report=True),
-    Task(_MEASURE, "measure stiffness", "measure.resonance_stiffness:stiffness", "{pressed}-stiffness.*"),
+    Task(_MEASURE, "measure impedance", "measure.spectra:impedance", has_report=True),
+    Task(_MEASURE, "measure vibration", "measure.recordings:vibration", has_report=True),
+    Task(_MEASURE, "measure stiffness", "measure.spectra:stiffness", "{pressed}-stiffness.*"),
     Task(_COMPARE, "compare", "compare.compare:compare", "models.csv models.nc models-*.*"),
-    Task(_COMPARE, "fit", "compare.fit:fit", "{runs}-fit.*"),
+    Task(_COMPARE, "fit", "compare.compare:fit", "{runs}-fit.*"),
     Task(_COMPARE, "identify rig", "identify.rig_of_facts:rig"),
     Task(_COMPARE, "identify decay-length", "identify.decay_length_of_run:decay_length", "{file}-decay-length.*"),
     Task(_COMPARE, "literature", "compare.literature:literature", "map-of-studies.* studies.csv"),
@@ -118,14 +134,14 @@ TASKS: Final = (
     Task(LAB, "lab run", "lab.protocol_run:run"),
     Task(LAB, "lab virtual", "lab.protocol_run:virtual"),
     Task(LAB, "lab hold", "lab.friction_hold:hold"),
-    Task(LAB, "lab runs", "lab.run_list:runs"),
-    Task(LAB, "lab show", "lab.shown_run:show", "{run}-channels.* {run}-channels-*", writes_on_request=True),
-    Task(LAB, "lab recover", "lab.recovery:recover"),
-    Task(LAB, "lab export", "lab.recording_export:export", "{run}.* {run}-*"),
+    Task(LAB, "lab runs", "lab.run_folders:runs"),
+    Task(LAB, "lab show", "lab.run_folders:show", "{run}-channels.* {run}-channels-*", writes_on_request=True),
+    Task(LAB, "lab recover", "lab.run_folders:recover"),
+    Task(LAB, "lab export", "lab.run_folders:export", "{run}.* {run}-*"),
     Task(LAB, "lab check", "lab.device_check:check"),
-    Task(LOOKUP, "materials", "lookup.materials:materials"),
-    Task(LOOKUP, "actuators", "lookup.actuators:actuators"),
-    Task(LOOKUP, "published", "lookup.published:published"),
+    Task(LOOKUP, "materials", "lookup.facts:materials"),
+    Task(LOOKUP, "actuators", "lookup.facts:actuators"),
+    Task(LOOKUP, "published", "lookup.facts:published"),
     Task(
         LOOKUP,
         "example",

@@ -12,12 +12,10 @@ from typing import Any, Generic, Literal, NoReturn, ParamSpec, TypeVar, get_args
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.former_names import moved_module
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.call import Call, Mark
-from sonolube.tasks.docstrings import split_examples
 from sonolube.tasks.files import private_files, with_names_only
-from sonolube.tasks.notebooks import cell_progress, is_in_notebook
-from sonolube.tasks.parameters import File, Number, Parameter, RigParameter, Watched
-from sonolube.tasks.progress import observed, watched, within
+from sonolube.tasks.parameters import Call, File, Mark, Number, Parameter, RigParameter, Watched
+from sonolube.tasks.progress import cell_progress, is_in_notebook, observed, watched, within
+from sonolube.tasks.table import split_examples
 from sonolube.text.units import temperature_difference_to_si, to_si
 
 P = ParamSpec("P")
@@ -167,7 +165,7 @@ def in_si(name: str, value: Number | None) -> float | None:
 
 def plausible(name: str, value: Number) -> float:
     """Value in SI as `in_si` gives it, refused where its magnitude lies beyond any rig."""
-    from sonolube.rig.file.plausible import require_plausible
+    from sonolube.rig.file.section import require_plausible
 
     return require_plausible(in_si(name, value), unit=_mark(name).unit or "", text=f"{shown(name)} {value}")
 

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from sonolube.errors import InvalidInput
-from sonolube.storage.input_files import input_text
-from sonolube.storage.targets import record_input
-from sonolube.text.printable_text import active_character
+from sonolube.storage.user_files import input_text, record_input
+from sonolube.text.plain_text import active_character
 
 _LARGEST_FILE = 1_000_000  # bytes; a rig is a page of text, hundreds of modes are some 20 kB
 _DEEPEST = 32  # tables, arrays and parts of a dotted key, one within the other

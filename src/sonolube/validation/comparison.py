@@ -1,4 +1,4 @@
-"""Comparison of model variants on published tests: fits, cross-validation by sets, and predictions of a rig.
+"""Comparison of model variants on published tests: fits, cross-validation, predictions of a rig and of own runs.
 
 A variant is fitted to the friction ratios of all tests whose conditions have its required inputs; then each set of
 tests is left out in turn and predicted by a fit to the others. This cross-validation error, not that of the fit, is the
@@ -9,28 +9,33 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.validation.assessment import (
+    CHI_SQUARED_95,
     FITTED_SETS,
     Assessment,
     ErrorStatistics,
+    Fit,
     assess_variant,
     error_statistics,
     leave_one_set_out_fits,
+    profile_likelihood_interval,
+    root_mean_square,
+    select_tests,
 )
 from sonolube.validation.coulomb_and_spring_variants import COULOMB_AND_SPRING_VARIANTS
 from sonolube.validation.dahl_and_lugre_variants import DAHL_AND_LUGRE_VARIANTS
-from sonolube.validation.fitting import CHI_SQUARED_95, Fit, profile_likelihood_interval, select_tests
-from sonolube.validation.free_parameters import FreeParameter
 from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
-from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.model_variant import FreeParameter, ModelVariant, VibratedRig
 from sonolube.validation.published_tests import (
     IN_PLANE_VIBRATION_SETS,
     NORMAL_VIBRATION_SETS,
     MeasuredConditions,
     Tests,
 )
-from sonolube.validation.rig_conditions import VibratedRig
+from sonolube.validation.run_conditions import RunsTable
 
 Advance = Callable[[str, int, int], None]
 
@@ -313,3 +318,69 @@ def _rank(one: ComparedFit) -> tuple[int, float]:
     """Sort key of a fit: the tests that it reaches, most first, then its cross-validation error."""
     unseen = None if one.assessment is None else one.assessment.cross_validation_errors
     return (0, float("inf")) if unseen is None else (-unseen.count, unseen.rms)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunsPrediction:
+    """Friction ratios of own conditions by one variant as published tests fitted it.
+
+    Parameters
+    ----------
+    model : ModelVariant
+    ratios : tuple of float or None
+        Of each condition; None where the variant does not apply.
+    rms : float or None
+        Root mean square error over the conditions to which it applies; None where there is none.
+    mean : float or None
+        Mean error, predicted minus measured.
+    cross_validated_rms : float or None
+        Error to expect, by the published sets left out in turn.
+    reason : str or None
+        Why the variant does not apply to some condition.
+    """
+
+    model: ModelVariant
+    ratios: tuple[float | None, ...]
+    rms: float | None
+    mean: float | None
+    cross_validated_rms: float | None
+    reason: str | None
+
+    @property
+    def reached(self) -> int:
+        """Number of conditions to which it applies."""
+        return sum(ratio is not None for ratio in self.ratios)
+
+
+def predict_runs(fits: tuple[ComparedFit, ...], table: RunsTable) -> tuple[RunsPrediction, ...]:
+    """Friction ratios of own conditions by every variant fitted to published tests.
+
+    Those that apply to most conditions first, by their error.
+    """
+    return tuple(sorted((_runs_prediction(one, table) for one in fits), key=_runs_rank))
+
+
+def _runs_prediction(one: ComparedFit, table: RunsTable) -> RunsPrediction:
+    """Friction ratios of own conditions by one variant."""
+    missing = next(filter(None, map(one.model.inapplicability, table.conditions)), None)
+    ratios = [
+        None if one.model.inapplicability(condition) else one.fit.predict(condition) for condition in table.conditions
+    ]
+    pairs = zip(ratios, table.conditions, strict=True)
+    errors = np.array([ratio - condition.friction_ratio for ratio, condition in pairs if ratio is not None])
+    beyond = None
+    if not missing and None in ratios:
+        beyond = one.model.range_violation(table.conditions[ratios.index(None)], *one.fit.values)
+    return RunsPrediction(
+        model=one.model,
+        ratios=tuple(ratios),
+        rms=root_mean_square(errors) if errors.size else None,
+        mean=float(np.mean(errors)) if errors.size else None,
+        cross_validated_rms=one.assessment.cross_validation_errors.rms if one.assessment else None,
+        reason=missing or beyond,
+    )
+
+
+def _runs_rank(one: RunsPrediction) -> tuple[int, float]:
+    """Sort key of a prediction: conditions that it does not reach, then its error."""
+    return len(one.ratios) - one.reached, float("inf") if one.rms is None else one.rms

@@ -16,19 +16,21 @@ from sonolube.checks import Floats
 from sonolube.errors import ModelRangeWarning, OutsideRange
 from sonolube.models import friction
 from sonolube.models.contact import RoughContact, normal_stiffness, separation
-from sonolube.validation.condition_columns import ConditionColumns
-from sonolube.validation.free_parameters import (
+from sonolube.validation.model_variant import (
     APPROACH,
     APPROACH_RATIO,
     IN_PLANE_MOTION,
     MINDLIN_RATIO,
+    NORMAL_VIBRATION,
+    SINUSOIDAL_VIBRATION,
     SLIP_LENGTH,
     VIBRATION_DIRECTION,
+    ConditionColumns,
+    ModelVariant,
+    VibratedRig,
     per_rig,
 )
-from sonolube.validation.model_variant import NORMAL_VIBRATION, SINUSOIDAL_VIBRATION, ModelVariant
 from sonolube.validation.published_tests import FrictionTest, InPlaneTest
-from sonolube.validation.rig_conditions import VibratedRig
 
 _Vibrated = FrictionTest | ConditionColumns
 _PER_SLIP_LENGTH: Final = friction.SpringContact(friction_coefficient=1.0, mindlin_ratio=1.0)

@@ -9,17 +9,22 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.models import friction
 from sonolube.models.contact import RoughContact, separation
-from sonolube.validation.condition_columns import ConditionColumns
 from sonolube.validation.coulomb_and_spring_variants import (
     LONGITUDINAL_VIBRATION,
     approach_at_rest,
     load_over_stiffness,
 )
-from sonolube.validation.free_parameters import IN_PLANE_MOTION, MINDLIN_RATIO, STRIBECK_CURVE, per_rig
 from sonolube.validation.friction_model_variants import balanced_motion
-from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.model_variant import (
+    IN_PLANE_MOTION,
+    MINDLIN_RATIO,
+    STRIBECK_CURVE,
+    ConditionColumns,
+    ModelVariant,
+    VibratedRig,
+    per_rig,
+)
 from sonolube.validation.published_tests import FrictionTest
-from sonolube.validation.rig_conditions import VibratedRig
 
 _SETTLING_PERIODS: Final = 8  # natural periods of a driven holder before its force is averaged
 _DAMPING_RATIO: Final = 0.2  # of the driven holder

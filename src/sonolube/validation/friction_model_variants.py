@@ -15,8 +15,7 @@ from sonolube.models.contact import (
     separation,
     sinusoidal_motion,
 )
-from sonolube.validation.condition_columns import ConditionColumns
-from sonolube.validation.free_parameters import (
+from sonolube.validation.model_variant import (
     AMPLITUDE_FRACTION,
     DECAY_CONSTANT,
     FITTED_RIGS,
@@ -25,9 +24,13 @@ from sonolube.validation.free_parameters import (
     IN_PLANE_MOTION,
     MEMORY_LENGTH,
     NOMINAL_AREA_FACTOR,
+    NORMAL_VIBRATION,
+    SINUSOIDAL_VIBRATION,
+    ConditionColumns,
+    ModelVariant,
+    SeenSets,
     per_rig,
 )
-from sonolube.validation.model_variant import NORMAL_VIBRATION, SINUSOIDAL_VIBRATION, ModelVariant, SeenSets
 from sonolube.validation.published_tests import FrictionTest
 
 

@@ -1,22 +1,151 @@
-"""Model variants: a model of friction under vibration with its free parameters, required inputs and source."""
+"""Model variants: a model of friction under vibration with its free parameters, required inputs and source.
+
+Contact and vibration are as the experiments state them. Only what was not measured on a rig may vary: nominal area and
+yield strength, which only shift the gap at rest so that one factor stands for both; the coefficient of friction within
+its scatter; the compliance of the holder; and in-plane motion along the sliding direction. Memory length and amplitude
+fraction belong to the friction model and are the same for all rigs, as is the decay length Rq/lambda. Defaults, initial
+values and bounds with their reasons are in free_parameters.toml.
+"""
 
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
+from math import inf, isfinite, pi
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final, SupportsFloat
 
 import numpy as np
 
-from sonolube.errors import OutsideRange
-from sonolube.models.contact import separation
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.models.contact import RoughContact, separation
 from sonolube.models.friction import FrictionModel, MeanGap
 from sonolube.models.friction.models.range_check import checked_ratio
-from sonolube.validation.condition_columns import condition_columns
-from sonolube.validation.free_parameters import FreeParameter
+from sonolube.rig import Rig, steady_vibration
 from sonolube.validation.published_tests import Conditions
+
+RIGS: Final = {"tribometer": "ACDEF", "power map": "B", "welder": "G", "flextensional": "H"}
+"""Letters of the sets measured on each rig."""
+
+FITTED_RIGS: Final = ("tribometer", "power map", "welder")
+"""Rigs whose sets are fitted; the amplitude of the flextensional actuator at resonance is not known."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FreeParameter:
+    """Parameter of a model variant that is fitted to tests.
+
+    Parameters
+    ----------
+    name : str
+        Name; that of the vocabulary for a quantity.
+    unit : str
+        Unit in reports.
+    default : float
+        Value where no fitted test determines it, in SI.
+    initial_values : tuple of float
+        Initial values of the fit, in SI.
+    low, high : float
+        Physical bounds, in SI.
+    reason : str
+        Reason for these bounds.
+    applicable_sets : str
+        Letters of the sets to which it applies; empty for all.
+    """
+
+    name: str
+    unit: str = ""
+    default: float
+    initial_values: tuple[float, ...]
+    low: float
+    high: float
+    reason: str
+    applicable_sets: str = ""
+
+    def applies_to(self, sets: str) -> bool:
+        """Whether the parameter applies to any of the sets of the given letters."""
+        return not self.applicable_sets or bool(set(self.applicable_sets) & set(sets))
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether the parameter is periodic, so that its bounds only limit the search."""
+        return self.unit == "rad"
+
+
+def per_rig(parameters: tuple[FreeParameter, ...], *rigs: str) -> tuple[FreeParameter, ...]:
+    """Copy of each parameter for each of the named rigs, specific to that rig."""
+    return tuple(replace(parameter, applicable_sets=RIGS[rig]) for rig in rigs for parameter in parameters)
+
+
+def _parameters() -> dict[str, FreeParameter]:
+    """Parameters of the file beside this one, by name."""
+    content = tomllib.loads(Path(__file__).with_name("free_parameters.toml").read_text(encoding="utf-8"))
+    return {
+        name: FreeParameter(name=name, **entry | {"initial_values": tuple(entry["initial_values"])})
+        for name, entry in content.items()
+    }
+
+
+_PARAMETERS: Final = _parameters()
+NOMINAL_AREA_FACTOR: Final = _PARAMETERS["nominal_area_factor"]
+FRICTION_COEFFICIENT_FACTOR: Final = _PARAMETERS["friction_coefficient_factor"]
+AMPLITUDE_FRACTION: Final = _PARAMETERS["amplitude_fraction"]
+MEMORY_LENGTH: Final = _PARAMETERS["memory_length"]
+DECAY_CONSTANT: Final = _PARAMETERS["decay_constant"]
+SLIP_LENGTH: Final = _PARAMETERS["slip_length"]
+APPROACH_RATIO: Final = _PARAMETERS["approach_ratio"]
+HOLDER_COMPLIANCE: Final = _PARAMETERS["holder_compliance"]
+IN_PLANE_MOTION: Final = (_PARAMETERS["in_plane_fraction"], _PARAMETERS["in_plane_phase"])
+VIBRATION_DIRECTION: Final = _PARAMETERS["vibration_direction"]
+APPROACH: Final = _PARAMETERS["approach"]
+MINDLIN_RATIO: Final = _PARAMETERS["mindlin_ratio"]
+STRIBECK_CURVE: Final = (_PARAMETERS["static_friction_ratio"], _PARAMETERS["stribeck_velocity"])
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ConditionColumns:
+    """Inputs of n conditions on one contact; NaN where a condition lacks one.
+
+    Parameters
+    ----------
+    contact : RoughContact
+        That of all; without one, only models without contact can be computed.
+    normal_load : ndarray, shape (n,)
+        Force pressing the bodies together. [N]
+    friction_coefficient : ndarray, shape (n,)
+        Coefficient of friction without vibration. []
+    sliding_speed : ndarray, shape (n,)
+        Sliding speed. [m/s]
+    vibration_amplitude : ndarray, shape (n,)
+        Amplitude along the surface normal. [m]
+    frequency : ndarray, shape (n,)
+        Frequency of the vibration. [Hz]
+    """
+
+    contact: RoughContact
+    normal_load: Floats
+    friction_coefficient: Floats
+    sliding_speed: Floats
+    vibration_amplitude: Floats
+    frequency: Floats
+
+
+_COLUMNS = tuple(field.name for field in fields(ConditionColumns) if field.name != "contact")
+
+
+def condition_columns(conditions: Sequence[object]) -> ConditionColumns | None:
+    """Inputs of conditions as arrays.
+
+    None where the conditions are on different contacts.
+    """
+    contact: Any = getattr(conditions[0], "contact", None)
+    if any(getattr(one, "contact", None) is not contact for one in conditions):
+        return None
+    columns = {name: np.array([getattr(one, name, None) for one in conditions], dtype=np.float64) for name in _COLUMNS}
+    return ConditionColumns(contact=contact, **columns)
+
 
 REQUIRED_INPUTS: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
     tomllib.loads(Path(__file__).with_name("required_inputs.toml").read_text(encoding="utf-8"))
@@ -157,3 +286,80 @@ def _cached_ratio(
         return float(ratio(conditions, **dict(values)))
     except OutsideRange as reason:
         return str(reason)
+
+
+_FIELDS_OF_RIG = ("contact", "normal_load", "friction_coefficient", "sliding_speed")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VibratedRig:
+    """Conditions of a rig at its operating point; unknown ones are None.
+
+    Parameters
+    ----------
+    label : str
+        Name in tables.
+    contact : RoughContact
+    normal_load : float
+        Force pressing the bodies together. [N]
+    friction_coefficient : float
+        Coefficient of friction without vibration. []
+    sliding_speed : float
+        Sliding speed during vibration. [m/s]
+    vibration_amplitude : float
+        Amplitude along the surface normal. [m]
+    frequency : float or None
+        Frequency of the vibration. [Hz]
+    in_plane_amplitude : float or None
+        Amplitude along the sliding direction. [m]
+    holder_stiffness : float or None
+        Stiffness of the holder along the sliding direction. [N/m]
+    holder_mass : float or None
+        Mass that moves with the holder. [kg]
+    """
+
+    label: str
+    contact: RoughContact
+    normal_load: float
+    friction_coefficient: float
+    sliding_speed: float
+    vibration_amplitude: float
+    frequency: float | None = None
+    in_plane_amplitude: float | None = None
+    holder_stiffness: float | None = None
+    holder_mass: float | None = None
+
+    @property
+    def set_name(self) -> str:
+        """Letter of no set, to which no rig-specific parameter applies."""
+        return "-"
+
+    @property
+    def vibration_velocity(self) -> float | None:
+        """Peak velocity of the vibration along the sliding. [m/s]"""
+        if self.in_plane_amplitude is None or self.frequency is None:
+            return None
+        return 2 * pi * self.frequency * self.in_plane_amplitude
+
+    @property
+    def vibration_direction(self) -> float | None:
+        """Angle between in-plane vibration and sliding. [rad]"""
+        return None if self.in_plane_amplitude is None else 0.0
+
+
+def vibrated_rig(rig: Rig) -> VibratedRig:
+    """Conditions of a rig at its operating point."""
+    amplitude = steady_vibration(rig).vibration_amplitude
+    for name, value in (("vibration_amplitude", amplitude), ("sliding_speed", rig.sliding_speed)):
+        if value == 0:
+            raise InvalidInput(f"{rig.title}: {name} is 0; models of friction under vibration need it positive")
+    model = rig.friction_model
+    fraction, stiffness = getattr(model, "in_plane_fraction", 0.0), getattr(model, "holder_stiffness", inf)
+    return VibratedRig(
+        label=rig.title,
+        **{name: getattr(rig, name) for name in _FIELDS_OF_RIG},
+        vibration_amplitude=amplitude,
+        frequency=None if rig.drive is None else rig.drive.frequency,
+        in_plane_amplitude=fraction * amplitude if fraction else None,
+        holder_stiffness=stiffness if isfinite(stiffness) else None,
+    )

@@ -10,8 +10,13 @@ from typing import Any, Final, Protocol
 
 from sonolube.facts.published import PublishedValue, published_number, published_value, si_value
 from sonolube.models.contact import RoughContact
-from sonolube.validation.contacts import steel_on_steel_contact, uncoated_plate_contact, wear_contact
-from sonolube.validation.roughness_inputs import printed_rms_height, roughness_spread
+from sonolube.validation.contacts import (
+    printed_rms_height,
+    roughness_spread,
+    steel_on_steel_contact,
+    uncoated_plate_contact,
+    wear_contact,
+)
 
 NORMAL_VIBRATION_SETS: Final = {
     "A": "steel on aluminium, three speeds (Table 2.3)",

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import run_caveats
-from sonolube.measurement.run_selection import checked_ratios, copies_caveat, setting
+from sonolube.measurement.measured_runs import checked_ratios, copies_caveat, run_caveats, setting
 from sonolube.models.contact import RoughContact
 from sonolube.rig import Rig, steady_vibration
 from sonolube.text.units import format_si

@@ -21,8 +21,8 @@ from reliability.studies.output_targets import (
 )
 
 from sonolube.cli import main
-from sonolube.cli.commands import COMMANDS, Command
-from sonolube.cli.console.outputs import OutputFile, output_marks
+from sonolube.cli.app import COMMANDS, Command
+from sonolube.cli.console.options import OutputFile, output_marks
 
 WRITERS = {command.name: command for command in COMMANDS if command.name in writers()}
 TO_A_FILE = [

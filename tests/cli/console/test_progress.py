@@ -10,8 +10,8 @@ from types import SimpleNamespace
 import pytest
 from tests.cli.terminal import read_until, rest
 
-from sonolube.cli.console import progress as module
-from sonolube.cli.console.progress import progress, time_left
+from sonolube.cli.console import options as module
+from sonolube.cli.console.options import progress, time_left
 
 
 def test_time_left_follows_from_the_pace_so_far() -> None:
@@ -81,7 +81,7 @@ def test_long_work_of_unknown_length_says_how_long_it_has_taken(
 
 def test_a_terminal_shows_a_bar_with_count_and_never_a_question_mark() -> None:
     work = (
-        "from sonolube.cli.console.progress import progress\n"
+        "from sonolube.cli.console.options import progress\n"
         "with progress('tuning') as advance:\n"
         "    advance('length', 1, 2); input()\n"
     )

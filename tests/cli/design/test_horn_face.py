@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from pytest import approx
 
-from sonolube.reproduction.chapter2.horn_friction import friction_on_face, transition_region
+from sonolube.reproduction.chapter2.poisson_horn import friction_on_face, transition_region
 
 Program = Callable[..., Any]
 

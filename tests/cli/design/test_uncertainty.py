@@ -11,7 +11,7 @@ import xarray as xr
 from pytest import approx
 
 from sonolube.design import propagate
-from sonolube.design.identified_structure import IdentifiedStructure
+from sonolube.design.uncertainty import IdentifiedStructure
 from sonolube.identification import Posterior, SingularDirection
 from sonolube.rig import read_rig
 from sonolube.tasks.design.uncertainty import UncertaintyAnswer

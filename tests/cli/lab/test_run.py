@@ -15,7 +15,7 @@ from tests.cli.lab.test_watch import LONG, folder_of, running
 from tests.laboratory import rig_stand_ins
 from tests.laboratory.rig_stand_ins import analogue_rig
 
-from sonolube.cli.console import questions
+from sonolube.cli.console import options as questions
 from sonolube.facts.protocol import Prompt, protocol_names
 from sonolube.laboratory import RunControl
 from sonolube.laboratory.records import read_run

@@ -12,7 +12,7 @@ from pytest import approx
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from sonolube.facts.materials import piezo_ceramic, piezo_ceramic_names
-from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import read_impedance
 
 Program = Callable[..., Any]
 

@@ -12,7 +12,7 @@ from pytest import approx
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from sonolube.measurement.vibration import modal_assurance_criterion
-from sonolube.models.fem.results.mode_files import frequency_text
+from sonolube.models.fem.results.part_modes import frequency_text
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig
 

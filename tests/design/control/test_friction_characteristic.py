@@ -16,8 +16,7 @@ from sonolube.design.control import (
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.facts.metrics import EfficiencyLine, efficiency_coefficient
 from sonolube.rig import friction_point, read_rig
-from sonolube.rig.driven_rig import driven_rig
-from sonolube.rig.excitation import DriveVoltage
+from sonolube.rig.driven_rig import DriveVoltage, driven_rig
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 TRIBOMETER, COLLAR = driven_rig(read_rig(RIGS / "tribometer.toml")), read_rig(RIGS / "collar.toml")

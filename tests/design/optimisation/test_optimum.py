@@ -29,7 +29,7 @@ from sonolube.design.optimisation import (
     required_electronics,
     swing_sensitivities,
 )
-from sonolube.design.optimisation.figures import front_chart
+from sonolube.design.optimisation.design_output import front_chart
 from sonolube.errors import InvalidInput, OutsideRange, UnknownName
 from sonolube.models.actuator import PreloadBolt, catalogue_actuator, catalogue_names
 from sonolube.rig import Rig, least_power_study, point_batch, read_rig, rig_content, structure_entries

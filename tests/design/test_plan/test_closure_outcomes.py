@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sonolube.design.test_plan.closure_outcomes import closure_outcomes
-from sonolube.design.test_plan.information import ModelOutcomes, best_batch, mutual_information
+from sonolube.design.test_plan.information import ModelOutcomes, best_batch, closure_outcomes, mutual_information
 from sonolube.prediction.evidence import TestedRig
 from sonolube.prediction.inputs import rig_inputs
 from sonolube.prediction.posterior import learned

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sonolube.design.test_plan.comparison import COMPARISONS
-from sonolube.design.test_plan.scatter import published_scatter
+from sonolube.design.test_plan.comparison import COMPARISONS, published_scatter
 from sonolube.errors import InvalidInput
 
 EXPERIMENTS = 20_000

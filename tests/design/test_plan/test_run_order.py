@@ -5,8 +5,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from sonolube.design.test_plan.comparison import BLOCKINGS, INTERLEAVED, RunState, randomised_runs
 from sonolube.design.test_plan.plan import Procedure
-from sonolube.design.test_plan.run_order import BLOCKINGS, INTERLEAVED, RunState, randomised_runs
 
 EFFECT, DRIFT = -0.3, 2e-3  # N, N/s
 PROCEDURE = Procedure(intrinsic_distance=11.61, vibrated_distance=7.21, measuring_time=12.0)

@@ -9,7 +9,7 @@ from pytest import approx, raises
 
 from sonolube.errors import MissingProperty, UnknownName
 from sonolube.facts.materials import material, material_names, piezo_ceramic
-from sonolube.models.contact.pair import ElasticBody, contact_pair
+from sonolube.models.contact.elastic_bodies import ElasticBody, contact_pair
 from sonolube.vocabulary import quantity
 
 every_material = pytest.mark.parametrize("name", material_names())

@@ -8,7 +8,7 @@ from pytest import approx, raises
 
 from sonolube.errors import UnknownName
 from sonolube.facts.materials import Material, material, material_classes, material_families, material_names
-from sonolube.facts.materials.property_file import read_property_file
+from sonolube.facts.materials.catalogue import read_property_file
 
 ENTRIES = read_property_file("engineering.toml").entries
 NEEDED_FOR_A_CONTACT = ("youngs_modulus", "poisson_ratio", "density", "hardness", "yield_strength")

@@ -23,7 +23,7 @@ from sonolube.facts.protocol import (
     protocol_schema,
     protocol_text,
 )
-from sonolube.facts.protocol.steps import STEP_KINDS, Step
+from sonolube.facts.protocol.record import STEP_KINDS, Step
 from sonolube.facts.published import si_value
 
 HOUR = 3600.0

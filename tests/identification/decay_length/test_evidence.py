@@ -7,7 +7,7 @@ import pytest
 
 from sonolube.checks import Floats
 from sonolube.identification import SwitchConditions, SwitchTable
-from sonolube.identification.decay_length.evidence import evidence
+from sonolube.identification.decay_length.posterior import evidence
 from sonolube.identification.decay_length.zero_error import zero_evidence
 
 S = np.arange(5.0, 300.0, 5.0)

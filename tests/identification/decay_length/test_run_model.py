@@ -6,9 +6,15 @@ from numpy.testing import assert_allclose
 from reliability import decay_length_recordings as made
 
 from sonolube.identification import SwitchConditions, SwitchTable
-from sonolube.identification.decay_length.channel_noise import noise_covariance, relaxation
-from sonolube.identification.decay_length.run_model import PARAMETERS, Changes, RunModel, run_channels
-from sonolube.identification.decay_length.stick_slip_table import interpolated_ratio
+from sonolube.identification.decay_length.run_model import (
+    PARAMETERS,
+    Changes,
+    RunModel,
+    interpolated_ratio,
+    noise_covariance,
+    relaxation,
+    run_channels,
+)
 
 S = np.arange(5.0, 300.0, 5.0)
 LENGTH = 1e-6 * (0.7 + 1.3 * S / S[-1])

@@ -15,7 +15,7 @@ from tests.laboratory.rig_stand_ins import EXAMPLE
 from sonolube.errors import InvalidInput, MissingPackage, SeveralFaults
 from sonolube.facts.protocol import protocol_by_name_or_file, protocol_from
 from sonolube.laboratory.drivers import device_map_schema, missing_parts, read_device_map, unfulfilled
-from sonolube.laboratory.drivers.sensor_scale import tabulated_scale
+from sonolube.laboratory.drivers.daqmx_acquisition import tabulated_scale
 
 TEXT = EXAMPLE.read_text(encoding="utf-8")
 LOADS = "normal_load.csv"

@@ -15,7 +15,7 @@ from tests.laboratory.strict_instruments import RIGOL, SIGLENT, TEKTRONIX, Stric
 from sonolube.errors import InvalidInput
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting, SamplesLost
 from sonolube.laboratory.drivers import ScpiSource, read_device_map
-from sonolube.laboratory.drivers.scpi_replies import ReplyEntry
+from sonolube.laboratory.drivers.scpi_instruments import ReplyEntry
 
 MAPS = Path(__file__).parents[3] / "examples" / "lab"
 GAIN = 20.0
@@ -290,8 +290,8 @@ def test_the_thermocouples_of_a_logger_are_read_by_one_query_a_period_in_si(monk
         slept.append(seconds)
         clock[0] += seconds
 
-    monkeypatch.setattr("sonolube.laboratory.drivers.scpi_query.time.sleep", sleep)
-    monkeypatch.setattr("sonolube.laboratory.drivers.scpi_query.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("sonolube.laboratory.drivers.scpi_instruments.time.sleep", sleep)
+    monkeypatch.setattr("sonolube.laboratory.drivers.scpi_instruments.time.monotonic", lambda: clock[0])
     slow = read.devices().further["slow"]
     slow.connect()
     assert slow.start(["disc_temperature", "pin_temperature"], sample_rate=1.0) == 1.0

@@ -18,22 +18,22 @@ from sonolube.facts.protocol import (
     protocol_by_name_or_file,
     protocol_text,
 )
-from sonolube.facts.protocol.steps import Step
+from sonolube.facts.protocol.record import Step
 from sonolube.laboratory import DriveSetting
 from sonolube.laboratory.catalogue import catalogued_runs
 from sonolube.laboratory.records import read_run
 from sonolube.laboratory.virtual_tribometer import FrictionDraw
 from sonolube.laboratory.virtual_tribometer.disturbances import DISTURBANCE_UNITS
-from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate
+from sonolube.measurement.friction.force_cycle import StickSlipEstimate
 from sonolube.measurement.friction_analysis import analyse_stick_slip
-from sonolube.measurement.swept_impedance import swept_impedance
+from sonolube.measurement.recorded_conditions import swept_impedance
 from sonolube.models.dynamics.structure import electrical_admittance
 from sonolube.report.blocks import text_lines
 from sonolube.rig import read_rig
 from sonolube.tasks import lab
 from sonolube.tasks.identify.decay_length_of_run import decay_length
-from sonolube.tasks.lab.run_answer import RunAnswer
-from sonolube.tasks.measure.gauge_calibration import calibration
+from sonolube.tasks.lab.protocol_run import RunAnswer
+from sonolube.tasks.measure.recordings import calibration
 
 RIG = Path(__file__).parents[3] / "examples" / "rigs" / "power_map.toml"
 LONGEST = 60.0  # s, of a recording of the long protocols

@@ -5,7 +5,7 @@ import pytest
 from pytest import approx
 
 from sonolube.design.control.stick_slip_oscillator import MassOnBelt, StickSlipMotion, stick_slip_motion
-from sonolube.laboratory.virtual_tribometer.stick_slip import StickSlip
+from sonolube.laboratory.virtual_tribometer.signals import StickSlip
 
 
 def closed_form(speed: float, *, damping_ratio: float = 1e-3) -> StickSlip:

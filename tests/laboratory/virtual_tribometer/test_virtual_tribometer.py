@@ -19,7 +19,7 @@ from sonolube.laboratory.dry_run import HeatingAssumptions, dry_run
 from sonolube.laboratory.virtual_tribometer import UNDISTURBED, Disturbances, VirtualTribometer, virtual_tribometer
 from sonolube.measurement.friction.rotation import hall_pulse_times
 from sonolube.measurement.friction.stick_slip import estimate_stick_slip
-from sonolube.measurement.friction.wobble_search import find_rotation_speed
+from sonolube.measurement.friction.wobble import find_rotation_speed
 from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork
 from sonolube.models.thermal.contact_history import contact_temperature_history
 from sonolube.prediction import predict

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from pytest import approx
 
-from sonolube.measurement.friction.motor_current import MotorCalibration, friction_from_motor_current
+from sonolube.measurement.friction.rotation import MotorCalibration, friction_from_motor_current
 from sonolube.measurement.friction_analysis import analyse_motor_current
 
 RNG = np.random.default_rng(7)

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from pytest import approx
 
-from sonolube.measurement.friction.running_in import steady_state_onset
+from sonolube.measurement.friction.windows import steady_state_onset
 from sonolube.measurement.friction_analysis import analyse_running_in
 
 RNG = np.random.default_rng(7)

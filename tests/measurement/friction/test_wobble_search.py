@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.measurement.friction.wobble_search import find_rotation_speed
+from sonolube.measurement.friction.wobble import find_rotation_speed
 
 PARTS = [np.arange(start, end, 0.016) for start, end in ((1.0, 12.4), (13.0, 16.4), (17.0, 20.4), (21.0, 24.4))]
 

@@ -12,7 +12,7 @@ from pytest import mark
 from reliability.damage import mutated
 
 from sonolube.errors import SonolubeError
-from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import read_impedance
 
 CORPUS = Path(__file__).parent / "corpus"
 SUFFIXES = (".4294a", ".e4990a", ".s1p", ".mfia", ".csv")

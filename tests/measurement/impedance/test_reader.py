@@ -6,9 +6,8 @@ import numpy as np
 from pytest import approx, mark, raises, skip
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.measurement.impedance.column_headings import parse_heading
-from sonolube.measurement.impedance.reader import read_impedance
-from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.measurement.impedance.named_columns import parse_heading
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, read_impedance
 
 CORPUS = Path(__file__).parent / "corpus"
 RB5100 = Path(__file__).parents[4] / "shared" / "data" / "impedance" / "RB5100.txt"

@@ -14,7 +14,7 @@ from pytest import approx, raises
 from tests.work import calls
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.limits import MAX_CHANNELS
+from sonolube.measurement.measured_files import MAX_CHANNELS
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, Selection
 from sonolube.measurement.recordings.reader import read_recording, recording_blocks
 from sonolube.measurement.recordings.tdms import MAX_SEGMENTS

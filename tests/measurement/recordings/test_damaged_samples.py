@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from sonolube.checks import Floats
-from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats
+from sonolube.measurement.recordings.dataset import damaged_sample_caveats
 from sonolube.measurement.recordings.reader import read_recording
 
 TIME: Floats = np.arange(2000, dtype=np.float64) * 0.01

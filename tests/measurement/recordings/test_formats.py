@@ -9,10 +9,10 @@ from pathlib import Path
 
 from pytest import approx, mark
 
-from sonolube.measurement.file_format import FileFormat
-from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
-from sonolube.measurement.recordings.formats import RECORDING_FORMATS
-from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
+from sonolube.measurement.impedance.spectrum import IMPEDANCE_FORMATS
+from sonolube.measurement.measured_files import FileFormat
+from sonolube.measurement.recordings.reader import RECORDING_FORMATS
+from sonolube.measurement.surface_files.reader import SURFACE_FORMATS
 
 PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "measurement.md").read_text(encoding="utf-8")
 TABLES: dict[str, Mapping[str, FileFormat]] = {

@@ -7,9 +7,8 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.instrument_mappings import instrument_mappings, mapping_by_name
 from sonolube.measurement.recordings.mapping import RecordingMapping, Selection, TextLayout, read_mapping
-from sonolube.measurement.recordings.reader import read_recording
+from sonolube.measurement.recordings.reader import instrument_mappings, mapping_by_name, read_recording
 
 GRAVITY = 9.80665e-3  # N of a gram-force
 

@@ -8,8 +8,8 @@ from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, Selection
+from sonolube.measurement.recordings.raw_table import numbered_labels
 from sonolube.measurement.recordings.reader import read_recording
-from sonolube.measurement.recordings.repeated_labels import numbered_labels
 
 TWO_FORCES = "time [s],Force [N],Force [N],Speed [m/s]\n0,1,10,5\n1,2,20,5\n2,3,30,5\n"
 

@@ -5,7 +5,7 @@ from pytest import approx, raises
 from scipy.signal import lfilter
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.statistics.correlated_regression import correlated_regression
+from sonolube.measurement.statistics.autocorrelation import correlated_regression
 
 
 def red(rng: np.random.Generator, samples: int, phi: float) -> np.ndarray:

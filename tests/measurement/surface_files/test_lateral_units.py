@@ -15,8 +15,8 @@ from pytest import approx, importorskip, mark, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import read_surface_file
-from sonolube.measurement.surface_files.regular_grid import even_profile
 from sonolube.measurement.surface_files.surface_topography import UNIT_BY_LIBRARY
+from sonolube.measurement.surface_files.xyz import even_profile
 
 # Readers that leave the lateral unit to the user in every file: their formats have none.
 _WITHOUT_UNIT = {"h5", "mat", "npy", "npz", "hgt"}

@@ -9,8 +9,8 @@ from hypothesis import given, settings, strategies as st
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.nms import NanoFocusNms
-from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.binary_formats import NanoFocusNms
+from sonolube.measurement.surface_files.reader import SurfaceReading
 
 
 def nms(numbers: np.ndarray, *, step_nm: float = 312.5, bottom: float = 2.0, top: float = 6.0, **parts: int) -> bytes:

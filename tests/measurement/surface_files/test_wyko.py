@@ -11,10 +11,9 @@ from pytest import approx, importorskip, mark, raises, skip
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.reader import read_surface_file
-from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.binary_formats import WykoOpd
+from sonolube.measurement.surface_files.reader import SurfaceReading, read_surface_file
 from sonolube.measurement.surface_files.surface_topography import SurfaceTopographyFormats
-from sonolube.measurement.surface_files.wyko import WykoOpd
 
 MEASURED = Path(__file__).parents[4] / "shared" / "data" / "surfaces" / "opd-1.opd"
 Blocks = list[tuple[str, int, bytes]]

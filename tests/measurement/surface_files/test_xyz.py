@@ -10,8 +10,7 @@ from pytest import approx, mark, raises
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.reader import read_surface_file
-from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.reader import SurfaceReading, read_surface_file
 from sonolube.measurement.surface_files.xyz import XyzText
 
 

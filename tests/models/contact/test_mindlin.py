@@ -12,7 +12,7 @@ from sonolube.models.contact import (
     mindlin_tangential_stiffness,
     separation,
 )
-from sonolube.models.contact.pair import identical_materials_mindlin_ratio
+from sonolube.models.contact.elastic_bodies import identical_materials_mindlin_ratio
 from sonolube.models.surfaces import Roughness
 
 # D, Table 3.2

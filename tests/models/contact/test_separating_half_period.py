@@ -7,7 +7,7 @@ from hypothesis import given, strategies as st
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.models.contact.separating_half_period import sampled_separating_mean, separating_half_period_mean
+from sonolube.models.contact.period_mean import sampled_separating_mean, separating_half_period_mean
 
 
 def test_the_mean_displacement_of_the_separating_half_is_two_over_pi_of_the_amplitude() -> None:

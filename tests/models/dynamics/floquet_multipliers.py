@@ -4,8 +4,8 @@ import numpy as np
 from scipy.linalg import block_diag, expm
 
 from sonolube.checks import Complexes, Floats
-from sonolube.models.dynamics.harmonic_balance.receptance import PoleResidueModel, pole_residue_model
-from sonolube.models.dynamics.steady_states import SteadyStates, contact_motion
+from sonolube.models.dynamics.harmonic_balance.equations import PoleResidueModel, pole_residue_model
+from sonolube.models.dynamics.motions import SteadyStates, contact_motion
 
 
 def floquet_multipliers(states: SteadyStates, *, kicks: int = 512) -> Complexes:

@@ -10,8 +10,8 @@ from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import ExponentialGap, LinearGap
 from sonolube.models.dynamics.attractor import Attractors, beat, classify_attractor, settling_time
 from sonolube.models.dynamics.linear import modes, poles
+from sonolube.models.dynamics.motions import State, Trajectories
 from sonolube.models.dynamics.structure import Structure, with_contact_spring
-from sonolube.models.dynamics.trajectories import State, Trajectories
 from sonolube.models.dynamics.transient import march, trajectory
 from sonolube.models.dynamics.waveform import StartUpRamp
 

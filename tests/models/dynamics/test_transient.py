@@ -13,8 +13,8 @@ from scipy.optimize import fsolve
 
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap
+from sonolube.models.dynamics.motions import State
 from sonolube.models.dynamics.structure import Structure, drive_receptance, dynamic_stiffness
-from sonolube.models.dynamics.trajectories import State
 from sonolube.models.dynamics.transient import march, trajectory
 from sonolube.models.dynamics.waveform import (
     WAVEFORMS,

@@ -15,7 +15,7 @@ from scipy.linalg import eigh
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.solver.medium import Medium
+from sonolube.models.fem.solver.model import Medium
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -13,23 +13,31 @@ from sonolube.figure import publication_style
 from sonolube.models.fem import Model, block, generate_mesh, isotropic_medium, natural_modes, trajectory_ellipse
 from sonolube.models.friction import elliptical_traction_ratio
 from sonolube.reproduction import Verdict
-from sonolube.reproduction.chapter2.horn_bending import PAD_DISTANCE, bending_line
-from sonolube.reproduction.chapter2.horn_figures import horn_figures
-from sonolube.reproduction.chapter2.horn_friction import FACE_END, driven_face, friction_on_face, transition_region
-from sonolube.reproduction.chapter2.horn_rows import horn_rows
-from sonolube.reproduction.chapter2.horn_sensitivity import frequency_changes, node_positions, with_tip
+from sonolube.reproduction.chapter2.horn_rows import (
+    PAD_DISTANCE,
+    bending_line,
+    frequency_changes,
+    horn_rows,
+    node_positions,
+    with_tip,
+)
+from sonolube.reproduction.chapter2.poisson_effect import horn_figures
 from sonolube.reproduction.chapter2.poisson_horn import (
     ASSUMED_SOLIDS,
+    FACE_END,
     assumed_shape,
     axial_mode,
     axial_mode_of,
+    driven_face,
     face_motion,
+    friction_on_face,
     horn_model,
     node_position,
     printed_shape,
     printed_solid,
+    transition_region,
 )
-from sonolube.reproduction.cube import HORNS, Horn
+from sonolube.reproduction.published_rigs import HORNS, Horn
 
 ROWS = {row.id: row for row in horn_rows()}
 INCH = 0.0254

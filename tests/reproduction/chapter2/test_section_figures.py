@@ -6,10 +6,16 @@ from pytest import approx
 from scipy.special import i0
 
 from sonolube.measurement.gauge.calibration import fit_branches, force_from_branches, force_from_preisach
-from sonolube.reproduction.chapter2.flextensional import gain_of_slow_test
-from sonolube.reproduction.chapter2.flextensional_figures import flextensional_figures, reduction
-from sonolube.reproduction.chapter2.metal_forming_figures import metal_forming_figures, zinc_intensity
-from sonolube.reproduction.chapter2.welder_figures import calibration, readings, tip_record, waveguide, welder_figures
+from sonolube.reproduction.chapter2.flextensional import flextensional_figures, gain_of_slow_test, reduction
+from sonolube.reproduction.chapter2.welder_figures import (
+    calibration,
+    metal_forming_figures,
+    readings,
+    tip_record,
+    waveguide,
+    welder_figures,
+    zinc_intensity,
+)
 
 ROUND, FLAT = 1, 2
 

@@ -3,7 +3,7 @@
 from pytest import approx
 
 from sonolube.reproduction import Verdict
-from sonolube.reproduction.chapter2.welder_motor import friction_drop_from_current, welder_motor, welder_motor_rows
+from sonolube.reproduction.chapter2.welder import friction_drop_from_current, welder_motor, welder_motor_rows
 
 ROWS = {row.id: row for row in welder_motor_rows()}
 ROUND, FLAT = 1, 2

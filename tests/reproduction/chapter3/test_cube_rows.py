@@ -6,8 +6,7 @@ from pytest import approx
 from sonolube.facts.published import statement
 from sonolube.figure import ReportFigure, publication_style
 from sonolube.reproduction import Row, Verdict
-from sonolube.reproduction.chapter3.cube_figures import cube_figures
-from sonolube.reproduction.chapter3.cube_rows import cube_rows
+from sonolube.reproduction.chapter3.cube import cube_figures, cube_rows
 
 ROWS = {row.id: row for row in cube_rows()}
 

@@ -9,11 +9,10 @@ from pytest import approx
 
 from sonolube.figure import ReportFigure, publication_style
 from sonolube.reproduction import Verdict
-from sonolube.reproduction.chapter3.parametric_study_figures import parametric_study_figures
-from sonolube.reproduction.chapter3.parametric_study_rows import parametric_study_rows
-from sonolube.reproduction.chapter3.vibration_period_figures import vibration_period_figures
-from sonolube.reproduction.chapter4.load import load_figures, load_rows
-from sonolube.reproduction.tribometer_rigs import tribometer_rig
+from sonolube.reproduction.chapter3.parametric_study import parametric_study_figures, parametric_study_rows
+from sonolube.reproduction.chapter3.tribometer_response import vibration_period_figures
+from sonolube.reproduction.chapter4.maps import load_figures, load_rows
+from sonolube.reproduction.published_rigs import tribometer_rig
 from sonolube.rig import read_rig
 
 ROWS = {row.id: row for row in (*parametric_study_rows(), *load_rows())}

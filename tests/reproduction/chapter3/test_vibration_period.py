@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.reproduction.chapter3.tribometer_response import response_over_voltage
-from sonolube.reproduction.chapter3.vibration_period_figures import mean_friction_ratio, vibration_period
+from sonolube.reproduction.chapter3.tribometer_response import (
+    mean_friction_ratio,
+    response_over_voltage,
+    vibration_period,
+)
 
 VOLTAGES = [50.0, 200.0]
 

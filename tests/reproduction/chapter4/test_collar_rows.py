@@ -12,9 +12,8 @@ from sonolube.models.friction import sine_stick_slip_ratio
 from sonolube.reproduction import CLAIMS, ClaimVerdict, Verdict
 from sonolube.reproduction.chapter4 import collar_rows as chapter4_collar
 from sonolube.reproduction.chapter4.collar import pulled_rod
-from sonolube.reproduction.chapter4.collar_figures import collar_figures
-from sonolube.reproduction.chapter4.collar_rows import collar_rows
-from sonolube.reproduction.claim import finding
+from sonolube.reproduction.chapter4.collar_rows import collar_figures, collar_rows
+from sonolube.reproduction.claims import finding
 
 
 def test_friction_along_the_rod_is_that_of_the_closed_form_at_each_amplitude() -> None:

@@ -6,13 +6,13 @@ from pytest import approx
 
 from sonolube.figure import publication_style
 from sonolube.models.friction import LubricationMethod, best_lubrication_method
-from sonolube.reproduction.chapter4.contact_temperature_rows import contact_temperature_rows
 from sonolube.reproduction.chapter4.lubrication import coefficients, lubrication_figures, lubrication_rows
-from sonolube.reproduction.chapter4.temperature_figures import temperature_figures
+from sonolube.reproduction.chapter4.temperature_rows import contact_temperature_rows
 from sonolube.reproduction.chapter4.temperature_tests import (
     TemperatureTest,
     history,
     speeds,
+    temperature_figures,
     vibration_heat_fraction,
     vibration_heat_window,
 )

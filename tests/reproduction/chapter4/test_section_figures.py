@@ -9,10 +9,9 @@ from pytest import approx
 from sonolube.dong2015 import cutter_head
 from sonolube.models.fem import generate_mesh, natural_modes
 from sonolube.reproduction import SECTIONS
-from sonolube.reproduction.chapter4.coated_plate_figures import coated_plate_rig, coated_power_maps
-from sonolube.reproduction.chapter4.cutter_head_figures import cutter_head_figures, head_mode
-from sonolube.reproduction.chapter4.lubrication_method_figures import friction_in_time, load_scatter, method_coefficients
-from sonolube.reproduction.chapter4.maps import power_maps
+from sonolube.reproduction.chapter4.lubrication import friction_in_time, load_scatter, method_coefficients
+from sonolube.reproduction.chapter4.maps import coated_plate_rig, coated_power_maps, power_maps
+from sonolube.reproduction.chapter4.skin_replica import cutter_head_figures, head_mode
 from sonolube.reproduction.chapter4.temperature_tests import dry_rises, speeds
 
 

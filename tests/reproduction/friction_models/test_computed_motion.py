@@ -17,7 +17,7 @@ from sonolube.reproduction.friction_models.computed_motion import (
     motion_predictions,
     swinging_arm_motion,
 )
-from sonolube.reproduction.tribometer_rigs import identified_structure
+from sonolube.reproduction.published_rigs import identified_structure
 from sonolube.rig import read_rig
 from sonolube.validation.published_tests import friction_tests
 

@@ -6,9 +6,8 @@ from pytest import approx
 
 from sonolube.figure import ReportFigure, publication_style
 from sonolube.reproduction import RowKind, Verdict
-from sonolube.reproduction.friction_models.friction_test_rows import tribometer_test_rows, within_scatter
-from sonolube.reproduction.friction_models.variant_figures import variant_figures
-from sonolube.reproduction.friction_models.variant_predictions import DEFAULT, REPORTED
+from sonolube.reproduction.friction_models.computed_motion import tribometer_test_rows, within_scatter
+from sonolube.reproduction.friction_models.variants import DEFAULT, REPORTED, variant_figures
 from sonolube.reproduction.row import comparison_row
 from sonolube.validation.published_tests import friction_tests
 

@@ -11,8 +11,7 @@ from pytest import CaptureFixture, raises
 from sonolube.cli import main
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.rig import read_rig, rig_from, rig_schema
-from sonolube.rig.file.guidance import guidance
-from sonolube.rig.file.section import Section
+from sonolube.rig.file.section import Section, guidance
 from sonolube.rig.file.sections import RigFile
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantity

@@ -20,7 +20,7 @@ from sonolube.rig import (
     steady_vibration,
     wear_point,
 )
-from sonolube.rig.file.json_schema import tables_of
+from sonolube.rig.file.toml_file import tables_of
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 NAMES = (

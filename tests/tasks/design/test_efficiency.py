@@ -9,7 +9,7 @@ from pytest import approx, raises
 
 import sonolube as sl
 from sonolube.charts import Line, Points
-from sonolube.design.efficiency_figures import efficiency_chart
+from sonolube.design.efficiency import efficiency_chart
 from sonolube.errors import InvalidInput
 from sonolube.tasks.design.efficiency import efficiency
 from sonolube.tasks.files import NamedBytes

@@ -9,7 +9,7 @@ from pytest import approx, raises
 
 import sonolube as sl
 from sonolube.charts import Points, chart_object, draw_chart
-from sonolube.design.test_plan.figure import plan_chart
+from sonolube.design.test_plan.run_protocols import plan_chart
 from sonolube.errors import InvalidInput
 from sonolube.tasks.design.plan import plan
 from sonolube.tasks.files import NamedBytes

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from pytest import raises
 
-from sonolube.cli.commands import COMMANDS
+from sonolube.cli.app import COMMANDS
 from sonolube.errors import UnknownName
 from sonolube.example_files import example_file, example_files
 from sonolube.facts.protocol import protocol_names, read_protocol

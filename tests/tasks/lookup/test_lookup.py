@@ -11,9 +11,7 @@ from pytest import approx, raises
 from sonolube.errors import UnknownName
 from sonolube.facts.materials import material
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.lookup.actuators import actuators
-from sonolube.tasks.lookup.materials import materials
-from sonolube.tasks.lookup.published import published
+from sonolube.tasks.lookup.facts import actuators, materials, published
 from sonolube.tasks.lookup.schema import schema
 
 Program = Callable[..., Any]

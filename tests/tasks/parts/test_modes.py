@@ -18,7 +18,7 @@ from sonolube.figure import publication_style, render_figure
 from sonolube.models.fem import cylinder
 from sonolube.models.fem.results.part_modes import SupportedPart
 from sonolube.tasks.files import NamedBytes
-from sonolube.tasks.parts.supported_part import DEFAULT_MATERIAL, supported_part
+from sonolube.tasks.parts.named_parts import DEFAULT_MATERIAL, supported_part
 
 Program = Callable[..., Any]
 

@@ -11,13 +11,8 @@ import sonolube as sl
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.rig import read_rig
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.predict.contact import contact
-from sonolube.tasks.predict.friction import friction
-from sonolube.tasks.predict.regime import regime
-from sonolube.tasks.predict.response import response
-from sonolube.tasks.predict.thermal import thermal
-from sonolube.tasks.predict.transient import transient
-from sonolube.tasks.predict.wear import wear
+from sonolube.tasks.predict.response_and_regime import regime, response, transient
+from sonolube.tasks.predict.rig_record import contact, friction, thermal, wear
 from sonolube.tasks.progress import TaskCancelled
 
 Terminal = Callable[..., Mapping[str, Any]]

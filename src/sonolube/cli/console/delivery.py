@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from sonolube.cli.console.figure_style import prepare_matplotlib
-from sonolube.cli.console.progress import progress
+from sonolube.cli.console.options import progress
 from sonolube.errors import InvalidInput
-from sonolube.storage.targets import expect_target
+from sonolube.storage.user_files import expect_target
 from sonolube.tasks.answer import Answer, text_lines
-from sonolube.text.printable_text import printable
+from sonolube.text.plain_text import printable
 
 if TYPE_CHECKING:
     from sonolube.tasks.answer import Content

@@ -1,14 +1,18 @@
-"""Option `--style` of all commands that draw figures."""
+"""Option `--style` of all commands that draw figures, the warning that a GPU is not used, and literal help texts."""
 
 import os
-from collections.abc import Callable
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from sonolube.cli.console.options import FigureStyleName, Style
-from sonolube.cli.console.outputs import OutputFolder, output_marks
+import typer
+
+from sonolube.cli.console.options import FigureStyleName, OutputFolder, Style, output_marks
 
 _REPORT = "report"  # argument of a page with figures
 
@@ -61,3 +65,35 @@ def _is_writable(folder: Path) -> bool:
     """Whether a folder, or the parent in which it would be made, can be written to."""
     present = next((each for each in (folder, *folder.parents) if each.exists()), Path())
     return present.is_dir() and os.access(present, os.W_OK)
+
+
+@contextmanager
+def gpu_warning() -> Iterator[None]:
+    """Print the warning that a GPU is not used as one line on standard error; pass other warnings on."""
+    from sonolube.errors import GpuUnused
+
+    with warnings.catch_warnings(record=True) as raised:
+        warnings.simplefilter("always", GpuUnused)
+        yield
+    unused = [str(each.message) for each in raised if issubclass(each.category, GpuUnused)]
+    for text in dict.fromkeys(unused):
+        typer.echo(f"backend gpu: {text}", err=True)
+    for each in raised:
+        if not issubclass(each.category, GpuUnused):
+            warnings.warn_explicit(each.message, each.category, each.filename, each.lineno, source=each.source)
+
+
+_TAG = re.compile(r"(\\*)\[(?=[a-z#/@])")  # what rich takes for markup, such as [m/s]
+
+
+def show_help_literally(command: Any) -> None:
+    """Escape the help texts of a program, its commands and their parameters, once after it was built."""
+    for part in (command, *command.params):
+        part.help = _literal(getattr(part, "help", None))
+    for inner in getattr(command, "commands", {}).values():
+        show_help_literally(inner)
+
+
+def _literal(text: str | None) -> str | None:
+    """Text that rich shows as this one."""
+    return _TAG.sub(r"\1\1\\[", text) if text else text

@@ -12,10 +12,10 @@ import typer
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.options import Json
 from sonolube.laboratory.records import Observation, RunObserver, run_to_watch
-from sonolube.report.results import observation as results
+from sonolube.report.results import ended_run as results
 from sonolube.storage.interruption import asked_by_signal
 from sonolube.tasks.answer import Answer, Block, answer
-from sonolube.text.printable_text import printable
+from sonolube.text.plain_text import printable
 
 LOOK_INTERVAL = 0.5
 """Between two looks at a run. [s]"""

@@ -6,8 +6,7 @@ from typing import Any, ClassVar
 import typer
 
 from sonolube.cli.console.delivery import deliver
-from sonolube.cli.console.options import Json
-from sonolube.cli.console.progress import progress
+from sonolube.cli.console.options import Json, progress
 from sonolube.report.results.installation import Installation, installation
 from sonolube.tasks.answer import Answer, Block, answer
 

@@ -1,4 +1,3 @@
-from .amplifier import Amplifier as Amplifier, active_limit as active_limit, swing_limit as swing_limit
 from .closed_loop_simulation import (
     ClosedLoopRun as ClosedLoopRun,
     Disturbance as Disturbance,
@@ -15,11 +14,12 @@ from .control_design import (
 from .controller import (
     ControllerState as ControllerState,
     FrictionController as FrictionController,
+    controller_source as controller_source,
     initial_state as initial_state,
+    lookup_table as lookup_table,
     next_level as next_level,
     tuned_controller as tuned_controller,
 )
-from .export import controller_source as controller_source, lookup_table as lookup_table
 from .friction_characteristic import (
     FrictionCharacteristic as FrictionCharacteristic,
     computed_characteristic as computed_characteristic,
@@ -43,8 +43,11 @@ from .process import (
     stability_margins as stability_margins,
 )
 from .resonance_tracking import (
+    Amplifier as Amplifier,
     FrequencyTracker as FrequencyTracker,
+    active_limit as active_limit,
     next_frequency as next_frequency,
+    swing_limit as swing_limit,
     tuned_tracker as tuned_tracker,
 )
 from .stick_slip_oscillator import (

@@ -1,11 +1,11 @@
-"""Design of a friction controller for a rig: static characteristic, tuning, stability margins and simulated run."""
+"""Design of a friction controller for a rig: characteristic, tuning, margins, simulated run and its results."""
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sonolube.checks import Floats, require_positive
-from sonolube.design.control.amplifier import Amplifier, active_limit, swing_limit
 from sonolube.design.control.closed_loop_simulation import (
     ClosedLoopRun,
     Disturbance,
@@ -28,11 +28,20 @@ from sonolube.design.control.performance import (
     step_response_metrics,
 )
 from sonolube.design.control.process import Process, StabilityMargins, stability_margins
-from sonolube.design.control.resonance_tracking import FrequencyTracker, tuned_tracker
+from sonolube.design.control.resonance_tracking import (
+    Amplifier,
+    FrequencyTracker,
+    active_limit,
+    swing_limit,
+    tuned_tracker,
+)
 from sonolube.design.control.vibration_envelope import VibrationMode, mode_admittance, mode_at_drive
 from sonolube.errors import InvalidInput, OutsideRange, UnknownName
 from sonolube.facts.metrics import EfficiencyLine
-from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
+from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, dataset, own_level
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FEED_FORWARD = ("model", "efficiency", "none")
 """Characteristic of the feed-forward: by the rig's model, by an efficiency line, or none but a straight line."""
@@ -288,3 +297,54 @@ def _setpoint_history(settings: ControlSettings, intrinsic: float, target: float
     setpoint[round(_FIRST_STEP * samples) :] = target
     setpoint[round(_SECOND_STEP * samples) :] = 0.5 * (intrinsic + target)
     return setpoint
+
+
+_FINAL_FRACTION = 5  # the last fifth of a run counts as its end
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FinalState:
+    """Drive and tracking error over the last fifth of a closed-loop run.
+
+    Parameters
+    ----------
+    level : float
+        Mean drive voltage, or commanded amplitude, in V or m.
+    tracking_error : float
+        Root mean square of friction force less reference. [N]
+    """
+
+    level: float
+    tracking_error: float
+
+
+def final_state(run: ClosedLoopRun) -> FinalState:
+    """Mean voltage or amplitude, and root-mean-square tracking error over the last fifth of a run."""
+    last = slice(-max(run.time.size // _FINAL_FRACTION, 1), None)
+    return FinalState(
+        level=float(run.level[last].mean()),
+        tracking_error=float(np.sqrt(np.mean((run.friction_force[last] - run.setpoint[last]) ** 2))),
+    )
+
+
+def lost_resonance(study: ControlDesign) -> bool:
+    """Whether the tracked frequency of a run ends at an end of its band; false without tracking."""
+    tracker, last = study.tracker, float(study.run.frequency[-1])
+    return tracker is not None and not tracker.lowest_frequency < last < tracker.highest_frequency
+
+
+def control_dataset(study: ControlDesign, *, title: str) -> "xr.Dataset":
+    """Closed-loop run over time as a labelled dataset.
+
+    Over `time`; of a commanded amplitude without the resonance and its electrical quantities.
+    """
+    run, quantity = study.run, study.plant.quantity
+    values = {"time": run.time, "friction_force": run.friction_force, quantity.name: run.level}
+    if run.phase is not None and run.electrical_energy is not None:
+        values |= {
+            "frequency": run.frequency,
+            "resonance_frequency": run.resonance_frequency,
+            "phase": run.phase,
+            "electrical_energy": run.electrical_energy,
+        }
+    return dataset(values, along="time", title=title)

@@ -9,8 +9,7 @@ from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.facts.metrics import EfficiencyLine, friction_at_power, power_for_friction
 from sonolube.rig import VOLTAGE, CommandedQuantity, Rig, commanded_quantity, level_settings, operating_points
-from sonolube.rig.driven_rig import require_drive
-from sonolube.rig.excitation import DriveVoltage
+from sonolube.rig.driven_rig import DriveVoltage, require_drive
 from sonolube.text.units import format_si
 
 _RESOLUTION = 1e-6  # of the intrinsic friction force, by which neighbouring points must differ

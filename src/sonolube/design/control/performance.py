@@ -8,8 +8,7 @@ from sonolube.checks import Floats, require_non_negative, require_within
 from sonolube.design.control.closed_loop_simulation import ClosedLoopRun
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig, level_settings
-from sonolube.rig.driven_rig import require_drive
-from sonolube.rig.excitation import DriveVoltage
+from sonolube.rig.driven_rig import DriveVoltage, require_drive
 
 _FINAL_FRACTION = 5  # the tracking error is that of the last fifth
 

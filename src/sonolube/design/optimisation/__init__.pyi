@@ -1,3 +1,4 @@
+from .design_output import design_text as design_text
 from .drive_electronics import (
     CAPACITANCE_TOLERANCE as CAPACITANCE_TOLERANCE,
     DriveElectronics as DriveElectronics,
@@ -6,27 +7,39 @@ from .drive_electronics import (
     required_electronics as required_electronics,
     stack_admittance as stack_admittance,
 )
-from .evaluation import CONSTRAINTS as CONSTRAINTS, Evaluation as Evaluation, evaluate as evaluate
+from .evaluation import (
+    CONSTRAINTS as CONSTRAINTS,
+    DEFAULT_MAXIMUM_SWING as DEFAULT_MAXIMUM_SWING,
+    Evaluation as Evaluation,
+    estimate_swings as estimate_swings,
+    evaluate as evaluate,
+    maximum_swing as maximum_swing,
+    refine_swing as refine_swing,
+)
 from .gradient_search import (
     DesignPoint as DesignPoint,
     design_point_at as design_point_at,
     local_search as local_search,
     swing_sensitivities as swing_sensitivities,
 )
-from .optimum import Optimum as Optimum, optimise as optimise
-from .pareto import (
+from .optimum import (
+    Optimum as Optimum,
     epsilon_bounds as epsilon_bounds,
     epsilon_constraint_front as epsilon_constraint_front,
     non_dominated as non_dominated,
+    optimise as optimise,
 )
-from .required_voltage import (
-    DEFAULT_MAXIMUM_SWING as DEFAULT_MAXIMUM_SWING,
-    estimate_swings as estimate_swings,
-    maximum_swing as maximum_swing,
-    refine_swing as refine_swing,
+from .requirements import (
+    NOMINAL as NOMINAL,
+    OBJECTIVES as OBJECTIVES,
+    Aim as Aim,
+    Deviation as Deviation,
+    HalfWaveHorn as HalfWaveHorn,
+    Limits as Limits,
+    Tolerance as Tolerance,
+    deviations as deviations,
+    worst_or_quantile as worst_or_quantile,
 )
-from .requirements import OBJECTIVES as OBJECTIVES, Aim as Aim, HalfWaveHorn as HalfWaveHorn, Limits as Limits
-from .rig_text import design_text as design_text
 from .screening import (
     DesignProblem as DesignProblem,
     ScreeningResult as ScreeningResult,
@@ -42,11 +55,4 @@ from .space import (
     candidate_rig as candidate_rig,
     candidate_stack as candidate_stack,
     candidate_structure as candidate_structure,
-)
-from .tolerance import (
-    NOMINAL as NOMINAL,
-    Deviation as Deviation,
-    Tolerance as Tolerance,
-    deviations as deviations,
-    worst_or_quantile as worst_or_quantile,
 )

@@ -7,11 +7,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
-from sonolube.design.optimisation.evaluation import CONSTRAINTS, Evaluation, evaluate
-from sonolube.design.optimisation.required_voltage import estimate_swings, maximum_swing, refine_swing
-from sonolube.design.optimisation.requirements import OBJECTIVES, Limits
+from sonolube.design.optimisation.evaluation import (
+    CONSTRAINTS,
+    Evaluation,
+    estimate_swings,
+    evaluate,
+    maximum_swing,
+    refine_swing,
+)
+from sonolube.design.optimisation.requirements import OBJECTIVES, Limits, Tolerance, deviations, worst_or_quantile
 from sonolube.design.optimisation.space import Candidate, DesignSpace, Range, candidate_rig
-from sonolube.design.optimisation.tolerance import Tolerance, deviations, worst_or_quantile
 from sonolube.design.progress import ProgressCallback
 from sonolube.errors import SonolubeError
 from sonolube.rig import frequency_grid

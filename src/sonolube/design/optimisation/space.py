@@ -6,7 +6,7 @@ from functools import cached_property
 from types import MappingProxyType
 
 from sonolube.checks import require_positive
-from sonolube.design.optimisation.tolerance import NOMINAL, Deviation
+from sonolube.design.optimisation.requirements import NOMINAL, Deviation
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.models.actuator import CatalogueActuator, PiezoStack, PreloadBolt, bolted_stack, catalogue_stack
 from sonolube.models.dynamics import Structure, chain_structure, pin_on_disc_chain

@@ -9,18 +9,27 @@ import numpy as np
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.design.test_plan.candidates import NO_LIMITS, Candidates, Factors, RigLimits, candidate_tests
-from sonolube.design.test_plan.closure_outcomes import closure_outcomes
-from sonolube.design.test_plan.comparison import COMPARISONS, Comparison
-from sonolube.design.test_plan.information import Batch, best_batch, mutual_information
-from sonolube.design.test_plan.run_order import BLOCKINGS, Blocking, PlannedRun, RunPart, RunState, randomised_runs
-from sonolube.design.test_plan.scatter import Scatter, assumed_scatter, published_scatter, scatter_of_runs
+from sonolube.design.test_plan.comparison import (
+    BLOCKINGS,
+    COMPARISONS,
+    Blocking,
+    Comparison,
+    PlannedRun,
+    RunPart,
+    RunState,
+    Scatter,
+    assumed_scatter,
+    published_scatter,
+    randomised_runs,
+    scatter_of_runs,
+)
+from sonolube.design.test_plan.information import Batch, best_batch, closure_outcomes, mutual_information
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import column_numbers
-from sonolube.prediction.inputs import RigInputs, rig_inputs
-from sonolube.prediction.own_runs import own_runs
+from sonolube.prediction.hierarchy import central_interval
+from sonolube.prediction.inputs import RigInputs, own_runs, rig_inputs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import rig_prediction
-from sonolube.prediction.scores import central_interval
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
 

@@ -1,19 +1,20 @@
 from .catalogue import (
+    Material as Material,
+    SourcedText as SourcedText,
+    SourcedValue as SourcedValue,
     material as material,
     material_classes as material_classes,
     material_families as material_families,
     material_names as material_names,
 )
-from .hardness import (
-    YieldStrengthEstimate as YieldStrengthEstimate,
-    yield_strength_from_hardness as yield_strength_from_hardness,
-)
 from .pair_friction import (
     DryFriction as DryFriction,
     FrictionPair as FrictionPair,
+    YieldStrengthEstimate as YieldStrengthEstimate,
     dry_friction as dry_friction,
     dry_friction_classes as dry_friction_classes,
     dry_friction_pairs as dry_friction_pairs,
+    yield_strength_from_hardness as yield_strength_from_hardness,
 )
 from .piezoelectric import (
     PiezoCeramic as PiezoCeramic,
@@ -22,4 +23,3 @@ from .piezoelectric import (
     piezo_ceramic_from_stress_charge as piezo_ceramic_from_stress_charge,
     piezo_ceramic_names as piezo_ceramic_names,
 )
-from .records import Material as Material, SourcedText as SourcedText, SourcedValue as SourcedValue

@@ -1,15 +1,259 @@
-"""Catalogue of materials: scalar properties of each, every one with its source."""
+"""Catalogue of materials: scalar properties of each, every one with its source, and classes of materials.
+
+A class, such as unspecified steel, has medians and spreads over the catalogue, or a cited range.
+"""
 
 import re
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
+from importlib.resources import files
+from math import exp, log, sqrt
+from statistics import fmean, stdev
 from types import MappingProxyType
 from typing import Any
 
-from sonolube.errors import UnknownName
-from sonolube.facts.materials.classes import classes_of
-from sonolube.facts.materials.property_file import cited, read_property_file
-from sonolube.facts.materials.records import Material, SourcedText, SourcedValue
+from sonolube.errors import MissingProperty, UnknownName
+from sonolube.text.units import format_si
+from sonolube.vocabulary import quantity
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PropertyFile:
+    """Content of one property file.
+
+    Parameters
+    ----------
+    sources : mapping of str to str
+        Citations by the short keys that the entries use.
+    entries : mapping of str to mapping
+        Content of the file for each material, by its name.
+    """
+
+    sources: Mapping[str, str]
+    entries: Mapping[str, Mapping[str, Any]]
+
+
+@cache
+def read_property_file(file_name: str) -> PropertyFile:
+    """Content of a property file of this package."""
+    content = tomllib.loads(files("sonolube.facts.materials").joinpath(file_name).read_text(encoding="utf-8"))
+    sources = content.pop("sources")
+    return PropertyFile(sources=sources, entries=content)
+
+
+def cited(entry: Mapping[str, Any], sources: Mapping[str, str]) -> dict[str, Any]:
+    """Entry with the key of its source replaced by the citation."""
+    return {**entry, "source": sources[entry["source"]]}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SourcedValue:
+    """A numerical property with its unit and source.
+
+    Parameters
+    ----------
+    value : float
+        Value, in `unit`.
+    unit : str
+        Its SI unit; empty for dimensionless numbers.
+    source : str
+        Table, data sheet, handbook or paper.
+    condition : str
+        Temper, temperature or kind of test for which it holds; empty where the source does not state any.
+    note : str
+        Further remarks, such as a source that disagrees.
+    deviation : float
+        Standard deviation of its logarithm over the materials that a class covers; zero for one material.
+    """
+
+    value: float
+    unit: str
+    source: str
+    condition: str = ""
+    note: str = ""
+    deviation: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SourcedText:
+    """A property in words with its source.
+
+    Parameters
+    ----------
+    text : str
+        The statement.
+    source : str
+        Table, data sheet, handbook or paper.
+    note : str
+        Further remarks.
+    """
+
+    text: str
+    source: str
+    note: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Material:
+    """A material, or a class of materials, with its scalar properties.
+
+    Parameters
+    ----------
+    name : str
+        Its identifier in rig files and results, such as "m50".
+    title : str
+        Its name in prose.
+    family : str
+        Its kind, such as "steel", "brass", "ceramic" or "polymer": materials of one family rub alike.
+    properties : mapping of str to SourcedValue
+        Its scalar properties, by their vocabulary names.
+    crystal_structure : SourcedText or None
+        Its crystal structure, where a source states it.
+    aliases : tuple of str
+        Further names by which it is found.
+    is_class : bool
+        Whether it stands for a class of materials, such as unspecified steel: its properties are medians, each
+        with the standard deviation of its logarithm.
+    """
+
+    name: str
+    title: str
+    family: str
+    properties: Mapping[str, SourcedValue]
+    crystal_structure: SourcedText | None = None
+    aliases: tuple[str, ...] = ()
+    is_class: bool = False
+
+    def property(self, property_name: str) -> SourcedValue:
+        """Property with its unit and source.
+
+        Parameters
+        ----------
+        property_name : str
+            Its name in the vocabulary, such as "youngs_modulus".
+
+        Returns
+        -------
+        SourcedValue
+
+        Raises
+        ------
+        MissingProperty
+            If the catalogue has no source for it.
+        UnknownName
+            If the vocabulary has no such property.
+        """
+        try:
+            return self.properties[property_name]
+        except KeyError:
+            quantity_name = quantity(property_name).name
+            raise MissingProperty(
+                f"{self.name} has no {quantity_name}: no source is known; give it in the rig file"
+            ) from None
+
+    def value(self, property_name: str) -> float:
+        """Numerical value of a property, in SI.
+
+        Parameters
+        ----------
+        property_name : str
+            Its name in the vocabulary, such as "youngs_modulus".
+
+        Returns
+        -------
+        float
+
+        Raises
+        ------
+        MissingProperty
+            If the catalogue has no source for it.
+        UnknownName
+            If the vocabulary has no such property.
+        """
+        return self.property(property_name).value
+
+
+_OF_RANGE = 4  # standard deviations between the ends of a range that holds 95 of 100
+
+
+def classes_of(materials: Mapping[str, Material]) -> Mapping[str, Material]:
+    r"""Classes of materials by name.
+
+    Over n materials of a class a property has the median exp(m) and the standard deviation of its logarithm
+
+    .. math:: s \sqrt{1 + 1/n}
+
+    with the mean m and the standard deviation s of the logarithms: that of one more material of the class. Hardness and
+    strength of a metal vary at least as those of one alloy over its tempers. A range that is cited instead is taken to
+    hold 95 of 100: its median is the geometric middle, its standard deviation a quarter of the logarithm of its ratio.
+    """
+    content = read_property_file("classes.toml")
+    entries = dict(content.entries)
+    tempers = cited(entries.pop("tempers"), content.sources)
+    return {name: _class(name, entry, content.sources, tempers, materials) for name, entry in entries.items()}
+
+
+def _class(
+    name: str,
+    entry: Mapping[str, Any],
+    sources: Mapping[str, str],
+    tempers: Mapping[str, Any],
+    materials: Mapping[str, Material],
+) -> Material:
+    """Class of one entry: properties of its members, and those that the entry cites."""
+    family = entry.get("family", name)
+    own = [each for each in materials.values() if each.family == family]
+    members = [materials[each] for each in entry["members"]] if "members" in entry else own
+    properties = {key: _over(key, members) for key in sorted({key for each in members for key in each.properties})}
+    if entry.get("tempered", False):
+        properties |= {key: _tempered(properties[key], tempers) for key in tempers["quantities"]}
+    stated = {key: _ranged(cited(value, sources)) for key, value in entry.get("properties", {}).items()}
+    return Material(
+        name=name,
+        title=entry["title"],
+        family=family,
+        properties=MappingProxyType({**properties, **stated}),
+        aliases=tuple(entry.get("aliases", ())),
+        is_class=True,
+    )
+
+
+def _over(key: str, members: Sequence[Material]) -> SourcedValue:
+    """Property over the members that have it."""
+    known = {each.name: each.properties[key] for each in members if key in each.properties}
+    first, count = next(iter(known.values())), len(known)
+    logarithms = [log(each.value) for each in known.values()]
+    if count == 1:
+        return replace(first, source=f"of {next(iter(known))} alone, {first.source}")
+    low, high = (format_si(exp(end(logarithms)), first.unit) for end in (min, max))
+    return SourcedValue(
+        value=exp(fmean(logarithms)),
+        unit=first.unit,
+        source=f"{low} to {high} over {count} materials of the catalogue: {', '.join(known)}",
+        deviation=stdev(logarithms) * sqrt(1 + 1 / count),
+    )
+
+
+def _tempered(known: SourcedValue, tempers: Mapping[str, Any]) -> SourcedValue:
+    """Property that varies at least as that of one alloy over its tempers."""
+    least = log(tempers["high"] / tempers["low"]) / _OF_RANGE
+    if known.deviation >= least:
+        return known
+    note = f"spread of the tempers of one alloy, {tempers['source']}: {tempers['note']}"
+    return SourcedValue(value=known.value, unit=known.unit, source=known.source, note=note, deviation=least)
+
+
+def _ranged(entry: Mapping[str, Any]) -> SourcedValue:
+    """Property of a cited range, or of a cited value."""
+    if "value" in entry:
+        return SourcedValue(**entry)
+    low, high = entry["low"], entry["high"]
+    rest = {key: text for key, text in entry.items() if key not in ("low", "high", "note")}
+    span = f"{format_si(low, entry['unit'])} to {format_si(high, entry['unit'])}"
+    note = "; ".join(filter(None, (span, entry.get("note"))))
+    return SourcedValue(value=sqrt(low * high), note=note, deviation=log(high / low) / _OF_RANGE, **rest)
 
 
 def material(name: str) -> Material:

@@ -21,9 +21,7 @@ import numpy as np
 
 from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
-from sonolube.facts.materials.catalogue import material as catalogue_material
-from sonolube.facts.materials.property_file import read_property_file
-from sonolube.facts.materials.records import Material
+from sonolube.facts.materials.catalogue import Material, material as catalogue_material, read_property_file
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12
 """Permittivity of the vacuum, CODATA 2018. [F/m]"""

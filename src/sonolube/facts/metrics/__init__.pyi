@@ -17,11 +17,14 @@ from .efficiency_fit import (
 )
 from .kinematics import (
     dot_spacing as dot_spacing,
+    friction_reduction as friction_reduction,
     indentation_spacing as indentation_spacing,
     linear_speed as linear_speed,
     peak_vibration_velocity as peak_vibration_velocity,
     sliding_distance as sliding_distance,
     superimposed_speed as superimposed_speed,
+    wear_rate as wear_rate,
+    wear_reduction as wear_reduction,
 )
 from .motor import (
     DCMotor as DCMotor,
@@ -29,9 +32,4 @@ from .motor import (
     motor_current_under_friction as motor_current_under_friction,
     motor_from_two_operating_points as motor_from_two_operating_points,
     motor_speed as motor_speed,
-)
-from .reduction import (
-    friction_reduction as friction_reduction,
-    wear_rate as wear_rate,
-    wear_reduction as wear_reduction,
 )

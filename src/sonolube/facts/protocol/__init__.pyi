@@ -1,24 +1,23 @@
-from .library import (
-    protocol_by_name_or_file as protocol_by_name_or_file,
-    protocol_names as protocol_names,
-    protocol_path as protocol_path,
-)
-from .operating_point import protocol_at as protocol_at
 from .quantity_text import exact_text as exact_text
-from .record import Limits as Limits, Metadata as Metadata, Protocol as Protocol
-from .steps import (
+from .record import (
     Acquire as Acquire,
     Check as Check,
     Drive as Drive,
+    Limits as Limits,
+    Metadata as Metadata,
     MotorSpeed as MotorSpeed,
     Prompt as Prompt,
+    Protocol as Protocol,
     Repeat as Repeat,
     Sweep as Sweep,
     VoltageSteps as VoltageSteps,
     Wait as Wait,
 )
 from .text import (
+    protocol_by_name_or_file as protocol_by_name_or_file,
     protocol_from as protocol_from,
+    protocol_names as protocol_names,
+    protocol_path as protocol_path,
     protocol_schema as protocol_schema,
     protocol_text as protocol_text,
     read_protocol as read_protocol,
@@ -28,5 +27,6 @@ from .time_line import (
     SetPoint as SetPoint,
     duration as duration,
     flattened as flattened,
+    protocol_at as protocol_at,
     step_at as step_at,
 )

@@ -1,11 +1,292 @@
-"""Test protocol: its steps, the limits of the rig, and the specimens."""
+"""Test protocol: its steps, one record a kind, the limits of the rig, and the specimens."""
 
-from typing import Annotated
+import re
+from typing import Annotated, Any, Final, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, field_validator, model_validator
 
-from sonolube.facts.protocol.quantity_text import Amperes, Kelvins, Metres, Newtons, Seconds, Table, Volts
-from sonolube.facts.protocol.steps import Step
+from sonolube.facts.protocol.quantity_text import (
+    MAX_STEPS,
+    Amperes,
+    Hertz,
+    Kelvins,
+    Metres,
+    MetresPerSecond,
+    Newtons,
+    NoOrMoreNewtons,
+    Seconds,
+    SignedVolts,
+    Table,
+    TurnsPerSecond,
+    Volts,
+    written_out,
+)
+from sonolube.text.units import to_si
+from sonolube.vocabulary import unit_of
+
+Waveform = Literal["sine", "square", "triangle", "sawtooth"]
+CheckedQuantity = Literal[
+    "friction_force", "normal_load", "temperature", "sliding_speed", "rotation_speed", "vibration_amplitude"
+]
+
+_CHANNEL: Final = re.compile(r"[A-Za-z]\w{0,63}")
+_LONGEST_TEXT: Final = 2000
+_LONGEST_NAME: Final = 500
+
+
+class Wait(Table):
+    """Keep all set points for a time.
+
+    Parameters
+    ----------
+    duration : float
+        [s]
+    reason : str
+    """
+
+    kind: Literal["wait"] = "wait"
+    duration: Seconds
+    reason: str = Field(default="", max_length=_LONGEST_TEXT)
+
+
+class MotorSpeed(Table):
+    """Set the speed of the motor, 0 to stop it: of the contact or of the disc.
+
+    Parameters
+    ----------
+    sliding_speed : float or None
+        [m/s]
+    rotation_speed : float or None
+        [1/s]
+    """
+
+    kind: Literal["motor_speed"] = "motor_speed"
+    sliding_speed: MetresPerSecond | None = None
+    rotation_speed: TurnsPerSecond | None = None
+
+    @model_validator(mode="after")
+    def _require_one_speed(self) -> Self:
+        if (self.sliding_speed is None) == (self.rotation_speed is None):
+            raise ValueError("needs either sliding_speed or rotation_speed")
+        return self
+
+
+class Drive(Table):
+    """Set the voltage of the actuator, 0 V to switch it off.
+
+    Parameters
+    ----------
+    voltage_peak_to_peak : float
+        [V]
+    frequency : float or None
+        Needed for a voltage above 0. [Hz]
+    waveform : str
+    voltage_offset : float
+        [V]
+    """
+
+    kind: Literal["drive"] = "drive"
+    voltage_peak_to_peak: Volts
+    frequency: Hertz | None = None
+    waveform: Waveform = "sine"
+    voltage_offset: SignedVolts = 0.0
+
+    @model_validator(mode="after")
+    def _require_frequency(self) -> Self:
+        if self.voltage_peak_to_peak > 0 and self.frequency is None:
+            raise ValueError("needs a frequency for a voltage above 0 V")
+        return self
+
+
+class Acquire(Table):
+    """Start to record channels; the steps that follow run meanwhile.
+
+    Parameters
+    ----------
+    channels : tuple of str
+        Names, such as friction_force, voltage, current, temperature, gaussmeter.
+    sample_rate : float
+        Samples per second and channel. [Hz]
+    duration : float
+        [s]
+    """
+
+    kind: Literal["acquire"] = "acquire"
+    channels: Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=64)]
+    sample_rate: Hertz
+    duration: Seconds
+
+    @field_validator("channels")
+    @classmethod
+    def _require_names(cls, channels: tuple[str, ...]) -> tuple[str, ...]:
+        for channel in channels:
+            if not _CHANNEL.fullmatch(channel):
+                raise ValueError(
+                    f"{channel[:40]!r} is no name of a channel; letters, digits and _, such as friction_force"
+                )
+        if len(set(channels)) < len(channels):
+            raise ValueError("names a channel twice")
+        return channels
+
+
+class VoltageSteps(Table):
+    """Drive the actuator by several voltages in turn.
+
+    Parameters
+    ----------
+    voltages : tuple of float
+        Peak to peak, in V.
+    step_duration : float
+        Of each voltage, in s.
+    frequency : float
+        [Hz]
+    waveform : str
+    unipolar : bool
+        Whether the offset of each voltage is half of it, so that the actuator is never under tension; else 0 V.
+    """
+
+    kind: Literal["voltage_steps"] = "voltage_steps"
+    voltages: Annotated[tuple[Volts, ...], Field(strict=False, min_length=1, max_length=1000)]
+    step_duration: Seconds
+    frequency: Hertz
+    waveform: Waveform = "sine"
+    unipolar: bool = False
+
+
+class Sweep(Table):
+    """Drive the actuator by frequencies that rise or fall from the first to the last in equal steps or ratios.
+
+    Parameters
+    ----------
+    first_frequency, last_frequency : float
+        In Hz.
+    points : int
+        Number of frequencies, each of the same duration.
+    duration : float
+        Of all together. [s]
+    scale : str
+        Whether steps or ratios are equal.
+    voltage_peak_to_peak : float
+        [V]
+    voltage_offset : float
+        [V]
+    waveform : str
+    """
+
+    kind: Literal["sweep"] = "sweep"
+    first_frequency: Hertz
+    last_frequency: Hertz
+    points: int = Field(ge=2, le=10_000)
+    duration: Seconds
+    scale: Literal["linear", "log"] = "linear"
+    voltage_peak_to_peak: Volts
+    voltage_offset: SignedVolts = 0.0
+    waveform: Waveform = "sine"
+
+
+class Check(Table):
+    """Check that a quantity lies within bounds, each text with its unit; the run ends where it does not.
+
+    Parameters
+    ----------
+    quantity : str
+        Of the vocabulary.
+    lowest, highest : str or None
+        At least one of them.
+    otherwise : str
+        What to do where it does not: stop the test, wait until it does, or note it and go on.
+    """
+
+    kind: Literal["check"] = "check"
+    quantity: CheckedQuantity
+    lowest: str | None = None
+    highest: str | None = None
+    otherwise: Literal["stop", "wait", "note"] = "stop"
+
+    @model_validator(mode="after")
+    def _require_bounds(self) -> Self:
+        if self.lowest is None and self.highest is None:
+            raise ValueError("needs lowest or highest")
+        low, high = self.bounds
+        if not low < high:
+            raise ValueError(f"lowest {self.lowest!r} must be below highest {self.highest!r}")
+        return self
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lowest and highest value in SI, infinite where absent."""
+        unit = unit_of(self.quantity)
+        low = float("-inf") if self.lowest is None else to_si(self.lowest, unit=unit, name="lowest")
+        high = float("inf") if self.highest is None else to_si(self.highest, unit=unit, name="highest")
+        return low, high
+
+
+class Prompt(Table):
+    """Ask the operator to do something and to confirm it; the clock of the protocol stands still meanwhile.
+
+    Parameters
+    ----------
+    task : str
+        Kind of work.
+    text : str
+        What to do.
+    normal_load : float or None
+        That the operator sets, 0 for a lifted pin; None where it stays as it is. [N]
+    lubricant : str or None
+        That the operator applies, empty for a cleaned contact; None where it stays as it is.
+    applied_force : float or None
+        Greatest force with which the operator pulls at the pin along the sliding during the next recording, in loops
+        of 30 s of which each goes further. [N]
+    """
+
+    kind: Literal["prompt"] = "prompt"
+    task: Literal["cleaning", "mounting", "load", "profilometry", "other"] = "other"
+    text: str = Field(min_length=1, max_length=_LONGEST_TEXT)
+    normal_load: NoOrMoreNewtons | None = None
+    lubricant: str | None = Field(default=None, max_length=_LONGEST_NAME)
+    applied_force: Newtons | None = None
+
+
+class Repeat(Table):
+    """Make steps several times, or once for each value of variables.
+
+    Parameters
+    ----------
+    count : int
+    steps : tuple of step
+        Written out for all values where there are variables.
+    over : mapping of str to tuple of str
+        Values of variables, which stand as {name} in the texts of the steps: all combinations, those of the last
+        variable in turn for each of the one before. Empty in a record that was read, whose steps are written out.
+    """
+
+    kind: Literal["repeat"] = "repeat"
+    count: int = Field(default=1, ge=1, le=10_000)
+    steps: "Annotated[tuple[Step, ...], Field(strict=False, min_length=1, max_length=MAX_STEPS)]"
+    over: dict[str, Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=1000)]] = Field(
+        default_factory=dict
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _write_out(cls, content: Any) -> Any:
+        if not isinstance(content, dict):
+            return content
+        if "count" not in content and not content.get("over"):
+            raise ValueError("needs count, or over with the values of variables")
+        return written_out(content)
+
+
+Step = Annotated[
+    Wait | MotorSpeed | Drive | Acquire | VoltageSteps | Sweep | Repeat | Check | Prompt, Field(discriminator="kind")
+]
+"""Step of any kind, by its key `kind`."""
+
+Repeat.model_rebuild()
+
+STEP_KINDS: Final = ("wait", "motor_speed", "drive", "acquire", "voltage_steps", "sweep", "repeat", "check", "prompt")
+"""Values of `kind`."""
+
 
 _TEXT = 500
 
@@ -81,7 +362,7 @@ class Protocol(Table):
     limits : Limits
     metadata : Metadata
     steps : tuple of step
-        One after the other; `sonolube.facts.protocol.steps` has their kinds.
+        One after the other; `sonolube.facts.protocol.record` has their kinds.
     """
 
     title: str = Field(min_length=1, max_length=_TEXT)

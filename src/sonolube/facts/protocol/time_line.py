@@ -1,4 +1,4 @@
-"""Time line of a protocol: set points of motor, drive and recording over time."""
+"""Time line of a protocol: set points of motor, drive and recording; and protocol at another load and speed."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -6,8 +6,18 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput
-from sonolube.facts.protocol.record import Protocol
-from sonolube.facts.protocol.steps import Acquire, Drive, MotorSpeed, Prompt, Repeat, Step, Sweep, VoltageSteps, Wait
+from sonolube.facts.protocol.record import (
+    Acquire,
+    Drive,
+    MotorSpeed,
+    Prompt,
+    Protocol,
+    Repeat,
+    Step,
+    Sweep,
+    VoltageSteps,
+    Wait,
+)
 from sonolube.text.units import format_si
 
 MAX_SET_POINTS: Final = 10_000
@@ -252,3 +262,42 @@ def _frequencies(step: Sweep, place: str) -> Iterator[_Move]:
         frequency = first * (last / first) ** share if step.scale == "log" else first + (last - first) * share
         changes = _driven(step, step.voltage_peak_to_peak, step.voltage_offset, frequency)
         yield _Move(place, step.kind, step.duration / step.points, changes)
+
+
+def protocol_at(protocol: Protocol, *, normal_load: float, sliding_speed: float) -> Protocol:
+    """Protocol whose test is at another load and speed, each where it has one.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    normal_load : float
+        [N]
+    sliding_speed : float
+        Of every step that turns the motor. [m/s]
+
+    Returns
+    -------
+    Protocol
+        Its title has load and speed behind a comma.
+    """
+    conditions = f"{format_si(normal_load, 'N')} and {format_si(sliding_speed, 'm/s')}"
+    return protocol.model_copy(
+        update={
+            "title": f"{protocol.title.split(',')[0]}, {conditions}",
+            "metadata": protocol.metadata.model_copy(update={"normal_load": normal_load}),
+            "steps": tuple(_step_at(step, normal_load, sliding_speed) for step in protocol.steps),
+        }
+    )
+
+
+def _step_at(step: Step, load: float, speed: float) -> Step:
+    """Step at another load and speed."""
+    match step:
+        case Repeat():
+            return step.model_copy(update={"steps": tuple(_step_at(each, load, speed) for each in step.steps)})
+        case MotorSpeed() if step.sliding_speed or step.rotation_speed:
+            return step.model_copy(update={"sliding_speed": speed, "rotation_speed": None})
+        case Prompt() if step.normal_load is not None:
+            text = f"Set a normal load of {format_si(load, 'N')}; bring the pin into contact."
+            return step.model_copy(update={"normal_load": load, "text": text})
+    return step

@@ -1,18 +1,33 @@
-from .captions import FigureCaption as FigureCaption, figure as figure, figures as figures
-from .corrections import Correction as Correction, Erratum as Erratum, errata as errata, erratum as erratum
-from .literature_review import PreviousStudy as PreviousStudy, previous_studies as previous_studies
-from .printed_number import PrintedNumber as PrintedNumber, parse_printed as parse_printed
-from .printed_tables import Column as Column, Role as Role, Table as Table, table as table, table_ids as table_ids
-from .rounding import (
+from .printed_tables import (
+    Column as Column,
+    Correction as Correction,
+    Erratum as Erratum,
+    PrintedNumber as PrintedNumber,
+    Role as Role,
+    Table as Table,
+    errata as errata,
+    erratum as erratum,
+    parse_printed as parse_printed,
+    table as table,
+    table_ids as table_ids,
+)
+from .running_text import (
+    FigureCaption as FigureCaption,
+    PreviousStudy as PreviousStudy,
+    Statement as Statement,
+    figure as figure,
+    figures as figures,
+    previous_studies as previous_studies,
+    statement as statement,
+    statements as statements,
+)
+from .values import (
     ComputedValue as ComputedValue,
+    PublishedValue as PublishedValue,
     as_exact as as_exact,
     as_setting as as_setting,
-    propagate_rounding as propagate_rounding,
-)
-from .running_text import Statement as Statement, statement as statement, statements as statements
-from .values import (
-    PublishedValue as PublishedValue,
     column_numbers as column_numbers,
+    propagate_rounding as propagate_rounding,
     published_number as published_number,
     published_value as published_value,
     si_value as si_value,

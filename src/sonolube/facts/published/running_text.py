@@ -1,11 +1,14 @@
-"""Numbers that the running text of the dissertation states: quoted numbers with relation, meaning and erratum."""
+"""Numbers that the running text of the dissertation states, its figure captions, and the experiments that it reviews.
+
+Quoted numbers have their relation, meaning and erratum.
+"""
 
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 from sonolube.errors import UnknownName
-from sonolube.facts.published.printed_number import PrintedNumber, parse_printed, published_content
+from sonolube.facts.published.printed_tables import PrintedNumber, parse_printed, published_content
 
 _PARTS = ("abstract", "chapter1", "chapter2", "chapter3", "chapter4", "chapter5", "appendix")
 
@@ -119,3 +122,124 @@ def _statement(*, printed: str, quantity: str, unit: str = "", relation: str = "
     """Statement from an entry of a file, its number parsed and converted to SI."""
     number = parse_printed(printed, unit, quantity=quantity)
     return Statement(quantity=quantity, unit=unit, number=number, relation=relation, **entry)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FigureCaption:
+    """Content of one figure of D by its caption and the running text; no curve is available as data.
+
+    Parameters
+    ----------
+    number : str
+        Number of the figure, such as "2.13".
+    section : str
+        Section the figure belongs to.
+    content : str
+        Content by the caption.
+    no_data : bool
+        True: no curve, picture or drawing is available, so that no number may be read off the figure.
+    remarks : tuple of str
+        Statements of the running text on the figure, in words.
+    statements : tuple of str
+        Ids of the numbers that the running text states of the figure, as in `statement`.
+    """
+
+    number: str
+    section: str
+    content: str
+    no_data: bool
+    remarks: tuple[str, ...] = ()
+    statements: tuple[str, ...] = ()
+
+
+@cache
+def figures() -> tuple[FigureCaption, ...]:
+    """Captions of all figures, in the order of D."""
+    return tuple(
+        FigureCaption(**entry | {name: tuple(entry.get(name, ())) for name in ("remarks", "statements")})
+        for entry in published_content("figures.toml")["figures"]
+    )
+
+
+def figure(number: str) -> FigureCaption:
+    """Caption of one figure.
+
+    Parameters
+    ----------
+    number : str
+        Number of the figure, such as "2.13" or "B.1".
+
+    Returns
+    -------
+    FigureCaption
+
+    Raises
+    ------
+    UnknownName
+        If no figure has that number.
+    """
+    known = {entry.number: entry for entry in figures()}
+    if number not in known:
+        raise UnknownName.among(known, kind="figure", name=number)
+    return known[number]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PreviousStudy:
+    """Experiment of other authors with one direction of vibration.
+
+    Parameters
+    ----------
+    id : str
+        Stable name.
+    study : str
+        Authors, as D names them.
+    references : tuple of int
+        Numbers in the bibliography of D.
+    section : str
+        Section of D that reviews it.
+    direction : str
+        Direction of the vibration relative to the sliding: "longitudinal", "transverse", "in plane" or
+        "perpendicular"; empty where D does not state it.
+    summary : str
+        Content of the review in a few words.
+    numbers : tuple of Statement
+        Numbers that D quotes of it; nothing else of it is known.
+    """
+
+    id: str
+    study: str
+    references: tuple[int, ...]
+    section: str
+    direction: str
+    summary: str
+    numbers: tuple[Statement, ...]
+
+    def number(self, quantity: str) -> PrintedNumber | None:
+        """Quoted number of a quantity in SI; None where D quotes none.
+
+        Parameters
+        ----------
+        quantity : str
+            Name in the vocabulary.
+
+        Returns
+        -------
+        PrintedNumber or None
+        """
+        return next((entry.number for entry in self.numbers if entry.quantity == quantity), None)
+
+
+@cache
+def previous_studies() -> tuple[PreviousStudy, ...]:
+    """Reviewed experiments, in the order of the review in D 1.3.1 and 1.3.2."""
+    return tuple(
+        PreviousStudy(
+            **entry
+            | {
+                "references": tuple(entry["references"]),
+                "numbers": tuple(statement(name) for name in entry.get("numbers", ())),
+            }
+        )
+        for entry in published_content("previous_studies.toml")["studies"]
+    )

@@ -1,16 +1,113 @@
 """Readings at the switches from the courses of decay length and amplitude, with their priors and noise."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Final, NamedTuple
 
 import numpy as np
+from scipy.linalg import cho_factor, cho_solve
 
 from sonolube.checks import Floats
-from sonolube.identification.decay_length.channel_noise import noise_covariance, relaxation
-from sonolube.identification.decay_length.conditions import LONG_DECAY_LENGTH, SHORT_DECAY_LENGTH, SwitchConditions
-from sonolube.identification.decay_length.stick_slip_table import interpolated_ratio
-from sonolube.identification.decay_length.switch_table import SwitchTable
-from sonolube.models.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
+from sonolube.identification.decay_length.switch_table import (
+    LONG_DECAY_LENGTH,
+    SHORT_DECAY_LENGTH,
+    SwitchConditions,
+    SwitchTable,
+)
+from sonolube.models.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
+
+_COURSES = (0.05, 0.1, 0.2, 0.4, 1.0)  # distances of relaxation over that of the run
+_SHARES = (0.0, 0.2, 0.5, 0.8)  # of the variance, that wander slowly
+_LENGTHS = (0.03, 0.1, 0.3)  # of this wander over the distance of the run
+_SCALES = (1e-3, 1e2)  # limits of relaxation distances over that of the run; beyond, courses no longer change
+_EXPONENTS = (0.1, 8.0)
+_CAUTION = 1e-9
+
+
+def relaxation(distance: Floats, *, reach: Floats, exponent: Floats | float = 1.0) -> Floats:
+    """Course from 0 on the fresh track to 1 at the end of the run, a row for each relaxation distance S and exponent n.
+
+    (1 - exp(-(s/S)^n))/(1 - exp(-(s_end/S)^n)).
+    """
+    scale = np.clip(np.asarray(reach)[..., None] / distance[-1], *_SCALES)
+    power = np.clip(np.asarray(exponent)[..., None], *_EXPONENTS)
+    slid = distance / distance[-1]
+    return np.asarray(np.expm1(-((slid / scale) ** power)) / np.expm1(-((1 / scale) ** power)))
+
+
+def noise_covariance(distance: Floats, values: Floats, uncertainty: Floats | None) -> Floats:
+    """Covariance of white and slowly wandering noise by restricted maximum likelihood, shape (readings, readings).
+
+    The course of the reading beside it is a constant, a relaxation and its square, so that the noise is the same under
+    every hypothesis. Stated standard uncertainties are a lower limit of the white part.
+    """
+    weights = np.ones(values.size) if uncertainty is None else uncertainty**2 / np.mean(uncertainty**2)
+    gaps = np.abs(np.subtract.outer(distance, distance)) / distance[-1]
+    white = np.diag(weights)
+    wandering = [(share, length) for share in _SHARES[1:] for length in _LENGTHS]
+    shapes = [white, *((1 - share) * white + share * np.exp(-gaps / length) for share, length in wandering)]
+    shares = [0.0, *(share for share, _ in wandering)]
+    courses = relaxation(distance, reach=distance[-1] * np.array(_COURSES))
+    designs = [np.column_stack([np.ones(values.size), c, c**2]) for c in courses]
+    found = [(*_restricted(values, design, shape), index) for index, shape in enumerate(shapes) for design in designs]
+    _, variance, index = max(found)
+    floor = 0.0 if uncertainty is None else float(np.mean(uncertainty**2))
+    variance = max(variance, floor / (1 - shares[index]), (_CAUTION * float(np.abs(values).max())) ** 2, 1e-300)
+    return np.asarray(variance * shapes[index])
+
+
+def _restricted(values: Floats, design: Floats, shape: Floats) -> tuple[float, float]:
+    """Logarithm of the restricted likelihood at its best variance, and that variance."""
+    factor = cho_factor(shape, lower=True)
+    solved = cho_solve(factor, design)
+    normal = design.T @ solved + 1e-12 * np.eye(design.shape[1])
+    rest = values - design @ np.linalg.solve(normal, solved.T @ values)
+    freedom = values.size - design.shape[1]
+    variance = max(float(rest @ cho_solve(factor, rest)) / freedom, 1e-300)
+    log_determinants = 2 * np.log(np.diag(factor[0])).sum() + np.linalg.slogdet(normal)[1]
+    return -0.5 * float(freedom * np.log(variance) + log_determinants), variance
+
+
+_BETA = (0.02, 60.0)  # amplitude over decay length
+_SPEED = (1e-3, 1.0)  # sliding speed over that from which the ratio is 1
+_NODES = (80, 64)  # of the ratios that are computed
+_FINE = (800, 640)  # of those that are interpolated between them
+
+
+@cache
+def _table() -> Floats:
+    """Ratio at even steps of the logarithms of amplitude over decay length and of the reduced speed."""
+    from scipy.interpolate import RectBivariateSpline
+
+    beta, speed = (np.geomspace(*ends, count) for ends, count in zip((_BETA, _SPEED), _NODES, strict=True))
+    length, frequency = 1e-6, 1e4
+    a = beta[:, None] * length
+    ratio = sine_stick_slip_ratio(
+        decay_length=length,
+        vibration_amplitude=a,
+        frequency=frequency,
+        sliding_speed=speed * 2 * np.pi * frequency * a,
+        memory_length=length,
+    )
+    spline = RectBivariateSpline(np.log(beta), np.log(speed), ratio)
+    fine = [np.log(np.geomspace(*ends, count)) for ends, count in zip((_BETA, _SPEED), _FINE, strict=True)]
+    return np.asarray(np.clip(spline(*fine), 0.0, 1.0))
+
+
+def interpolated_ratio(*, relative_amplitude: Floats, reduced_speed: Floats) -> Floats:
+    """Friction ratio from amplitude over decay length a/l and reduced speed v l/(omega a D_c), any shape.
+
+    Values outside the table, 0.02 to 60 and 0.001 to 1, are taken at its edge; from a reduced speed of 1 on it is 1.
+    """
+    from scipy.ndimage import map_coordinates
+
+    places = [
+        (np.log(np.clip(values, *ends)) - np.log(ends[0])) * ((count - 1) / np.log(ends[1] / ends[0]))
+        for values, ends, count in zip((relative_amplitude, reduced_speed), (_BETA, _SPEED), _FINE, strict=True)
+    ]
+    ratio = map_coordinates(_table(), places, order=1, mode="nearest")
+    return np.asarray(np.where(reduced_speed >= 1, 1.0, ratio))
+
 
 DIFFERENCE: Final = float(np.log(LONG_DECAY_LENGTH / SHORT_DECAY_LENGTH))
 """Logarithm of the ratio of the two decay lengths that the published sets ask for."""

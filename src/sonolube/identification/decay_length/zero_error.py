@@ -7,11 +7,8 @@ import numpy as np
 from scipy.special import logsumexp
 
 from sonolube.checks import Floats
-from sonolube.identification.decay_length.channel_noise import relaxation
-from sonolube.identification.decay_length.conditions import SwitchConditions
-from sonolube.identification.decay_length.run_model import zero_free_ratio
-from sonolube.identification.decay_length.stick_slip_table import interpolated_ratio
-from sonolube.identification.decay_length.switch_table import SwitchTable
+from sonolube.identification.decay_length.run_model import interpolated_ratio, relaxation, zero_free_ratio
+from sonolube.identification.decay_length.switch_table import SwitchConditions, SwitchTable
 from sonolube.models.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
 
 _TRUE_ZERO: Final = 0.03  # standard deviation of a good zero over the friction force

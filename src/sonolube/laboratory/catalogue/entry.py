@@ -9,7 +9,7 @@ from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Protocol, SetPoint, flattened, protocol_from
 from sonolube.laboratory.records import Run, RunSummary, read_run
 from sonolube.laboratory.records.run_folder import number_of
-from sonolube.text.printable_text import printable
+from sonolube.text.plain_text import printable
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

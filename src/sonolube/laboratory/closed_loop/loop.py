@@ -7,16 +7,12 @@ import numpy as np
 
 from sonolube.design.control import initial_state, next_level
 from sonolube.errors import InvalidInput
-from sonolube.laboratory.closed_loop.plan import recorded_channels
-from sonolube.laboratory.closed_loop.record import FrictionHold, HeldFriction
+from sonolube.laboratory.closed_loop.plan import FrictionHold, HeldFriction, recorded_channels
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.ending import RunEnded
 from sonolube.laboratory.interlocks import interlocks_for
 from sonolube.laboratory.own_clocks import OwnClocks
-from sonolube.laboratory.run_control import RunControl
-from sonolube.laboratory.sampling import Sampling
-from sonolube.laboratory.states import Event, State
-from sonolube.laboratory.supervised_run import Advance, SupervisedRun
+from sonolube.laboratory.states import Event, RunControl, RunEnded, State
+from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 from sonolube.text.units import format_si
 

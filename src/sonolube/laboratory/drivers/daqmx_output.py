@@ -11,8 +11,7 @@ from pydantic import Field, field_validator
 from sonolube.facts.protocol.quantity_text import SiText, Table
 from sonolube.laboratory.devices import DeviceError, DriveSetting, DriveSource, Motor
 from sonolube.laboratory.drivers.daqmx_library import daqmx_errors, daqmx_resource, library_of
-from sonolube.laboratory.drivers.entry import DriveEntry, MotorEntry, Rate
-from sonolube.laboratory.drivers.output_limits import DriveLimits, require_speed
+from sonolube.laboratory.drivers.entry import DriveEntry, DriveLimits, MotorEntry, Rate, require_speed
 from sonolube.text.units import format_si
 
 SAMPLES_PER_PERIOD: Final = 20

@@ -5,11 +5,8 @@ from types import MappingProxyType
 from typing import Final, Literal
 
 from sonolube.laboratory.devices import DeviceError, DriveSetting, DriveSource
-from sonolube.laboratory.drivers.entry import DriveEntry
-from sonolube.laboratory.drivers.output_limits import DriveLimits
-from sonolube.laboratory.drivers.switched_line import SwitchedLine
-from sonolube.laboratory.drivers.visa_connection import VisaConnection
-from sonolube.laboratory.drivers.visa_entry import VisaEntry
+from sonolube.laboratory.drivers.entry import DriveEntry, DriveLimits
+from sonolube.laboratory.drivers.visa_connection import SwitchedLine, VisaConnection, VisaEntry
 from sonolube.text.units import format_si
 
 MIN_AMPLITUDE: Final = 2e-3

@@ -7,11 +7,8 @@ from pydantic import AfterValidator, Field, model_validator
 
 from sonolube.facts.protocol.quantity_text import Table
 from sonolube.laboratory.devices import DeviceError, Motor
-from sonolube.laboratory.drivers.entry import MotorEntry, Speed
-from sonolube.laboratory.drivers.output_limits import require_speed
-from sonolube.laboratory.drivers.switched_line import SwitchedLine
-from sonolube.laboratory.drivers.visa_connection import VisaConnection
-from sonolube.laboratory.drivers.visa_entry import VisaLineEntry
+from sonolube.laboratory.drivers.entry import MotorEntry, Speed, require_speed
+from sonolube.laboratory.drivers.visa_connection import SwitchedLine, VisaConnection, VisaLineEntry
 from sonolube.text.units import format_si
 
 PLACEHOLDER: Final = "{speed}"

@@ -8,9 +8,8 @@ from pydantic import AfterValidator, model_validator
 from sonolube.facts.protocol.quantity_text import SiText, Table
 from sonolube.laboratory.devices import DeviceError, DriveSetting, DriveSource
 from sonolube.laboratory.drivers.entry import DriveEntry, Line
-from sonolube.laboratory.drivers.scpi_replies import ErrorEntry, ReplyEntry, ScpiEntry, require_identity, send
-from sonolube.laboratory.drivers.switched_line import SwitchedLine
-from sonolube.laboratory.drivers.visa_connection import VisaConnection
+from sonolube.laboratory.drivers.scpi_instruments import ErrorEntry, ReplyEntry, ScpiEntry, require_identity, send
+from sonolube.laboratory.drivers.visa_connection import SwitchedLine, VisaConnection
 from sonolube.text.units import format_si
 
 _DIFFERENCE: Final = {"frequency": (1e-4, 0.0, "Hz"), "amplitude": (2e-3, 1e-3, "V"), "offset": (2e-3, 1e-3, "V")}

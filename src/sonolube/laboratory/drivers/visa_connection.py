@@ -1,11 +1,59 @@
-"""Connection to an instrument by VISA: lines of text over USB, LAN or a serial port."""
+"""Instruments of VISA: lines of text over USB, LAN or a serial port, keys of a device map, and outputs they switch.
 
-from collections.abc import Callable
-from contextlib import suppress
-from typing import Any, Final, TypeVar
+An output is set up before it is used and off whatever becomes of the connection. Two ways to write one address have one
+canonical name, by which a run reserves the instrument.
+"""
+
+import os
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
+
+from pydantic import Field
 
 from sonolube.extras import EXTRAS, missing_package
+from sonolube.facts.protocol.quantity_text import Table
 from sonolube.laboratory.devices import DeviceError, DeviceLost
+from sonolube.laboratory.drivers.entry import Resource, VisaLibrary
+
+_SERIAL: Final = re.compile(r"ASRL(.*?)(::INSTR)?|(?:\\\\\.\\)?(COM\d+)", re.IGNORECASE)
+_PORT: Final = re.compile(r"(?:\\\\\.\\)?(?:COM)?(\d+)", re.IGNORECASE)
+_CLASSES: Final = ("instr", "socket", "raw")  # of resources
+
+
+def visa_resource(resource: str) -> str:
+    """Name of an instrument by its address: host and port, number of the serial port, bus and address.
+
+    VISA takes board 0, device inst0 of a LAN instrument, interface 0 of one on USB and class INSTR where an address has
+    none, and numbers in decimal or hexadecimal. ASRL3 is COM3 of Windows.
+
+    Source: IVI Foundation, VPP-4.3, The VISA Library, grammar of address strings.
+    """
+    serial = _SERIAL.fullmatch(resource.strip())
+    if serial:
+        port = serial[1] or serial[3] or "0"
+        number = _PORT.fullmatch(port)
+        return f"serial {int(number[1])}" if number else f"serial {os.path.realpath(port)}"
+    interface, *parts = resource.strip().lower().split("::")
+    kind, board = re.fullmatch(r"(\D*)(\d*)", interface).groups()  # type: ignore[union-attr]
+    parts = [part for part in parts if part not in _CLASSES]
+    if kind == "tcpip":
+        host, *others = parts
+        return " ".join([kind, host, *(map(_number, others) if others != ["inst0"] else ())])
+    if kind == "usb":
+        maker, model, *others = parts
+        return " ".join([kind, _number(maker), _number(model), *(others[:-1] if others[1:] == ["0"] else others)])
+    return " ".join([f"{kind}{int(board or 0)}", *map(_number, parts)])
+
+
+def _number(part: str) -> str:
+    """Part of an address, a number as a decimal one."""
+    if re.fullmatch(r"0x[0-9a-f]+", part):
+        return str(int(part, 16))
+    return str(int(part)) if part.isdecimal() else part
+
 
 TIMEOUT: Final = 2.0
 """Time within which an instrument must answer. [s]"""
@@ -164,3 +212,141 @@ class VisaConnection:
 def _told(failure: BaseException) -> str:
     """First line of an error."""
     return (str(failure).strip().splitlines() or [type(failure).__name__])[0][:120]
+
+
+class VisaEntry(Table):
+    """Keys of every instrument of VISA."""
+
+    extras: ClassVar[tuple[str, ...]] = ("visa",)
+
+    resource: Resource
+    visa_library: VisaLibrary = "@py"
+
+    @property
+    def where(self) -> str:
+        """Address."""
+        return self.resource
+
+    @property
+    def reserved_as(self) -> str:
+        """Canonical name of the instrument or port."""
+        return visa_resource(self.resource)
+
+    def line(self, kind: str) -> VisaConnection:
+        """Connection, not open, to an instrument of a kind."""
+        return VisaConnection(name=f"{kind} {self.resource}", resource=self.resource, library=self.visa_library)
+
+
+class VisaLineEntry(VisaEntry):
+    """Keys of every instrument of VISA that may have a serial port."""
+
+    baud_rate: Annotated[int, Field(ge=50, le=4_000_000)] | None = None
+    termination: Literal["CR", "LF", "CRLF"] = "LF"
+
+    def line(self, kind: str) -> VisaConnection:
+        """Connection, not open, to an instrument of a kind."""
+        return VisaConnection(
+            name=f"{kind} {self.resource}",
+            resource=self.resource,
+            library=self.visa_library,
+            termination=TERMINATIONS[self.termination],
+            baud_rate=self.baud_rate,
+        )
+
+
+class SwitchedLine(ABC):
+    """Output that lines of text set and switch off.
+
+    Parameters
+    ----------
+    line : VisaConnection
+    """
+
+    def __init__(self, line: VisaConnection) -> None:
+        self.name = line.name
+        self._line = line
+        self._is_connected = False
+        self._is_set_up = False  # False also where the instrument may have lost what it was told
+        self._is_lost = False
+        self._is_halted = False
+
+    @abstractmethod
+    def _set_up(self) -> None:
+        """Switch the output off, and send what the instrument needs before it is set."""
+
+    @abstractmethod
+    def _switch_off(self, line: VisaConnection) -> None:
+        """Switch the output off over a connection and have that confirmed."""
+
+    def connect(self) -> None:
+        """Open the connection, and set the instrument up with its output off."""
+        if self._is_connected:
+            return
+        self._line.open()
+        try:
+            self._set_up()
+        except BaseException:
+            self._line.close()
+            raise
+        self._is_connected, self._is_set_up, self._is_lost = True, True, False
+
+    def _require_connected(self, *, before: str) -> None:
+        """Raise DeviceError where the instrument is not connected, before something such as driving."""
+        if not self._is_connected:
+            raise DeviceError(f"{self.name}: connect it before {before}")
+
+    @contextmanager
+    def _off_where_refused(self) -> Iterator[None]:
+        """Set the output inside a `with` block, the instrument set up; where it refuses, the output ends off."""
+        try:
+            if not self._is_set_up:
+                self._line.open()
+                self._is_lost = False
+                self._set_up()
+                self._is_set_up = True
+            yield
+        except DeviceLost:
+            self._is_set_up, self._is_lost = False, True
+            raise
+        except DeviceError:
+            self._is_set_up = False
+            with suppress(DeviceError):  # who drives it switches it off again, and hears of that
+                self.off()
+            raise
+
+    def off(self) -> None:
+        """Switch the output off, over a new connection where the present one is lost, and wait for the confirmation."""
+        if not self._is_connected:
+            return
+        if self._is_halted:
+            self.halt()
+            return
+        if not self._is_lost:
+            try:
+                self._switch_off(self._line)
+                return
+            except DeviceError:
+                self._is_set_up, self._is_lost = False, True
+        self._line.open()
+        self._switch_off(self._line)
+        self._is_lost = False
+
+    def halt(self) -> None:
+        """Switch the output off over a further connection, whatever the present one waits for, which ends with that."""
+        if not self._is_connected:
+            return
+        self._is_halted = True
+        self._line.bar()
+        line = self._line.another()
+        line.open()
+        try:
+            self._switch_off(line)
+        finally:
+            line.close()
+
+    def close(self) -> None:
+        """Switch the output off and close the connection."""
+        with suppress(DeviceError):
+            self.off()
+        self._is_connected = self._is_set_up = False
+        self._line.close()

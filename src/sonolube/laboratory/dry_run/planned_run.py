@@ -20,14 +20,22 @@ from sonolube.facts.protocol import (
     flattened,
     step_at,
 )
-from sonolube.laboratory.dry_run.amplifier_load import OFF, DriveLoad, drive_load
-from sonolube.laboratory.dry_run.findings import caveats_of, refusals_of
-from sonolube.laboratory.dry_run.heating import Heating, heating_over, rubbed_contact
-from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint, PlannedRecording
+from sonolube.laboratory.dry_run.record import (
+    OFF,
+    DriveLoad,
+    DryRun,
+    Heating,
+    PlannedPoint,
+    PlannedRecording,
+    drive_load,
+    heating_over,
+    rubbed_contact,
+)
+from sonolube.laboratory.dry_run.report import caveats_of, refusals_of
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
-from sonolube.rig.excitation import actuator_capacitance
+from sonolube.rig.driven_rig import actuator_capacitance
 from sonolube.text.units import format_si
 
 

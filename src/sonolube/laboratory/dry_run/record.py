@@ -1,13 +1,185 @@
-"""Records of a dry run: set points with their amplitudes and loads, recordings, durations and findings."""
+"""Records of a dry run, with the load of the drive on its amplifier and the temperatures of contact and actuator.
+
+The actuator is a capacitance to the amplifier; temperatures follow by lumped bodies and the flash rise.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final
 
+import numpy as np
+
+from sonolube.checks import Floats, require_positive
 from sonolube.facts.protocol import Protocol, SetPoint
-from sonolube.laboratory.dry_run.amplifier_load import DriveLoad
-from sonolube.laboratory.dry_run.heating import Heating
+from sonolube.laboratory.heating_assumptions import HeatingAssumptions, capacitive_load
+from sonolube.models.actuator import linear_amplifier_power
+from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
+from sonolube.models.thermal.bulk import network_rise
+from sonolube.models.thermal.contact_history import contact_temperature_history
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DriveLoad:
+    """Electrical load of a drive setting on an actuator taken as a capacitance.
+
+    Parameters
+    ----------
+    peak_current : float
+        Greatest magnitude of the current. [A]
+    slew_rate : float
+        Greatest rate of change of the voltage. [V/s]
+    actuator_power : float
+        Power a linear amplifier draws for it, D 1.9. [W]
+    capacitive_power : float
+        Root-mean-square alternating voltage times root-mean-square current, in W.
+    """
+
+    peak_current: float
+    slew_rate: float
+    actuator_power: float
+    capacitive_power: float
+
+
+OFF = DriveLoad(peak_current=0.0, slew_rate=0.0, actuator_power=0.0, capacitive_power=0.0)
+"""Load of a drive that is off."""
+
+
+def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
+    r"""Load of a set point on the amplifier.
+
+    Parameters
+    ----------
+    point : SetPoint
+    capacitance : float
+        Capacitance of the actuator. [F]
+
+    Returns
+    -------
+    DriveLoad
+
+    Raises
+    ------
+    InvalidInput
+        If the capacitance is not positive.
+
+    Notes
+    -----
+    A sine of the peak-to-peak voltage :math:`U` on the capacitance :math:`C` has the current amplitude and the steepest
+    slope
+
+    .. math:: \hat I = \pi f C U, \qquad \dot U_{max} = \pi f U
+
+    Other waveforms are summed over 64 harmonics: the current of a square or sawtooth is limited by the amplifier alone,
+    and that of a triangle comes out 18 % too high, by the overshoot of a truncated series.
+    The current of the motion, largest at resonance, comes on top.
+    """
+    require_positive(capacitance=capacitance)
+    if point.frequency is None or point.voltage_peak_to_peak == 0:
+        return OFF
+    need = capacitive_load(
+        capacitance=capacitance,
+        frequency=point.frequency,
+        voltage_peak_to_peak=point.voltage_peak_to_peak,
+        waveform=point.waveform,
+    )
+    power = linear_amplifier_power(
+        capacitance=capacitance,
+        voltage_maximum=point.voltage_maximum,
+        voltage_peak_to_peak=point.voltage_peak_to_peak,
+        frequency=point.frequency,
+    )
+    return DriveLoad(
+        peak_current=need.peak_current,
+        slew_rate=need.slew_rate,
+        actuator_power=float(power),
+        capacitive_power=need.apparent_power,
+    )
+
+
+_POINTS = 400  # of the time line, at least
+_MAX_PARTS = 200  # of one interval between set points
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Heating:
+    """Temperature rises over the time line of a protocol, prompts left out.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        [s]
+    contact_rise : ndarray or None, shape (n,)
+        Mean rise of the contact, flash included, just before each time, in K; None where materials are unknown.
+    pin_rise : ndarray or None, shape (n,)
+        Rise of the pin, in K.
+    actuator_rise : ndarray, shape (n,)
+        In K.
+    frictional_heat : float
+        Work of friction over the whole test, in J.
+    actuator_heat : float
+        Heat of the actuator over the whole test, in J.
+    ambient_temperature : float
+        [K]
+    """
+
+    time: Floats
+    contact_rise: Floats | None
+    pin_rise: Floats | None
+    actuator_rise: Floats
+    frictional_heat: float
+    actuator_heat: float
+    ambient_temperature: float
+
+
+def heating_over(
+    *,
+    duration: Floats,
+    friction_force: Floats,
+    sliding_speed: Floats,
+    actuator_heat_rate: Floats,
+    bodies: HeatedContact | None,
+    assumed: HeatingAssumptions,
+) -> Heating | None:
+    """Temperature rises over successive intervals of constant heat, from ambient temperature.
+
+    None where no time passes.
+    """
+    lasts = duration > 0
+    if not lasts.any():
+        return None
+    longest = sum(duration[lasts].tolist()) / _POINTS
+    parts = np.clip(np.ceil(duration[lasts] / longest), 1, _MAX_PARTS).astype(int)
+    steps = np.repeat(duration[lasts] / parts, parts)
+    time = np.concatenate([[0.0], np.cumsum(steps)])
+    speed, force, heat = (np.repeat(each[lasts], parts) for each in (sliding_speed, friction_force, actuator_heat_rate))
+    actuator = ThermalNetwork(
+        heat_capacity=(assumed.actuator_heat_capacity,), links=(), losses=(assumed.actuator_conductance,)
+    )
+    contact_rise = pin_rise = None
+    if bodies is not None:
+        history = contact_temperature_history(bodies, time=time, friction_force=force, sliding_speed=speed)
+        contact_rise, pin_rise = history.temperature_rise, history.bulk_rise
+    return Heating(
+        time=time,
+        contact_rise=contact_rise,
+        pin_rise=pin_rise,
+        actuator_rise=network_rise(actuator, time=time, heat_rate=heat[:, np.newaxis])[:, 0],
+        frictional_heat=float(np.sum(force * speed * steps)),
+        actuator_heat=float(np.sum(heat * steps)),
+        ambient_temperature=assumed.ambient_temperature,
+    )
+
+
+def rubbed_contact(
+    pin: ThermalSolid, disc: ThermalSolid, *, nominal_area: float, assumed: HeatingAssumptions
+) -> HeatedContact:
+    """Contact of pin and disc, taken as circular."""
+    radius = float(np.sqrt(nominal_area / np.pi))
+    network = ThermalNetwork(heat_capacity=(assumed.pin_heat_capacity,), links=(), losses=(assumed.pin_conductance,))
+    source = EllipticSource(half_length=radius, half_width=radius)
+    return HeatedContact(pin=pin, disc=disc, source=source, network=network)
+
 
 SAMPLE_SIZE: Final = 8
 """Bytes of one sample of a raw block."""

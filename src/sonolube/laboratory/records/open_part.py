@@ -1,16 +1,42 @@
-"""Part of a recording that is being written, of the clock of a run or of another."""
+"""Parts of a recording that are being written, and the clock of their run, which does not jump."""
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import DocumentLog, ReadDocuments
-from sonolube.laboratory.records.part_clock import PartClock
-from sonolube.laboratory.records.raw_blocks import raw_header, raw_record
+from sonolube.laboratory.records.raw_blocks import PartClock, raw_header, raw_record
 from sonolube.laboratory.records.run_folder import raw_path
 from sonolube.storage.growing_files import AppendedFile
+
+_MIN_JUMP: Final = 0.5  # s; larger than what a time service corrects at once without stepping the clock
+
+
+class RunClock:
+    """Time of day that goes on evenly although the clock of the computer is set meanwhile."""
+
+    def __init__(self) -> None:
+        self.begun = time.time()
+        self._steady = time.monotonic()
+        self._ahead = 0.0  # of the clock of the computer before this one
+
+    def now(self) -> float:
+        """Time since 1970 by this clock. [s]"""
+        return self.begun + time.monotonic() - self._steady
+
+    def jump(self) -> float:
+        """Jump of the computer's clock since the last call, positive where it was set forward; else 0. [s]"""
+        ahead = time.time() - self.now()
+        jump = ahead - self._ahead
+        if abs(jump) < _MIN_JUMP:
+            return 0.0
+        self._ahead = ahead
+        return jump
+
 
 NoteGap = Callable[[int, Mapping[str, str | float]], None]
 """Takes the first missing sample, and what is known of the gap."""

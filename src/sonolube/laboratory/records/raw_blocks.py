@@ -1,30 +1,69 @@
-r"""Raw blocks of a recording: a file to which blocks are appended as they come, with counters and checksums.
+"""Raw blocks of a recording: a file to which blocks are appended as they come, with counters and checksums.
 
-The header is the mark ``SNLBLK1\n``, the length of a text (4 bytes), that text (JSON: sample rate, channels with
-quantity, unit and range, time of the begin, and the clock where it is not that of the run), and its CRC-32 (4 bytes).
-Each record is the mark ``\xb5BLK``, sequence number and first sample (8 bytes each), number of samples (4 bytes),
-CRC-32 of the samples and CRC-32 of all before it (4 bytes each), then the samples, channel beside channel, as 64-bit
-floats. All numbers are little-endian.
+The header is the mark ``SNLBLK1`` with a line feed, the length of a text (4 bytes), that text (JSON: sample rate,
+channels with quantity, unit and range, time of the begin, and the clock where it is not that of the run), and its
+CRC-32 (4 bytes). Each record is the mark ``BLK`` behind the byte b5, sequence number and first sample (8 bytes each),
+number of samples (4 bytes), CRC-32 of the samples and CRC-32 of all before it (4 bytes each), then the samples, channel
+beside channel, as 64-bit floats. All numbers are little-endian.
 """
 
 import json
 import struct
 import zlib
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import ceil
 from os import SEEK_END
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
-from sonolube.laboratory.records.part_clock import PartClock, part_clock
+from sonolube.laboratory.records.run_folder import CLOCK_NAME
 from sonolube.vocabulary import quantities
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PartClock:
+    """Clock of a part of the recording that is not the clock of the run.
+
+    Parameters
+    ----------
+    name : str
+        Of the acquisition, as the device map calls it.
+    part : int
+        Of the recording beside which this one was taken, from 1.
+    offset : float
+        Time of the first sample on the time axis of that part, in s.
+    uncertainty : float
+        Greatest error of the offset, which the times of two blocks tell, in s.
+    first_sample : int
+        By the counter of its hardware.
+    """
+
+    name: str
+    part: int
+    offset: float
+    uncertainty: float
+    first_sample: int = 0
+
+
+def part_clock(content: Mapping[str, Any]) -> PartClock:
+    """Clock of a part by what its file tells."""
+    if not CLOCK_NAME.fullmatch(str(content["name"])):
+        raise ValueError
+    return PartClock(
+        name=str(content["name"]),
+        part=int(content["part"]),
+        offset=float(content["offset"]),
+        uncertainty=float(content["uncertainty"]),
+        first_sample=int(content["first_sample"]),
+    )
+
 
 _MAGIC: Final = b"SNLBLK1\n"
 _MARK: Final = b"\xb5BLK"

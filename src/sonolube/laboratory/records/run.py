@@ -12,14 +12,15 @@ from sonolube.laboratory.devices import SILENT
 from sonolube.laboratory.records.documents import (
     EXIT_STATUS,
     ReadDocuments,
+    RecordedChannel,
     main_parts,
     numbered_parts,
     part_clocks,
     part_name,
     read_documents,
+    recorded_channels,
     stream_counts,
 )
-from sonolube.laboratory.records.recorded_channels import RecordedChannel, recorded_channels
 from sonolube.laboratory.records.run_folder import (
     DOCUMENTS,
     LATEST,
@@ -193,7 +194,7 @@ class Run:
         UnknownName
             If the run has no such clock.
         """
-        from sonolube.measurement.recordings.joined_recording import join_recordings
+        from sonolube.measurement.recordings.channels_and_parts import join_recordings
         from sonolube.measurement.recordings.reader import read_recording
 
         if clock and clock not in self.clocks:

@@ -13,7 +13,7 @@ from typing import Any, Final
 from sonolube.errors import InvalidInput
 from sonolube.storage.files import write_atomically
 from sonolube.storage.growing_files import new_folder
-from sonolube.text.printable_text import printable
+from sonolube.text.plain_text import printable
 
 PROTOCOL: Final = "protocol.toml"
 RUN: Final = "run.json"

@@ -1,7 +1,7 @@
 from .disturbances import UNDISTURBED as UNDISTURBED, Disturbances as Disturbances
-from .friction_draw import FrictionDraw as FrictionDraw, FrictionLevel as FrictionLevel
 from .tribometer import (
     GROOVE_DIAMETER as GROOVE_DIAMETER,
     VirtualTribometer as VirtualTribometer,
     virtual_tribometer as virtual_tribometer,
 )
+from .truth import FrictionDraw as FrictionDraw, FrictionLevel as FrictionLevel

@@ -12,24 +12,23 @@ from sonolube.facts.protocol import PROMPT_DURATIONS, Prompt
 from sonolube.laboratory.block import Block, Channel, quantity_of
 from sonolube.laboratory.devices import DeviceError, DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
-from sonolube.laboratory.virtual_tribometer.arm_resonance import arm_resonance
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
-from sonolube.laboratory.virtual_tribometer.friction_draw import FrictionDraw
 from sonolube.laboratory.virtual_tribometer.signals import (
     Approach,
+    Bursts,
     ColouredNoise,
+    StickSlip,
+    arm_resonance,
     correlated,
     hall_pulses,
     play,
     pulled,
     resonant,
 )
-from sonolube.laboratory.virtual_tribometer.stick_slip import Bursts, StickSlip
-from sonolube.laboratory.virtual_tribometer.temperatures import Temperatures
-from sonolube.laboratory.virtual_tribometer.truth import TruthSetting, truth_dataset
+from sonolube.laboratory.virtual_tribometer.truth import FrictionDraw, Temperatures, TruthSetting, truth_dataset
 from sonolube.models.dynamics.structure import electrical_admittance
 from sonolube.rig import Rig
-from sonolube.rig.excitation import actuator_capacitance
+from sonolube.rig.driven_rig import actuator_capacitance
 
 if TYPE_CHECKING:
     import xarray as xr

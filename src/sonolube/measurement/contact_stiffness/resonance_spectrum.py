@@ -10,11 +10,9 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.column_headings import ColumnHeading, parse_heading
-from sonolube.measurement.impedance.passivity import passive_spectrum
-from sonolube.measurement.impedance.reader import read_impedance, sweep_bytes
-from sonolube.measurement.limits import require_points
-from sonolube.measurement.numeric_text import detected_decimal_sign, parse_number
+from sonolube.measurement.impedance.named_columns import ColumnHeading, parse_heading
+from sonolube.measurement.impedance.spectrum import passive_spectrum, read_impedance, sweep_bytes
+from sonolube.measurement.measured_files import detected_decimal_sign, parse_number, require_points
 from sonolube.measurement.time_series import require_equal_length
 
 _ORDERS = {"displacement": 0, "amplitude": 0, "receptance": 0, "velocity": 1, "mobility": 1, "acceleration": 2}

@@ -7,14 +7,9 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from sonolube.checks import Floats
-from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate
-from sonolube.measurement.friction.wobble_search import (
-    find_rotation_speed,
-    harmonic_columns,
-    refined_speed,
-    scaled_waves,
-)
-from sonolube.measurement.statistics.correlated_regression import CorrelatedRegression, correlated_regression
+from sonolube.measurement.friction.force_cycle import StickSlipEstimate
+from sonolube.measurement.friction.wobble import find_rotation_speed, harmonic_columns, refined_speed, scaled_waves
+from sonolube.measurement.statistics.autocorrelation import CorrelatedRegression, correlated_regression
 
 _BLOCK = 0.016  # s, over which samples are averaged
 _BLOCKS_OF_SHORTEST = 40

@@ -11,9 +11,17 @@ from scipy.stats import t as student
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.force_cycle import MIN_SAMPLES_OF_CYCLE, SHARE_OF_VARIANCE, ForceCycle, find_cycle
+from sonolube.measurement.friction.force_cycle import (
+    MIN_SAMPLES_OF_CYCLE,
+    SHARE_OF_VARIANCE,
+    ForceCycle,
+    StickSlipBurst,
+    StickSlipEstimate,
+    combined,
+    find_cycle,
+    not_detected,
+)
 from sonolube.measurement.friction.slip_events import DETECTION_SCORE, Indices, SlipChain, find_slips, noise_spectra
-from sonolube.measurement.friction.stick_slip_estimate import StickSlipBurst, StickSlipEstimate, combined, not_detected
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import even_stretches, evenly_sampled, require_time_series
 

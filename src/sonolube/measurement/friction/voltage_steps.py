@@ -10,7 +10,8 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from sonolube.checks import Floats, require_finite, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import friction_reduction
-from sonolube.measurement.friction.constant_steps import sliding_steps
+from sonolube.measurement.friction.force_cycle import StickSlipEstimate, not_detected
+from sonolube.measurement.friction.sliding import sliding_steps
 from sonolube.measurement.friction.step_means import (
     SampledParts,
     StepMeans,
@@ -20,7 +21,6 @@ from sonolube.measurement.friction.step_means import (
     wobble_columns,
 )
 from sonolube.measurement.friction.stick_slip import stick_slip_of_parts
-from sonolube.measurement.friction.stick_slip_estimate import StickSlipEstimate, not_detected
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import require_equal_length, require_time_series, uniform_sample_interval
 

@@ -1,23 +1,125 @@
-"""Impedance in text tables whose first row names the columns, and the sweep that named columns define."""
+"""Impedance in text tables whose first row names the columns: quantity and unit of each, and the sweep of them."""
 
+import math
+import re
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import ClassVar, final
+from types import MappingProxyType
+from typing import ClassVar, NamedTuple, final
 
 import numpy as np
 
-from sonolube.checks import Floats
+from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.column_headings import (
-    IMPEDANCE_PARTS,
-    MAGNITUDES,
-    ColumnHeading,
-    impedance_from_parts,
-    is_phase_without_unit,
-    parse_heading,
-)
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
-from sonolube.measurement.limits import require_channels
-from sonolube.measurement.numeric_text import parse_number
+from sonolube.measurement.measured_files import parse_number, require_channels
+
+_LABELS = {
+    "f": ("frequency", "freq", "freq.", "f"),
+    "|Z|": ("|z|", "z", "abs(z)", "absz", "mag(z)", "zmod", "impedance"),
+    "theta_Z": ("theta-z", "theta", "phase", "phasez", "phase(z)", "arg(z)", "zphz", "θ"),
+    "R": ("r", "re(z)", "real(z)", "realz", "z'", "resistance"),
+    "X": ("x", "im(z)", "imag(z)", "imagz", "z''", "reactance"),
+    "-X": ("-im(z)", "-imag(z)", "-z''"),
+    "|Y|": ("|y|", "y", "abs(y)", "mag(y)", "admittance"),
+    "theta_Y": ("theta-y", "phase(y)", "arg(y)"),
+    "G": ("g", "re(y)", "real(y)", "conductance"),
+    "B": ("b", "im(y)", "imag(y)", "susceptance"),
+} | {symbol: (symbol.lower(),) for symbol in ("Ls", "Rs", "Cs", "Lp", "Rp", "Cp")}
+_SYMBOL = {label: symbol for symbol, labels in _LABELS.items() for label in labels}
+_DIMENSION = MappingProxyType(
+    {"f": "Hz", "|Y|": "S", "G": "S", "B": "S", "Ls": "H", "Lp": "H", "Cs": "F", "Cp": "F"}
+    | dict.fromkeys(("theta_Z", "theta_Y"), "rad")
+)
+_UNIT = re.compile(r"([pnuµμmkMG]?)(Hz|[Oo]hm|OHM|Ω|S|H|F|rad)")
+_PREFIX = {"": 1.0, "p": 1e-12, "n": 1e-9, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
+_BRACKETED = re.compile(r"(.*\S)\s*[(\[]([^()\[\]]*)[)\]]")
+_DIVIDED = re.compile(r"(.*\S)\s*/\s*(\S+)")
+
+_IMPEDANCE: Mapping[tuple[str, str], Callable[[Floats, Floats, Floats], Floats | Complexes]] = MappingProxyType(
+    {
+        ("R", "X"): lambda w, r, x: r + 1j * x,
+        ("R", "-X"): lambda w, r, x: r - 1j * x,
+        ("|Z|", "theta_Z"): lambda w, z, theta: z * np.exp(1j * theta),
+        ("G", "B"): lambda w, g, b: 1 / (g + 1j * b),
+        ("|Y|", "theta_Y"): lambda w, y, theta: np.exp(-1j * theta) / y,
+        ("Ls", "Rs"): lambda w, inductance, r: r + 1j * w * inductance,
+        ("Cs", "Rs"): lambda w, c, r: r + 1 / (1j * w * c),
+        ("Lp", "Rp"): lambda w, inductance, r: 1 / (1 / r + 1 / (1j * w * inductance)),
+        ("Cp", "Rp"): lambda w, c, r: 1 / (1 / r + 1j * w * c),
+        ("|Z|", "|Z|"): lambda w, z, _: z,
+        ("|Y|", "|Y|"): lambda w, y, _: 1 / y,
+    }
+)
+MAGNITUDES = (("|Z|", "|Z|"), ("|Y|", "|Y|"))
+"""Of `IMPEDANCE_PARTS` those that define the magnitude only."""
+IMPEDANCE_PARTS = tuple(_IMPEDANCE)
+"""Pairs of column symbols that define an impedance, in order of preference."""
+
+
+class ColumnHeading(NamedTuple):
+    """Quantity and unit of a column.
+
+    Parameters
+    ----------
+    symbol : str
+        Symbol of the quantity, such as ``f``, ``|Z|`` or ``theta_Z``.
+    scale : float
+        Value of the column's unit in SI.
+    """
+
+    symbol: str
+    scale: float
+
+
+def parse_heading(text: str) -> ColumnHeading | None:
+    """Quantity and unit in the heading of a column, or None where it is none of an impedance table.
+
+    See Also
+    --------
+    is_phase_without_unit : Why a heading may be None.
+    """
+    label = text.strip().strip('"').strip()
+    for split in (_BRACKETED, _DIVIDED):
+        if (found := split.fullmatch(label)) and (symbol := _SYMBOL.get(found[1].lower())):
+            scale = _unit_scale(found[2].strip(), _DIMENSION.get(symbol, "ohm"))
+            return ColumnHeading(symbol, scale) if scale is not None else None
+    symbol = _SYMBOL.get(label.lower(), "")
+    return ColumnHeading(symbol, 1.0) if symbol and not symbol.startswith("theta") else None
+
+
+def is_phase_without_unit(text: str) -> bool:
+    """Whether the heading of a column names a phase and states no unit, or one that is no angle."""
+    label = text.strip().strip('"').strip()
+    found = _BRACKETED.fullmatch(label) or _DIVIDED.fullmatch(label)
+    names_phase = _SYMBOL.get((found[1] if found else label).lower(), "").startswith("theta")
+    return names_phase and parse_heading(text) is None
+
+
+def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -> Complexes:
+    r"""Complex impedance from two real parts of impedance, admittance or an equivalent circuit, in ohm.
+
+    Not finite where the parts define no finite impedance.
+
+    With :math:`\omega = 2\pi f`: :math:`R + jX`, :math:`|Z| e^{j\theta}`, :math:`1/(G + jB)`, the series circuits
+    :math:`R_s + j\omega L_s` and :math:`R_s + 1/(j\omega C_s)`, and the parallel circuits
+    :math:`(1/R_p + 1/(j\omega L_p))^{-1}` and :math:`(1/R_p + j\omega C_p)^{-1}`.
+    """
+    first, second = pair
+    with np.errstate(all="ignore"):
+        omega = 2 * np.pi * columns["f"]
+        return np.asarray(_IMPEDANCE[pair](omega, columns[first], columns[second]), dtype=np.complex128)
+
+
+def _unit_scale(unit: str, dimension: str) -> float | None:
+    """Value of a unit in SI, None where it is unknown or of another dimension."""
+    if unit.lower() in ("deg", "°", "degrees"):
+        return math.pi / 180 if dimension == "rad" else None
+    found = _UNIT.fullmatch(unit)
+    if not found or (found[2] if found[2].lower() not in ("ohm", "ω") else "ohm") != dimension:
+        return None
+    return _PREFIX[found[1]]
+
 
 _COMMENTS = ("#", "!", "%")
 

@@ -1,14 +1,23 @@
-"""Electrical impedance spectra: the validated record, and the sweep of a file before validation."""
+"""Electrical impedance spectra, and their reading from files of impedance analysers.
 
-from dataclasses import dataclass
+A format is one class and one line of `IMPEDANCE_FORMATS`; detection and documentation derive from the table.
+"""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.measurement.measured_files import HEAD_SIZE, FileFormat, detect_format, refuse_unreadable, require_points
 from sonolube.measurement.time_series import require_equal_length
+from sonolube.storage.user_files import input_bytes
+from sonolube.variants import VariantTable
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -115,3 +124,162 @@ def _refuse(invalid: NDArray[np.bool_], reason: str, lines: NDArray[np.int64], p
     """Refuse a sweep with invalid points, naming the line of the first."""
     if invalid.any():
         raise InvalidInput(f"{path}: line {lines[int(np.argmax(invalid))]}: {reason}")
+
+
+class ImpedanceFormat(FileFormat, Protocol):
+    """Reader of one text file format of impedance spectra."""
+
+    def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
+        """Sweeps of a file by name.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file, for messages.
+        lines : list of str
+            All lines of the file.
+
+        Returns
+        -------
+        dict of str to ImpedanceSweep
+            The measured sweep is called "data" where the format also stores others; a single sweep may have an empty
+            name.
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file, the line and the reason, if the file cannot be read as impedance over frequency.
+        """
+
+
+IMPEDANCE_FORMATS: VariantTable[ImpedanceFormat] = VariantTable(
+    "impedance format",
+    {
+        "touchstone": "sonolube.measurement.impedance.touchstone:Touchstone",
+        "HP 4294A": "sonolube.measurement.impedance.instruments:Hp4294A",
+        "Keysight E4990A": "sonolube.measurement.impedance.instruments:KeysightE4990A",
+        "Zurich Instruments MFIA": "sonolube.measurement.impedance.instruments:Mfia",
+        "table with named columns": "sonolube.measurement.impedance.named_columns:NamedColumns",
+    },
+    made=lambda known: known(),
+)
+"""File formats of impedance spectra in order of detection, the last as fallback; a new one takes a file and a line."""
+
+
+_NEARLY_ALL = 0.95  # of the conductance summed over the points
+
+
+def passive_spectrum(spectrum: ImpedanceSpectrum) -> tuple[ImpedanceSpectrum, tuple[str, ...]]:
+    r"""Spectrum with a sign that a passive part can have, and a caveat where it was turned by 180 degrees.
+
+    Parameters
+    ----------
+    spectrum : ImpedanceSpectrum
+        As read.
+
+    Returns
+    -------
+    spectrum : ImpedanceSpectrum
+        With the opposite sign where nearly all conductance of the given one is negative, else the given one.
+    caveats : tuple of str
+        One line where it was turned.
+
+    Notes
+    -----
+    A passive part takes power: :math:`\operatorname{Re} Y \ge 0` at every frequency. Where current or voltage is wired
+    or defined in the opposite sense, the whole spectrum has the opposite sign. Of the conductance
+
+    .. math:: \frac{\sum_i \max(-\operatorname{Re} Y_i, 0)}{\sum_i |\operatorname{Re} Y_i|} \ge 0.95
+
+    is then negative; the sum has little weight where the conductance is so small that noise decides its sign.
+    """
+    if not spectrum.has_phase:
+        return spectrum, ()
+    conductance = spectrum.admittance.real
+    total, negative = float(np.abs(conductance).sum()), float(np.maximum(-conductance, 0).sum())
+    if not (total > 0 and negative >= _NEARLY_ALL * total):
+        return spectrum, ()
+    share = float(np.mean(conductance < 0))
+    caveat = (
+        f"the file holds a spectrum turned by 180 degrees: the conductance is negative at {share:.0%} of its points,"
+        " which no passive part has; current or voltage has the opposite sign, and the spectrum was turned back"
+    )
+    return replace(spectrum, impedance=-spectrum.impedance), (caveat,)
+
+
+_LARGEST_FILE = 1 << 28  # bytes; far above any sweep
+
+
+def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum:
+    """Impedance spectrum read from a file.
+
+    Parameters
+    ----------
+    path : Path
+        In any format of `IMPEDANCE_FORMATS`, which is detected by content; touchstone by its suffix.
+    sweep : str or None
+        Name of one of several sweeps, such as "memory" of a 4294A or a chunk number of an MFIA. None selects the
+        measured sweep, and is refused where several remain.
+
+    Returns
+    -------
+    ImpedanceSpectrum
+        Of a file that holds magnitudes only, its `has_phase` is False.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file, the line and the reason, if the file cannot be read as impedance over frequency.
+    UnknownName
+        Naming the file, if it has no such sweep.
+    """
+    content = sweep_bytes(path)
+    lines = _lines(content, path)
+    formats = tuple(IMPEDANCE_FORMATS.values())
+    file_format = detect_format(formats, content[:HEAD_SIZE], path) or formats[-1]
+    sweeps = file_format.read(path, lines)
+    name = _selected_name(path, sweeps, sweep)
+    selected = sorted_by_frequency(sweeps[name], path=path)
+    return ImpedanceSpectrum(
+        frequency=selected.frequency,
+        impedance=selected.impedance,
+        has_phase=selected.has_phase,
+        sweep=name,
+        file_name=path.name,
+        file_format=file_format.name,
+        sha256=hashlib.sha256(content).hexdigest(),
+    )
+
+
+def sweep_bytes(path: Path) -> bytes:
+    """Bytes of a file of limited size."""
+    with refuse_unreadable(path):
+        if path.stat().st_size > _LARGEST_FILE:
+            raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST_FILE >> 20} MiB, more than any sweep")
+        return input_bytes(path, most=_LARGEST_FILE)
+
+
+def _lines(content: bytes, path: Path) -> list[str]:
+    """Lines of a text file."""
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as failure:
+        line = content[: failure.start].count(b"\n") + 1
+        raise InvalidInput(f"{path}: line {line}: is not UTF-8 text") from None
+    if not text.strip():
+        raise InvalidInput(f"{path}: is empty")
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    require_points(len(lines), path, line=len(lines))
+    return lines
+
+
+def _selected_name(path: Path, sweeps: Mapping[str, ImpedanceSweep], requested: str | None) -> str:
+    """Name of the requested sweep, without a request that of the measured or only one."""
+    if requested is not None:
+        if requested not in sweeps:
+            raise UnknownName(f"{path}: has no sweep {requested!r}; it has {', '.join(map(repr, sweeps))}")
+        return requested
+    if "data" in sweeps or len(sweeps) == 1:
+        return "data" if "data" in sweeps else next(iter(sweeps))
+    names = ", ".join(name[:20] for name in list(sweeps)[:12])
+    raise InvalidInput(f"{path}: holds {len(sweeps)} sweeps; name one of them: {names}")

@@ -10,9 +10,8 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.file_format import first_lines
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
-from sonolube.measurement.numeric_text import parse_number
+from sonolube.measurement.measured_files import first_lines, parse_number
 
 _FREQUENCY_UNITS = {"HZ": 1.0, "KHZ": 1e3, "MHZ": 1e6, "GHZ": 1e9}
 _PARAMETERS = ("S", "Y", "Z")

@@ -1,4 +1,7 @@
-"""Assembly of a recording (xarray dataset) from raw columns: vocabulary names, SI units, one axis and provenance."""
+"""Assembly of a recording (xarray dataset) from raw columns: vocabulary names, SI units, one axis and provenance.
+
+Caveats name samples far beyond all others of their channel, as a lost bit leaves them, and missing ones.
+"""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -10,22 +13,73 @@ import numpy as np
 from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.channel_choice import (
+from sonolube.measurement.recordings.channels_and_parts import (
     TIME_LABELS,
     ChannelEntry,
     chosen_channels,
     name_and_unit,
     require_common_length,
 )
-from sonolube.measurement.recordings.damaged_samples import damaged_sample_caveats, missing_sample_caveat
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
-from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
-from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
-from sonolube.measurement.recordings.written_units import convert_to_si, si_conversion
+from sonolube.measurement.recordings.raw_table import (
+    RawColumn,
+    RawTable,
+    column_of_label,
+    convert_to_si,
+    numbered_labels,
+    si_conversion,
+)
 from sonolube.vocabulary import quantities, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_MOST = 3  # samples of a channel that can be damaged; more are a signal
+_REACH = 20.0  # distance from the median over the largest of all other samples
+_FEWEST = 20  # samples of a channel of which one can be judged
+_SET_POINT = "_set"  # end of the names of set points, which are unknown before they are set
+
+
+def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats, axis_label: str) -> tuple[str, ...]:
+    """Caveat for every sample of a channel that lies far beyond all others.
+
+    Empty where more than three samples lie out, or none lies 20 times as far from the median as all the others:
+    impacts, switches and starts of a drive are signals. Empty, too, for a channel that is constant but for them, such
+    as a trigger.
+    """
+    known = np.flatnonzero(np.isfinite(values))
+    if known.size < _FEWEST:
+        return ()
+    with np.errstate(over="ignore"):
+        distance = np.abs(values[known] - np.median(values[known]))
+    ordered = np.sort(distance)
+    count = next((k for k in range(1, _MOST + 1) if ordered[-k] > _REACH * ordered[-k - 1] > 0), 0)
+    if not count:
+        return ()
+    return tuple(
+        f"{name} is {values[place]:.3g} {unit} at {axis_label} = {axis[place]:.6g}, {_REACH:g} times or more as far"
+        " from its median as every other sample: a damaged sample, which each mean contains; leave its line out"
+        for place in known[np.sort(np.argsort(distance)[-count:])]
+    )
+
+
+def missing_sample_caveat(name: str, values: Floats, *, axis: Floats, axis_label: str) -> tuple[str, ...]:
+    """Caveat for a channel that misses samples, with the first of them or the end of its column.
+
+    Empty where none is missing, and for set points.
+    """
+    missing = np.flatnonzero(~np.isfinite(values))
+    if not missing.size or name.endswith(_SET_POINT):
+        return ()
+    if missing.size == values.size:
+        return (f"{name} holds no value",)
+    first = missing[0]
+    if missing.size == values.size - first:
+        where = f"ends at {axis_label} = {axis[first - 1]:.6g}, before the recording"
+    else:
+        where = f"misses {missing.size} of {values.size} samples, the first at {axis_label} = {axis[first]:.6g}"
+    return (f"{name} {where}: numbers are of the others",)
+
 
 _LARGEST_READING = 1e30  # in any unit; keeps powers of samples within the range of a float
 

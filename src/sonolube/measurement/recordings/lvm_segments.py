@@ -9,13 +9,11 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.numeric_text import parse_numbers
-from sonolube.measurement.recordings.channel_choice import ChannelEntry, chosen_channels
-from sonolube.measurement.recordings.joining import begun_at, time_shifts
+from sonolube.measurement.measured_files import parse_numbers
+from sonolube.measurement.recordings.channels_and_parts import ChannelEntry, begun_at, chosen_channels, time_shifts
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import RawColumn
-from sonolube.measurement.recordings.text_columns import NumberedCells, column_values
-from sonolube.measurement.recordings.written_units import convert_to_si
+from sonolube.measurement.recordings.raw_table import RawColumn, convert_to_si
+from sonolube.measurement.recordings.text_tables import NumberedCells, column_values
 
 _X_LABEL = "X_Value"
 _MISSING = frozenset({"NaN", "-NaN", "nan"})

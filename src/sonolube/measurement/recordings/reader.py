@@ -1,26 +1,167 @@
-"""Reading and writing of recordings as xarray datasets, whole or in blocks, in any format of `RECORDING_FORMATS`."""
+"""Reading and writing of recordings as xarray datasets, whole or in blocks, in any format of `RECORDING_FORMATS`.
+
+A format is one class and one line of the table; detection, messages and documentation derive from it.
+"""
 
 import hashlib
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
-from sonolube.errors import InvalidInput
-from sonolube.measurement.recorded_digest import change_since_recorded
+from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.measured_files import (
+    FileFormat,
+    change_since_recorded,
+    detect_format,
+    read_head,
+    refuse_unreadable,
+)
 from sonolube.measurement.recordings.dataset import recording_dataset, require_increasing_axis
-from sonolube.measurement.recordings.formats import StreamedRecordingFormat, recording_format
-from sonolube.measurement.recordings.instrument_mappings import recognised_mapping
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
 from sonolube.measurement.recordings.raw_table import RawTable, recorded_warnings
 from sonolube.storage.files import write_atomically
-from sonolube.storage.input_files import open_input
+from sonolube.storage.user_files import open_input, require_file
+from sonolube.variants import VariantTable
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+class RecordingFormat(FileFormat, Protocol):
+    """Reader of one file format of recordings."""
+
+    def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
+        """Columns of a file.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            Assignment of the columns, for formats that read only those it names or need its text layout.
+
+        Returns
+        -------
+        RawTable
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file, the line or byte where known, and the reason, if the file cannot be read.
+        """
+
+
+@runtime_checkable
+class StreamedRecordingFormat(RecordingFormat, Protocol):
+    """Reader of a file format that can also be read in blocks, without holding the file in memory."""
+
+    def read_blocks(self, path: Path, *, mapping: RecordingMapping | None, block_samples: int) -> Iterator[RawTable]:
+        """Yield the columns of a file in blocks of rows; the last may be shorter.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            As `read`.
+        block_samples : int
+            Rows of a block.
+
+        Yields
+        ------
+        RawTable
+
+        Raises
+        ------
+        InvalidInput
+            As `read`.
+        """
+
+
+RECORDING_FORMATS: VariantTable[RecordingFormat] = VariantTable(
+    "recording format",
+    {
+        "TDMS": "sonolube.measurement.recordings.tdms:Tdms",
+        "LabVIEW measurement text": "sonolube.measurement.recordings.text_recordings:LabviewText",
+        "MATLAB": "sonolube.measurement.recordings.matlab:Matlab",
+        "HDF5": "sonolube.measurement.recordings.library_formats:Hdf5",
+        "netCDF 3": "sonolube.measurement.recordings.library_formats:NetCdf3",
+        "universal file": "sonolube.measurement.recordings.library_formats:UniversalFile",
+        "delimited text": "sonolube.measurement.recordings.text_recordings:DelimitedText",
+    },
+    made=lambda known: known(),
+)
+"""File formats of recordings in order of detection, the last one as fallback; a new one takes its file and one line."""
+
+
+_TEXTS = ("LabVIEW measurement text", "delimited text")  # which are read once, also from a pipe
+
+
+def recording_format(path: Path) -> RecordingFormat:
+    """Format of a recording, by its signature, then by its suffix."""
+    head = read_head(path)
+    found = detect_format(tuple(RECORDING_FORMATS.values()), head, path)
+    if found is None:
+        known = ", ".join(RECORDING_FORMATS)
+        raise InvalidInput(f"{path}: byte 0: begins with {head[:8]!r}, which is no known format of recordings: {known}")
+    if found.name not in _TEXTS:
+        with refuse_unreadable(path):
+            require_file(path)
+    return found
+
+
+_FOLDER = Path(str(files("sonolube.measurement.recordings"))) / "instruments"
+
+
+@cache
+def instrument_mappings() -> dict[str, RecordingMapping]:
+    """Mappings of the package by name, such as "umt"."""
+    return {path.stem: read_mapping(path) for path in sorted(_FOLDER.glob("*.toml"))}
+
+
+def mapping_by_name(text: str) -> RecordingMapping:
+    """Mapping of the package by its name, or one from a file.
+
+    Parameters
+    ----------
+    text : str
+        Name, such as "umt", or path of a TOML file.
+
+    Returns
+    -------
+    RecordingMapping
+
+    Raises
+    ------
+    InvalidInput
+        If it is neither a name nor a file that can be read, with the closest name or all of them.
+    """
+    known = instrument_mappings()
+    if text in known:
+        return known[text]
+    path = Path(text)
+    if not path.exists() and path.suffix != ".toml":
+        hint = suggestion(text, known) or f"mappings are {', '.join(known)}"
+        raise InvalidInput(f"{text}: no mapping of this name and no such file; {hint}")
+    return read_mapping(path)
+
+
+def recognised_mapping(path: Path) -> RecordingMapping | None:
+    """Mapping of the package that fits a file by its beginning; None where none does."""
+    head = read_head(path)
+    encoding = "utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "latin-1"  # patterns are ASCII
+    text = (
+        head.removeprefix(b"\xef\xbb\xbf").decode(encoding, errors="ignore").replace("\r\n", "\n").replace("\r", "\n")
+    )
+    fitting = (known for known in instrument_mappings().values() if known.recognised_by)
+    return next((known for known in fitting if re.search(known.recognised_by, text)), None)
 
 
 def read_recording(path: Path, *, mapping: RecordingMapping | Path | None = None) -> "xr.Dataset":

@@ -14,8 +14,8 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.limits import ClippedReader, most_unpacked_bytes, require_channels
-from sonolube.measurement.recordings.channel_choice import ChannelEntry, chosen_channels, require_common_length
+from sonolube.measurement.measured_files import ClippedReader, most_unpacked_bytes, require_channels
+from sonolube.measurement.recordings.channels_and_parts import ChannelEntry, chosen_channels, require_common_length
 from sonolube.measurement.recordings.mapping import RecordingMapping, Selection
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_line, refuse_library_errors
 

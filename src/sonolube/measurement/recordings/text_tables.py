@@ -1,19 +1,85 @@
-"""Tables within a text export: found by the line of labels, in sections such as the steps of a test."""
+"""Tables within a text export: found by the line of labels, in sections such as the steps of a test.
 
+The encoding is detected, and columns of numbers are made of rows of text cells.
+"""
+
+import codecs
 import csv
 import io
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.limits import require_channels
+from sonolube.measurement.measured_files import parse_number, parse_numbers, refuse_unreadable, require_channels
 from sonolube.measurement.recordings.mapping import TextLayout
-from sonolube.measurement.recordings.raw_table import one_line
-from sonolube.measurement.recordings.repeated_labels import column_of_label, numbered_labels
-from sonolube.measurement.recordings.text_columns import NumberedCells
+from sonolube.measurement.recordings.raw_table import column_of_label, numbered_labels, one_line
+from sonolube.storage.user_files import input_bytes
+
+_MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+_FALLBACK = "cp1252"
+
+
+def decoded_text(path: Path, *, encoding: str) -> tuple[str, tuple[str, ...]]:
+    """Text of a file, with its line ends as they are.
+
+    `caveats`: One where Windows-1252 was assumed.
+    """
+    with refuse_unreadable(path):
+        content = input_bytes(path)
+    marked = next((name for mark, name in _MARKS if content.startswith(mark)), "utf-8")
+    text = _decoded(content, encoding or marked, path, refuse=bool(encoding) or marked != "utf-8")
+    caveats: tuple[str, ...] = ()
+    if text is None:
+        text = _decoded(content, _FALLBACK, path, refuse=True) or ""
+        caveats = (
+            "the text is not UTF-8 and was read as Windows-1252; if units or labels look wrong, give text.encoding",
+        )
+    if not text.strip():
+        raise InvalidInput(f"{path}: is empty")
+    return text, caveats
+
+
+def _decoded(content: bytes, encoding: str, path: Path, *, refuse: bool) -> str | None:
+    """Decoded text; where the bytes are not of the encoding, refuse them or return None."""
+    try:
+        return content.decode(encoding)
+    except UnicodeDecodeError as failure:
+        if not refuse:
+            return None
+        line = content[: failure.start].count(b"\n") + 1
+        raise InvalidInput(f"{path}: line {line}: not {encoding} text; give text.encoding in a mapping") from None
+    except (LookupError, UnicodeError) as failure:
+        raise InvalidInput(f"{path}: {failure}") from None
+
+
+NumberedCells = tuple[int, list[str]]
+"""Line on which a row begins, and its cells."""
+
+
+def column_values(
+    rows: Sequence[NumberedCells], index: int, label: str, decimal_sign: str, missing: frozenset[str], path: Path
+) -> Floats:
+    """Numbers of one column; cells beyond the end of a row are missing values."""
+    cells = [row[index] if index < len(row) else "" for _, row in rows]
+    values, invalid_row = parse_numbers(cells, decimal_sign=decimal_sign, missing=missing)
+    if invalid_row is not None:
+        line = rows[invalid_row][0]
+        raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[invalid_row][:40]!r}, which is not a number")
+    return values
+
+
+def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missing: frozenset[str]) -> bool:
+    """Whether the first cell of a column that is not missing is no number."""
+    for _, row in rows:
+        text = row[index].strip() if index < len(row) else ""
+        if text and text not in missing:
+            return parse_number(text, decimal_sign=decimal_sign) is None
+    return True
+
 
 _SEPARATORS = "\t;,|"
 _MAX_LISTED = 12

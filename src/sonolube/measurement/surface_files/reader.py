@@ -1,20 +1,138 @@
-"""Reading of surface files as height maps in metres with their provenance, in any format of `SURFACE_FORMATS`."""
+"""Reading of surface files as height maps in metres with their provenance, in any format of `SURFACE_FORMATS`.
+
+A format is one class and one line of the table; detection and documentation derive from it.
+"""
 
 import hashlib
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import BinaryIO, Protocol
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.file_format import detect_format, read_head, refuse_unreadable
-from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
-from sonolube.measurement.surface_files.plausible_size import size_caveats
-from sonolube.measurement.surface_files.surface_reading import ASSUMED_METRES, GIVEN_BY_USER, SurfaceReading
+from sonolube.measurement.measured_files import FileFormat, detect_format, read_head, refuse_unreadable
 from sonolube.models.surfaces import HeightMap
-from sonolube.storage.input_files import require_file
-from sonolube.text.units import convert
+from sonolube.storage.user_files import require_file
+from sonolube.text.units import convert, format_si
+from sonolube.variants import VariantTable
+
+STATED_BY_FILE = "stated in the file"
+FIXED_BY_FORMAT = "fixed by the format"
+LIBRARY_DEFAULT = "SurfaceTopography's default for the format"
+GIVEN_BY_USER = "given by the user"
+ASSUMED_METRES = "assumed, as the file states none and none was given"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SurfaceReading:
+    """Heights, spacings and provenance as a surface file states them.
+
+    Parameters
+    ----------
+    height : ndarray, shape (rows, columns)
+        Height, NaN where it was not measured; in the length unit of the file where it does not state that unit. A
+        profile is one row. [m]
+    format_name : str
+        The file's format, such as "Wyko OPD".
+    spacing_x, spacing_y : float or None
+        Distance of neighbouring columns and rows, in the unit of the heights; None where the file states none. [m]
+    states_unit : bool
+        Whether the unit of its lengths is known from the file or its format; heights and spacings are in metres then.
+    metres_by_default : bool
+        Whether lengths without a stated unit are metres where the user gives no unit.
+    lateral_unit : str
+        Unit in which the file's spacings are written; empty where it is not known from the file or its format.
+    unit_origin : str
+        How that unit is known: `STATED_BY_FILE`, `FIXED_BY_FORMAT` or `LIBRARY_DEFAULT`; empty where it is not.
+    title, instrument : str
+        As the file states them; empty where it does not.
+    measured_at : datetime or None
+        Time of the measurement, by the instrument's clock.
+    notes : tuple of str
+        What was done to the heights in reading, such as interpolation at even steps.
+    """
+
+    height: Floats
+    format_name: str
+    spacing_x: float | None = None
+    spacing_y: float | None = None
+    states_unit: bool = True
+    metres_by_default: bool = False
+    lateral_unit: str = ""
+    unit_origin: str = ""
+    title: str = ""
+    instrument: str = ""
+    measured_at: datetime | None = None
+    notes: tuple[str, ...] = ()
+
+
+class SurfaceFormat(FileFormat, Protocol):
+    """Reader of one file format of surfaces."""
+
+    def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
+        """Heights of a surface file and what else it states.
+
+        Parameters
+        ----------
+        stream : binary file
+            The file, open for reading; seekable.
+        path : Path
+            Of the file, for messages, and for libraries that open it themselves.
+
+        Returns
+        -------
+        SurfaceReading
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file, the byte where known, and the reason, if the file cannot be read.
+        """
+
+
+SURFACE_FORMATS: VariantTable[SurfaceFormat] = VariantTable(
+    "surface format",
+    {
+        "Wyko OPD": "sonolube.measurement.surface_files.binary_formats:WykoOpd",
+        "NanoFocus NMS": "sonolube.measurement.surface_files.binary_formats:NanoFocusNms",
+        "NPY": "sonolube.measurement.surface_files.binary_formats:Npy",
+        "XYZ text": "sonolube.measurement.surface_files.xyz:XyzText",
+        "SurfaceTopography": "sonolube.measurement.surface_files.surface_topography:SurfaceTopographyFormats",
+    },
+    made=lambda known: known(),
+)
+"""File formats of surfaces in order of detection, the last one as fallback; a new one takes its file and one line."""
+
+
+_LARGEST_FIELD = 0.5  # m, which no profilometer scans
+_SMALLEST_FIELD = 1e-6  # m, below which only force microscopes scan
+
+
+def size_caveats(*, height: Floats, spacing_x: float, spacing_y: float, unit: str) -> tuple[str, ...]:
+    """Caveats of an implausible size of a field or range of its heights, one line each.
+
+    `height` has shape (rows, columns).
+
+    Empty for a field from 1 um to 0.5 m along its longer side with a range of heights below that side.
+    """
+    rows, columns = height.shape
+    sides = (columns * spacing_x,) if rows == 1 else (columns * spacing_x, rows * spacing_y)
+    field = " x ".join(format_si(side, "m", digits=4) for side in sides)
+    check = f"check the lateral unit ({unit})"
+    found = []
+    if max(sides) > _LARGEST_FIELD:
+        found.append(f"the field is {field}, beyond the {_LARGEST_FIELD:g} m that profilometers reach: {check}")
+    if max(sides) < _SMALLEST_FIELD:
+        found.append(f"the field is {field}, which only a force microscope scans: {check}")
+    height_range = float(np.nanmax(height) - np.nanmin(height))
+    if height_range > max(sides):
+        span = format_si(height_range, "m", digits=4)
+        found.append(f"heights range over {span}, more than the field of {field}: {check}, and that of the heights")
+    return tuple(found)
+
 
 _LARGEST_SPACING = 1e6  # m, beyond which areas and slopes lose their digits
 _SPACING_ADVICE = "give spacing_x and spacing_y, the distances of columns and rows in m"

@@ -1,8 +1,16 @@
-"""All formats of the SurfaceTopography library, with the extra ``surfaces``."""
+"""All formats of the SurfaceTopography library, with the extra ``surfaces``.
 
+Its allocations cannot be limited, so the sizes that a file states are checked before, and text readers are chosen by
+the layout of the text.
+"""
+
+import codecs
 import io
 import math
+import re
 import warnings
+import zipfile
+import zlib
 from collections.abc import Sequence
 from contextlib import redirect_stdout
 from datetime import datetime
@@ -14,11 +22,130 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.extras import missing_package
-from sonolube.measurement.limits import require_values
-from sonolube.measurement.surface_files.regular_grid import even_profile
-from sonolube.measurement.surface_files.stated_sizes import require_stated_sizes
-from sonolube.measurement.surface_files.surface_reading import LIBRARY_DEFAULT, STATED_BY_FILE, SurfaceReading
-from sonolube.measurement.surface_files.text_layout import text_readers
+from sonolube.measurement.hdf5_datasets import numeric_datasets
+from sonolube.measurement.measured_files import (
+    most_unpacked_bytes,
+    require_channels,
+    require_unpacked_bytes,
+    require_values,
+)
+from sonolube.measurement.surface_files.reader import LIBRARY_DEFAULT, STATED_BY_FILE, SurfaceReading
+from sonolube.measurement.surface_files.xyz import even_profile
+
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_HDF5_OFFSETS = (0, 512)  # that of MATLAB 7.3 is the second
+_DEFLATED = (b"MATLAB 5", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # files with zlib streams: MATLAB, and OLE as in MNT
+_ZLIB_HEADER = re.compile(rb"\x78[\x01\x5e\x9c\xda]")
+_LARGEST_XML = 1 << 22  # bytes; a parsed document takes thirty times as much, and heights have a part of their own
+
+
+def require_stated_sizes(path: Path) -> None:
+    """Refuse a file of which a container (ZIP, HDF5, zlib streams) states or unpacks to more than its size allows."""
+    with path.open("rb") as stream:
+        head = stream.read(_HDF5_OFFSETS[-1] + len(_HDF5))
+    if any(head[at:].startswith(_HDF5) for at in _HDF5_OFFSETS):
+        _require_bounded_hdf5(path)
+    elif zipfile.is_zipfile(path):
+        _require_bounded_zip(path)
+    elif head.startswith(_DEFLATED):
+        _require_bounded_zlib(path)
+
+
+def _require_bounded_hdf5(path: Path) -> None:
+    """Refuse links, shapes and chunks of HDF5 beyond the limits."""
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        for _ in numeric_datasets(file, path):
+            pass
+
+
+def _require_bounded_zip(path: Path) -> None:
+    """Refuse an archive that unpacks to too much, or has too large an XML document or too many parts."""
+    with zipfile.ZipFile(path) as archive:
+        members = archive.infolist()
+    require_channels(len(members), path, kind="parts")
+    require_unpacked_bytes(sum(member.file_size for member in members), path)
+    for member in members:
+        if member.filename.lower().endswith(".xml") and member.file_size > _LARGEST_XML:
+            raise InvalidInput(
+                f"{path}: part {member.filename[:40]!r} is an XML document of {member.file_size} bytes, but at most"
+                f" {_LARGEST_XML} are parsed; save the heights as binary data"
+            )
+
+
+def _require_bounded_zlib(path: Path) -> None:
+    """Refuse a file whose zlib streams together unpack to too much."""
+    content = path.read_bytes()
+    most, unpacked = most_unpacked_bytes(path), 0
+    for found in _ZLIB_HEADER.finditer(content):
+        try:
+            stream = zlib.decompressobj()
+            unpacked += len(stream.decompress(memoryview(content)[found.start() :], most + 1 - unpacked))
+        except zlib.error:
+            continue
+        require_unpacked_bytes(unpacked, path, part=f"byte {found.start()}")
+
+
+_SMALL = 1 << 14  # bytes; whatever such a file holds, the readers end within seconds
+_MAX_HEADER_LINES = 200  # that the reader of coordinates skips
+_MAX_OTHER_LINES = 1000  # of headers between the blocks of a matrix file
+_LONGEST_OTHER_LINE = 4096
+_MAX_ROWS = 1_000_000  # of numbers, which the readers take 6 us each
+_COORDINATES = (2, 3)  # columns
+_SEPARATORS = str.maketrans(",;", "  ")
+_MISSING = ("bad", "nan", "inf", "infinite")
+
+
+def text_readers(path: Path) -> tuple[str, ...]:
+    """Which text readers of SurfaceTopography may read a file: "xyz" (coordinates), "asc" (matrix), or neither.
+
+    The reader of coordinates parses the whole file once for each header line that it may have, and the reader of a
+    matrix searches thirty expressions in every line that is no row of numbers. On a long text that is no table they
+    take hours.
+    """
+    if path.stat().st_size <= _SMALL:
+        return ("xyz", "asc")
+    content = path.read_bytes()
+    encoding = "utf-16" if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else "utf-8"
+    text = content.decode(encoding, errors="replace")
+    if "\0" in text:
+        return ()
+    lines = text.rstrip().split("\n")
+    return () if text.count("\n") - len(lines) > _MAX_OTHER_LINES else _readers_of_lines(lines)
+
+
+def _readers_of_lines(lines: list[str]) -> tuple[str, ...]:
+    """Which readers may read some lines of text."""
+    columns: set[int] = set()
+    header_lines = other_lines = rows = 0
+    for line in lines:
+        words = line.translate(_SEPARATORS).split()
+        if words and _is_row(words):
+            columns.add(len(words))
+            rows += 1
+            continue
+        header_lines += not columns
+        other_lines += 1
+        if other_lines > _MAX_OTHER_LINES or len(line) > _LONGEST_OTHER_LINE:
+            return ()
+    later_lines = other_lines - header_lines
+    if rows > _MAX_ROWS:
+        return ()
+    is_table = len(columns) == 1 and columns <= set(_COORDINATES) and not later_lines
+    return ("xyz", "asc") if is_table and header_lines <= _MAX_HEADER_LINES else ("asc",)
+
+
+def _is_row(words: list[str]) -> bool:
+    """Whether all words of a line are numbers or stand for a missing one."""
+    try:
+        for word in words:
+            if word.lower() not in _MISSING:
+                float(word)
+    except ValueError:
+        return False
+    return True
+
 
 _HEAD_OF_LIBRARY = 512  # bytes from which its readers tell their formats
 _TEXTS = ("xyz", "asc")

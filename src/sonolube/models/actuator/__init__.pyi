@@ -1,4 +1,3 @@
-from .amplifier import AmplifierRequirements as AmplifierRequirements, amplifier_requirements as amplifier_requirements
 from .catalogue import (
     ACTUATOR_KINDS as ACTUATOR_KINDS,
     CatalogueActuator as CatalogueActuator,
@@ -7,8 +6,19 @@ from .catalogue import (
     catalogue_stack as catalogue_stack,
     read_catalogue as read_catalogue,
 )
-from .drive import Drive as Drive
-from .drive_power import (
+from .derived_stacks import (
+    BoltStresses as BoltStresses,
+    FlextensionalActuator as FlextensionalActuator,
+    PreloadBolt as PreloadBolt,
+    bolt_stresses as bolt_stresses,
+    bolted_stack as bolted_stack,
+    equivalent_stack as equivalent_stack,
+    lever_amplified_stack as lever_amplified_stack,
+)
+from .drive import (
+    AmplifierRequirements as AmplifierRequirements,
+    Drive as Drive,
+    amplifier_requirements as amplifier_requirements,
     dissipated_power as dissipated_power,
     linear_amplifier_power as linear_amplifier_power,
     peak_current as peak_current,
@@ -21,11 +31,6 @@ from .equivalent_circuit import (
     circuit_admittance as circuit_admittance,
     circuit_resonances as circuit_resonances,
 )
-from .flextensional import (
-    FlextensionalActuator as FlextensionalActuator,
-    equivalent_stack as equivalent_stack,
-    lever_amplified_stack as lever_amplified_stack,
-)
 from .matching import (
     AdmittanceFunction as AdmittanceFunction,
     MatchingNetwork as MatchingNetwork,
@@ -36,12 +41,6 @@ from .matching import (
     parallel_inductor as parallel_inductor,
     series_inductor as series_inductor,
     voltage_gain as voltage_gain,
-)
-from .preload_bolt import (
-    BoltStresses as BoltStresses,
-    PreloadBolt as PreloadBolt,
-    bolt_stresses as bolt_stresses,
-    bolted_stack as bolted_stack,
 )
 from .stack import (
     PiezoStack as PiezoStack,

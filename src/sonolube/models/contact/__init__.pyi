@@ -8,11 +8,6 @@ from .asperity import (
     JacksonGreen as JacksonGreen,
     KogutEtsion as KogutEtsion,
 )
-from .coated_body import (
-    CoatedBody as CoatedBody,
-    equivalent_plane_strain_modulus as equivalent_plane_strain_modulus,
-    layer_compliance_ratio as layer_compliance_ratio,
-)
 from .contact_motion import (
     ContactMotion as ContactMotion,
     GapMotionBatch as GapMotionBatch,
@@ -20,7 +15,20 @@ from .contact_motion import (
     load_balanced_motion as load_balanced_motion,
     sinusoidal_motion as sinusoidal_motion,
 )
-from .cube import cube_tangential_stiffness as cube_tangential_stiffness
+from .elastic_bodies import (
+    CoatedBody as CoatedBody,
+    ContactPair as ContactPair,
+    ElasticBody as ElasticBody,
+    contact_pair as contact_pair,
+    equivalent_plane_strain_modulus as equivalent_plane_strain_modulus,
+    identical_materials_mindlin_ratio as identical_materials_mindlin_ratio,
+    layer_compliance_ratio as layer_compliance_ratio,
+)
+from .greenwood_williamson import (
+    asperity_area as asperity_area,
+    asperity_force as asperity_force,
+    critical_interference as critical_interference,
+)
 from .height_distribution import (
     HEIGHT_DISTRIBUTIONS as HEIGHT_DISTRIBUTIONS,
     ExponentialHeights as ExponentialHeights,
@@ -35,13 +43,6 @@ from .hertz import (
     hertz_mean_pressure as hertz_mean_pressure,
     hertz_peak_pressure as hertz_peak_pressure,
     tip_radius_for_pressure as tip_radius_for_pressure,
-)
-from .mindlin import mindlin_tangential_stiffness as mindlin_tangential_stiffness
-from .pair import (
-    ContactPair as ContactPair,
-    ElasticBody as ElasticBody,
-    contact_pair as contact_pair,
-    identical_materials_mindlin_ratio as identical_materials_mindlin_ratio,
 )
 from .persson import (
     PerssonContact as PerssonContact,
@@ -61,11 +62,6 @@ from .rough import (
     separation as separation,
     separation_range as separation_range,
 )
-from .single_asperity import (
-    asperity_area as asperity_area,
-    asperity_force as asperity_force,
-    critical_interference as critical_interference,
-)
 from .squeeze_film import (
     levitation_gap as levitation_gap,
     squeeze_film_pressure as squeeze_film_pressure,
@@ -75,5 +71,7 @@ from .tangential_stiffness import (
     DEFAULT_TANGENTIAL_STIFFNESS as DEFAULT_TANGENTIAL_STIFFNESS,
     TANGENTIAL_STIFFNESSES as TANGENTIAL_STIFFNESSES,
     TangentialStiffness as TangentialStiffness,
+    cube_tangential_stiffness as cube_tangential_stiffness,
+    mindlin_tangential_stiffness as mindlin_tangential_stiffness,
 )
 from .validity_range import contact_caveats as contact_caveats, exponential_validity_range as exponential_validity_range

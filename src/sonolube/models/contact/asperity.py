@@ -15,7 +15,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import OutsideRange
-from sonolube.models.contact.pair import ContactPair
+from sonolube.models.contact.elastic_bodies import ContactPair
 from sonolube.variants import VariantTable
 
 Piece = float | Callable[[Floats], Floats]

@@ -22,12 +22,14 @@ from .continuation import (
     response_curve as response_curve,
     solutions_at as solutions_at,
 )
-from .gap_laws.exponential import ExponentialGap as ExponentialGap
-from .gap_laws.hertz import HertzGap as HertzGap
-from .gap_laws.linear import LinearGap as LinearGap
-from .gap_laws.protocol import GapLaw as GapLaw, force_decay_length as force_decay_length
-from .gap_laws.table import GAP_LAWS as GAP_LAWS
-from .gap_laws.tabulated import TabulatedGap as TabulatedGap
+from .gap_laws.closed_form import (
+    ExponentialGap as ExponentialGap,
+    GapLaw as GapLaw,
+    HertzGap as HertzGap,
+    LinearGap as LinearGap,
+    force_decay_length as force_decay_length,
+)
+from .gap_laws.table import GAP_LAWS as GAP_LAWS, TabulatedGap as TabulatedGap
 from .kinematic_friction import FrictionAverages as FrictionAverages, friction_averages as friction_averages
 from .linear import (
     Modes as Modes,
@@ -42,13 +44,22 @@ from .long_time_response import (
     march_until_settled as march_until_settled,
     settling_periods as settling_periods,
 )
+from .motions import (
+    ContactSamples as ContactSamples,
+    Envelope as Envelope,
+    State as State,
+    Status as Status,
+    SteadyStates as SteadyStates,
+    Trajectories as Trajectories,
+    Trajectory as Trajectory,
+    contact_motion as contact_motion,
+)
 from .sensitivities import (
     Sensitivities as Sensitivities,
     StructureChange as StructureChange,
     steady_state_sensitivities as steady_state_sensitivities,
 )
 from .steady_state_response import steady_state as steady_state
-from .steady_states import Status as Status, SteadyStates as SteadyStates, contact_motion as contact_motion
 from .structure import (
     Structure as Structure,
     contact_receptance as contact_receptance,
@@ -56,13 +67,6 @@ from .structure import (
     dynamic_stiffness as dynamic_stiffness,
     electrical_admittance as electrical_admittance,
     with_contact_spring as with_contact_spring,
-)
-from .trajectories import (
-    ContactSamples as ContactSamples,
-    Envelope as Envelope,
-    State as State,
-    Trajectories as Trajectories,
-    Trajectory as Trajectory,
 )
 from .transient import march as march, trajectory as trajectory
 from .waveform import (

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics.gap_laws.protocol import CONTACT_LOSS_THRESHOLD, GapLaw
+from sonolube.models.dynamics.gap_laws.closed_form import CONTACT_LOSS_THRESHOLD, GapLaw
+from sonolube.models.dynamics.motions import ContactSamples, Envelope, State, Trajectories
 from sonolube.models.dynamics.structure import Structure
-from sonolube.models.dynamics.trajectories import ContactSamples, Envelope, State, Trajectories
 from sonolube.models.dynamics.transient import NO_RAMP, march
 from sonolube.models.dynamics.waveform import Waveform
 

@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics.gap_laws.protocol import GapLaw, force_decay_length
+from sonolube.models.dynamics.gap_laws.closed_form import GapLaw, force_decay_length
+from sonolube.models.dynamics.harmonic_balance.equations import HarmonicBalanceEquations, pole_residue_model
 from sonolube.models.dynamics.harmonic_balance.extrema import response_measures
 from sonolube.models.dynamics.harmonic_balance.floquet_exponent import STABILITY_THRESHOLD, floquet_exponents
-from sonolube.models.dynamics.harmonic_balance.receptance import pole_residue_model
-from sonolube.models.dynamics.harmonic_balance.residual import HarmonicBalanceEquations
+from sonolube.models.dynamics.motions import Status
 from sonolube.models.dynamics.steady_state_response import steady_state
-from sonolube.models.dynamics.steady_states import Status
 from sonolube.models.dynamics.structure import Structure
 
 _CORRECTOR_TOLERANCE = 1e-10  # last corrector step, in decay lengths of the contact

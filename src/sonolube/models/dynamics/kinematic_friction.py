@@ -25,10 +25,10 @@ from sonolube.models.dynamics.friction_average.elliptic_quadrature import (
     node_count_factor,
     node_table_row,
 )
-from sonolube.models.dynamics.gap_laws.protocol import GapLaw, damped_force, force_decay_length
+from sonolube.models.dynamics.gap_laws.closed_form import GapLaw, damped_force, force_decay_length
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.solver import MAX_HARMONICS
-from sonolube.models.dynamics.steady_states import Status, SteadyStates
+from sonolube.models.dynamics.motions import Status, SteadyStates
 
 # Additional nodes for a steep force: per decay length of amplitude, at least for laws with corners, and the choices.
 _NODES_PER_DECAY_LENGTH, _NODES_FOR_CORNERS = 2.0, 1024.0

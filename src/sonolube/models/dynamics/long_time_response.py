@@ -10,13 +10,12 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.attractor import Attractors, classify_attractor
-from sonolube.models.dynamics.first_order_modes import first_order_modes
-from sonolube.models.dynamics.gap_laws.protocol import GapLaw
+from sonolube.models.dynamics.gap_laws.closed_form import GapLaw
 from sonolube.models.dynamics.kernels.contact_kernel import TABULATED
-from sonolube.models.dynamics.linear import poles
+from sonolube.models.dynamics.linear import first_order_modes, poles
+from sonolube.models.dynamics.motions import Trajectories, Trajectory
 from sonolube.models.dynamics.structure import Structure, with_contact_spring
 from sonolube.models.dynamics.time_marching.integrator import minimum_steps
-from sonolube.models.dynamics.trajectories import Trajectories, Trajectory
 from sonolube.models.dynamics.transient import NO_RAMP, march, trajectory
 from sonolube.models.dynamics.waveform import StartUpRamp, Waveform
 

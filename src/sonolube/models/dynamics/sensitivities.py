@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.friction_average.elliptic_quadrature import node_count_factor, quadrature_nodes
-from sonolube.models.dynamics.gap_laws.protocol import GapLaw
-from sonolube.models.dynamics.harmonic_balance.residual import HarmonicBalanceEquations, HarmonicBalanceResidual
+from sonolube.models.dynamics.gap_laws.closed_form import GapLaw
+from sonolube.models.dynamics.harmonic_balance.equations import HarmonicBalanceEquations, HarmonicBalanceResidual
 from sonolube.models.dynamics.linear import static_contact
-from sonolube.models.dynamics.steady_states import Status, SteadyStates
+from sonolube.models.dynamics.motions import Status, SteadyStates
 from sonolube.models.dynamics.structure import Structure
 
 _NEWTON_STEPS = 3  # that converge the solution to rounding before it is differentiated

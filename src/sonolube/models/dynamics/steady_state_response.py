@@ -17,12 +17,12 @@ from sonolube.checks import (
 from sonolube.errors import InvalidInput
 from sonolube.execution.threads import map_chunks
 from sonolube.models.dynamics.backend import Backend, usable_backend
-from sonolube.models.dynamics.gap_laws.protocol import GapLaw
+from sonolube.models.dynamics.gap_laws.closed_form import GapLaw
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution, concatenate
-from sonolube.models.dynamics.harmonic_balance.receptance import pole_residue_model
+from sonolube.models.dynamics.harmonic_balance.equations import pole_residue_model
 from sonolube.models.dynamics.harmonic_balance.solver import MAX_HARMONICS, solve
-from sonolube.models.dynamics.steady_states import Status, SteadyStates
+from sonolube.models.dynamics.motions import Status, SteadyStates
 from sonolube.models.dynamics.structure import Structure
 from sonolube.models.dynamics.warm_up import compile_in_parallel
 

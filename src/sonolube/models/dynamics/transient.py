@@ -5,17 +5,17 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics.first_order_modes import FirstOrderModes, first_order_modes
-from sonolube.models.dynamics.gap_laws.protocol import GapLaw, damped_force
+from sonolube.models.dynamics.gap_laws.closed_form import GapLaw, damped_force
+from sonolube.models.dynamics.linear import FirstOrderModes, first_order_modes
+from sonolube.models.dynamics.motions import ContactSamples, Envelope, State, Trajectories, Trajectory
 from sonolube.models.dynamics.structure import Structure
 from sonolube.models.dynamics.time_marching.batch import (
     MarchingProblem,
     MarchingSchedule,
     MarchingSolution,
+    assess_steps,
     march_on_cpu,
 )
-from sonolube.models.dynamics.time_marching.step_control import assess_steps
-from sonolube.models.dynamics.trajectories import ContactSamples, Envelope, State, Trajectories, Trajectory
 from sonolube.models.dynamics.waveform import Sine, StartUpRamp, Waveform, drive_voltage, ramp_factor
 
 _WINDOWS = 256  # default number of entries of an envelope

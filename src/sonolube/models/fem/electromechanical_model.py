@@ -8,13 +8,12 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.classification import mode_names
 from sonolube.models.fem.mesh.element_order import change_order
-from sonolube.models.fem.solver.krylov import krylov_reduction
+from sonolube.models.fem.mode_analysis import mode_names
 from sonolube.models.fem.solver.model import Model
 from sonolube.models.fem.solver.modes import NaturalModes, NotConverged
-from sonolube.models.fem.solver.reduction import Output, ReducedModel
-from sonolube.models.fem.solver.resonances import coupled_resonances
+from sonolube.models.fem.solver.reduction import Output, ReducedModel, krylov_reduction
+from sonolube.models.fem.solver.response import coupled_resonances
 
 _REFINEMENT = 0.62  # ratio of the element sizes of successive meshes
 _ORDERS = range(2, 6)  # of the elements on one mesh, before it is refined
@@ -122,7 +121,7 @@ def converged_electromechanical_model(
 
     See Also
     --------
-    sonolube.models.fem.solver.harmonic_analysis.harmonic_response : Admittance of the reduction over frequency.
+    sonolube.models.fem.solver.response.harmonic_response : Admittance of the reduction over frequency.
     """
     require_positive(highest_frequency=highest_frequency, element_size=element_size)
     before: Floats | None = None

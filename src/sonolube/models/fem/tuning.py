@@ -7,12 +7,11 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.classification import mode_names
 from sonolube.models.fem.mesh.element_order import change_order
 from sonolube.models.fem.mesh.grading import grade_reentrant_edges
-from sonolube.models.fem.solver.convergence import converged_modes
+from sonolube.models.fem.mode_analysis import mode_names
 from sonolube.models.fem.solver.model import Model
-from sonolube.models.fem.solver.modes import NaturalModes, NotConverged, natural_modes
+from sonolube.models.fem.solver.modes import NaturalModes, NotConverged, converged_modes, natural_modes
 
 Advance = Callable[[str, int, int], None]
 """Progress callback: description, number of completed steps, expected number of steps."""
@@ -125,8 +124,8 @@ def named_mode(
 
     See Also
     --------
-    sonolube.models.fem.solver.convergence.converged_modes : All modes within a tolerance.
-    sonolube.models.fem.classification.mode_names : The names.
+    sonolube.models.fem.solver.modes.converged_modes : All modes within a tolerance.
+    sonolube.models.fem.mode_analysis.mode_names : The names.
     """
 
     def index(model: Model, modes: NaturalModes) -> int:

@@ -3,21 +3,27 @@ from .elliptical_motion import (
     contact_time_fraction as contact_time_fraction,
     elliptical_traction_ratio as elliptical_traction_ratio,
 )
-from .laws.coulomb import friction_coefficient as friction_coefficient
-from .laws.coulomb_under_vibration import (
+from .laws.coulomb import (
+    friction_coefficient as friction_coefficient,
     oblique_vibration_ratio as oblique_vibration_ratio,
     parallel_vibration_ratio as parallel_vibration_ratio,
     transverse_vibration_ratio as transverse_vibration_ratio,
 )
-from .laws.dahl import DahlFriction as DahlFriction, dahl_friction_history as dahl_friction_history
-from .laws.dahl_under_vibration import dahl_under_vibration as dahl_under_vibration
-from .laws.lugre import LuGreFriction as LuGreFriction
+from .laws.dahl import (
+    DahlFriction as DahlFriction,
+    dahl_friction_history as dahl_friction_history,
+    dahl_under_vibration as dahl_under_vibration,
+)
+from .laws.lugre import (
+    LuGreFriction as LuGreFriction,
+    lugre_ratios as lugre_ratios,
+    lugre_under_vibration as lugre_under_vibration,
+)
 from .laws.lugre_stick_slip import (
     SlidingKind as SlidingKind,
     StickSlipHistory as StickSlipHistory,
     lugre_stick_slip as lugre_stick_slip,
 )
-from .laws.lugre_under_vibration import lugre_ratios as lugre_ratios, lugre_under_vibration as lugre_under_vibration
 from .laws.spring_driven_slider import (
     DriveForce as DriveForce,
     spring_driven_slider_force as spring_driven_slider_force,
@@ -56,15 +62,13 @@ from .models.asperity_stick_slip_sine import (
     EMPIRICAL_MEMORY_LENGTH as EMPIRICAL_MEMORY_LENGTH,
     mindlin_memory_length as mindlin_memory_length,
     sine_stick_slip_ratio as sine_stick_slip_ratio,
+    tabulated_stick_slip_ratio as tabulated_stick_slip_ratio,
 )
-from .models.asperity_stick_slip_table import tabulated_stick_slip_ratio as tabulated_stick_slip_ratio
 from .models.bristle_with_holder import BristleWithHolder as BristleWithHolder
 from .models.dong_2015 import (
     Dong2015FullPeriod as Dong2015FullPeriod,
     Dong2015HalfPeriod as Dong2015HalfPeriod,
     Dong2015LoadBalanced as Dong2015LoadBalanced,
-)
-from .models.dong_2015_sine import (
     dong_2015_deformation_ratio as dong_2015_deformation_ratio,
     dong_2015_half_period_ratio as dong_2015_half_period_ratio,
 )
@@ -81,22 +85,20 @@ from .oscillating_contact.approximations import (
     approximate_normal_ratio as approximate_normal_ratio,
     approximate_transverse_ratio as approximate_transverse_ratio,
 )
-from .oscillating_contact.combined_oscillation import combined_oscillation_ratio as combined_oscillation_ratio
-from .oscillating_contact.compliant_guide import (
+from .oscillating_contact.driven_spring import (
+    combined_oscillation_ratio as combined_oscillation_ratio,
     guided_critical_speed as guided_critical_speed,
     guided_oscillation_ratio as guided_oscillation_ratio,
 )
 from .oscillating_contact.rigid_guide import (
     longitudinal_oscillation_ratio as longitudinal_oscillation_ratio,
     normal_oscillation_ratio as normal_oscillation_ratio,
+    tabulated_spring_ratio as tabulated_spring_ratio,
 )
 from .oscillating_contact.spring_contact import (
     SpringContact as SpringContact,
     critical_speed as critical_speed,
     load_balanced_approach as load_balanced_approach,
-)
-from .oscillating_contact.spring_table import tabulated_spring_ratio as tabulated_spring_ratio
-from .oscillating_contact.static_friction import (
     longitudinal_static_ratio as longitudinal_static_ratio,
     normal_static_ratio as normal_static_ratio,
     transverse_static_ratio as transverse_static_ratio,

@@ -1,7 +1,9 @@
 from .areal_parameters import (
+    FeatureParameters as FeatureParameters,
     HeightParameters as HeightParameters,
     HybridParameters as HybridParameters,
     SpatialParameters as SpatialParameters,
+    feature_parameters as feature_parameters,
     height_parameters as height_parameters,
     hybrid_parameters as hybrid_parameters,
     spatial_parameters as spatial_parameters,
@@ -22,7 +24,6 @@ from .correlation import (
     autocorrelation as autocorrelation,
     correlation_lengths as correlation_lengths,
 )
-from .features import FeatureParameters as FeatureParameters, feature_parameters as feature_parameters
 from .finish import (
     RmsHeightEstimate as RmsHeightEstimate,
     SurfaceFinish as SurfaceFinish,
@@ -33,7 +34,7 @@ from .finish import (
     surface_finish_names as surface_finish_names,
     typical_summits as typical_summits,
 )
-from .form_removal import fit_form as fit_form, remove_form as remove_form
+from .form_removal import dominant_wavelengths as dominant_wavelengths, fit_form as fit_form, remove_form as remove_form
 from .gaussian_filter import high_pass as high_pass, low_pass as low_pass, profile_low_pass as profile_low_pass
 from .grooves.ball_on_disc import (
     WearScar as WearScar,
@@ -57,7 +58,7 @@ from .grooves.synthetic import (
 )
 from .grooves.track import GrooveTrack as GrooveTrack
 from .grooves.track_marks import TrackMarks as TrackMarks, track_marks as track_marks
-from .height_map import HeightMap as HeightMap
+from .height_map import HeightMap as HeightMap, Roughness as Roughness
 from .material_ratio import (
     FunctionalParameters as FunctionalParameters,
     MaterialRatioCurve as MaterialRatioCurve,
@@ -75,7 +76,6 @@ from .random_surface import (
     SelfAffineSpectrum as SelfAffineSpectrum,
     gaussian_surface as gaussian_surface,
 )
-from .roughness import Roughness as Roughness
 from .roughness_profile import (
     ProfileParameters as ProfileParameters,
     ProfileStatistics as ProfileStatistics,
@@ -92,4 +92,3 @@ from .spectrum import (
     profiles as profiles,
     radial_spectrum as radial_spectrum,
 )
-from .waviness import dominant_wavelengths as dominant_wavelengths

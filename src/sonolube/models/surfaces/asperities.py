@@ -17,8 +17,7 @@ from sonolube.models.surfaces.grid_kernel import (
     local_maxima,
     row_difference_sums,
 )
-from sonolube.models.surfaces.height_map import HeightMap
-from sonolube.models.surfaces.roughness import Roughness
+from sonolube.models.surfaces.height_map import HeightMap, Roughness
 from sonolube.models.surfaces.spectrum import SpectralMoments
 
 # constants of Nayak's theory of isotropic Gaussian surfaces

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.thermal.moving_ellipse import mean_rise, peak_rise
-from sonolube.models.thermal.solid import ThermalSolid
-from sonolube.models.thermal.source import EllipticSource, HeatSource
+from sonolube.models.thermal.source import EllipticSource, HeatSource, ThermalSolid
+from sonolube.variants import VariantTable
 
 
 class FlashRise(NamedTuple):
@@ -386,3 +386,13 @@ def _partition(first: Floats, second: Floats) -> Floats:
 def _rise_scale(solid: ThermalSolid, source: HeatSource, heat_flux: ArrayLike) -> Floats:
     """Unit of dimensionless rises, mean flux times half length over conductivity, in K."""
     return require_non_negative(heat_flux=heat_flux) * source.half_length / solid.thermal_conductivity
+
+
+FLASH_MODELS: VariantTable[MovingRise] = VariantTable(
+    "flash temperature model",
+    {
+        "quadrature": "sonolube.models.thermal.flash:moving_ellipse_rise",
+        "tian_kennedy_1994": "sonolube.models.thermal.flash:flash_rise",
+    },
+)
+"""Models of the flash temperature by name: the integral over a uniform ellipse, and the published interpolation."""

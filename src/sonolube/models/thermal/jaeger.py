@@ -6,8 +6,7 @@ from scipy.integrate import quad_vec
 from scipy.special import erf
 
 from sonolube.checks import Floats, require_finite, require_non_negative
-from sonolube.models.thermal.solid import ThermalSolid
-from sonolube.models.thermal.source import RectangularSource
+from sonolube.models.thermal.source import RectangularSource, ThermalSolid
 
 _TOLERANCE = 1e-9  # absolute and relative, of the quadrature
 

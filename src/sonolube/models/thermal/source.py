@@ -1,13 +1,49 @@
-"""Heat sources on a half-space: geometry, and the limits of their surface temperature at low and high Peclet number."""
+"""Thermal properties of a solid, and heat sources on it with their limits at low and high Peclet number."""
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from sonolube.checks import require_positive
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ThermalSolid:
+    """Conductivity, density and specific heat capacity of a homogeneous, isotropic solid.
+
+    Parameters
+    ----------
+    thermal_conductivity : float
+        Heat flux per temperature gradient, k. [W/(m K)]
+    density : float
+        Mass density, rho. [kg/m3]
+    specific_heat_capacity : float
+        Heat per mass and kelvin, c_p. [J/(kg K)]
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive and finite.
+
+    Notes
+    -----
+    The properties do not depend on temperature, which holds for rises of some tens of kelvin.
+    """
+
+    thermal_conductivity: float
+    density: float
+    specific_heat_capacity: float
+
+    def __post_init__(self) -> None:
+        require_positive(**asdict(self))
+
+    @property
+    def thermal_diffusivity(self) -> float:
+        """Thermal diffusivity, k/(rho c_p). [m2/s]"""
+        return self.thermal_conductivity / (self.density * self.specific_heat_capacity)
 
 
 def _complete_elliptic_integral(complement: float) -> float:

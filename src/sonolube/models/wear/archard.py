@@ -1,4 +1,4 @@
-"""Archard's law of wear: volume lost per sliding distance in proportion to load over hardness."""
+"""Archard's law of wear, volume lost in proportion to load over hardness, and number of contacts by a vibration."""
 
 from dataclasses import dataclass
 
@@ -76,3 +76,31 @@ def archard_wear_rate(law: ArchardWear, *, normal_load: ArrayLike) -> Floats:
     """
     load = require_non_negative(normal_load=normal_load)
     return law.wear_coefficient * load / law.hardness  # D 1.6
+
+
+def vibration_contact_count(*, frequency: ArrayLike, duration: ArrayLike) -> Floats:
+    """Number of contacts made by a vibration, one per period. []
+
+    Parameters
+    ----------
+    frequency : array_like
+        Frequency of the vibration. [Hz]
+    duration : array_like, broadcast against `frequency`
+        Duration of the vibration. [s]
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    Raises
+    ------
+    InvalidInput
+        If a frequency is not positive, a duration negative, or a value not finite.
+
+    Examples
+    --------
+    >>> from sonolube.models.wear import vibration_contact_count
+    >>> f"{float(vibration_contact_count(frequency=22e3, duration=4 * 3600)):.3g}"  # as in D Table 2.5
+    '3.17e+08'
+    """
+    return require_positive(frequency=frequency) * require_non_negative(duration=duration)

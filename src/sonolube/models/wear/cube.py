@@ -1,5 +1,6 @@
-"""Wear rates by the cube model of Dong (2015), with and without normal vibration."""
+"""Wear rates by the cube model of Dong (2015), with and without normal vibration, and wear models by name."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -7,9 +8,13 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
 from sonolube.models.contact.contact_motion import ContactMotion, load_balanced_motion
-from sonolube.models.contact.period_mean import richardson_period_mean
+from sonolube.models.contact.period_mean import (
+    richardson_period_mean,
+    sampled_separating_mean,
+    separating_half_period_mean,
+)
 from sonolube.models.contact.rough import RoughContact, real_contact_area, separation
-from sonolube.models.contact.separating_half_period import sampled_separating_mean, separating_half_period_mean
+from sonolube.variants import VariantTable
 
 
 def cube_wear_rate(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
@@ -230,3 +235,17 @@ def _wear_rate(contact: RoughContact, d: Floats) -> Floats:
     """Half the volume of the cube over the length of the nominal contact. [m2]"""
     rate: Floats = real_contact_area(contact, separation=d) * d / (2 * np.sqrt(contact.nominal_area))  # D 3.26, 3.27
     return rate
+
+
+WEAR_MODELS: VariantTable[Callable[[RoughContact, ContactMotion], Floats]] = VariantTable(
+    "wear model",
+    {
+        "dong_2015_full_period": "sonolube.models.wear.cube:full_period_wear_ratio",
+        "dong_2015_half_period": "sonolube.models.wear.cube:half_period_wear_ratio",
+        "dong_2015_load_balanced": "sonolube.models.wear.cube:load_balanced_wear_ratio",
+    },
+)
+"""Wear models by name; a new model takes its file and one line here."""
+
+DEFAULT_WEAR_MODEL = "dong_2015_half_period"
+"""Model by which the wear tables of the dissertation were computed."""

@@ -1,6 +1,7 @@
-"""Sheets of friction recordings: level, fluctuation, running-in, voltage steps, stick-slip, work and wobble."""
+"""Sheets of friction recordings, also of several files: level, fluctuation, running-in, stick-slip, work and wobble."""
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -10,10 +11,16 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.motor_current import MotorCalibration
-from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
+from sonolube.measurement.friction.loops import friction_work
+from sonolube.measurement.friction.rotation import MotorCalibration
 from sonolube.measurement.friction.sliding import NOISE_VOLTAGE, Mask, stretches
-from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, streamed_window_statistics
+from sonolube.measurement.friction.windows import (
+    DEFAULT_WINDOW_DURATION,
+    SteadyStateOnset,
+    WindowStatistics,
+    steady_state_onset,
+    streamed_window_statistics,
+)
 from sonolube.measurement.friction_analysis import (
     analyse_cycles,
     analyse_motor_current,
@@ -23,13 +30,14 @@ from sonolube.measurement.friction_analysis import (
     analyse_wobble,
     channel_values,
 )
-from sonolube.measurement.recorded_sliding import recorded_rest, recorded_speed, recorded_voltage
+from sonolube.measurement.recorded_conditions import recorded_rest, recorded_speed, recorded_voltage
+from sonolube.measurement.recordings.channels_and_parts import join_recordings
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording, recording_format_name
 from sonolube.measurement.recordings.tdms import TDMS_FORMAT as TDMS
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
-from sonolube.report.measured import friction_figures as figures, sheet
-from sonolube.report.measured.voltage_steps import step_sheet
+from sonolube.report.measured import friction_steps as figures, sheet
+from sonolube.report.measured.friction_steps import step_sheet
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities
 
@@ -335,3 +343,45 @@ def _streamed(path: Path, settings: FrictionSettings) -> sheet.Sheet:
         digest = hashlib.file_digest(stream, "sha256").hexdigest()
     source = {"format": TDMS, "samples": f"{int(windows.samples.sum())}, read in blocks", "sha256": digest}
     return sheet.joined(sections, title=path.name, source=source)
+
+
+_COLUMNS = (sheet.Column("file", "File"), sheet.Column("start_time", "From", "s"), sheet.Column("end_time", "To", "s"))
+
+
+def joined_friction_sheet(paths: Sequence[Path], *, settings: FrictionSettings) -> sheet.Sheet:
+    """Friction in all files of one test, as of one recording, with a table of the files.
+
+    The analyses of `friction_sheet` over all files, so that cycles of a reciprocating motion may extend over several of
+    them; and per file its time, mean friction and scatter, and work and distance where the velocity was recorded.
+    """
+    parts = [read_recording(path, mapping=settings.mapping) for path in paths]
+    joined = join_recordings(parts)
+    whole = recording_sheet(joined, title=f"{len(paths)} files as one test", settings=settings)
+    name = friction_channel(joined)
+    unit = str(joined[name].attrs.get("units", ""))
+    moving = "relative_velocity" in joined.variables and name == "friction_force"
+    columns = [
+        *_COLUMNS,
+        *sheet.quantity_columns({name: "Friction"}),
+        sheet.Column(f"{name}_deviation", "Deviation", unit),
+    ]
+    if moving:
+        columns += sheet.quantity_columns({"frictional_work": "Work", "sliding_distance": "Distance"})
+    rows = []
+    for path, part, start in zip(paths, parts, joined.attrs["part_starts"], strict=True):
+        time, friction = channel_values(part, "time"), channel_values(part, name)
+        known = friction[np.isfinite(friction)]
+        row: list[sheet.Cell] = [path.name, start, start + float(time[-1] - time[0])]
+        row += [float(known.mean()), float(known.std(ddof=1)) if known.size > 1 else None]
+        rows.append((*row, *(_work(time, friction, channel_values(part, "relative_velocity")) if moving else ())))
+    table = sheet.Table(name="files", title="Friction in each file", columns=tuple(columns), rows=tuple(rows))
+    return sheet.joined([whole, sheet.Sheet(tables=(table,))], title=whole.title, source=whole.source)
+
+
+def _work(time: np.ndarray, friction: np.ndarray, velocity: np.ndarray) -> tuple[sheet.Cell, sheet.Cell]:
+    """Work and distance in one file; nothing where it has no sliding."""
+    try:
+        work = friction_work(time=time, friction_force=friction, relative_velocity=velocity)
+    except InvalidInput:
+        return None, None
+    return float(work.frictional_work[-1]), work.sliding_distance

@@ -1,16 +1,140 @@
-"""Sheets of surface files: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
+"""Sheets of surface files: parameters of ISO 25178-2 and, of profiles, of ISO 21920, spectra and summits."""
 
 import math
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
+from sonolube.charts import Axis, Chart, Line, Panel, Part, Rule, envelope, one_panel
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
 from sonolube.models import surfaces
+from sonolube.models.surfaces import HeightMap, ProfileEvaluation, ProfileSpectrum
 from sonolube.report.measured import sheet, surface_figures as figures
-from sonolube.report.measured.profile import is_profile, profile_sheet
+from sonolube.report.measured.sheet import captioned
+from sonolube.report.measured.surface_figures import WAVENUMBER, length_scale
 from sonolube.text.units import format_si, to_si
+
+_PROFILE_BINS = 5000  # along the page, more than it resolves
+
+
+@captioned("Profile", "Above, the primary profile without form; below, the profile evaluated, with its sections.")
+def profile_figure(found: ProfileEvaluation, *, spacing: float) -> Chart:
+    """Primary profile above the one evaluated."""
+    x = spacing * np.arange(found.primary.size, dtype=np.float64)
+    across, per_metre = length_scale(x)
+    edges = found.start * spacing + found.section_length * np.arange(found.section_count + 1)
+    marks = [Rule(value=per_metre * float(edge), colour="0.5") for edge in edges]
+    zero = Rule(value=0.0, along="y", colour="0.5", dash=0)
+    panels = []
+    for heights, start, colour, others in (
+        (found.primary, 0, 0, ()),
+        (found.evaluated, found.start, 1, (*marks, zero)),
+    ):
+        unit, scale = length_scale(heights)
+        place, height = envelope(per_metre * x[start : start + heights.size], scale * heights, bins=_PROFILE_BINS)
+        parts: tuple[Part, ...] = (Line(x=place, y=height, colour=colour, weight=0.6), *others)
+        panels.append(Panel(x=Axis("x", across), y=Axis("Height", unit), parts=parts))
+    return Chart(panels=tuple(panels), size=(7.4, 4.2), shares_x=True)
+
+
+@captioned("Power spectrum", "Of the primary profile, two-sided; dashed, the cutoff of the L-filter.")
+def spectrum_figure(found: ProfileSpectrum, *, cutoff: float | None) -> Chart:
+    """Power spectral density of a profile."""
+    inner = (found.wavenumber > 0) & (found.profile_spectral_density > 0)
+    curve = Line(x=found.wavenumber[inner], y=found.profile_spectral_density[inner], weight=0.6)
+    filtered = () if cutoff is None else (Rule(value=1 / cutoff, colour="0.3", dash=1),)
+    density = Axis("Power spectral density", "m³", logarithmic=True)
+    return one_panel(WAVENUMBER, density, (curve, *filtered), size=(4.6, 3.2))
+
+
+_EVALUATED_LABELS = {
+    "arithmetic_mean_height": "a, arithmetic mean height",
+    "rms_height": "q, root-mean-square height",
+    "mean_section_height": "z, maximum height of a section, mean",
+    "mean_section_peak_height": "p, peak height of a section, mean",
+    "mean_section_pit_depth": "v, pit depth of a section, mean",
+    "total_height": "t, total height",
+    "skewness": "sk, skewness",
+    "kurtosis": "ku, kurtosis",
+    "mean_profile_element_spacing": "sm, mean profile element spacing",
+}
+
+
+def is_profile(surface: HeightMap) -> bool:
+    """Whether a height map is one row or one column."""
+    return 1 in surface.height.shape
+
+
+def profile_sheet(
+    file: SurfaceFile,
+    *,
+    source: dict[str, str],
+    degree: int,
+    robust: bool,
+    short_cutoff_length: float | None,
+    long_cutoff_length: float | None,
+) -> sheet.Sheet:
+    """Profile parameters and power spectrum of a file that holds one profile."""
+    heights = file.height_map.height
+    spacing = file.height_map.spacing_x if heights.shape[0] == 1 else file.height_map.spacing_y
+    found = surfaces.evaluate_profile(
+        height=heights.ravel(),
+        spacing=spacing,
+        degree=degree,
+        robust=robust,
+        short_cutoff_length=short_cutoff_length,
+        long_cutoff_length=long_cutoff_length,
+    )
+    parts = [
+        sheet.Sheet(caveats=file.caveats),
+        _parameters(found),
+        _settings(found, spacing),
+        sheet.Sheet(figures=(profile_figure(found, spacing=spacing),)),
+        sheet.attempted(partial(_spectrum, found, spacing), what="spectrum"),
+    ]
+    setting_class = f"{found.setting_class} of ISO 21920-3" if found.setting_class else "none of ISO 21920-3"
+    return sheet.joined(parts, title=file.path.name, source=source | {"setting class": setting_class})
+
+
+def _parameters(found: ProfileEvaluation) -> sheet.Sheet:
+    """Parameters of the roughness profile, R, or of the primary profile, P."""
+    letter = "P" if found.long_cutoff_length is None else "R"
+    values = {name: getattr(found.parameters, name) for name in _EVALUATED_LABELS}
+    missing = () if values["mean_profile_element_spacing"] else (f"{letter}sm: no complete profile element",)
+    return sheet.Sheet(
+        values=tuple(
+            sheet.quantity_value(name, value, label=letter + _EVALUATED_LABELS[name])
+            for name, value in values.items()
+            if value is not None
+        ),
+        caveats=found.caveats,
+        not_found=missing,
+    )
+
+
+def _settings(found: ProfileEvaluation, spacing: float) -> sheet.Sheet:
+    """Cutoffs and lengths of the evaluation."""
+    lengths = {
+        "long_cutoff_length": (found.long_cutoff_length, "Cutoff of the L-filter, lambda_c"),
+        "short_cutoff_length": (found.short_cutoff_length, "Cutoff of the S-filter, lambda_s"),
+        "section_length": (found.section_length, f"Section length, of {found.section_count} evaluated"),
+        "evaluation_length": (found.evaluated.size * spacing, "Evaluation length"),
+    }
+    return sheet.Sheet(
+        values=tuple(
+            sheet.Value(name, label, length, "m") for name, (length, label) in lengths.items() if length is not None
+        )
+    )
+
+
+def _spectrum(found: ProfileEvaluation, spacing: float) -> sheet.Sheet:
+    """Figure of the power spectrum of the primary profile."""
+    row = HeightMap(height=found.primary[None, :], spacing_x=spacing, spacing_y=spacing)
+    return sheet.Sheet(figures=(spectrum_figure(surfaces.profile_spectrum(row), cutoff=found.long_cutoff_length),))
+
 
 _LABELS = {
     "arithmetic_mean_height": "Sa, arithmetic mean height",

@@ -1,17 +1,58 @@
-"""Run that has ended, or that a dry run went through: outcome, record and next command as text and JSON."""
+"""Runs that are recorded, have ended, or that a dry run went through: outcome, record and next command."""
 
-from typing import Any
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
 
 from sonolube.facts.protocol import Protocol
 from sonolube.laboratory import RunResult, State
 from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_lines, dry_run_sums
-from sonolube.laboratory.records import Run
+from sonolube.laboratory.records import Observation, Run
+from sonolube.operating_system import quoted
 from sonolube.report.blocks import Block, Rows, Table, Verbatim
-from sonolube.report.results.next_step import next_command
 from sonolube.report.results.record_object import picked
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
-from sonolube.vocabulary import si
+from sonolube.vocabulary import si, unit_of
+
+
+def next_command(run: Run) -> str:
+    """Command for what was recorded: decay length, calibration, friction, impedance, rotation, or to show it.
+
+    Names the folder of the run where the command takes all parts of the recording.
+    """
+    parts = run.part_channels
+    friction = _files_with(parts, "friction_force")
+    gauges = [path for path in friction if "displacement" in parts[path]]
+    lifts = any(note.facts.get("normal_load") == 0 for note in run.notes if note.kind == "conditions")
+    if lifts and any("normal_load" in parts[path] for path in friction):
+        return f"sonolube identify decay-length {quoted(str(run.folder))}"
+    if gauges:
+        applied = "".join(f" --apply {quoted(str(path))}" for path in gauges[1:])
+        return f"sonolube measure calibration {quoted(str(gauges[0]))}{applied}"
+    if friction:
+        return f"sonolube measure friction {_files(run, friction)}"
+    driven = [path for path in _files_with(parts, "voltage") if "current" in parts[path]]
+    if driven:
+        return f"sonolube measure impedance {_files(run, driven)}"
+    turning = _files_with(parts, "gaussmeter")
+    diameter = run.facts.get("groove_diameter")
+    if turning and isinstance(diameter, int | float):
+        groove = format_si(float(diameter), "m").replace(" ", "")
+        return f"sonolube measure rotation {_files(run, turning)} --groove-diameter {groove}"
+    return f"sonolube lab show {quoted(str(run.folder))}"
+
+
+def _files_with(parts: dict[Path, tuple[str, ...]], channel: str) -> list[Path]:
+    """Files of the parts with a channel."""
+    return [path for path, channels in parts.items() if channel in channels]
+
+
+def _files(run: Run, chosen: Sequence[Path]) -> str:
+    """Folder of a run where all of its parts are chosen, else their files."""
+    is_whole = len(chosen) == len(run.recordings)
+    return quoted(str(run.folder)) if is_whole else " ".join(quoted(str(path)) for path in chosen)
+
 
 SIMULATED = "friction is drawn from the prediction of the rig: no measurement"
 """Caveat of runs on a virtual tribometer."""
@@ -96,3 +137,95 @@ def dry_run_object(protocol: Protocol, found: DryRun) -> dict[str, Any]:
 def off_text(*, is_off: bool) -> str:
     """Whether motor and drive are off, in words."""
     return "off" if is_off else "NOT confirmed off: cut the power"
+
+
+_QUIET: Final = 5.0  # s without a block or event that are reported
+_SHOWN: Final = ("friction_force", "normal_load", "temperature", "voltage_peak_to_peak")
+
+
+def observation_line(seen: Observation) -> str:
+    """Line of a look at a run: state, step, time, means of the last second, set points, and what is wrong."""
+    parts = [seen.state, step_text(seen), time_text(seen), means_text(seen), set_points_text(seen), *warnings(seen)]
+    return "; ".join(filter(None, parts))
+
+
+def observation_object(seen: Observation) -> dict[str, Any]:
+    """State, step, times, means, set points and limits of a look at a run, in SI."""
+    return {
+        "folder": str(seen.folder),
+        "title": seen.known.title,
+        "simulated": bool(seen.known.facts.get("simulated", False)),
+        **picked(seen, "outcome", "reason", "state", "step", "step_kind"),
+        **si(picked(seen, "protocol_time", "duration", "time_left"), unit="s"),
+        "means": {name: {"value": value, "unit": unit} for name, (value, unit) in seen.means.items()},
+        "set_points": si(seen.set_points),
+        "trips": list(seen.trips),
+        "gaps": seen.gaps,
+        **si({"silence": seen.silence if seen.is_running else None}, unit="s"),
+    }
+
+
+def step_text(seen: Observation) -> str:
+    """Step with its kind."""
+    return f"step {seen.step} {seen.step_kind.replace('_', ' ')}".rstrip() if seen.step else ""
+
+
+def time_text(seen: Observation) -> str:
+    """Time into the protocol and left."""
+    if seen.duration is None or seen.time_left is None:
+        return f"{seen.protocol_time:.1f} s"
+    return f"{seen.protocol_time:.1f} s of {seen.duration:.1f} s, {seen.time_left:.1f} s left"
+
+
+def means_text(seen: Observation) -> str:
+    """Friction, load and temperature with units, and the voltage where it is not among the set points."""
+    shown = [name for name in _SHOWN if name in seen.means and name not in seen.set_points]
+    found = [(name, *seen.means[name]) for name in shown]
+    return ", ".join(
+        f"{name.replace('_', ' ')} {'no number' if value is None else format_si(value, unit)}"
+        for name, value, unit in found
+    )
+
+
+def set_points_text(seen: Observation) -> str:
+    """Set points of motor and drive while they are on."""
+    known = seen.set_points
+    shown = [name for name in known if name != "rotation_speed" or "sliding_speed" not in known]
+    texts = [f"{name.replace('_', ' ')} {format_si(known[name], unit_of(name))}" for name in shown]
+    return f"set {', '.join(texts)}" if texts else ""
+
+
+def warnings(seen: Observation) -> list[str]:
+    """Limits that were exceeded, gaps, and silence while the run should write."""
+    told = list(seen.trips)
+    if seen.gaps:
+        told.append(f"samples are missing in {seen.gaps} places")
+    if seen.is_running and seen.means and seen.silence > _QUIET:
+        told.append(f"nothing was written for {seen.silence:.0f} s")
+    return told
+
+
+def observation_blocks(seen: Observation) -> list[Block]:
+    """Outcome or state, and what was seen last."""
+    outcome = seen.outcome + (f": {seen.reason}" if seen.reason and not seen.is_running else "")
+    rows = [
+        ("outcome", outcome),
+        ("state", seen.state + (f": {seen.reason}" if seen.reason and seen.is_running else "")),
+        ("step", step_text(seen).removeprefix("step ")),
+        ("time", time_text(seen)),
+        ("last second", means_text(seen)),
+        ("set", set_points_text(seen).removeprefix("set ")),
+        *(("limit", trip) for trip in seen.trips),
+    ]
+    return [f"{seen.folder.name}: {seen.known.title}", Rows([row for row in rows if row[1]])]
+
+
+def observation_caveats(seen: Observation) -> list[str]:
+    """A writer that has died, samples that are missing, and a run that writes nothing."""
+    told = [line for line in warnings(seen) if line not in seen.trips]
+    if seen.outcome == "unfinished":
+        remedy = f"sonolube lab recover {quoted(str(seen.folder))}"
+        told.append(f"the program died during the run, and motor or drive may be on; {remedy} completes its record")
+    if seen.known.facts.get("simulated"):
+        told.append(SIMULATED)
+    return told

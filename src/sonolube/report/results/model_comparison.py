@@ -1,18 +1,29 @@
-"""Models compared with published tests, on a rig and on own runs: rows, lines and objects for JSON."""
+"""Friction models compared with published tests and ranked by own runs, and earlier studies: rows, lines and JSON."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from math import hypot
 from typing import Any
 
+from sonolube.errors import InvalidInput
+from sonolube.facts.published import PreviousStudy, Statement
 from sonolube.report.blocks import Block, Table
 from sonolube.report.results.record_object import finite, picked
-from sonolube.rig import FrictionPoint, Rig
+from sonolube.rig import FrictionPoint, Rig, friction_point, steady_vibration
 from sonolube.text.units import format_si
-from sonolube.validation.comparison import DATA_SETS, ONLY_PREDICTED, ComparedFit, FittedParameter, RigPrediction
+from sonolube.validation.comparison import (
+    DATA_SETS,
+    ONLY_PREDICTED,
+    ComparedFit,
+    FittedParameter,
+    RigPrediction,
+    RunsPrediction,
+)
+from sonolube.validation.previous_study_map import StudyPoint
 from sonolube.validation.run_conditions import RunsTable
-from sonolube.validation.runs_comparison import RunsPrediction
+from sonolube.validation.runs_fit import NextCondition, RankedModel, RunsFit
 from sonolube.validation.tables import parameter_text
+from sonolube.vocabulary import quantity, unit_of
 
 _PREDICTED = ("friction_ratio", "raw_friction_ratio", "uncertainty", "reason")
 
@@ -27,7 +38,7 @@ def error_row(one: ComparedFit) -> tuple[str, ...]:
     return (one.model.name, one.sets, reached, f"{len(one.parameters)}", *errors, aicc)
 
 
-def parameter_lines(one: ComparedFit) -> Iterator[str]:
+def _fitted_parameter_lines(one: ComparedFit) -> Iterator[str]:
     """Fitted parameters of a model, and the tests that its default was fitted to."""
     yield from map(parameter_text, one.parameters)
     if one.model.seen is not None:
@@ -180,7 +191,7 @@ def fit_blocks(fits: Sequence[ComparedFit]) -> list[Block]:
         f"{len(fits)} models, {len(tests)} tests in sets {', '.join(DATA_SETS)}; errors of the friction ratio,"
         " unseen: of each set by what has not seen it",
         Table(heads, list(map(error_row, assessed))),
-        *[f"  {one.model.name}: {text}" for one in assessed for text in parameter_lines(one)],
+        *[f"  {one.model.name}: {text}" for one in assessed for text in _fitted_parameter_lines(one)],
         *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
         *[f"  not reached: {line}" for one in fits for line in refusal_lines(one)],
     ]
@@ -206,3 +217,157 @@ def runs_blocks(table: RunsTable, of_runs: Sequence[RunsPrediction]) -> Iterator
     yield Table(("model", "reached", "rms", "mean", "expected"), runs_rows(table, of_runs))
     reasons = by_reason((one.reason, one.model.name) for one in of_runs)
     yield from (f"  own runs not reached: {', '.join(names)}: {reason}" for reason, names in reasons.items())
+
+
+_OF_PUBLISHED_SETS = ("applicable_sets", "bounds", "bounds_reason")
+
+
+def error_rows(fit: RunsFit) -> list[tuple[str, ...]]:
+    """Errors of each model, and of the mean of the other conditions."""
+    rows = []
+    for model in fit.models:
+        aicc = "" if model.aicc is None else f"{model.aicc:.1f}"
+        missed = len(fit.table.conditions) - model.reached
+        about = "tied" if model.tied else f"out of range: {missed} conditions" if missed else ""
+        errors = f"{model.rms_unseen:.3f}", f"{model.rms_fit:.3f}"
+        rows.append((model.name, f"{len(model.parameters)}", *errors, aicc, about))
+    return [*rows, ("mean of the other conditions", "0", f"{fit.rms_of_mean:.3f}", "", "", "")]
+
+
+def parameter_lines(fit: RunsFit) -> list[str]:
+    """Fitted parameters of each model."""
+    return [
+        f"  {model.name}: {parameter_text(parameter, left_out='one condition')}"
+        for model in fit.models
+        for parameter in model.parameters
+    ]
+
+
+def inapplicable_lines(fit: RunsFit) -> list[str]:
+    """Each reason for which models do not apply once, with the models."""
+    reasons = by_reason((reason, name) for name, reason in fit.inapplicable.items())
+    return [f"  not applicable: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
+
+
+def volts_per_amplitude(rig: Rig) -> float | None:
+    """Peak-to-peak voltage per amplitude along the normal, in V/m; None where the rig states no voltage."""
+    volts = None if rig.drive is None else rig.drive.voltage_peak_to_peak
+    amplitude = steady_vibration(rig).vibration_amplitude
+    return None if volts is None or not amplitude > 0 else volts / amplitude
+
+
+def next_line(one: NextCondition, volts_per_amplitude: float | None) -> str:
+    """Next condition to measure, with its voltage where that is known."""
+    where, amplitude = ", beyond the runs" if one.is_beyond else "", one.condition.vibration_amplitude
+    if volts_per_amplitude is not None and amplitude is not None:
+        where = f" ({format_si(volts_per_amplitude * amplitude, 'V')} peak to peak){where}"
+    return (
+        f"  measure next: {one.condition.settings}{where}: {one.first} has {one.first_ratio:.2f},"
+        f" {one.second} {one.second_ratio:.2f}, {one.contrast:.1f} of their errors apart"
+    )
+
+
+def fit_object(fit: RunsFit) -> dict[str, Any]:
+    """Models with errors, parameters and predictions, the verdict and the next conditions."""
+    return {
+        "runs": fit.table.runs,
+        "conditions": [
+            picked(one, "label", "friction_ratio", "uncertainty", "repeats") for one in fit.table.conditions
+        ],
+        "scatter": fit.table.scatter,
+        "models": list(map(_model_object, fit.models)),
+        "rms_of_mean": fit.rms_of_mean,
+        "verdict": fit.verdict,
+        "decided": fit.is_decided,
+        "measure_next": list(map(_next_object, fit.next_conditions)),
+        "not_applicable": fit.inapplicable,
+    }
+
+
+def _model_object(model: RankedModel) -> dict[str, Any]:
+    """Model with its errors, parameters and predictions."""
+    parameters = [parameter_object(parameter).items() for parameter in model.parameters]
+    return {
+        "name": model.name,
+        "source": model.fit.variant.source,
+        "rms_unseen": finite(model.rms_unseen),
+        "rms": finite(model.rms_fit),
+        **picked(model, "aicc", "probability", "tied"),
+        "conditions_in_range": model.reached,
+        "fitted": [{name: value for name, value in each if name not in _OF_PUBLISHED_SETS} for each in parameters],
+        "unseen_ratio": list(model.unseen),
+        "fitted_ratio": list(model.fitted),
+    }
+
+
+def _next_object(one: NextCondition) -> dict[str, Any]:
+    """Next condition with the ratios of both models."""
+    return {
+        **picked(one.condition, "vibration_amplitude", "vibration_velocity", "sliding_speed"),
+        "models": [one.first, one.second],
+        "friction_ratios": [one.first_ratio, one.second_ratio],
+        "contrast": one.contrast,
+        "beyond_the_runs": one.is_beyond,
+    }
+
+
+def point_of_rig(rig: Rig) -> tuple[StudyPoint, str | None]:
+    """Rig as a point of the map of studies, and why its reduction has no number."""
+    speed = rig.sliding_speed
+    if not speed > 0:
+        raise InvalidInput(f"{rig.file or rig.title}: the map needs a sliding.sliding_speed above 0")
+    friction = friction_point(rig)
+    point = StudyPoint(
+        label=rig.name,
+        direction="perpendicular",
+        friction_reduction=friction.friction_reduction,
+        sliding_speed=(speed, speed),
+        nominal_pressure=rig.normal_load / rig.contact.nominal_area,
+    )
+    return point, friction.reason
+
+
+def own_point_line(point: StudyPoint) -> str:
+    """Friction reduction of a point of an own table, with direction, speed and pressure as far as known."""
+    parts = [f"friction reduction {100 * point.friction_reduction:.0f} %", point.direction or "direction not stated"]
+    if point.sliding_speed is not None:
+        parts.append(format_si(point.sliding_speed[1], "m/s"))
+    if point.nominal_pressure is not None:
+        parts.append(format_si(point.nominal_pressure, "Pa"))
+    return f"{point.label}, own table: {', '.join(parts)}"
+
+
+def study_lines(study: PreviousStudy) -> list[str]:
+    """Author, direction, references, text and numbers of a study."""
+    lines = [
+        f"{study.study}, {study.direction or 'direction not stated'}, D {study.section} {list(study.references)}",
+        f"  {study.summary}",
+    ]
+    numbers = "; ".join(map(_number, study.numbers))
+    return [*lines, f"  {numbers}"] if numbers else lines
+
+
+def _number(entry: Statement) -> str:
+    """Number of a study with its meaning, relation and unit as printed."""
+    meaning = quantity(entry.quantity).meaning if entry.quantity else entry.meaning
+    relation = "" if entry.relation == "=" else f"{entry.relation} "
+    return f"{meaning} {relation}{entry.number.text} {entry.unit}".rstrip()
+
+
+def study_object(study: PreviousStudy) -> dict[str, Any]:
+    """Study with its numbers by quantity."""
+    return {
+        **picked(study, "study", "section"),
+        "references": list(study.references),
+        **picked(study, "direction", "summary"),
+        **{
+            entry.quantity: {
+                "value": entry.number.value,
+                "relation": entry.relation,
+                "printed": f"{entry.number.text} {entry.unit}".strip(),
+                "unit": unit_of(entry.quantity),
+            }
+            for entry in study.numbers
+            if entry.quantity
+        },
+    }

@@ -4,8 +4,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from sonolube.prediction.hierarchy import PROBABILITIES
 from sonolube.prediction.rig_statement import interval
-from sonolube.prediction.scores import PROBABILITIES
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity

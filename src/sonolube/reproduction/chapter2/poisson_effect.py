@@ -1,28 +1,211 @@
-"""Section 2.1, Poisson-effect tests: rows of modes and friction reductions, and the paths of surface points."""
+"""Section 2.1, Poisson-effect tests: rows of modes and friction reductions, and figures of the horn and its paths."""
 
 from collections.abc import Iterator
 from functools import partial
 from math import pi, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from sonolube.charts import Axis, Chart, Line, Panel, Rule, Zone
 from sonolube.checks import Floats
 from sonolube.facts.materials import material
-from sonolube.facts.published import propagate_rounding, si_value
-from sonolube.figure import COLOURS, LINES, ReportFigure
+from sonolube.facts.published import propagate_rounding, published_number, si_value
+from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure, subplots
 from sonolube.models.actuator import free_bar_frequency, surface_trajectory
+from sonolube.models.fem import trajectory_ellipse
 from sonolube.reproduction import formulas
-from sonolube.reproduction.chapter2.horn_figures import horn_figures
-from sonolube.reproduction.chapter2.horn_rows import horn_rows
-from sonolube.reproduction.cube import HORNS, STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, poisson_waveguide
-from sonolube.reproduction.plots import axes_row
+from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS, frequency_changes, horn_rows, node_positions
+from sonolube.reproduction.chapter2.poisson_horn import (
+    FACE_END,
+    INCH,
+    FaceFriction,
+    FaceMotion,
+    axial_mode,
+    driven_face,
+    friction_on_face,
+    printed_shape,
+    printed_solid,
+)
+from sonolube.reproduction.plots import axes_row, line_style, single_axes
+from sonolube.reproduction.published_rigs import (
+    HORNS,
+    STEEL_ON_STEEL_NOTE,
+    Horn,
+    poisson_friction_ratio,
+    poisson_waveguide,
+)
 from sonolube.reproduction.row import Row, formula_row, published_model_row
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, STEEL_YIELD_STRENGTHS, Bodies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+_HORN_NOTE: Final = (
+    "Horns of the printed first mode (ends tapered to 3/4 in over their last inch, handbook constants: assumed), "
+    "loss factor 0.001, driven on the right end at 20 kHz to 8.5 um."
+)
+
+
+def horn_figures() -> Iterator[ReportFigure]:
+    """Figures of the horn."""
+    yield ReportFigure(
+        name="figure-2-3-horn-assumptions",
+        title="First axial mode under single assumptions",
+        caption="Computed, plain steel block with the constants of Table 3.1. Bands: change from either plain "
+        "block to the printed 20.8 kHz and 20.6 kHz of D 2.1.3; no single shape gives both, for the moduli and "
+        "densities put steel 2 % below aluminium, and D prints it 1 % above.",
+        draw=_assumptions,
+    )
+    yield ReportFigure(
+        name="figure-2-4-loci-by-elements",
+        title="Paths of three points on the horns' surfaces, by finite elements",
+        caption=f"Computed. {_HORN_NOTE} All paths are lines but for a hundredth of their length: losses of the "
+        "horn do not open them to the ellipses of D 3.25.",
+        draw=_paths,
+    )
+    yield ReportFigure(
+        name="figure-2-4-ellipses-along-the-face",
+        title="Semi-axes of the paths and phase along the horns' faces",
+        caption=f"Computed. {_HORN_NOTE} Points turn the same way all along the face, as energy flows one "
+        "way; D 3.25 has a lag of a quarter turn.",
+        draw=_ellipses,
+    )
+    yield ReportFigure(
+        name="table-2-1-friction-along-the-face",
+        title="Friction of a block that slides towards the node, along the horns' faces",
+        caption=f"Computed at 5 mm/s. {_HORN_NOTE} Springs of the contact of Table 3.1 with Mindlin's ratio. Below "
+        "zero the face drives the block: the motor region. Bands: transition regions of Table 2.1.",
+        draw=_friction,
+    )
+    yield ReportFigure(
+        name="table-2-1-node-of-the-steel-horn",
+        title="Node of the steel horn under single asymmetries",
+        caption="Computed, steel horn of the printed first mode; drives act on its right end. Band: transition "
+        "region of Table 2.1. A symmetric horn on its resonance has its node in the middle; driven below it, the "
+        "node moves towards the drive.",
+        draw=_nodes,
+    )
+
+
+def _assumptions() -> "Figure":
+    """Draw the changes of the first axial frequency by single assumptions."""
+    figure, axes = single_axes((6.4, 3.6))
+    changes = {assumption: 100 * change for assumption, change in reversed(frequency_changes().items())}
+    for index, horn in enumerate(HORNS):
+        printed = published_number(f"2.1.3-first-mode-{horn}")
+        plain = axial_mode(printed_shape(), printed_solid(horn)).natural_frequency
+        low, high = (100 * (limit / plain - 1) for limit in (printed.low, printed.high))
+        axes.axvspan(low, high, color=COLOURS[index], alpha=0.3, lw=0, label=f"{horn}, to the frequency of D 2.1.3")
+    bars = axes.barh(list(changes), list(changes.values()), color="0.55")
+    axes.bar_label(bars, [f"{change:+.2f}".replace("-", "−") for change in changes.values()], padding=3, size=8)
+    axes.set(xlabel="Change of the first axial frequency [%]", xlim=(-3, 11.5))
+    axes.axvline(0, color="black", lw=0.8)
+    axes.grid(False, axis="y")
+    figure.legend(loc="outside lower center", ncols=2)
+    return figure
+
+
+def _paths() -> "Figure":
+    """Draw the paths of three surface points of both horns."""
+    figure, panels = axes_row(3, (7.2, 2.8), sharex=True, sharey=True)
+    inch = si_value("2.1.3-outer-points")
+    turn = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
+    for axes, place, title in zip(panels, (-inch, 0.0, inch), ("point -1", "point 0", "point +1"), strict=True):
+        for index, horn in enumerate(HORNS):
+            u, v = _motion(horn).at(place)
+            style: dict[str, Any] = {"color": COLOURS[index], "marker": MARKERS[index], "markevery": 180}  # both ends
+            axes.plot(1e6 * (u * turn).real, 1e6 * (v * turn).real, **style, label=f"{horn} horn, computed")
+        axes.set(title=title.replace("-", "−"), xlabel="Axial displacement [µm]", xlim=(-6, 6), ylim=(-1.1, 1.1))
+        axes.title.set_fontsize(9)
+    panels[0].set(ylabel="Normal displacement\nout of the face [µm]")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    return figure
+
+
+def _ellipses() -> "Figure":
+    """Draw semi-axes and phase of the elliptic paths along the face."""
+    figure, (above, below) = subplots(2, 1, figsize=(5.0, 4.8), sharex=True)
+    position = np.linspace(-FACE_END, FACE_END, 401)
+    for index, horn in enumerate(HORNS):
+        axial, normal = _motion(horn).at(position)
+        path = trajectory_ellipse(axial_displacement=axial, normal_displacement=normal)
+        for line, name, semi_axis in (("-", "major", path.major_semi_axis), ("--", "minor", path.minor_semi_axis)):
+            label = f"{horn}, {name} semi-axis"
+            above.semilogy(1e3 * position, 1e6 * semi_axis, color=COLOURS[index], ls=line, label=label)
+        below.plot(1e3 * position, np.degrees(path.phase), **line_style(index), label=horn)
+    above.set(ylabel="Semi-axis [µm]", ylim=(1e-4, 30))
+    above.legend(loc="center", ncols=2, fontsize=7)
+    below.set(xlabel="Position along the horn [mm]")
+    below.set(ylabel="Lag of the normal behind\nthe axial motion [degrees]", yticks=(0, 45, 90, 135, 180))
+    below.legend(loc="lower right")
+    return figure
+
+
+def _friction() -> "Figure":
+    """Draw the friction along the faces of both horns with the transition regions of Table 2.1."""
+    figure, panels = axes_row(2, (7.2, 3.0), sharex=True, sharey=True)
+    for axes, (index, horn) in zip(panels, enumerate(HORNS), strict=True):
+        friction = friction_on_face(horn, frequency=si_value("2.1.2-welder-frequency"))
+        _draw_transition_region(axes, horn, color="0.8")
+        axes.plot(friction.position / INCH, 100 * friction.ratio, **line_style(index))
+        axes.axhline(0, color="black", lw=0.8)
+        axes.set(xlabel="Position along the face [in]", xlim=(-FACE_END / INCH, FACE_END / INCH))
+        axes.set_title(f"{horn} horn", fontsize=9)
+    panels[0].set(ylabel="Friction over that at rest [%]", ylim=(-50, 100))
+    band, *_ = panels[0].get_legend_handles_labels()[0]
+    lines = [axes.lines[0] for axes in panels]
+    labels = ["transition region, Table 2.1", *[f"{horn} horn, computed" for horn in HORNS]]
+    figure.legend([band, *lines], labels, loc="outside lower center", ncols=3)
+    return figure
+
+
+def face_friction_chart(horn: Horn, friction: FaceFriction) -> Chart:
+    """Friction along the face of a horn, with the transition region of Table 2.1."""
+    first, last = (np.array([1e3 * end]) for end in _transition_region(horn))
+    parts = (
+        Zone(first=first, last=last, label="transition region, Table 2.1", colour="0.8"),
+        Line(x=1e3 * friction.position, y=100 * friction.ratio, label="computed"),
+        Rule(along="y", value=0.0, colour="0", dash=0),
+        Rule(value=1e3 * friction.node, label="node of the axial motion", colour="0"),
+    )
+    end = 1e3 * FACE_END
+    x = Axis("Position along the face, from its centre", "mm", lowest=-end, highest=end)
+    panel = Panel(x=x, y=Axis("Friction over that at rest", "%"), parts=parts)
+    title = f"{horn} horn; below zero the face drives the block"
+    return Chart(panels=(panel,), size=(5.0, 3.2), title=title, legend="bottom")
+
+
+def _nodes() -> "Figure":
+    """Draw the position of the node of the steel horn under single asymmetries."""
+    figure, axes = single_axes((7.2, 2.6))
+    inches = {asymmetry: node / INCH for asymmetry, node in reversed(node_positions().items())}
+    _draw_transition_region(axes, "steel", color=COLOURS[1], alpha=0.3)
+    bars = axes.barh(list(inches), list(inches.values()), color="0.55")
+    axes.bar_label(bars, [f"{node:.3f}" for node in inches.values()], padding=3, size=8)
+    axes.set(xlabel="Node of the axial motion, from the centre [in]", xlim=(0, 0.22))
+    axes.grid(False, axis="y")
+    figure.legend(loc="outside lower center")
+    return figure
+
+
+def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: float = 1.0, unit: float = INCH) -> None:
+    """Draw the transition region of a horn in Table 2.1 as a band, over positions in a unit of that many metres."""
+    start, end = (place / unit for place in _transition_region(horn))
+    axes.axvspan(start, end, color=color, alpha=alpha, lw=0, label="transition region, Table 2.1")
+
+
+def _transition_region(horn: Horn) -> tuple[float, float]:
+    """Ends of the transition region of a horn in Table 2.1, in m."""
+    start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") for side in ("start", "end"))
+    return start, end
+
+
+def _motion(horn: Horn) -> FaceMotion:
+    """Motion of the face of a horn at the frequency of the welder."""
+    return driven_face(horn, frequency=si_value("2.1.2-welder-frequency"))
+
 
 _PHASES: Final = {0.0: "driven on one end", -pi / 2: "quarter turn of D 3.25"}
 
@@ -44,7 +227,7 @@ def poisson_effect_figures() -> Iterator[ReportFigure]:
         "one, so that the lag is zero on one side and half a turn on the other, and paths are lines. Broken: normal "
         "motion a quarter turn ahead, the lag of D 3.25, which such a horn does not have, with the sign with which the "
         "surface moves towards the centre while it is lowest, as the block did; the arrow shows the sense of motion.",
-        draw=_paths,
+        draw=_loci,
     )
     yield from horn_figures()
 
@@ -111,7 +294,7 @@ def _cube_reduction(
     return 1 - float(ratio)
 
 
-def _paths() -> "Figure":
+def _loci() -> "Figure":
     """Draw the paths of three surface points of both horns for both lags."""
     figure, panels = axes_row(3, (7.2, 2.7), sharex=True, sharey=True)
     inch = si_value("2.1.3-outer-points")

@@ -1,8 +1,13 @@
-"""Finite-element model of the Poisson horn of section 2.1: first axial mode and driven motion of its sliding face.
+"""Finite-element model of the Poisson horn of section 2.1: axial mode, driven face, and friction along it.
 
 D prints the three dimensions of the block, and of tapers and rounded edges only that they exist. The printed shape is
 the plain block with the moduli of D and data-sheet densities; the assumed shape with the assumed solids is the one set
 of assumptions that has both printed frequencies. A quarter of the horn is meshed: y = 0 and z = 0 are symmetry planes.
+
+Motor region: the friction of a block that slides towards the node of the motion, at the speed of the tests of D, is
+reversed, so that the face drives the block. Transition region: friction resists in both directions. The contact has
+normal and tangential springs with the ratio of Mindlin and the stiffness of the rough contact at its load; nothing is
+fitted.
 """
 
 from collections.abc import Mapping
@@ -18,7 +23,10 @@ from sonolube.checks import Complexes, Floats
 from sonolube.facts.materials import material
 from sonolube.facts.published import si_value
 from sonolube.models import fem
-from sonolube.reproduction.cube import Horn
+from sonolube.models.contact import decay_length
+from sonolube.models.friction import SpringContact, combined_oscillation_ratio
+from sonolube.reproduction.published_rigs import Horn
+from sonolube.validation.contacts import Bodies, poisson_contact
 
 _ALLOYS: Final = {"aluminium": "aluminium_2024", "steel": "stainless_steel_316"}
 _SYMMETRY: Final = (fem.FixedSupport(face="-y", along="y"), fem.FixedSupport(face="+z", along="z"))
@@ -217,3 +225,105 @@ def _quarter(shape: HornShape, divisions: tuple[int, int, int]) -> fem.Mesh:
 
     block = fem.box_mesh(length=shape.length, width=shape.width / 2, thickness=shape.thickness / 2, divisions=divisions)
     return fem.transform_nodes(block, tapered)
+
+
+_COEFFICIENT: Final = {"aluminium": "3.1.4-coefficient-1", "steel": "3.1.4-coefficient-2"}
+_POSITIONS: Final = 61  # on either side of the node
+_STEPS: Final = 256
+FACE_END: Final = 1.5 * INCH
+"""Distance from the centre to the ends of the flat face, the range of Table 2.1. [m]"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FaceFriction:
+    """Friction of a block that slides on the vibrating face towards the node of its motion.
+
+    Parameters
+    ----------
+    position : ndarray, shape (k,)
+        Position along the face, from the centre. [m]
+    ratio : ndarray, shape (k,)
+        Friction over that on the face at rest; negative where the face drives the block.
+    node : float
+        Position of the node of the axial motion, in m.
+    """
+
+    position: Floats
+    ratio: Floats
+    node: float
+
+    def at(self, position: float) -> float:
+        """Friction ratio at a position in m, by linear interpolation. []"""
+        return float(np.interp(position, self.position, self.ratio))
+
+
+def driven_face(
+    horn: Horn, *, frequency: float, axial_amplitude: float | None = None, elastic_loss: float = ELASTIC_LOSS
+) -> FaceMotion:
+    """Motion of the face of a horn by the assumed shape and solid."""
+    return face_motion(
+        assumed_shape(),
+        ASSUMED_SOLIDS[horn],
+        frequency=frequency,
+        axial_amplitude=si_value("2.1.2-welder-amplitude") if axial_amplitude is None else axial_amplitude,
+        elastic_loss=elastic_loss,
+    )
+
+
+def spring_contact(horn: Horn, *, bodies: Bodies = "aluminium_steel") -> tuple[SpringContact, float]:
+    """Spring-coupled contact under a horn, and the approach at which its springs carry the load. [m]"""
+    rough = poisson_contact(bodies=bodies)
+    springs = SpringContact(friction_coefficient=si_value(_COEFFICIENT[horn]), mindlin_ratio=rough.pair.mindlin_ratio)
+    return springs, float(decay_length(rough))
+
+
+def friction_on_face(
+    horn: Horn, *, frequency: float, axial_amplitude: float | None = None, sliding_speed: float | None = None
+) -> FaceFriction:
+    """Friction along the face of a driven horn."""
+    contact, approach = spring_contact(horn)
+    motion = driven_face(horn, frequency=frequency, axial_amplitude=axial_amplitude)
+    return friction_along(motion, contact, approach=approach, sliding_speed=sliding_speed)
+
+
+def friction_along(
+    motion: FaceMotion, contact: SpringContact, *, approach: float, sliding_speed: float | None = None
+) -> FaceFriction:
+    """Friction of a block that slides along a moving face towards its node."""
+    node = node_position(position=motion.position, axial=motion.axial.real)
+    sides = [np.linspace(-FACE_END, node, _POSITIONS), np.linspace(node, FACE_END, _POSITIONS)[1:]]
+    position = np.concatenate(sides)
+    axial, normal = motion.at(position)
+    towards = np.repeat([1, -1], [len(side) for side in sides])
+    ratio = combined_oscillation_ratio(
+        contact,
+        approach=approach,
+        frequency=motion.frequency,
+        sliding_speed=si_value("2.1.2-sliding-speed") if sliding_speed is None else sliding_speed,
+        normal_amplitude=np.abs(normal),
+        in_plane_amplitude=np.abs(axial),
+        in_plane_phase=np.angle(normal / (towards * axial)),  # of the block relative to the face
+        steps=_STEPS,
+    )
+    return FaceFriction(position=position, ratio=ratio, node=node)
+
+
+def transition_region(friction: FaceFriction) -> tuple[float, float]:
+    """Limits of the transition region about the node, in which friction resists in both directions. [m]
+
+    A limit is NaN where the face drives the block nowhere on its side.
+    """
+    middle = int(np.argmin(np.abs(friction.position - friction.node)))
+    outwards = slice(middle, None, -1), slice(middle, None)
+    left, right = (_first_reversal(friction.position[side], friction.ratio[side]) for side in outwards)
+    return left, right
+
+
+def _first_reversal(position: Floats, ratio: Floats) -> float:
+    """First position at which the friction ratio changes sign, by linear interpolation. [m]"""
+    after = int(np.argmax(ratio < 0))
+    if not after:
+        return float("nan")
+    before = after - 1
+    fraction = ratio[before] / (ratio[before] - ratio[after])
+    return float(position[before] + fraction * (position[after] - position[before]))

@@ -1,9 +1,20 @@
-"""Section 2.4, high stress and speed on the welder rig: rows of contact stress, motion, friction, currents and wear."""
+"""Sections 2.4 and 2.5: rows of high stress and speed on the welder rig and of its motor, and of pairs of materials.
+
+Voltage, and current and speed without and with vibration, determine resistance and torque constant of a DC motor, gear
+included. Both tests ran the same motor, and yield the same constant to a quarter of a per cent, although their
+resistances differ by a fifth, as those of brushes do. Each row takes the constant from the other test.
+
+The torque of bearings and brushes remains free: it is assumed to be equal before and after the change of speed.
+"""
 
 from collections.abc import Iterator
-from operator import sub, truediv
-from typing import Final
+from math import pi
+from operator import mul, sub, truediv
+from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from sonolube.facts import metrics
 from sonolube.facts.published import (
     ComputedValue,
     PrintedNumber,
@@ -12,9 +23,13 @@ from sonolube.facts.published import (
     propagate_rounding,
     published_number,
     si_value,
+    table,
 )
+from sonolube.figure import COLOURS, ReportFigure
 from sonolube.models.contact import SphereOnFlat, hertz_mean_pressure, hertz_peak_pressure, tip_radius_for_pressure
 from sonolube.reproduction import formulas
+from sonolube.reproduction.chapter2.tribometer import reductions_of_table_2_3, wear_reductions
+from sonolube.reproduction.plots import single_axes
 from sonolube.reproduction.row import (
     Row,
     default_model_row,
@@ -24,6 +39,9 @@ from sonolube.reproduction.row import (
     undetermined_row,
 )
 from sonolube.validation.contacts import poisson_contact
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _ROUND_TIP: Final = 1  # first row of either tip in Table 2.8
 _FLAT_TIP: Final = 3
@@ -35,7 +53,7 @@ def welder_rows() -> Iterator[Row]:
     yield _peak_stress()
     yield from _motion()
     yield from _friction()
-    yield from _currents()
+    yield from _current_drops()
     yield from _wear()
 
 
@@ -121,7 +139,7 @@ def _friction() -> Iterator[Row]:
         yield published_formula_row(f"2.4.4-friction-{name}", middle, "Middle of the range in Table 2.9.")
 
 
-def _currents() -> Iterator[Row]:
+def _current_drops() -> Iterator[Row]:
     """Yield the drop of the motor current with either tip."""
     for name, tip in (("round", 1), ("flat", 2)):
         currents = (as_exact(f"table-2.9-{state}_motor_current-{tip}") for state in ("intrinsic", "reduced"))
@@ -159,3 +177,174 @@ def _wear_rate(row: int) -> ComputedValue:
         distance,
     )
     return ComputedValue(value=total.value, low=max(total.low, by_turn.low), high=min(total.high, by_turn.high))
+
+
+_TIPS: Final = {1: "round", 2: "flat"}
+"""Tips by their rows in Table 2.9."""
+
+
+def welder_motor_rows() -> Iterator[Row]:
+    """Yield the rows of the motor."""
+    for tip in _TIPS:
+        yield from _rows_of_tip(tip)
+
+
+def welder_motor(tip: int) -> metrics.DCMotor:
+    """Motor identified from the test with a tip: 1 round, 2 flat."""
+    return metrics.motor_from_two_operating_points(
+        motor_voltage=si_value("2.4.2-motor-voltage"),
+        motor_current=list(_currents(tip)),
+        rotation_speed=[si_value(f"table-2.8-rotation_speed-{row}") for row in (2 * tip - 1, 2 * tip)],
+    )
+
+
+def friction_drop_from_current(tip: int) -> float:
+    """Drop of friction that corresponds to the drop of the current with a tip. [N]"""
+    off, on = _currents(tip)
+    return float(
+        metrics.friction_from_current(
+            torque_constant=welder_motor(3 - tip).torque_constant,
+            motor_current=off,
+            idle_current=on,
+            groove_diameter=_groove_diameter(tip),
+        )
+    )
+
+
+def _rows_of_tip(tip: int) -> Iterator[Row]:
+    """Yield rotation speed and current drop from the drop of friction, and friction reduction from that of current."""
+    name, other = _TIPS[tip], 3 - tip
+    current, _ = _currents(tip)
+    off, on = (number.value for number in printed_forces(tip))
+    voltage, constant = si_value("2.4.2-motor-voltage"), welder_motor(other).torque_constant
+    speed = si_value(f"table-2.8-rotation_speed-{2 * tip - 1}")
+    motor = metrics.DCMotor(
+        motor_voltage=voltage, torque_constant=constant, resistance=(voltage - constant * 2 * pi * speed) / current
+    )
+    reduced_current = float(
+        metrics.motor_current_under_friction(
+            motor, friction_force=on - off, idle_current=current, groove_diameter=_groove_diameter(tip)
+        )
+    )
+    note = f"DC motor at {voltage:g} V, {constant:.3f} N m/A at the disc from the test with the {_TIPS[other]} tip; "
+    fall = f"friction falls by {off - on:.2f} N (middles of Table 2.9)."
+    reduced_speed = float(metrics.motor_speed(motor, motor_current=reduced_current))
+    yield default_model_row("2.4.2-rotation-on", reduced_speed, note + fall, suffix=f"{name}-motor")
+    yield default_model_row("2.4.4-current-drop", current - reduced_current, note + fall, suffix=f"{name}-motor")
+    drop = friction_drop_from_current(tip)
+    note = f"{note}the drop of the current corresponds to {drop:.2f} N of {off:.2f} N."
+    yield default_model_row(f"table-2.9-friction_reduction-{tip}", drop / off, note, suffix="motor")
+
+
+def _currents(tip: int) -> tuple[float, float]:
+    """Motor current without and with vibration. [A]"""
+    off, on = (si_value(f"table-2.9-{state}_motor_current-{tip}") for state in ("intrinsic", "reduced"))
+    return off, on
+
+
+def _groove_diameter(tip: int) -> float:
+    """Groove diameter of the test with a tip. [m]"""
+    return si_value(f"table-2.8-groove_diameter-{2 * tip - 1}")
+
+
+_TESTS: Final = (("2.11", 1), ("2.12", 1), ("2.12", 2), ("2.12", 3), ("2.13", 1))  # table and row
+
+
+def material_pair_rows() -> Iterator[Row]:
+    """Yield the rows of section 2.5."""
+    yield from _settings()
+    yield from _pair_friction()
+    yield from _summary()
+
+
+def material_pair_figures() -> Iterator[ReportFigure]:
+    """Figures of section 2.5."""
+    yield ReportFigure(
+        name="table-2-14-pairs",
+        title="Reductions of friction and wear for six pairs of materials",
+        caption="Pin on disc, as printed in Table 2.14. Where titanium takes part, wear did not fall.",
+        draw=_pairs,
+    )
+
+
+def _settings() -> Iterator[Row]:
+    """Yield distance, revolutions and speed of each test from the other settings, and the pressure of Table 2.13."""
+
+    def turns(speed: float, time: float, diameter: float) -> float:
+        return speed * time / (np.pi * diameter)
+
+    def speed(turns: float, time: float, diameter: float) -> float:
+        return formulas.sliding_speed(turns / time, diameter)
+
+    for table_id, row in _TESTS:
+        v, n, d = (f"table-{table_id}-{column}-{row}" for column in ("sliding_speed", "revolutions", "groove_diameter"))
+        time = as_setting(f"table-{table_id}-running_time-{row}")
+        yield formula_row(f"table-{table_id}-sliding_distance-{row}", "Speed times running time.", mul, v, time)
+        yield formula_row(n, "Distance over the length of the groove.", turns, v, time, d)
+        yield formula_row(v, "Turns over time, times the groove's length.", speed, n, time, d)
+    yield undetermined_row("table-2.13-nominal_pressure-1", "the radius of the pins' tips, or the first contact area.")
+
+
+def _pair_friction() -> Iterator[Row]:
+    """Yield the friction reductions of the text from forces."""
+    for section, pair in (("2.5.2", "titanium"), ("2.5.4", "ceramic")):
+        reduction, forces = f"{section}-friction-reduction", (f"{section}-friction-{pair}-{x}" for x in ("off", "on"))
+        yield formula_row(reduction, "D 2.1 from the mean forces.", formulas.friction_reduction, *forces)
+
+    def reduced(force: float, reduction: float) -> float:
+        return force * (1 - reduction)
+
+    note, inputs = "Force without vibration, less the stated reduction.", ("friction-m50-off", "friction-reduction")
+    yield formula_row("2.5.5-friction-m50-on", note, reduced, *(f"2.5.5-{name}" for name in inputs))
+    yield undetermined_row("2.5.5-friction-reduction", "the force with vibration: that without is printed twice.")
+    for amplitude in ("2.5um", "1um"):
+        note = "the forces, and of the titanium surfaces the summit radius and density."
+        yield undetermined_row(f"2.5.3-friction-reduction-{amplitude}", note)
+
+
+def _summary() -> Iterator[Row]:
+    """Yield Table 2.14 from the detailed results, and its largest reductions."""
+    titanium, ceramic = (
+        propagate_rounding(formulas.friction_reduction, f"{pair}-off", f"{pair}-on")
+        for pair in ("2.5.2-friction-titanium", "2.5.4-friction-ceramic")
+    )
+    welder_reductions = welder_friction_reductions(1) + welder_friction_reductions(2)
+    titanium_on_titanium = (propagate_rounding(float, f"2.5.3-friction-reduction-{size}") for size in ("2.5um", "1um"))
+    for row, (reduction, note) in enumerate(
+        (
+            (max(reductions_of_table_2_3("friction_force")), "The largest that the forces of Table 2.3 give."),
+            (max(welder_reductions), "The largest that the forces of Table 2.9 give."),
+            (titanium, "Forces of section 2.5.2."),
+            (max(titanium_on_titanium), "The larger of section 2.5.3."),
+            (ceramic, "Forces of section 2.5.4."),
+            (propagate_rounding(float, "2.5.5-friction-reduction"), "Section 2.5.5."),
+        ),
+        start=1,
+    ):
+        yield published_formula_row(f"table-2.14-friction_reduction-{row}", reduction, note)
+    note = "The largest that the rates of Table 2.5 give."
+    yield published_formula_row("table-2.14-wear_reduction-1", max(wear_reductions("2.5")), note)
+    yield formula_row("table-2.14-wear_reduction-2", "Section 2.4.5.", float, "2.4.5-wear-reduction")
+    for row in (5, 6):
+        yield undetermined_row(f"table-2.14-wear_reduction-{row}", "the worn volumes, shown only as profiles.")
+    for measure in ("friction", "wear"):
+        cells = (propagate_rounding(float, f"table-2.14-{measure}_reduction-{row}") for row in (1, 2, 5, 6))
+        yield published_formula_row(f"2.5.7-{measure}-reduction", max(cells), "The largest of Table 2.14.")
+
+
+def _pairs() -> "Figure":
+    """Draw the reductions of Table 2.14 as bars."""
+    figure, axes = single_axes((5.4, 3.8))
+    columns = table("2.14").columns
+    places = np.arange(len(columns["pin"].printed))[::-1]
+    for name, offset, hatch, colour in (("friction", 0.2, "", COLOURS[0]), ("wear", -0.2, "////", COLOURS[1])):
+        values = 100 * columns[f"{name}_reduction"].values
+        style: dict[str, Any] = {"facecolor": "white" if hatch else colour, "edgecolor": colour, "hatch": hatch}
+        bars = axes.barh(places + offset, np.nan_to_num(values), height=0.38, label=f"{name}, Table 2.14", **style)
+        axes.bar_label(bars, [f"{value:.0f}" if value > 0 else "no reduction" for value in values], padding=3, size=8)
+    pairs = zip(columns["pin"].printed, columns["disc"].printed, strict=True)
+    axes.set(xlabel="Reduction [%]", xlim=(0, 100))
+    axes.set_yticks(places, labels=[f"{pin}\non {disc}" for pin, disc in pairs])
+    axes.grid(False, axis="y")
+    figure.legend(loc="outside lower center", ncols=2)
+    return figure

@@ -7,10 +7,8 @@ from typing import Any, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.dong2015.bore import BoreMotion
-from sonolube.dong2015.collar import Collar
-from sonolube.dong2015.collar_analysis import ELEMENT_SIZE, Parity, collar_modes, reduced_collar_model
-from sonolube.dong2015.collar_designs import ASSUMED_RANGES, FINAL_COLLAR
+from sonolube.dong2015.collar import ASSUMED_RANGES, FINAL_COLLAR, Collar
+from sonolube.dong2015.collar_analysis import ELEMENT_SIZE, BoreMotion, Parity, collar_modes, reduced_collar_model
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.facts.materials import material
 from sonolube.facts.published import si_value

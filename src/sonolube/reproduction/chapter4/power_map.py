@@ -10,8 +10,7 @@ from sonolube.facts.metrics import efficiency_at, efficiency_coefficient, fricti
 from sonolube.facts.published import PrintedNumber, column_numbers, published_number, si_value, table
 from sonolube.models.actuator import linear_amplifier_power
 from sonolube.models.friction import dong_2015_half_period_ratio
-from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, uncoated_plate_contact
-from sonolube.validation.efficiency import efficiency_line
+from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, efficiency_line, uncoated_plate_contact
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -24,18 +24,18 @@ from sonolube.checks import Floats
 from sonolube.figure import ReportFigure
 from sonolube.models.contact import decay_length, separation
 from sonolube.models.friction import mindlin_memory_length
-from sonolube.reproduction.friction_models.variant_predictions import (
-    Predictions,
-    capitalised,
-    parameters_text,
-    ratio_text,
+from sonolube.reproduction.friction_models.variants import Predictions, capitalised, parameters_text, ratio_text
+from sonolube.validation.assessment import (
+    ErrorStatistics,
+    Fit,
+    InformationCriteria,
+    fit_variant,
+    information_criteria,
+    prediction_errors,
 )
-from sonolube.validation.assessment import ErrorStatistics, InformationCriteria, information_criteria, prediction_errors
 from sonolube.validation.figures import speed_and_amplitude_panels
-from sonolube.validation.fitting import Fit, fit_variant
-from sonolube.validation.free_parameters import IN_PLANE_MOTION, MEMORY_LENGTH, RIGS, FreeParameter, per_rig
 from sonolube.validation.friction_model_variants import asperity_stick_slip, mindlin_stick_slip
-from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.model_variant import IN_PLANE_MOTION, MEMORY_LENGTH, RIGS, FreeParameter, ModelVariant, per_rig
 from sonolube.validation.published_tests import FrictionTest, friction_tests
 
 BOTH_TABLES: Final = "AB"

@@ -1,30 +1,119 @@
-"""Reader of rig files: from TOML text to a `Rig`."""
+"""Reader of rig files, from TOML text to a `Rig`, of files of modes beside them, and replacement of their tables.
 
+A file of modes is a list that a command computed (TOML), or a table with a row to a mode (CSV). A replaced table
+leaves the comments of the file.
+"""
+
+import csv
+import io
+import re
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, suggestion
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.actuator.drive import Drive
 from sonolube.models.actuator.waveguide import BarWaveguide, normal_amplitude
 from sonolube.models.dynamics import Structure
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.file.contact_section import RoughnessSection
-from sonolube.rig.file.derived import ALTERNATIVES, REPLACED, with_derived
-from sonolube.rig.file.entries import FileEntries, from_file, set_entry, with_entries
-from sonolube.rig.file.modes_file import read_modes
-from sonolube.rig.file.renamed import entry_of, refuse_former_names
+from sonolube.rig.file.entries import (
+    ALTERNATIVES,
+    REPLACED,
+    FileEntries,
+    entry_of,
+    from_file,
+    refuse_former_names,
+    set_entry,
+    with_derived,
+    with_entries,
+)
+from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile
-from sonolube.rig.file.structures import ModesSection, PinOnDiscSection
-from sonolube.rig.file.toml_file import prefixed, validated
-from sonolube.rig.file.uncertainty import distributions_of
+from sonolube.rig.file.structures import MODE_LISTS, ModesSection, PinOnDiscSection
+from sonolube.rig.file.toml_file import distributions_of, prefixed, validated
 from sonolube.rig.record import Rig
-from sonolube.text.toml_text import read_toml, require_plain_content
+from sonolube.text.toml_text import read_toml, require_plain_content, text_of
+from sonolube.text.units import convert
+
+_UNITS = {"natural_frequency": "Hz", "damping_ratio": "", "drive_participation": "N/V", "contact_participation": ""}
+_ORIGIN = {"command", "frequency_error", "assumptions"}
+
+
+class ModesFile(Section):
+    """A file of modes as `sonolube modes --contact` writes it."""
+
+    command: str = Field(min_length=1, description="Command that computed the modes")
+    frequency_error: float = Field(gt=0, lt=1, description="Estimated relative error of the natural frequencies")
+    assumptions: list[str] = Field(default_factory=list, description="What was assumed, such as damping")
+    natural_frequency: list[float]
+    damping_ratio: list[float]
+    drive_participation: list[float]
+    contact_participation: list[float]
+    clamped_capacitance: float
+
+
+def read_modes(path: Path) -> dict[str, Any]:
+    """Read the modes of a structure from a file.
+
+    The four columns by name, as lists in SI; of a TOML file also `clamped_capacitance`, as it is written.
+    """
+    with prefixed(str(path)):
+        if path.suffix == ".toml":
+            content = read_toml(path, kind="a file of modes")
+            validated(ModesFile, content)
+            return {key: value for key, value in content.items() if key not in _ORIGIN}
+        return _modes(text_of(path, kind="a file of modes"))
+
+
+def _modes(text: str) -> dict[str, list[float]]:
+    kept = "\n".join(line for line in text.splitlines() if line.strip() and not line.startswith("#"))
+    try:
+        heads, *rows = list(csv.reader(io.StringIO(kept))) or [[]]
+    except csv.Error as failure:
+        raise InvalidInput(f"not a table of comma-separated values: {failure}") from None
+    columns = [_column(head) for head in heads]
+    names = [known for known, _ in columns]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice:
+        raise InvalidInput(f"two columns are named {twice}; keep one of them")
+    missing = [name for name in MODE_LISTS if name not in names]
+    if missing:
+        raise InvalidInput(f"column {missing[0]} is missing; a file of modes has {', '.join(MODE_LISTS)}")
+    if not rows:
+        raise InvalidInput("has no modes below its headings")
+    modes: dict[str, list[float]] = {name: [] for name in MODE_LISTS}
+    for number, row in enumerate(rows, start=1):
+        if len(row) != len(columns):
+            raise InvalidInput(f"mode {number} has {len(row)} entries, its headings are {len(columns)}")
+        for (name, unit), entry in zip(columns, row, strict=True):
+            modes[name].append(_number(entry, unit, name, f"mode {number}"))
+    return modes
+
+
+def _column(head: str) -> tuple[str, str]:
+    """Name of a column and the unit of its entries."""
+    name, _, rest = head.strip().partition("[")
+    name, unit = name.strip(), rest.strip().removesuffix("]").strip()
+    if name not in MODE_LISTS:
+        raise InvalidInput(f"unknown column {name!r}; {suggestion(name, MODE_LISTS)}".removesuffix("; "))
+    if _UNITS[name] and not unit:
+        raise InvalidInput(f"column {name} has no unit; write it like {name} [{_UNITS[name]}]")
+    return name, unit
+
+
+def _number(entry: str, unit: str, name: str, place: str) -> float:
+    try:
+        value = float(entry)
+    except ValueError:
+        raise InvalidInput(f"{place}: {name} {entry!r} is no number") from None
+    return convert(value, from_unit=unit, to_unit=_UNITS[name]) if unit else value
 
 
 def read_rig(path: str | Path, *, changes: Sequence[str] = ()) -> Rig:
@@ -262,3 +351,43 @@ def _waveguide_amplitude(file: RigFile, drive: Drive | None) -> float | None:
     with prefixed("waveguide"):
         waveguide = BarWaveguide(**section.model_dump(exclude={"position"}), frequency=drive.frequency)
         return float(normal_amplitude(waveguide, position=section.position))
+
+
+_HEADING = re.compile(r"^\[\[?([\w.]+)\]", re.MULTILINE)
+
+
+def with_tables(text: str, tables: str) -> str:
+    """Text of a rig file with some of its tables replaced.
+
+    Parameters
+    ----------
+    text : str
+        The file.
+    tables : str
+        The tables that take the place of those of the same name, or come last before `assumptions`.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InvalidInput
+        If what comes out is no rig.
+    """
+    replaced = set(_HEADING.findall(tables))
+    if "structure" in replaced:  # a table of one kind leaves nothing of another kind behind
+        replaced |= {name for name, _ in _parts(text) if name.startswith("structure.")}
+    kept = [(name, part) for name, part in _parts(text) if name not in replaced]
+    last = [part for name, part in kept if name == "assumptions"]
+    rest = [part for name, part in kept if name != "assumptions"]
+    result = "".join([*(part.rstrip() + "\n\n" for part in rest), tables.rstrip() + "\n\n", *last]).rstrip() + "\n"
+    rig_from(tomllib.loads(result))
+    return result
+
+
+def _parts(text: str) -> list[tuple[str, str]]:
+    headings = list(_HEADING.finditer(text))
+    ends = [heading.start() for heading in headings[1:]] + [len(text)]
+    tables = [(heading[1], text[heading.start() : end]) for heading, end in zip(headings, ends, strict=True)]
+    return [("", text[: headings[0].start()] if headings else text), *tables]

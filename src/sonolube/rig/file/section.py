@@ -1,18 +1,97 @@
-"""Base of the sections of a rig file: quantities are read from text with a unit, unknown keys are refused."""
+"""Base of the sections of a rig file: quantities are read from text with a unit, unknown keys are refused.
 
+With guidance on the entries that a file requires, from `guidance.toml`, and plausible magnitudes by SI unit.
+"""
+
+import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from types import MappingProxyType
 from typing import Any, Self, get_args, get_origin
 
 import pydantic
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from sonolube.errors import SonolubeError
-from sonolube.rig.file.guidance import guidance
-from sonolube.rig.file.plausible import require_plausible
-from sonolube.text.units import to_si, unit_description
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.text.units import format_si, to_si, unit_description
 from sonolube.variants import VariantTable
 from sonolube.vocabulary import Quantity, quantities
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Guidance:
+    """Guidance on obtaining a number of a rig file.
+
+    Parameters
+    ----------
+    obtain : str
+        What measures or gives it.
+    typical : str
+        Range of usual values, with the unit.
+    """
+
+    obtain: str
+    typical: str
+
+    @property
+    def text(self) -> str:
+        """Both, as they follow the meaning of the number in a sentence."""
+        return f"from {self.obtain}; typically {self.typical}"
+
+
+@cache
+def guidance() -> Mapping[str, Guidance]:
+    """Guidance to every number that a rig file requires, by the name of its key."""
+    text = files("sonolube.rig.file").joinpath("guidance.toml").read_text(encoding="utf-8")
+    return MappingProxyType({name: Guidance(**entry) for name, entry in tomllib.loads(text).items()})
+
+
+LIMITS: Mapping[str, tuple[float, float]] = MappingProxyType(
+    {
+        "": (1e-9, 1e2),
+        "m": (1e-12, 1e3),
+        "m2": (1e-18, 1e4),
+        "1/m2": (1.0, 1e20),
+        "kg": (1e-12, 1e6),
+        "N": (1e-12, 1e9),
+        "Pa": (1.0, 1e13),
+        "m/s": (1e-12, 1e4),
+        "Hz": (1e-3, 1e9),
+        "s": (1e-12, 1e8),
+        "rad": (1e-12, 1e3),
+        "V": (1e-9, 1e6),
+        "F": (1e-15, 1.0),
+        "m/V": (1e-18, 1e-2),
+        "N/m": (1e-6, 1e15),
+        "N s/m": (1e-9, 1e12),
+        "W": (1e-12, 1e6),
+        "W/K": (1e-9, 1e6),
+        "J/K": (1e-9, 1e9),
+    }
+)
+"""Least and largest magnitude of what is not zero, by SI unit."""
+
+DECAY_LENGTHS = (1e-10, 1e-3)
+"""Shortest and longest decay length of a contact force. [m]"""
+
+_ANY_UNIT = (1e-30, 1e30)
+
+
+def plausible_si(text: str, *, unit: str, name: str) -> float:
+    """Number in SI that a command's option stands for, where a rig can have it."""
+    return require_plausible(to_si(text, unit=unit, name=name), unit=unit, text=f"{name} {text}")
+
+
+def require_plausible(value: float, *, unit: str, text: str) -> float:
+    """Value in SI, or refuse it where its magnitude lies beyond any rig."""
+    least, largest = LIMITS.get(unit, _ANY_UNIT)
+    if value and (abs(value) < least or abs(value) > largest):  # what is no number is for others as well
+        bounds = " to ".join(format_si(bound, unit) for bound in (least, largest))
+        raise InvalidInput(f"{text} lies beyond any rig: expected {bounds}")
+    return float(value)
 
 
 @dataclass(frozen=True)

@@ -1,15 +1,24 @@
-"""Pin, vibration and their entries of a rig file."""
+"""Pin, vibration, decay length and surfaces of a new rig, and their entries of a rig file.
+
+The decay length is of published tests, as stated, or from a measured normal stiffness; surfaces are of a stated finish
+or a scan.
+"""
 
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import pi
+from math import exp, hypot, log, pi
+from pathlib import Path
 from typing import Final
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
+from sonolube.measurement.surface_files.reader import read_height_map
+from sonolube.models import surfaces
 from sonolube.models.actuator import CatalogueActuator
 from sonolube.models.contact import SphereOnFlat, hertz_contact_radius
+from sonolube.rig.file.contact_section import height_of_finish
+from sonolube.rig.friction_and_wear import CENTRAL_SHARE, PUBLISHED_DECAY_LENGTH
 from sonolube.rig.record import STATED
 from sonolube.text.units import format_si
 
@@ -175,3 +184,140 @@ class DrivenActuator:
 
 Vibration = StatedAmplitude | DrivenActuator
 """Source of the vibration of the contact."""
+
+
+_STATED_FACTOR: Final = 1.3
+
+
+def compliance_entries(*, decay_length: float | None, normal_stiffness: float | None) -> Entries:
+    """Entries of a new rig file for the decay length of its contact.
+
+    Of the table contact; the median of worn contacts in published tests where both are None.
+    """
+    if decay_length is not None and normal_stiffness is not None:
+        raise InvalidInput("give either decay_length or normal_stiffness, got both")
+    if normal_stiffness is not None:
+        require_positive(normal_stiffness=normal_stiffness)
+        return _entries(
+            {"normal_stiffness": toml_text(normal_stiffness, "N/m")},
+            "as stated, taken as measured under this load: a factor of 1.3",
+            _STATED_FACTOR,
+        )
+    if decay_length is not None:
+        require_positive(decay_length=decay_length)
+        return _entries({"decay_length": toml_text(decay_length, "m")}, "as stated: a factor of 1.3", _STATED_FACTOR)
+    published = PUBLISHED_DECAY_LENGTH
+    low, high = (f"{1e6 * end:.2g} um" for end in published.central_range())
+    return _entries(
+        {"decay_length": toml_text(published.median, "m"), "decay_length_origin": json.dumps("published_tests")},
+        f"median of worn contacts in published friction tests; {100 * CENTRAL_SHARE:.0f} % have {low} to {high};"
+        " roughness before wear does not tell it: see the decay length of worn contacts in the theory of contact",
+        published.factor,
+    )
+
+
+def _entries(table: dict[str, str], reason: str, factor: float) -> Entries:
+    """Entries of the table contact, its first key assumed and lognormal."""
+    key = f"contact.{next(iter(table))}"
+    return Entries(
+        tables={"contact": table}, assumptions={key: reason}, uncertainty={key: f"lognormal factor {factor:.4g}"}
+    )
+
+
+_SCAN_DEVIATION: Final = 0.1
+_SCANNED_SUMMITS_DEVIATION: Final = 0.4
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class KnownSurface:
+    """Roughness of one surface, or of two in contact, with how well it is known.
+
+    Parameters
+    ----------
+    roughness : Roughness
+        Height, summit radius and summit density: medians.
+    height_deviation, radius_deviation, density_deviation : float
+        Standard deviations of the logarithms of height, radius and density of the summits.
+    height_reason, summit_reason : str
+        Where they come from.
+    """
+
+    roughness: surfaces.Roughness
+    height_deviation: float
+    radius_deviation: float
+    density_deviation: float
+    height_reason: str
+    summit_reason: str
+
+
+def finished_surface(finish: str) -> KnownSurface:
+    """Surface by its process, its ISO grade or both, or by Ra, Rz or Rq."""
+    height = height_of_finish(finish)
+    summits = surfaces.typical_summits(rms_height=height.rms_height)
+    return KnownSurface(
+        roughness=surfaces.Roughness(
+            rms_height=height.rms_height, summit_radius=summits.summit_radius, summit_density=summits.summit_density
+        ),
+        height_deviation=log(height.factor),
+        radius_deviation=log(summits.radius_factor) / 2,
+        density_deviation=log(summits.density_factor) / 2,
+        height_reason=height.reason,
+        summit_reason=f"typical of the height; {summits.reason}",
+    )
+
+
+def scanned_surface(path: str | Path) -> KnownSurface:
+    """Surface by a scan: rms height of the levelled map, and its summits.
+
+    The height is taken as known within 10 %, the spread between places; the summits, which depend on the distance of
+    the pixels, within a factor of 1.5.
+    """
+    levelled = surfaces.remove_form(read_height_map(Path(path)), degree=1)
+    summits = surfaces.contact_roughness(levelled)
+    name = Path(path).name
+    return KnownSurface(
+        roughness=surfaces.Roughness(
+            rms_height=surfaces.height_parameters(levelled).rms_height,
+            summit_radius=summits.summit_radius,
+            summit_density=summits.summit_density,
+        ),
+        height_deviation=_SCAN_DEVIATION,
+        radius_deviation=_SCANNED_SUMMITS_DEVIATION,
+        density_deviation=_SCANNED_SUMMITS_DEVIATION,
+        height_reason=f"Sq of {name}, levelled; 10 % between places assumed",
+        summit_reason=f"summits of {name}; they depend on the distance of its pixels",
+    )
+
+
+def surfaces_in_contact(pin: KnownSurface, disc: KnownSurface) -> KnownSurface:
+    r"""Combined roughness of two surfaces.
+
+    Heights add as variances, summits as by `combined_roughness`:
+
+    .. math:: R_q = \sqrt{R_{q,1}^2 + R_{q,2}^2}
+
+    Each surface is taken as uncertain on its own in its height; the summits of both share the relation they come from.
+    """
+    heights = [each.roughness.rms_height for each in (pin, disc)]
+    height = hypot(*heights)
+    shares = [(each / height) ** 2 for each in heights]
+    summits = surfaces.combined_roughness(pin.roughness, disc.roughness)
+    return KnownSurface(
+        roughness=surfaces.Roughness(
+            rms_height=height, summit_radius=summits.summit_radius, summit_density=summits.summit_density
+        ),
+        height_deviation=hypot(shares[0] * pin.height_deviation, shares[1] * disc.height_deviation),
+        radius_deviation=max(pin.radius_deviation, disc.radius_deviation),
+        density_deviation=max(pin.density_deviation, disc.density_deviation),
+        height_reason=_of_both(pin.height_reason, disc.height_reason),
+        summit_reason=_of_both(pin.summit_reason, disc.summit_reason),
+    )
+
+
+def lognormal_text(deviation: float) -> str:
+    """Lognormal distribution as a rig file writes it, by the standard deviation of the logarithm."""
+    return f"lognormal factor {exp(deviation):.4g}"
+
+
+def _of_both(pin: str, disc: str) -> str:
+    return f"both: {pin}" if pin == disc else f"pin: {pin}; disc: {disc}"

@@ -9,16 +9,18 @@ from typing import Final
 
 from sonolube.errors import InvalidInput
 from sonolube.models.actuator import catalogue_actuator
-from sonolube.rig.file.plausible import plausible_si, require_plausible
-from sonolube.rig.file.stated_surface import is_roughness
-from sonolube.rig.new_rig.known_surface import KnownSurface, finished_surface, scanned_surface
+from sonolube.rig.file.contact_section import is_roughness
+from sonolube.rig.file.section import plausible_si, require_plausible
 from sonolube.rig.new_rig.pin_and_vibration import (
     DrivenActuator,
     FlatPin,
+    KnownSurface,
     PinShape,
     RoundPin,
     StatedAmplitude,
     Vibration,
+    finished_surface,
+    scanned_surface,
 )
 from sonolube.text.units import format_si, to_si
 

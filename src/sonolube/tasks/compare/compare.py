@@ -1,24 +1,33 @@
-"""Task `compare`: models of friction under vibration against published tests, and on a rig."""
+"""Tasks `compare` and `fit`: models of friction under vibration against published tests, a rig and own runs."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
-from sonolube.report.results import model_comparison as results
+from sonolube.report.results import model_comparison as ranked_models, model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
-from sonolube.tasks.answer import Answer, Block, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import File, OptionalRig, Parameter, RunsSource, Watched, optional_rig
+from sonolube.tasks.parameters import (
+    File,
+    OptionalRig,
+    OwnRuns,
+    Parameter,
+    RunsSource,
+    Watched,
+    file_stem,
+    optional_rig,
+)
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
 from sonolube.validation import comparison
-from sonolube.validation.figures import comparison_figures, rig_chart
-from sonolube.validation.rig_conditions import vibrated_rig
+from sonolube.validation.comparison import RunsPrediction, predict_runs
+from sonolube.validation.figures import comparison_figures, rig_chart, runs_fit_chart, runs_prediction_chart
+from sonolube.validation.model_variant import vibrated_rig
 from sonolube.validation.run_conditions import RunsTable, run_conditions
-from sonolube.validation.runs_comparison import RunsPrediction, predict_runs
-from sonolube.validation.runs_figures import runs_prediction_chart
-from sonolube.validation.tables import comparison_csv, comparison_dataset
+from sonolube.validation.runs_fit import RunsFit, fit_runs
+from sonolube.validation.tables import comparison_csv, comparison_dataset, runs_fit_dataset
 
 _RUNS = File(runs_help("Own measured runs, which each model predicts as published tests fitted it"), "RUNS.csv")
 
@@ -117,3 +126,84 @@ class ComparisonAnswer(Answer):
         """Every ratio and error over models and tests, and the predictions of the rig."""
         labelled = comparison_dataset(self.fits, self.predictions)
         return labelled if self.rig is None else labelled.assign_attrs(rig=self.rig.title)
+
+
+_CAPTION = (
+    "Left: measured friction ratios of {runs} runs with their standard uncertainty, and the models of the least unseen"
+    " error as curves. Right: root mean square errors of conditions that were left out of the fit, and of the fit."
+)
+_RUNS_TO_FIT = File(runs_help("Own measured runs, a row each"), "RUNS.csv")
+
+
+@task
+def fit(
+    runs: Annotated[OwnRuns, _RUNS_TO_FIT],
+    *,
+    rig: OptionalRig = None,
+    mapping: MappedRuns = None,
+    model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
+    **watch: Unpack[Watched],
+) -> "FitAnswer":
+    """Own runs against every applicable model: ranked by what each predicts unseen, and what to measure next.
+
+    Example: sonolube fit examples/tribometer-runs.csv --rig examples/rigs/tribometer.toml
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> runs, rig = "examples/tribometer-runs.csv", "examples/rigs/tribometer.toml"
+    >>> answer = sl.fit(runs, rig=rig, model=["asperity-stick-slip", "kinematic"])
+    >>> answer["rms_unseen"].values.round(2).tolist()  # error of the friction ratio of unseen runs, by model
+    [0.07, 0.34]
+    """
+    known, table = optional_rig(rig), runs_of(runs, mapping)
+    with stage("fitting") as advance:
+        result = fit_runs(table, known, models=comparison.compared_models(model), advance=advance)
+    volts = None if known is None or "voltage_peak_to_peak" not in table else ranked_models.volts_per_amplitude(known)
+    return FitAnswer(fit=result, rig=known, volts_per_amplitude=volts, name=f"{file_stem(runs)}-fit")
+
+
+@answer
+class FitAnswer(Answer):
+    """Models ranked by the conditions that they predict unseen, with parameters, and the next condition to measure."""
+
+    fit: RunsFit
+    rig: Rig | None
+    volts_per_amplitude: float | None
+    name: str
+
+    def blocks(self) -> Sequence[Block]:
+        """Errors and parameters of each model, the verdict, models that do not apply, and what to measure."""
+        table = self.fit.table
+        scatter = "" if table.scatter is None else f", repeats scatter by {table.scatter:.3f}"
+        return [
+            f"{table.title}: {table.runs} runs under {len(table.conditions)} conditions{scatter}; errors of the ratio",
+            Table(("model", "k", "unseen", "fit", "AICc", ""), ranked_models.error_rows(self.fit)),
+            *ranked_models.parameter_lines(self.fit),
+            f"  {self.fit.verdict}",
+            *(ranked_models.next_line(one, self.volts_per_amplitude) for one in self.fit.next_conditions),
+            *ranked_models.inapplicable_lines(self.fit),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Models with errors, parameters and predictions, the verdict and the next conditions."""
+        return ranked_models.fit_object(self.fit)
+
+    def caveats(self) -> Sequence[str]:
+        """Runs that were left out or are copies, and the direction that is taken for the vibration."""
+        conditions = self.fit.table.conditions
+        taken: tuple[str, ...] = ()
+        if all(one.vibration_direction is None for one in conditions):
+            taken = ("the vibration is taken to be along the normal; vibration_direction [deg] says otherwise",)
+        return (*self.fit.table.caveats, *taken)
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Measured ratios with the best models, and the errors of all."""
+        if not self.fit.models:
+            return {}
+        caption = _CAPTION.format(runs=self.fit.table.runs)
+        return {self.name: Drawing(chart=lambda: runs_fit_chart(self.fit), caption=caption)}
+
+    def files(self) -> Mapping[str, Dataset]:
+        """Every ratio, error and parameter as netCDF."""
+        return {f"{self.name}.nc": runs_fit_dataset(self.fit)} if self.fit.models else {}

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from sonolube.facts.published import PreviousStudy, previous_studies
 from sonolube.report import Drawing
-from sonolube.report.results import studies as results
+from sonolube.report.results import model_comparison as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, answer, si
 from sonolube.tasks.files import NamedBytes
@@ -14,8 +14,7 @@ from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, OptionalRig, RunsSource, optional_rig
 from sonolube.tasks.task import task
 from sonolube.text.units import format_si
-from sonolube.validation.previous_study_map import StudyPoint, study_chart
-from sonolube.validation.study_table import studies_of_runs, study_table
+from sonolube.validation.previous_study_map import StudyPoint, studies_of_runs, study_chart, study_table
 
 _TABLE = File(
     "Further studies to draw on the map, in the columns of studies.csv, which is written; each point with"

@@ -1,20 +1,183 @@
-"""Task `control`: closed-loop control of the friction force of a rig, with its C source and lookup table."""
+"""Task `control`: closed-loop control of the friction force of a rig, with its C source and lookup table.
 
+Other tasks that control friction share its arguments: target, controller, and the resonance where the rig has no
+structure.
+"""
+
+from collections.abc import Mapping, Sequence
 from math import inf
 from typing import Annotated, Any, Literal, Unpack
 
 from sonolube.design import control as loops
-from sonolube.design.control.stick_slip import stick_slip_suppression
+from sonolube.design.control import stick_slip as figures
+from sonolube.design.control.control_design import control_dataset
+from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_suppression
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import EfficiencyLine
+from sonolube.report import Drawing, Page
+from sonolube.report.results.design import control_design as results
+from sonolube.report.results.record_object import amplitude_rows, operating_point, rig_settings
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
-from sonolube.tasks.design import closed_loop as loop
-from sonolube.tasks.design.control_answer import ControlAnswer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-from sonolube.text.units import format_si
-from sonolube.validation.efficiency import efficiency_line
+from sonolube.text.units import format_si, to_si
+from sonolube.validation.contacts import efficiency_line
+
+Delay = Annotated[Number, Quantity("Delay of the friction measurement.", "s")]
+Rate = Annotated[Number, Quantity("Sampling rate of the controller.", "Hz")]
+ClosedLoop = Annotated[Number | None, Quantity("Time constant of the closed loop; the delay by default.", "s")]
+VoltageLimit = Annotated[Number | None, Quantity("Largest swing, peak to peak; the rig's own by default.", "V")]
+Quality = Annotated[float, Parameter("Quality factor, where the rig has no structure.", lowest=0.6)]
+Coupling = Annotated[float, Parameter("Effective coupling, where it has none.", lowest=0.001, highest=0.999)]
+
+
+def sampling_and_duration(*, rate: Number, duration: Number) -> tuple[float, float]:
+    """Sampling rate and duration of the running task in SI, both positive.
+
+    Parameters
+    ----------
+    rate : float or str
+        Of the controller, in Hz or with its unit.
+    duration : float or str
+        Of the run. [s]
+
+    Returns
+    -------
+    tuple of two float
+    """
+    sampling, run_time = in_si("rate", rate), in_si("duration", duration)
+    if sampling <= 0 or run_time <= 0:
+        raise InvalidInput(f"{shown('rate')} {rate} and {shown('duration')} {duration} must be positive")
+    return sampling, run_time
+
+
+def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[loops.VibrationMode, dict[str, str]]:
+    """Resonance at the frequency of the drive of a rig without a structure, with what is assumed of it.
+
+    Parameters
+    ----------
+    rig : Rig
+    quality, coupling : float
+        Quality factor and effective coupling.
+
+    Returns
+    -------
+    VibrationMode
+    dict of str to str
+    """
+    text = f"at the drive's frequency, quality factor {quality:g}, coupling {coupling:g}; not measured"
+    return loops.assumed_mode(rig, quality_factor=quality, coupling_factor=coupling), {"resonance": text}
+
+
+def friction_force(name: str, target: str | float, *, normal_load: float) -> float:
+    """Friction force of an argument that takes a coefficient or a force.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument.
+    target : str or float
+        A coefficient such as 0.1, or a text such as "0.1" or "0.3N".
+    normal_load : float
+        Force pressing the bodies together. [N]
+
+    Returns
+    -------
+    float
+        In N.
+
+    Raises
+    ------
+    InvalidInput
+        If the text is neither a pure number nor a force, or not positive.
+    """
+    text = str(target)
+    is_force = text.strip()[-1:].isalpha()
+    value = to_si(text, unit="N" if is_force else "", name=shown(name)) * (1.0 if is_force else normal_load)
+    if not value > 0:
+        raise InvalidInput(f"{shown(name)} {text} must be positive, a coefficient such as 0.2 or a force such as 0.6N")
+    return value
+
+
+@answer
+class ControlAnswer(Answer):
+    """A tuned controller with its margins, step response and energy, and stick-slip where it was computed."""
+
+    rig: Rig
+    settings: loops.ControlSettings
+    study: loops.ControlDesign
+    suppression: StickSlipSuppression | None
+    assumed: Mapping[str, str]
+
+    def blocks(self) -> Sequence[Block]:
+        """Operating point, controller, margins, step response and energy."""
+        return [
+            operating_point(self.rig),
+            Rows([*amplitude_rows(self.rig), *results.facts(self.settings, self.study, self.suppression)]),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Controller, margins, step response, energy and stick-slip."""
+        return results.control_object(self.rig, self.settings, self.study, self.suppression)
+
+    def caveats(self) -> Sequence[str]:
+        """Those of the rig at its own operating point, a thin gain margin, and a resonance that tracking has lost."""
+        return results.caveats(self.rig, self.study)
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions of the rig file, of the resonance and of the holder."""
+        assumptions = {**self.rig.assumptions, **self.assumed}
+        if self.suppression is not None:
+            assumptions["stick-slip"] = results.holder_text()
+        return assumptions
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Run in closed loop, design of the loop, and stick-slip where it was computed."""
+        study, suppression = self.study, self.suppression
+        drawings = {
+            self._name: Drawing(
+                chart=lambda: figures.closed_loop_chart(study),
+                caption=f"Friction of {self.rig.title} in closed loop; every point computed.",
+            ),
+            f"{self._name}-design": Drawing(
+                chart=lambda: figures.control_design_chart(study),
+                caption=f"Map from {study.plant.quantity.word} to friction of the controller, and magnitude of the"
+                " sensitivity function.",
+            ),
+        }
+        if suppression is not None:
+            drawings[f"{self._name}-stick-slip"] = Drawing(
+                chart=lambda: figures.stick_slip_chart(suppression),
+                caption="Force in the holder of the slider as the counterface drags it along.",
+            )
+        return drawings
+
+    def files(self) -> "Mapping[str, str | Dataset]":
+        """Run as netCDF, controller as C source, and its lookup table."""
+        controller, title = self.study.controller, self.rig.title
+        return {
+            f"{self._name}.nc": control_dataset(self.study, title=f"Friction control of {title}"),
+            f"{self._name}.c": loops.controller_source(controller, self.study.tracker, title=title),
+            f"{self._name}.csv": loops.lookup_table(controller),
+        }
+
+    def page(self) -> Page:
+        """Page `control.html`."""
+        return Page(
+            name="control",
+            title=f"Friction control of {self.rig.title}",
+            settings=rig_settings(self.rig),
+            facts=results.facts(self.settings, self.study, self.suppression),
+            tables=[results.lookup_table(self.study)],
+        )
+
+    @property
+    def _name(self) -> str:
+        """Name of the files, without ending."""
+        return f"{self.rig.name}-control"
+
 
 # arguments without meaning for a commanded amplitude
 _OF_VOLTAGE = (
@@ -46,15 +209,15 @@ def control(
         Number | None,
         Quantity("Efficiency at the rig's speed, in m2/N, instead of the published.", "m2/N", kind="COEFFICIENT"),
     ] = None,
-    delay: loop.Delay = "1ms",
-    rate: loop.Rate = "5kHz",
+    delay: Delay = "1ms",
+    rate: Rate = "5kHz",
     noise: Annotated[Number, Quantity("Standard deviation of the sensor.", "N")] = "0N",
     factor: Annotated[float, Parameter("Real friction over that of the model.", lowest=0.01, highest=100)] = 1.0,
-    closed_loop: loop.ClosedLoop = None,
+    closed_loop: ClosedLoop = None,
     amplitude_limit: Annotated[
         Number | None, Quantity("Largest amplitude of a rig without a voltage; the rig's own by default.", "m")
     ] = None,
-    voltage_limit: loop.VoltageLimit = None,
+    voltage_limit: VoltageLimit = None,
     current_limit: Annotated[Number | None, Quantity("Largest current.", "A", kind="CURRENT")] = None,
     slew_limit: Annotated[Number | None, Quantity("Fastest change of voltage.", "V/s", kind="V/s")] = None,
     warming: Annotated[Number, Quantity("Final temperature rise, such as 40K.", "K")] = "0K",
@@ -62,8 +225,8 @@ def control(
         Number | None, Quantity("Time constant of the warming; a quarter of the run by default.", "s")
     ] = None,
     track: Annotated[bool, Parameter("Follow the resonance by the phase of the impedance.")] = True,
-    quality: loop.Quality = 50.0,
-    coupling: loop.Coupling = 0.2,
+    quality: Quality = 50.0,
+    coupling: Coupling = 0.2,
     stick_slip: Annotated[bool, Parameter("Also compute stick-slip of the slider on an elastic holder.")] = False,
     duration: Annotated[Number, Quantity("Duration of the run.", "s")] = "0.2s",
     **watch: Unpack[Watched],
@@ -92,7 +255,7 @@ def control(
     settings = loops.ControlSettings(
         friction_force=None
         if friction is None
-        else loop.friction_force("friction", friction, normal_load=known.normal_load),
+        else friction_force("friction", friction, normal_load=known.normal_load),
         **limits,
         dead_time=dead_time,
         sample_interval=interval,
@@ -141,12 +304,12 @@ def _assumed(rig: Rig, quality: float, coupling: float) -> tuple[loops.Vibration
     if commanded_quantity(rig) is AMPLITUDE:
         text = f"the amplitude follows its set point as a resonance of quality factor {quality:g}; not measured"
         return loops.amplitude_mode(rig, quality_factor=quality), {"amplitude control": text}
-    return loop.assumed_resonance(rig, quality=quality, coupling=coupling)
+    return assumed_resonance(rig, quality=quality, coupling=coupling)
 
 
 def _times(rate: Number, delay: Number, duration: Number) -> tuple[float, float, float]:
     """Sampling interval, delay and duration of the run, in s."""
-    sampling, run_time = loop.sampling_and_duration(rate=rate, duration=duration)
+    sampling, run_time = sampling_and_duration(rate=rate, duration=duration)
     dead_time = in_si("delay", delay)
     if dead_time > run_time:
         raise InvalidInput(f"{shown('delay')} {delay} must not exceed {shown('duration')} {duration}")

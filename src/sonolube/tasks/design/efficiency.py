@@ -3,14 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
-from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
-from sonolube.design.efficiency_figures import efficiency_chart
+from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_chart, efficiency_dataset
 from sonolube.report import Drawing, Page
-from sonolube.report.results.design import efficiency as results
-from sonolube.report.results.rig_text import rig_settings
+from sonolube.report.results.design import friction_map as results
+from sonolube.report.results.record_object import rig_settings
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
-from sonolube.tasks.design.closed_loop import friction_force
+from sonolube.tasks.design.control import friction_force
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import (
     File,

@@ -17,10 +17,9 @@ from sonolube.report import Drawing, Page
 from sonolube.report.results.design import friction_map as results
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
-from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.own_tables import MappedRuns, Values, refuse_replaced, runs_of, values_by_key
 from sonolube.tasks.parameters import Backend, File, KeyValues, Parameter, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage
-from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
 
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")

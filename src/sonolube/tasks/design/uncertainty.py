@@ -9,19 +9,20 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.design import SampleStatistics, band_chart, histogram_chart, outcome_statistics, propagate, sobol_chart
-from sonolube.design.identified_structure import IdentifiedStructure, identified_structure
 from sonolube.design.point_statistics import failure_counts
+from sonolube.design.uncertainty import IdentifiedStructure, identified_structure
 from sonolube.design.uncertainty_summary import Band, RankedEntry, outcome_band, outcome_indices, ranked_entries
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction.models.range_check import ratio_caveats
-from sonolube.prediction.tested_amplitudes import large_amplitude_caveats
+from sonolube.prediction.evidence import large_amplitude_caveats
 from sonolube.report import Drawing, Page
-from sonolube.report.results.beyond_the_model import BeyondTheModel, beyond_the_model
 from sonolube.report.results.design import uncertainty as results
-from sonolube.report.results.design.uncertain_entries import agreement
+from sonolube.report.results.design.uncertainty import agreement
+from sonolube.report.results.rig_point import BeyondTheModel, beyond_the_model
 from sonolube.rig import Rig, operating_caveats, steady_vibration
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
+from sonolube.tasks.own_tables import Values, refuse_replaced, values_by_key
 from sonolube.tasks.parameters import (
     DoorParameter,
     Interval,
@@ -34,7 +35,6 @@ from sonolube.tasks.parameters import (
     rig_of,
 )
 from sonolube.tasks.progress import stage
-from sonolube.tasks.ranges import Values, refuse_replaced, values_by_key
 from sonolube.tasks.task import shown, task
 
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."

@@ -1,2 +1,1 @@
-from .poisson_horn_face import face as face
-from .tuned_horn import design as design
+from .horns import design as design, face as face

@@ -6,11 +6,11 @@ from typing import Annotated, Any, Unpack
 from sonolube import identification
 from sonolube.errors import InvalidInput
 from sonolube.identification.decay_length.switch_table import is_switch_table
-from sonolube.laboratory.records.switched_run import switched_recording
+from sonolube.laboratory.records.recording_views import switched_recording
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing
-from sonolube.report.results import decay_length as results
+from sonolube.report.results import identification as results
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import Mapped, mapping_of

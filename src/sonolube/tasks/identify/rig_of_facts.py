@@ -11,7 +11,7 @@ from sonolube.models.actuator import PiezoStack
 from sonolube.report.results import identification as results
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identify_from_facts
-from sonolube.storage.input_files import input_text
+from sonolube.storage.user_files import input_text
 from sonolube.tasks.answer import Answer, Block, Table, answer, text_lines
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Parameter, Watched

@@ -9,14 +9,13 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.reader import read_impedance
-from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, read_impedance
 from sonolube.models.fem import Transducer
 from sonolube.models.fem.results import impedance_spectra
 from sonolube.models.fem.results.figures import impedance_chart
 from sonolube.models.fem.results.part_modes import longest_axis, starting_size
 from sonolube.report import Drawing
-from sonolube.report.results.parts import impedance_spectra as results
+from sonolube.report.results.parts import modes_and_impedance as results
 from sonolube.rig.datasets import LabelledArrays, labelled
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory.drivers import DeviceMap, first_readings, missing_parts, read_device_map, unfulfilled
-from sonolube.laboratory.dry_run.findings import SAFETY
+from sonolube.laboratory.dry_run.report import SAFETY
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Parameter

@@ -1,26 +1,99 @@
 """Task `lab hold`: friction held at a reference on devices or a virtual tribometer, the speed changing meanwhile."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Unpack
+from typing import Annotated, Any, Unpack
 
-from sonolube.design.control import Amplifier, ControlSettings, design_control
+from sonolube.design.control import Amplifier, ControlDesign, ControlSettings, design_control
 from sonolube.errors import InvalidInput
-from sonolube.laboratory import RunControl, closed_loop as holds
-from sonolube.laboratory.drivers.readiness import ready_devices
-from sonolube.laboratory.records import read_run
+from sonolube.laboratory import RunControl, closed_loop, closed_loop as holds
+from sonolube.laboratory.drivers.device_map import ready_devices
+from sonolube.laboratory.records import Run, read_run
 from sonolube.laboratory.reservation import require_free
 from sonolube.laboratory.run_plan import RunPlan, begin_record
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.models.actuator.drive import Drive
+from sonolube.report import Drawing
+from sonolube.report.results import held_friction as results
+from sonolube.report.results.ended_run import SIMULATED
 from sonolube.rig import Rig
-from sonolube.tasks.design import closed_loop as loop
-from sonolube.tasks.lab.hold_answer import HoldAnswer
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
+from sonolube.tasks.design import control as loop
+from sonolube.tasks.lab.protocol_run import ControlDoor, device_file, run_stage
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
-from sonolube.tasks.lab.run_record import ControlDoor, device_file, run_stage
 from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
-from sonolube.text.units import to_si
+from sonolube.text.units import format_si, to_si
+
+
+@answer
+class HoldAnswer(Answer):
+    """Friction held at each speed, beside the margins of the controller.
+
+    Parameters
+    ----------
+    rig : Rig
+    design : ControlDesign
+    held : HeldFriction
+    run : Run
+        Read back from its folder.
+    simulated : bool
+    assumed : mapping of str to str
+        Beside the assumptions of the rig file.
+    folder : Path
+        For figure and dataset, in that of the run.
+    """
+
+    rig: Rig
+    design: ControlDesign
+    held: closed_loop.HeldFriction
+    run: Run
+    simulated: bool
+    assumed: Mapping[str, str]
+    folder: Path
+
+    def blocks(self) -> Sequence[Block]:
+        """Reference, margins by the design, friction held at each speed, and the record."""
+        return results.held_blocks(self.rig, self.held, self.design, self.run, simulated=self.simulated)
+
+    def object(self) -> dict[str, Any]:
+        """Reference, controller, margins, what was held at each speed, and the record."""
+        return results.held_object(self.rig, self.held, self.design, self.run, simulated=self.simulated)
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of the record, speeds at which the reference was out of reach, and a mark of simulated runs."""
+        told = (*self.run.caveats, *results.saturation_lines(self.held))
+        return (*told, SIMULATED) if self.simulated else told
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions of the rig file and of the resonance."""
+        return {**self.rig.assumptions, **self.assumed}
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Friction with its reference, voltage and speed over time."""
+        held, simulated = self.held, self.simulated
+        if not held.time.size:
+            return {}
+        caption = f"Friction held at {format_si(held.hold.friction_force, 'N')} by the drive voltage."
+        return {
+            "held-friction": Drawing(
+                chart=lambda: closed_loop.held_friction_chart(held, simulated=simulated), caption=caption
+            )
+        }
+
+    def files(self) -> Mapping[str, Dataset]:
+        """Intervals of the controller as netCDF."""
+        if not self.held.time.size:
+            return {}
+        return {
+            "held-friction.nc": closed_loop.held_friction_dataset(self.held, title=f"Friction held on {self.rig.title}")
+        }
+
+    @property
+    def is_failure(self) -> bool:
+        """Whether the loop ended before its time."""
+        return self.held.outcome != "completed"
 
 
 @task

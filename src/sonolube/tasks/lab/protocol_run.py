@@ -1,23 +1,34 @@
-"""Tasks `lab run` and `lab virtual`: a protocol on a rig or a virtual one, recorded; or gone through dry."""
+"""Tasks `lab run` and `lab virtual`: a protocol on a rig or a virtual one, recorded; or gone through dry.
 
-from collections.abc import Mapping
+With the devices, who answers the prompts, the record, and the answers.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Final, Literal, Unpack
+from typing import Annotated, Any, Final, Literal, Unpack
 
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.facts.protocol import Protocol, protocol_at, protocol_by_name_or_file
-from sonolube.laboratory.drivers.readiness import ready_devices
-from sonolube.laboratory.records import EXPORT_FORMATS, export_run
-from sonolube.laboratory.run_plan import RunPlan
+from sonolube.facts.protocol import Protocol, flattened, protocol_at, protocol_by_name_or_file
+from sonolube.laboratory import RunControl, RunResult, require_possible, run_protocol
+from sonolube.laboratory.devices import Devices
+from sonolube.laboratory.drivers.device_map import ready_devices
+from sonolube.laboratory.dry_run import DryRun, dry_run_chart
+from sonolube.laboratory.records import EXPORT_FORMATS, Run, export_run, read_run
+from sonolube.laboratory.reservation import require_free
+from sonolube.laboratory.run_plan import RunPlan, begin_record
+from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
+from sonolube.report import Drawing
+from sonolube.report.results import ended_run as results
 from sonolube.rig import Rig
+from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.lab.run_answer import DryRunAnswer, RunAnswer
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags, facts_of
-from sonolube.tasks.lab.run_record import ControlDoor, OperatorDoor, device_file, run_and_record
 from sonolube.tasks.parameters import (
+    DoorParameter,
     File,
     KeyValues,
     OptionalRigSource,
@@ -27,7 +38,181 @@ from sonolube.tasks.parameters import (
     optional_rig,
     rig_of,
 )
+from sonolube.tasks.progress import Advance, TaskCancelled, stage
 from sonolube.tasks.task import refuse_unused, shown, task
+
+
+@answer
+class RunAnswer(Answer):
+    """Outcome of a run, and the place of its record.
+
+    Parameters
+    ----------
+    result : RunResult
+    run : Run
+        Read back from its folder.
+    simulated : bool
+    rig : Rig or None
+    """
+
+    result: RunResult
+    run: Run
+    simulated: bool
+    rig: Rig | None = None
+
+    def blocks(self) -> Sequence[Block]:
+        """Outcome, what was recorded, and the next command."""
+        return results.run_blocks(self.result, self.run, simulated=self.simulated)
+
+    def object(self) -> dict[str, Any]:
+        """Outcome, folder and recordings."""
+        return results.run_object(self.result, self.run, simulated=self.simulated)
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of the record."""
+        return results.run_caveats(self.run, self.rig) if self.simulated else self.run.caveats
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions of the rig file, where the friction is that of the rig."""
+        return {} if self.rig is None or not self.simulated else self.rig.assumptions
+
+    def dataset(self) -> Dataset:
+        """Recording, where there is one."""
+        return self.run.dataset().assign_attrs(self.notes()) if self.run.recordings else super().dataset()
+
+    @property
+    def is_failure(self) -> bool:
+        """Whether the run ended before its protocol."""
+        return self.run.summary.outcome != "completed"
+
+
+@answer
+class DryRunAnswer(Answer):
+    """Planned course of a protocol.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    found : DryRun
+    """
+
+    protocol: Protocol
+    found: DryRun
+
+    def blocks(self) -> Sequence[Block]:
+        """A row a set point, then time, data, drive and temperatures; what is impossible last."""
+        return results.dry_run_blocks(self.protocol, self.found)
+
+    def object(self) -> dict[str, Any]:
+        """Times, data and refusals."""
+        return results.dry_run_object(self.protocol, self.found)
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Speed, drive and temperatures over time."""
+        return {"dry-run": Drawing(chart=lambda: dry_run_chart(self.found), forms=())}
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of the plan."""
+        return self.found.caveats
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions about drive and heat."""
+        return self.found.assumptions
+
+
+OperatorDoor = Annotated[Operator | None, DoorParameter()]
+ControlDoor = Annotated[RunControl | None, DoorParameter()]
+
+_VIRTUAL = "virtual"
+
+
+def device_file(device_map: str | Path) -> Path | None:
+    """Device map of the running task; None for the virtual tribometer.
+
+    Raises
+    ------
+    InvalidInput
+        If arguments of the virtual tribometer are given beside a device map.
+    """
+    if str(device_map) == _VIRTUAL:
+        return None
+    because = f"with {shown('device_map')} MAP.toml, whose tests take their time"
+    refuse_unused("seed", "real_time", because=because)
+    return Path(device_map)
+
+
+def run_and_record(
+    plan: RunPlan,
+    devices: Devices,
+    *,
+    out: Path,
+    virtual: VirtualTribometer | None = None,
+    operator: Operator | None = None,
+    control: RunControl | None = None,
+) -> RunAnswer:
+    """Run a plan on devices with its record below a folder, and say how it went.
+
+    Parameters
+    ----------
+    plan : RunPlan
+    devices : Devices
+    out : Path
+        Folder of all runs.
+    virtual : VirtualTribometer, optional
+        Whose truth is kept too.
+    operator : callable, optional
+        Answers the prompts of a protocol on devices that are not simulated.
+    control : RunControl, optional
+        Requests of others.
+
+    Returns
+    -------
+    RunAnswer
+
+    Raises
+    ------
+    InvalidInput
+        If the devices cannot do what the protocol says, nobody can answer its prompts, or another run has one of them.
+    """
+    require_possible(plan.protocol, devices)
+    answers = _answering(plan.protocol, devices, operator)
+    control = control or RunControl()
+    require_free(devices.resources)
+    recorder = begin_record(plan, devices, out=out)
+    with run_stage("running", control) as advance:
+        result = run_protocol(plan.protocol, devices, recorder, operator=answers, control=control, advance=advance)
+        if virtual is not None:
+            recorder.store_truth(virtual.truth())
+    return RunAnswer(result=result, run=read_run(recorder.folder), simulated=devices.simulated, rig=plan.rig)
+
+
+@contextmanager
+def run_stage(title: str, control: RunControl) -> Iterator[Advance]:
+    """Report the progress of a run inside a `with` block; where the task is cancelled, the run is stopped in order."""
+    with stage(title) as advance:
+
+        def report(what: str, done: int, total: int) -> None:
+            try:
+                advance(what, done, total)
+            except TaskCancelled:
+                control.stop("cancelled")
+
+        yield report
+
+
+def _answering(protocol: Protocol, devices: Devices, operator: Operator | None) -> Operator:
+    """Operator of a run, who is not needed where nothing is asked or nothing is real."""
+    if devices.simulated:
+        return lambda prompt: True
+    if operator is not None:
+        return operator
+    if any(point.kind == "prompt" for point in flattened(protocol)):
+        raise InvalidInput(
+            "the protocol asks an operator; run it on a terminal, in Python with the argument operator, or take its"
+            f" prompts as done by {shown('yes')}"
+        )
+    return lambda prompt: False
+
 
 _OWN_TEST: Final = "map_test"  # of a virtual rig for which no protocol is named
 

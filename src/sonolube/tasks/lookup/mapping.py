@@ -5,11 +5,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.mapping_toml import mapping_toml
+from sonolube.measurement.recordings.mapping import mapping_toml
 from sonolube.measurement.recordings.text_tables import TextTable
-from sonolube.measurement.run_headings import RunHeading
+from sonolube.measurement.run_headings import LEFT_OUT, Meaning, RunHeading, mapping_of_columns, samples, stated_columns
 from sonolube.measurement.run_table import run_text
-from sonolube.measurement.stated_columns import LEFT_OUT, Meaning, mapping_of_columns, samples, stated_columns
 from sonolube.tasks.answer import Answer, Block, Table, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, KeyValues, file_stem

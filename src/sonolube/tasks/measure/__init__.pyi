@@ -1,9 +1,10 @@
-from .driven_vibration import vibration as vibration
-from .gauge_calibration import calibration as calibration
-from .hall_rotation import rotation as rotation
-from .impedance_fit import impedance as impedance
-from .recorded_friction import friction as friction
-from .recorded_temperature import temperature as temperature
-from .resonance_stiffness import stiffness as stiffness
+from .recordings import (
+    calibration as calibration,
+    friction as friction,
+    rotation as rotation,
+    temperature as temperature,
+    vibration as vibration,
+)
 from .scanned_surface import surface as surface
+from .spectra import impedance as impedance, stiffness as stiffness
 from .worn_groove import groove as groove

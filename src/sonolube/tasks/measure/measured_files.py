@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube import report as pages
 from sonolube.errors import SonolubeError
-from sonolube.measurement.file_selection import selected_files
+from sonolube.measurement.measured_files import selected_files
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.report.measured.sheet import Sheet
-from sonolube.report.measured.sheet_blocks import sheet_blocks
-from sonolube.report.measured.sheets_dataset import sheets_dataset
+from sonolube.report.measured.sheet import Sheet, sheet_blocks, sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
@@ -20,7 +18,7 @@ from sonolube.tasks.parameters import File, Parameter
 from sonolube.tasks.progress import stage
 
 if TYPE_CHECKING:
-    from sonolube.tasks.call import Mark
+    from sonolube.tasks.parameters import Mark
     from sonolube.tasks.progress import Advance
 
 Files = Annotated[Sequence[InputFile] | InputFile, File("Files, or folders whose files are taken.", "FILES...")]

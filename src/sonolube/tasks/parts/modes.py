@@ -10,18 +10,18 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.models.fem import ConvergedModes
-from sonolube.models.fem.results import mode_files
+from sonolube.models.fem.results import part_modes as mode_files
 from sonolube.models.fem.results.figures import ShapedSurface, mode_figure, shaped_surface
 from sonolube.models.fem.results.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
 from sonolube.operating_system import quoted
 from sonolube.report import Drawing
-from sonolube.report.results.parts import natural_modes as results
+from sonolube.report.results.parts import modes_and_impedance as results
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.number_table import number_table
+from sonolube.tasks.own_tables import number_table
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
 from sonolube.tasks.parts import named_parts as parts
-from sonolube.tasks.parts.supported_part import DEFAULT_MATERIAL, supported_part
+from sonolube.tasks.parts.named_parts import DEFAULT_MATERIAL, supported_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import given_arguments, in_si, refuse_unused, shown, task
 from sonolube.vocabulary import quantity

@@ -1,7 +1,7 @@
-"""Parts and transducers by a name or a STEP file and sizes: geometry, media and the first mesh."""
+"""Parts and transducers by a name or a STEP file and sizes: geometry, media, supports and the first mesh."""
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
@@ -10,11 +10,13 @@ from sonolube.dong2015.transducers import DONG_2015_TRANSDUCERS
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.materials import material, piezo_ceramic_names
 from sonolube.models import fem
+from sonolube.models.fem import FixedSupport
+from sonolube.models.fem.results.part_modes import SupportedPart
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.parameters import File
 from sonolube.tasks.task import shown
-from sonolube.text.units import to_si
-from sonolube.vocabulary import quantities
+from sonolube.text.units import format_si, to_si
+from sonolube.vocabulary import quantities, quantity
 
 Part = Annotated[InputFile, File("A part such as block, a transducer such as stack, or a STEP file.", "PART")]
 Axis = Literal["x", "y", "z"]
@@ -198,3 +200,64 @@ def step_part(part: InputFile, sizes: PartSizes) -> fem.Geometry:
     if sizes:
         raise InvalidInput(f"{part_name(part)} has its sizes, and takes no other: leave {', '.join(sizes)} out")
     return fem.read_step(file_path(part))
+
+
+DEFAULT_MATERIAL = "stainless_steel_304"
+"""Material of a part that has none of its own."""
+
+
+def supported_part(
+    part: InputFile,
+    sizes: PartSizes,
+    *,
+    material: str,
+    properties: Mapping[str, float] = MappingProxyType({}),
+    clamp: Sequence[str] = (),
+) -> SupportedPart:
+    """Part by its name and sizes, with its materials and supports.
+
+    Parameters
+    ----------
+    part : str, Path or NamedBytes
+        A part such as "block", a transducer such as "stack", or a STEP file.
+    sizes : mapping of str to str or float
+    material : str
+        Of a part that is no transducer; those of a transducer are its own.
+    properties : mapping of str to float
+        Of youngs_modulus, poisson_ratio and density those that replace the material's, in SI.
+    clamp : sequence of str
+        Faces that are held still.
+
+    Returns
+    -------
+    SupportedPart
+
+    Raises
+    ------
+    UnknownName
+        If the part, a size of it or the material is unknown.
+    InvalidInput
+        If a size is missing or the material is one without modes of its own.
+    """
+    name = part_name(part)
+    transducer = named_transducer(part, sizes) if name in ALL_TRANSDUCERS else None
+    geometry = named_part(part, sizes) if transducer is None else transducer.geometry
+    own = None if transducer is None else transducer.media
+    planes = () if transducer is None else transducer.fixed
+    return SupportedPart(
+        name=name,
+        material="its own materials" if transducer is not None else _described(material, properties),
+        geometry=geometry,
+        media=own or dict.fromkeys(geometry.regions, solid_medium(name, material, properties)),
+        fixed=(*planes, *(FixedSupport(face=face) for face in clamp)),
+        transducer=transducer,
+    )
+
+
+def _described(material: str, properties: Mapping[str, float]) -> str:
+    """Material and what replaces its properties, such as "brass with density 8.4e+03 kg/m3"."""
+    replaced = [
+        f"{name.replace('_', ' ')} {format_si(value, quantity(name).unit, digits=4)}"
+        for name, value in properties.items()
+    ]
+    return material if not replaced else f"{material} with {', '.join(replaced)}"

@@ -9,7 +9,7 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.operating_system import quoted
 from sonolube.rig import Rig
-from sonolube.rig.new_rig.known_surface import KnownSurface
+from sonolube.rig.new_rig.pin_and_vibration import KnownSurface
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text, rig_of_known
 from sonolube.rig.new_rig.stated_text import pin_shape, reader, speed_of, surface_of, vibration_of
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, Verbatim, answer

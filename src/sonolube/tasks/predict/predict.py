@@ -9,7 +9,7 @@ from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.predictive import DRAWS
 from sonolube.report import Drawing
 from sonolube.report.results import prediction as results
-from sonolube.report.results.measured_on_rig import Measurement, measured_on
+from sonolube.report.results.rig_point import Measurement, measured_on
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer

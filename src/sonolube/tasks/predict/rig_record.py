@@ -1,14 +1,30 @@
-"""Answer of tasks whose result is one record of a rig: every field that is a quantity, with its unit."""
+"""Tasks whose result is one record of a rig: `contact`, `friction`, `wear`, `simulate` and `thermal`.
+
+Their answer shows every field of the record that is a quantity, with its unit.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import field
-from typing import Any
+from typing import Annotated, Any, Unpack
 
+from sonolube import rig as rigs
+from sonolube.errors import InvalidInput
+from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
+from sonolube.models.friction import FRICTION_MODELS, FrictionModel
+from sonolube.models.thermal.flash import FLASH_MODELS
+from sonolube.prediction.evidence import large_amplitude_caveats
 from sonolube.report import Drawing
-from sonolube.report.results.measured_on_rig import Measurement
-from sonolube.rig import Rig
+from sonolube.report.results.rig_point import Measurement, beyond_the_model, measured_on
+from sonolube.rig import Rig, contact_point, friction_point, temperature_point, thermal_solid, wear_point
 from sonolube.rig.datasets import LabelledArrays, result_quantities, result_texts
+from sonolube.rig.figures import simulation_chart, temperature_chart
+from sonolube.rig.resolved_rig import resolved_rig
+from sonolube.rig.responses import simulation_arrays
+from sonolube.rig.simulation import friction_model_named
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer, si
+from sonolube.tasks.parameters import Interval, Number, Parameter, Quantity, RestingRig, RigFile, Watched, rig_of
+from sonolube.tasks.progress import stage
+from sonolube.tasks.task import in_si, plausible, shown, task
 from sonolube.text.units import format_quantity, format_si
 from sonolube.vocabulary import quantities
 
@@ -93,3 +109,180 @@ class RigRecord(Answer):
         if unit == "N" and value is not None and 0 < abs(value) < least:
             return f"below {format_si(least, unit)}"
         return "none" if value is None else format_quantity(value, name)
+
+
+_STIFFNESS = Parameter(f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}.", "MODEL")
+
+
+@task
+def contact(
+    rig: RestingRig, *, tangential_stiffness: Annotated[str, _STIFFNESS] = DEFAULT_TANGENTIAL_STIFFNESS
+) -> RigRecord:
+    """Contact of the rig at rest: separation, real area, stiffness.
+
+    Example: sonolube contact examples/rigs/poisson_al_steel.toml --load 40N
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.text.units import format_si
+    >>> answer = sl.contact("examples/rigs/tribometer.toml")
+    >>> format_si(float(answer["normal_stiffness"]), "N/m")  # 3 N over a decay length of 2 um
+    '1.5 MN/m'
+    """
+    known = rig_of(rig)
+    return RigRecord(rig=known, result=contact_point(known, tangential_stiffness_model=tangential_stiffness))
+
+
+def _described_model(model: type[FrictionModel]) -> str:
+    """Name, parameters with their units, and source of a friction model."""
+    parameters = ", ".join(f"{each.name} in {each.unit}" if each.unit else each.name for each in model.parameters())
+    return f"{model.name} ({parameters or 'no parameters'}; {model.citation})"
+
+
+_FRICTION_MODEL = Parameter(
+    "Friction model instead of the rig's own (D is the dissertation):"
+    f" {'; '.join(map(_described_model, FRICTION_MODELS.values()))}.",
+    "NAME",
+)
+
+
+@task
+def friction(
+    rig: RigFile, *, model: Annotated[str | None, _FRICTION_MODEL] = None, interval: Interval = True
+) -> RigRecord:
+    """Friction of the rig with and without vibration.
+
+    Example: sonolube friction examples/rigs/collar.toml --set drive.voltage_peak_to_peak=14V
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.friction("examples/rigs/tribometer.toml")
+    >>> round(float(answer["friction_ratio"]), 2)
+    0.35
+    >>> round(float(answer["friction_force"]), 2)  # in N
+    0.36
+    """
+    known = rig_of(rig)
+    resolved = resolved_rig(known)
+    result = friction_point(resolved, model=model)
+    by = known.friction_model if model is None else friction_model_named(known, model)
+    beyond = beyond_the_model(resolved, by, interval=interval)
+    return RigRecord(
+        rig=known,
+        result=result,
+        measured=measured_on(known, vibration_amplitude=result.vibration_amplitude),
+        leading=large_amplitude_caveats(resolved, vibration_amplitude=result.vibration_amplitude),
+        rows=beyond.rows(),
+        entries=beyond.object(),
+    )
+
+
+@task
+def wear(rig: RigFile) -> RigRecord:
+    """Wear of the rig's softer body with and without vibration.
+
+    Example: sonolube wear examples/rigs/tribometer.toml
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> answer = sl.wear("examples/rigs/tribometer.toml")
+    >>> round(float(answer["wear_reduction"]), 2)
+    0.47
+    """
+    known = rig_of(rig)
+    return RigRecord(rig=known, result=wear_point(known))
+
+
+@task
+def simulate(rig: RigFile, **watch: Unpack[Watched]) -> RigRecord:
+    """Multi-scale model: drive, structure and contact in one steady vibration, and the friction and wear under it.
+
+    Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.text.units import format_si
+    >>> answer = sl.simulate("examples/rigs/tribometer.toml")
+    >>> format_si(float(answer["mean_displacement"]), "m", digits=2)
+    '720 nm'
+    """
+    known = rig_of(rig)
+    with stage("simulating"):
+        result = rigs.simulate(known)
+    name, labelled = f"{known.name}-simulation", simulation_arrays(known, result)
+    return RigRecord(
+        rig=known,
+        result=result,
+        measured=measured_on(known, vibration_amplitude=result.vibration.vibration_amplitude),
+        drawings={name: Drawing(chart=lambda: simulation_chart(labelled))},
+        datasets={f"{name}.nc": labelled},
+    )
+
+
+_PIN = Parameter("Material of the pin, which the contact stays on; by default the rig's.", "MATERIAL")
+_DISC = Parameter("Material of the disc, which the contact moves over; by default the rig's.", "MATERIAL")
+_CONDUCTANCE = Quantity("Thermal conductance from the pin to its surroundings.", "W/K", kind="CONDUCTANCE")
+_VIBRATION_HEAT = Quantity(
+    "Heat of the vibration in the contact; several, such as 1mW,5mW, one after another, each for as long.", "W"
+)
+_RATIO = Quantity(
+    "Friction with vibration over that without, such as a measured one, instead of the friction model's.",
+    "friction_ratio",
+    kind="RATIO",
+)
+_FLASH_MODEL = Parameter(f"Model of the flash temperature: {', '.join(FLASH_MODELS)}.", "MODEL")
+
+
+@task
+def thermal(
+    rig: RigFile,
+    *,
+    pin: Annotated[str | None, _PIN] = None,
+    disc: Annotated[str | None, _DISC] = None,
+    duration: Annotated[Number, Quantity("Duration of the test.", "s")] = "50s",
+    heat_capacity: Annotated[Number, Quantity("Heat capacity of the pin.", "J/K", kind="CAPACITY")] = "1.5J/K",
+    conductance: Annotated[Number, _CONDUCTANCE] = "0.05W/K",
+    dry: Annotated[Number, Quantity("Time at the start of the test without vibration.", "s")] = "0s",
+    vibration_heat: Annotated[Number, _VIBRATION_HEAT] = "0W",
+    friction_ratio: Annotated[Number | None, _RATIO] = None,
+    flash_model: Annotated[str, _FLASH_MODEL] = "quadrature",
+) -> RigRecord:
+    """Heat of friction and vibration: flash, bulk and their share in each body.
+
+    Example: sonolube thermal examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
+
+    Examples
+    --------
+    >>> import sonolube as sl
+    >>> from sonolube.text.units import format_si
+    >>> answer = sl.thermal("examples/rigs/tribometer.toml", pin="stainless_steel_316", disc="aluminium_2024")
+    >>> format_si(float(answer["frictional_heat_rate"]), "W", digits=2)  # 0.36 N at 20.3 mm/s
+    '7.3 mW'
+    """
+    known = rig_of(rig)
+    levels = vibration_heat.split(",") if isinstance(vibration_heat, str) else [vibration_heat]
+    result = temperature_point(
+        known,
+        pin=thermal_solid(_material(pin or known.pin_material, "pin")),
+        disc=thermal_solid(_material(disc or known.disc_material, "disc")),
+        heat_capacity=plausible("heat_capacity", heat_capacity),
+        thermal_conductance=plausible("conductance", conductance),
+        duration=plausible("duration", duration),
+        dry_duration=plausible("dry", dry),
+        vibration_heat_rate=[plausible("vibration_heat", level) for level in levels],
+        friction_ratio=in_si("friction_ratio", friction_ratio),
+        flash_model=flash_model,
+    )
+    drawing = Drawing(chart=lambda: temperature_chart(known, result))
+    return RigRecord(rig=known, result=result, drawings={f"{known.name}-thermal": drawing})
+
+
+def _material(name: str | None, role: str) -> str:
+    """Material of a body, given or of the rig."""
+    if name is None:
+        raise InvalidInput(f'{shown(role)}: missing; give it, or contact.softer.role = "pin" or "disc" in the rig file')
+    return name

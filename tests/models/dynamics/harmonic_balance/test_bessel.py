@@ -4,7 +4,7 @@ import numpy as np
 from pytest import approx
 from scipy.special import ive
 
-from sonolube.models.dynamics.harmonic_balance.bessel import bessel_ratio, log_bessel_i0
+from sonolube.models.dynamics.harmonic_balance.initial_guess import bessel_ratio, log_bessel_i0
 
 
 def test_bessel_functions_agree_with_scipy() -> None:

@@ -6,8 +6,8 @@ from scipy.special import ive
 
 from sonolube.models.dynamics import ExponentialGap, Structure
 from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem
+from sonolube.models.dynamics.harmonic_balance.equations import CONTACT_PER_FORCE, pole_residue_model, receptance
 from sonolube.models.dynamics.harmonic_balance.initial_guess import initial_guess
-from sonolube.models.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, pole_residue_model, receptance
 
 LENGTH = 2e-6
 

@@ -6,7 +6,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.models.fem import Mesh, box_mesh, change_order, transfer_field
-from sonolube.models.fem.mesh.simplex import lagrange_nodes
+from sonolube.models.fem.mesh.mesh import lagrange_nodes
 
 ORDERS = (2, 3, 4, 5, 6)
 

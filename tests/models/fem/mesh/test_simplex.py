@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.models.fem.mesh.simplex import lagrange_nodes, shape_functions, simplex_quadrature
+from sonolube.models.fem.mesh.mesh import lagrange_nodes, shape_functions, simplex_quadrature
 
 ORDERS = (2, 3, 4, 5, 6)
 

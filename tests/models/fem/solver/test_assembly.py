@@ -7,7 +7,7 @@ import pytest
 from pytest import approx
 
 from sonolube.models.fem import FixedSupport, Mesh, Model, box_mesh, change_order, isotropic_medium
-from sonolube.models.fem.mesh.simplex import lagrange_nodes, shape_functions, simplex_quadrature
+from sonolube.models.fem.mesh.mesh import lagrange_nodes, shape_functions, simplex_quadrature
 from sonolube.models.fem.solver.assembly import assemble_matrices, tributary_areas
 
 ORDERS = (2, 3, 4, 5, 6)

@@ -5,7 +5,7 @@ from pytest import mark
 
 from sonolube.checks import Floats
 from sonolube.models.surfaces import HeightMap
-from sonolube.models.surfaces.grooves.outliers import without_outliers
+from sonolube.models.surfaces.grooves.groove import without_outliers
 
 SHAPE = (300, 400)
 

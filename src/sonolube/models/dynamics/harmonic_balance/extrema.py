@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, Integers
-from sonolube.models.dynamics.gap_laws.protocol import CONTACT_LOSS_THRESHOLD, GapLaw, damped_force
+from sonolube.models.dynamics.gap_laws.closed_form import CONTACT_LOSS_THRESHOLD, GapLaw, damped_force
 
 _WEAK_HARMONICS = 0.7  # sum of k^2 |X_k|, k > 1, over |X_1| up to which a motion certainly has two extrema
 _CLEAR = 0.99  # level over amplitude, at most, from which the search for its crossing starts

@@ -19,8 +19,8 @@ import numpy as np
 
 from sonolube.checks import Floats, Integers
 from sonolube.execution.compilation import kernel
+from sonolube.models.dynamics.harmonic_balance.equations import contact_receptances
 from sonolube.models.dynamics.harmonic_balance.newton_kernel import newton_step
-from sonolube.models.dynamics.harmonic_balance.receptance import contact_receptances
 from sonolube.models.dynamics.kernels.contact_kernel import (
     EXPONENTIAL,
     KernelLaw,

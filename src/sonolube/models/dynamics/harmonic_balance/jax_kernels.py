@@ -16,7 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from sonolube.checks import Complexes, Floats, Integers
-from sonolube.models.dynamics.gap_laws.protocol import GapLaw
+from sonolube.models.dynamics.gap_laws.closed_form import GapLaw
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem
 from sonolube.models.dynamics.harmonic_balance.floquet_kernel import (

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Integers
-from sonolube.models.dynamics.gap_laws.protocol import force_decay_length
+from sonolube.models.dynamics.gap_laws.closed_form import force_decay_length
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution
+from sonolube.models.dynamics.harmonic_balance.equations import CHARGE_PER_VOLT, CONTACT_PER_VOLT, receptance
 from sonolube.models.dynamics.harmonic_balance.extrema import response_measures
 from sonolube.models.dynamics.harmonic_balance.floquet_exponent import (
     STABILITY_THRESHOLD,
@@ -26,7 +27,6 @@ from sonolube.models.dynamics.harmonic_balance.harmonic_kernel import (
     newton_solve,
 )
 from sonolube.models.dynamics.harmonic_balance.initial_guess import InitialGuess, initial_guess
-from sonolube.models.dynamics.harmonic_balance.receptance import CHARGE_PER_VOLT, CONTACT_PER_VOLT, receptance
 from sonolube.models.dynamics.kernels.simd import LANES, uniform_blocks
 
 MAX_HARMONICS = 64

@@ -17,7 +17,7 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics.first_order_modes import FirstOrderModes
+from sonolube.models.dynamics.linear import FirstOrderModes
 from sonolube.models.dynamics.waveform import Sine, Waveform, waveform_value
 
 PAST = 5

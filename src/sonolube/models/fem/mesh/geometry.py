@@ -1,21 +1,121 @@
-"""Solid geometry in the CAD kernel: named single bodies, translation, bonded assemblies and STEP files.
+"""Solid geometry in the optional CAD kernel (OpenCASCADE through netgen-mesher), and STEP files.
 
 The CAD kernel works in mm, for which its tolerances are set; everything else is in m. Plane faces at the ends of a body
-along an axis are named "-x", "+x", "-y", "+y", "-z" and "+z", all others "side".
+along an axis are named "-x", "+x", "-y", "+y", "-z" and "+z", all others "side". A STEP file is read on trial in a
+process of its own, with limits of time and memory.
 """
 
+import ctypes
+import os
 import re
-from collections.abc import Mapping
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
+from tempfile import TemporaryDirectory, TemporaryFile
+from threading import RLock
+from typing import Any, Final
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel, captured_output
-from sonolube.models.fem.mesh.step_trial import try_step_file
+from sonolube.extras import missing_package
+
+MILLIMETRE = 1e-3
+"""Length unit of the CAD kernel, in m."""
+
+_STREAMS = (1, 2)  # file descriptors of standard output and error
+_REDIRECTION = RLock()  # file descriptors belong to the process, not to a thread
+
+
+def cad_kernel() -> Any:
+    """Module `netgen.occ`, the CAD kernel."""
+    try:
+        return import_module("netgen.occ")
+    except ImportError:
+        raise missing_package("fem") from None
+
+
+@contextmanager
+def captured_output() -> Iterator[list[str]]:
+    """Context in which text printed by the CAD kernel is captured instead of reaching standard output and error.
+
+    The distinct lines printed, filled on leaving the context.
+    """
+    lines: list[str] = []
+    with _REDIRECTION, TemporaryFile() as file:
+        _flush()
+        saved = [os.dup(stream) for stream in _STREAMS]
+        try:
+            for stream in _STREAMS:
+                os.dup2(file.fileno(), stream)
+            yield lines
+        finally:
+            _flush()
+            for stream, original in zip(_STREAMS, saved, strict=True):
+                os.dup2(original, stream)
+                os.close(original)
+            file.seek(0)
+            printed = file.read().decode(errors="replace").splitlines()
+            lines += dict.fromkeys(line.strip() for line in printed if line.strip())
+
+
+def _flush() -> None:
+    """Flush the buffers of Python and of the C library, so that text stays on its side of the redirection."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    with suppress(AttributeError, OSError, TypeError):  # platforms without a C library of this name
+        ctypes.CDLL(None).fflush(None)
+
+
+_SECONDS: Final = 60  # of processor time
+_WAIT: Final = 300  # s, for a machine that gives the process a fifth of a processor
+_BYTES: Final = 4 * 2**30
+_REFUSED: Final = 3  # exit status of the trial where it refuses the file
+_TRIAL: Final = (
+    "from sonolube.models.fem.mesh.geometry import unguarded_step_geometry;"
+    "from sonolube.models.fem.mesh.geometry import run_trial;"
+    "run_trial(unguarded_step_geometry)"
+)
+
+
+def try_step_file(path: Path) -> None:
+    """Raise where reading a STEP file refuses it, ends the program, or needs too much time or memory."""
+    command = [sys.executable, "-c", _TRIAL, str(path)]
+    try:
+        ended = subprocess.run(command, capture_output=True, check=False, timeout=_WAIT)
+    except subprocess.TimeoutExpired:
+        raise InvalidInput(f"{path}: not read within {_WAIT} s; export it anew, with fewer faces") from None
+    if ended.returncode == _REFUSED:
+        raise InvalidInput(ended.stderr.decode(errors="replace").strip().splitlines()[-1])
+    if ended.returncode:
+        raise InvalidInput(
+            f"{path}: the CAD kernel ends on it without an answer, or needs more than {_SECONDS} s or"
+            f" {_BYTES >> 30} GiB: the file is damaged or too large; export it anew"
+        )
+
+
+def run_trial(read: Callable[[Path], object]) -> None:
+    """Read the file that the command line of this process names within the limits; print a refusal and exit with it."""
+    _limit()
+    try:
+        read(Path(sys.argv[1]))
+    except InvalidInput as refusal:
+        sys.stderr.write(f"{refusal}\n")
+        sys.exit(_REFUSED)
+
+
+def _limit() -> None:
+    """Limit the time and the memory of this process, where the system can."""
+    with suppress(ImportError, ValueError, OSError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CPU, (_SECONDS, _SECONDS))
+        resource.setrlimit(resource.RLIMIT_AS, (_BYTES, _BYTES))
+
 
 _AXES = "xyz"
 _MIN_VOLUME = 1e-9  # of the bounding box, below which a body counts as having no thickness

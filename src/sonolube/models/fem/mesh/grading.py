@@ -12,8 +12,7 @@ import numpy as np
 
 from sonolube.checks import Floats, Integers
 from sonolube.models.fem.mesh.element_order import change_order, mesh_from_elements
-from sonolube.models.fem.mesh.mesh import Mesh
-from sonolube.models.fem.mesh.simplex import EDGES, lagrange_nodes, shape_functions
+from sonolube.models.fem.mesh.mesh import EDGES, Mesh, lagrange_nodes, shape_functions
 
 _REENTRANT_ANGLE = np.radians(200.0)  # dihedral angle of an edge that counts; above 180, as meshed curves have kinks
 _INTERIOR_ANGLE = np.radians(350.0)  # dihedral angle from which an edge is interior

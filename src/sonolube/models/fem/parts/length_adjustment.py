@@ -3,8 +3,7 @@
 from typing import Any
 
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.mesh.cad import MILLIMETRE, cad_kernel
-from sonolube.models.fem.mesh.geometry import Geometry, single_body
+from sonolube.models.fem.mesh.geometry import MILLIMETRE, Geometry, cad_kernel, single_body
 from sonolube.models.fem.mesh.mesh import DIRECTIONS
 
 _NO_CHANGE = 1e-6  # mm

@@ -5,7 +5,7 @@ from dataclasses import replace
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import Material, PiezoCeramic, piezo_ceramic_from_strain_charge
-from sonolube.models.fem.solver.medium import Medium
+from sonolube.models.fem.solver.model import Medium
 
 
 def homogenised_stack(medium: Medium, *, stack_layers: float) -> Medium:

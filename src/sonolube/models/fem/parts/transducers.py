@@ -20,8 +20,7 @@ from sonolube.models.fem.mesh.geometry import Geometry, bond, translate
 from sonolube.models.fem.mesh.mesh import DIRECTIONS, Mesh
 from sonolube.models.fem.parts.bodies import cylinder, ring
 from sonolube.models.fem.parts.stack_material import homogenised_stack
-from sonolube.models.fem.solver.medium import Medium, medium_from_material, poled_medium
-from sonolube.models.fem.solver.model import Electrodes, FixedSupport, Model
+from sonolube.models.fem.solver.model import Electrodes, FixedSupport, Medium, Model, medium_from_material, poled_medium
 from sonolube.models.fem.solver.reduction import Output, ReducedModel
 
 _RINGS = 8  # even, so that both ends of a stack are grounded; 0.5 % in frequency for a quarter wave

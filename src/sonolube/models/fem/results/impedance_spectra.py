@@ -16,12 +16,12 @@ from sonolube.models.fem.electromechanical_model import (
     ElectromechanicalModel,
     converged_electromechanical_model,
 )
+from sonolube.models.fem.mesh.element_order import generate_mesh
 from sonolube.models.fem.mesh.mesh import Mesh
-from sonolube.models.fem.mesh.meshing import generate_mesh
 from sonolube.models.fem.parts.transducers import Transducer
-from sonolube.models.fem.results.vtk_export import vtu_text
-from sonolube.models.fem.solver.harmonic_analysis import HarmonicResponse, harmonic_response
+from sonolube.models.fem.results.nodal_fields import vtu_text
 from sonolube.models.fem.solver.model import FixedSupport, Model
+from sonolube.models.fem.solver.response import HarmonicResponse, harmonic_response
 
 _MIN_COUPLING = 0.05  # effective coupling factor from which a mode counts as driven by the voltage
 

@@ -22,9 +22,8 @@ from scipy import sparse
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.mesh.mapping import adjugate, determinant, jacobian_matrices
-from sonolube.models.fem.mesh.mesh import Mesh
-from sonolube.models.fem.mesh.simplex import lagrange_nodes, shape_functions, simplex_quadrature
+from sonolube.models.fem.mesh.element_order import adjugate, determinant, jacobian_matrices
+from sonolube.models.fem.mesh.mesh import Mesh, lagrange_nodes, shape_functions, simplex_quadrature
 from sonolube.models.fem.solver.model import FaceSpring, Model
 
 POTENTIAL_SCALE = 1e10

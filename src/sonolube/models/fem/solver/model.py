@@ -1,14 +1,223 @@
-"""Boundary-value problem of a piezoelectric body: mesh, media, displacement supports, springs and electrodes."""
+"""Boundary-value problem of a piezoelectric body: mesh, media, displacement supports, springs and electrodes.
+
+A medium is the linear constitutive law of a region: elastic, piezoelectric and dielectric constants in the axes of the
+model.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from sonolube.checks import require_positive
+from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.facts.materials import Material, PiezoCeramic
 from sonolube.models.fem.mesh.mesh import DIRECTIONS, Mesh
-from sonolube.models.fem.solver.medium import Medium
+
+_VOIGT = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # index pairs of the rows in Voigt notation
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Medium:
+    r"""Elastic, piezoelectric and dielectric constants in the axes of the model, in stress-charge form.
+
+    Parameters
+    ----------
+    elastic_stiffness : ndarray, shape (6, 6)
+        Stress per strain, at constant field. [Pa]
+    density : float
+        Mass density. [kg/m3]
+    stress_constants : ndarray, shape (3, 6), or None
+        Charge density per strain, equal to negative stress per field; None if not piezoelectric. [C/m2]
+    permittivity : ndarray, shape (3, 3), or None
+        Permittivity at constant strain; None for conductors, which have no potential unknowns. [F/m]
+    elastic_loss : float
+        Loss tangent of the stiffness, the inverse of the mechanical quality factor. []
+    loss_tangent : float
+        Dielectric loss tangent of the permittivity. []
+
+    Raises
+    ------
+    InvalidInput
+        If a tensor is missing, has the wrong shape, or is not positive definite.
+
+    Notes
+    -----
+    In Voigt notation, stresses and strains in the order xx, yy, zz, yz, xz, xy and shear strains twice those of the
+    tensor, for harmonic fields proportional to exp(i omega t):
+
+    .. math::
+
+        T = c^E (1 + i\eta) S - e^\mathsf{T} E, \qquad D = e S + \varepsilon^S (1 - i \tan\delta) E
+
+    References
+    ----------
+    .. [1] IEEE Standard on Piezoelectricity, ANSI/IEEE Std 176-1987, section 2.3.
+    """
+
+    elastic_stiffness: Floats
+    density: float
+    stress_constants: Floats | None = None
+    permittivity: Floats | None = None
+    elastic_loss: float = 0.0
+    loss_tangent: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_positive(density=self.density)
+        require_non_negative(elastic_loss=self.elastic_loss, loss_tangent=self.loss_tangent)
+        _require_positive_definite("elastic_stiffness", self.elastic_stiffness, 6)
+        if (self.stress_constants is None) != (self.permittivity is None):
+            raise InvalidInput("a piezoelectric medium needs both stress_constants and permittivity; one is missing")
+        if self.stress_constants is not None and self.permittivity is not None:
+            if np.shape(require_finite(stress_constants=self.stress_constants)) != (3, 6):
+                raise InvalidInput(f"stress_constants must have shape (3, 6), got {np.shape(self.stress_constants)}")
+            _require_positive_definite("permittivity", self.permittivity, 3)
+
+    @property
+    def is_piezoelectric(self) -> bool:
+        """Whether the electric potential is an unknown in the medium."""
+        return self.permittivity is not None
+
+
+def isotropic_medium(
+    *, youngs_modulus: float, poisson_ratio: float, density: float, elastic_loss: float = 0.0
+) -> Medium:
+    r"""Isotropic elastic medium from its engineering constants.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        Young's modulus. [Pa]
+    poisson_ratio : float
+        Poisson's ratio, above -1 and below 0.5. []
+    density : float
+        Mass density. [kg/m3]
+    elastic_loss : float
+        Loss tangent of the stiffness. []
+
+    Returns
+    -------
+    Medium
+
+    Raises
+    ------
+    InvalidInput
+        If the modulus or density is not positive, or Poisson's ratio outside its range.
+
+    Notes
+    -----
+    With Lamé's constants
+
+    .. math:: \mu = \frac{E}{2(1 + \nu)}, \qquad \lambda = \frac{2 \mu \nu}{1 - 2\nu}
+
+    the stiffness is
+
+    .. math::
+
+        c_{ijkl} = \lambda \delta_{ij}\delta_{kl} + \mu(\delta_{ik}\delta_{jl} + \delta_{il}\delta_{jk})
+    """
+    require_positive(youngs_modulus=youngs_modulus)
+    nu = float(require_within(-0.99, 0.4999, poisson_ratio=poisson_ratio))
+    mu = youngs_modulus / (2 * (1 + nu))
+    stiffness = np.diag([2 * mu] * 3 + [mu] * 3)
+    stiffness[:3, :3] += 2 * mu * nu / (1 - 2 * nu)
+    return Medium(elastic_stiffness=stiffness, density=density, elastic_loss=elastic_loss)
+
+
+def medium_from_material(material: Material, *, elastic_loss: float = 0.0) -> Medium:
+    """Isotropic elastic medium from a material of the data tables.
+
+    Parameters
+    ----------
+    material : Material
+    elastic_loss : float
+        Loss tangent of the stiffness. []
+
+    Returns
+    -------
+    Medium
+
+    Raises
+    ------
+    MissingProperty
+        If Young's modulus, Poisson's ratio or density is not known.
+    """
+    constants = {name: material.value(name) for name in ("youngs_modulus", "poisson_ratio", "density")}
+    return isotropic_medium(**constants, elastic_loss=elastic_loss)
+
+
+def poled_medium(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless: bool = False) -> Medium:
+    r"""Piezoelectric medium of a ceramic poled along a direction of the model.
+
+    Parameters
+    ----------
+    ceramic : PiezoCeramic
+    along : tuple of three float
+        Direction of poling; its length does not matter.
+    lossless : bool
+        Neglect the losses given by the ceramic's quality factor and loss tangent, where its data have them.
+
+    Returns
+    -------
+    Medium
+
+    Raises
+    ------
+    InvalidInput
+        If the direction is the zero vector: an unpoled ceramic is not piezoelectric, use `isotropic_medium` for it.
+
+    Notes
+    -----
+    With the crystal axes as rows of the rotation matrix :math:`a` and Bond's stress transformation matrix :math:`M`,
+
+    .. math::
+
+        c' = M c^E M^\mathsf{T}, \qquad e' = a^\mathsf{T} e M^\mathsf{T}, \qquad
+        \varepsilon' = a^\mathsf{T} \varepsilon^S a
+
+    References
+    ----------
+    .. [1] W. L. Bond, Bell Syst. Tech. J. 22, 1 (1943).
+    """
+    direction = require_finite(along=along)
+    if direction.shape != (3,) or not np.any(direction):
+        raise InvalidInput(f"a piezoelectric ceramic must be poled along a direction, got {along!r}")
+    axes = _crystal_axes(direction / np.linalg.norm(direction))
+    properties = {} if lossless else ceramic.material.properties
+    quality = properties["mechanical_quality_factor"].value if "mechanical_quality_factor" in properties else np.inf
+    bond = _bond_matrix(axes)
+    return Medium(
+        elastic_stiffness=bond @ ceramic.stiffness_short_circuit @ bond.T,
+        density=ceramic.material.value("density"),
+        stress_constants=axes.T @ ceramic.stress_constants @ bond.T,
+        permittivity=axes.T @ np.diag(ceramic.permittivity_clamped) @ axes,
+        elastic_loss=float(1 / quality),
+        loss_tangent=properties["loss_tangent"].value if "loss_tangent" in properties else 0.0,
+    )
+
+
+def _crystal_axes(third: Floats) -> Floats:
+    """Right-handed orthonormal axes as rows, the third one given."""
+    seed = np.eye(3)[np.argmin(np.abs(third))]
+    first = np.cross(seed, third)
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(third, first), third])
+
+
+def _bond_matrix(a: Floats) -> Floats:
+    """Bond's matrix M: stresses in the model's axes from those in the crystal's, which are the rows of `a`."""
+    return np.array(
+        [[a[k, i] * a[m, j] + (a[m, i] * a[k, j] if k != m else 0.0) for k, m in _VOIGT] for i, j in _VOIGT]
+    )
+
+
+def _require_positive_definite(name: str, tensor: Floats, n: int) -> None:
+    """Refuse a matrix that is not symmetric and positive definite of size n."""
+    matrix = require_finite(**{name: tensor})
+    if matrix.shape != (n, n) or not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-12 * np.abs(matrix).max()):
+        raise InvalidInput(f"{name} must be symmetric of shape ({n}, {n}), got shape {matrix.shape}")
+    if np.linalg.eigvalsh(matrix)[0] <= 0:
+        raise InvalidInput(f"{name} must be positive definite: some state of the medium would store negative energy")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,8 +9,12 @@ from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import kernel
 from sonolube.models.contact.contact_motion import GapMotionBatch
-from sonolube.models.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
-from sonolube.models.friction.models.asperity_stick_slip_table import LOG_BETA, sine_table
+from sonolube.models.friction.models.asperity_stick_slip_sine import (
+    EMPIRICAL_MEMORY_LENGTH,
+    LOG_BETA,
+    sine_stick_slip_ratio,
+    sine_table,
+)
 from sonolube.models.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.models.friction.uniform_spline import bicubic_value
 

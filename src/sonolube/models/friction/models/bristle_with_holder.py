@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, warn_of_range
 from sonolube.models.contact.contact_motion import ContactMotion, delayed_oscillation, require_open_gap
-from sonolube.models.contact.mindlin import mindlin_tangential_stiffness
 from sonolube.models.contact.period_mean import richardson_period_mean
 from sonolube.models.contact.rough import RoughContact
+from sonolube.models.contact.tangential_stiffness import mindlin_tangential_stiffness
 from sonolube.models.friction.bristle import (
     MAXIMUM_PERIODS,
     Holder,

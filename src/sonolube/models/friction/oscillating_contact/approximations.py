@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, warn_of_range
 from sonolube.models.friction.bristle import Holder
-from sonolube.models.friction.laws.coulomb_under_vibration import transverse_vibration_ratio
-from sonolube.models.friction.oscillating_contact.compliant_guide import guided_critical_speed
-from sonolube.models.friction.oscillating_contact.spring_contact import SpringContact
-from sonolube.models.friction.oscillating_contact.static_friction import (
+from sonolube.models.friction.laws.coulomb import transverse_vibration_ratio
+from sonolube.models.friction.oscillating_contact.driven_spring import guided_critical_speed
+from sonolube.models.friction.oscillating_contact.spring_contact import (
+    SpringContact,
     longitudinal_static_ratio,
     normal_static_ratio,
     slip_length_fraction,

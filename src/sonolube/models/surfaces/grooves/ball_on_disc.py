@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.models.surfaces.form_removal import fit_form, robust_deviation
-from sonolube.models.surfaces.grooves.plane_coordinates import centred_coordinates
+from sonolube.models.surfaces.grooves.track import centred_coordinates
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 
 _POINTS = 4000  # of a map, to which a sphere is fitted

@@ -10,13 +10,13 @@ from scipy.optimize import minimize
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
-from sonolube.models.surfaces.grooves.plane_coordinates import (
+from sonolube.models.surfaces.grooves.track import (
+    GrooveTrack,
     arc_coordinates,
     block_edges,
     block_means,
     centred_coordinates,
 )
-from sonolube.models.surfaces.grooves.track import GrooveTrack
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 
 __all__ = ["DetectedGroove", "detect_groove"]  # `height_range` serves this room only

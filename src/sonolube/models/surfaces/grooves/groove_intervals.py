@@ -16,7 +16,7 @@ from sonolube.models.surfaces.grooves.roughness_covariance import (
     roughness_covariance,
 )
 from sonolube.models.surfaces.grooves.section_curve import section_curve
-from sonolube.models.surfaces.grooves.sections import GrooveExtent, MeanCrossSection
+from sonolube.models.surfaces.grooves.track import GrooveExtent, MeanCrossSection
 from sonolube.models.surfaces.grooves.unworn_reference import UnwornReference
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 

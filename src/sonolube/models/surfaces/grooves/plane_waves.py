@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.models.surfaces.grooves.blocks import SHORTEST_RELATIVE_WAVELENGTH, BlockAverages
-from sonolube.models.surfaces.grooves.waviness_model import WavinessModel
+from sonolube.models.surfaces.grooves.blocks import SHORTEST_RELATIVE_WAVELENGTH, BlockAverages, WavinessModel
 from sonolube.models.surfaces.height_map import Mask
 
 _MAX_WAVES = 4

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import fft, stats
 
 from sonolube.checks import Floats
-from sonolube.models.surfaces.grooves.plane_coordinates import block_edges
+from sonolube.models.surfaces.grooves.track import block_edges
 from sonolube.models.surfaces.height_map import HeightMap, Mask
 from sonolube.models.surfaces.spectrum import half_spectrum_multiplicity
 

@@ -7,8 +7,7 @@ import numpy as np
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.models.surfaces.grooves.plane_coordinates import centred_coordinates
-from sonolube.models.surfaces.grooves.track import GrooveTrack
+from sonolube.models.surfaces.grooves.track import GrooveTrack, centred_coordinates
 from sonolube.models.surfaces.height_map import HeightMap
 from sonolube.models.surfaces.random_surface import GaussianCorrelationSpectrum, gaussian_surface
 

@@ -10,7 +10,7 @@ from scipy import fft, stats
 from sonolube.checks import Floats, require_within
 from sonolube.errors import InvalidInput
 from sonolube.models.surfaces.grooves.groove import Groove
-from sonolube.models.surfaces.grooves.sections import cross_sections
+from sonolube.models.surfaces.grooves.track import cross_sections
 
 _PADDING = 8  # zero padding of the profiles
 _MIN_PERIODS = 2.0  # in the track

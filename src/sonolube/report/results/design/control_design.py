@@ -13,11 +13,10 @@ from sonolube.design.control import (
     capture_limit,
     stick_slip as holder,
 )
-from sonolube.design.control.run_results import final_state, lost_resonance
+from sonolube.design.control.control_design import final_state, lost_resonance
 from sonolube.design.control.stick_slip import StickSlipSuppression
 from sonolube.report.page import PageTable
-from sonolube.report.results.record_object import picked
-from sonolube.report.results.rig_text import amplitude_object
+from sonolube.report.results.record_object import amplitude_object, picked
 from sonolube.rig import AMPLITUDE, Rig, operating_caveats
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si

@@ -1,16 +1,23 @@
-"""Map of friction reduction: its greatest value, ridge and measured runs as facts and tables of a page."""
+"""Maps of friction reduction and the efficiency line of a rig: facts, tables of a page, and objects for JSON."""
 
 from typing import TYPE_CHECKING, Any
 
 from sonolube.design import map_layout
-from sonolube.design.gaussian_process import MIN_RUNS
-from sonolube.design.map_layouts import panels_text
+from sonolube.design.efficiency import EfficiencyCalibration
+from sonolube.design.map_figures import panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
+from sonolube.design.runs_map import MIN_RUNS
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.page import Page, PageTable
-from sonolube.report.results.design.status_tables import status_tables
+from sonolube.report.results.design.sweep import status_tables
 from sonolube.report.results.design.uncertainty import in_sentence
-from sonolube.report.results.rig_text import amplitude_object, amplitude_rows, friction_model_text, rig_settings
+from sonolube.report.results.record_object import (
+    amplitude_object,
+    amplitude_rows,
+    friction_model_text,
+    picked,
+    rig_settings,
+)
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity, si
@@ -126,3 +133,43 @@ def _panel_tables(mapped: "xr.Dataset", panel: str | None) -> list[PageTable]:
     heads = (quantity(panel).meaning, *(quantity(name).meaning for name in names), "Ridge")
     columns = slice(None) if any(row[-1] for row in rows) else slice(-1)
     return [PageTable(title="Most reduction", heads=heads[columns], rows=tuple(row[columns] for row in rows))]
+
+
+_PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
+_FITTED = ("slope_uncertainty", "intercept_uncertainty", "efficiency_deviation", "lowest_speed", "highest_speed")
+_POWERS = ("actuator_power", "lowest_power", "highest_power")
+
+
+def facts(found: EfficiencyCalibration) -> list[tuple[str, str]]:
+    """Line, scatter and range of the runs, and the power."""
+    fit = found.fit
+    slope, intercept = _PRINTED_UNIT * fit.line.slope, _PRINTED_UNIT * fit.line.intercept
+    facts = {
+        "line": f"({slope:.3g} +- {_PRINTED_UNIT * fit.slope_uncertainty:.2g}) v + ({intercept:.3g} +-"
+        f" {_PRINTED_UNIT * fit.intercept_uncertainty:.2g}), in mW mm2/(N W) with v in m/s",
+        "scatter of runs": f"{_PRINTED_UNIT * fit.efficiency_deviation:.2g} mW mm2/(N W)",
+        "speeds covered": f"{format_si(fit.lowest_speed, 'm/s')} to {format_si(fit.highest_speed, 'm/s')}",
+    }
+    if found.estimate is not None:
+        power, low, high = (
+            "no bound" if value is None else format_si(value, "W")
+            for value in (getattr(found.estimate, name) for name in _POWERS)
+        )
+        at = format_si(found.target_speed or 0.0, "m/s")
+        text = f"{power} for {format_si(found.friction_force or 0.0, 'N')} at {at}; {low} to {high} with"
+        facts["power"] = f"{text} {100 * found.confidence_level:g} %"
+    return list(facts.items())
+
+
+def efficiency_object(found: EfficiencyCalibration) -> dict[str, Any]:
+    """Slope and intercept with their uncertainties, range of speeds, and the power with its interval."""
+    values = {
+        "slope": found.fit.line.slope,
+        "intercept": found.fit.line.intercept,
+        **picked(found.fit, *_FITTED),
+        "confidence_level": found.confidence_level,
+    }
+    if found.estimate is not None:
+        values |= {"friction_force": found.friction_force, "sliding_speed": found.target_speed}
+        values |= {name: value for name, value in picked(found.estimate, *_POWERS).items() if value is not None}
+    return {"runs": found.fit.runs, **si(values)}

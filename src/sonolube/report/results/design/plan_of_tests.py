@@ -5,8 +5,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from sonolube.design.test_plan.comparison import RunState
 from sonolube.design.test_plan.plan import TestPlan
-from sonolube.design.test_plan.run_order import RunState
 from sonolube.facts.protocol import Limits
 from sonolube.report.results.record_object import finite, picked
 from sonolube.rig import Rig

@@ -1,5 +1,6 @@
-"""Sweep of a rig: statuses, failures and the point of least friction as text, JSON and page."""
+"""Sweeps and parametric studies of a rig: statuses, failures, rows of main results, JSON and tables of pages."""
 
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -7,16 +8,166 @@ import numpy as np
 from sonolube.design import SweepPlan
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
 from sonolube.report.blocks import Block, Rows
-from sonolube.report.page import Page
-from sonolube.report.results.design.parametric_study import OUTCOMES, power_balance
-from sonolube.report.results.design.status_tables import failure_objects, status_tables
-from sonolube.report.results.rig_text import amplitude_object, amplitude_rows
-from sonolube.rig import Rig
-from sonolube.text.units import format_quantity
-from sonolube.vocabulary import si
+from sonolube.report.page import Page, PageTable
+from sonolube.report.results.record_object import amplitude_object, amplitude_rows
+from sonolube.rig import Rig, energy_balance, quantity_of_axis
+from sonolube.text.units import format_quantity, format_si
+from sonolube.vocabulary import quantity, si
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Named = Iterator[tuple[str, str]]
+
+OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
+"""Quantities that the answer of a sweep has of a point."""
+
+
+def _level_rows(study: "xr.Dataset") -> Named:
+    """Least friction, voltage or amplitude at which contact is lost, and power of the amplifier where it is known."""
+    quantity = quantity_of_axis(study.dims)
+    for best in _best_points(study):
+        yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, quantity.name)}"
+    lost = study[quantity.name].values[study["contact_loss_fraction"].values > 0]
+    yield "contact is lost", f"from {format_si(float(lost.min()), quantity.unit)}" if lost.size else "nowhere"
+    if "actuator_power" in study and not study["actuator_power"].isnull().all():
+        yield "amplifier", f"up to {format_si(float(study['actuator_power'].max()), 'W')}, D 1.9"
+
+
+def _speed_rows(study: "xr.Dataset") -> Named:
+    """Range of the friction ratio at each voltage or amplitude."""
+    quantity = quantity_of_axis(study.dims)
+    for index in range(study.sizes[quantity.name]):
+        curve = study.isel({quantity.name: index})
+        low, high = float(curve["friction_ratio"].min()), float(curve["friction_ratio"].max())
+        yield f"at {_text(curve, quantity.name)}", f"ratio {low:.3g} to {high:.3g}, slow to fast"
+
+
+def _frequency_rows(study: "xr.Dataset") -> Named:
+    """Least friction at each voltage."""
+    for best in _best_points(study):
+        at = f"{_text(best, 'frequency', digits=4)}, {_text(best, 'vibration_amplitude')}"
+        text = f"least friction ratio {_text(best, 'friction_ratio')} at {at}, {_text(best, 'actuator_power')}"
+        yield f"at {_text(best, 'voltage_peak_to_peak')}", text
+
+
+def _power_rows(study: "xr.Dataset") -> Named:
+    """Least power that the friction ratio takes, of the amplifier and dissipated."""
+    for name, label in (("actuator_power", "least power, D 1.9"), ("dissipated_power", "least dissipation")):
+        if not study[name].isnull().all():
+            least = study.isel(frequency=extreme_place(study, outcome=name) or 0)
+            at = f"{_text(least, 'frequency', digits=4)} and {_text(least, 'voltage_peak_to_peak')}"
+            yield label, f"{_text(least, name)} at {at} for friction ratio {_text(least, 'friction_ratio')}"
+
+
+def _waveform_rows(study: "xr.Dataset") -> Named:
+    """Friction ratio of each waveform, the least first."""
+    for index in study["friction_ratio"].values.argsort():
+        one = study.isel(waveform=int(index))
+        text = f"ratio {_text(one, 'friction_ratio')}, {_text(one, 'vibration_amplitude')}"
+        yield str(one["waveform"].values), text
+
+
+def _load_rows(study: "xr.Dataset") -> Named:
+    """Range of the friction ratio and, of a structure, of the natural frequency of the loading arm."""
+    ratios = study["friction_ratio"]
+    yield "friction ratio", f"{float(ratios.min()):.4g} to {float(ratios.max()):.4g}"
+    if "natural_frequency" in study:
+        arm = study["natural_frequency"]
+        yield "arm's frequency", f"{format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
+
+
+def _energy_rows(study: "xr.Dataset") -> Named:
+    """Comparison of the powers of the study, at its point of least friction."""
+    best = extreme_point(study, outcome="friction_ratio")
+    balance = None if best is None else power_balance(best)
+    if balance is not None:
+        yield "energy", balance
+
+
+def power_balance(point: "xr.Dataset") -> str | None:
+    """Comparison of the amplifier's power with the dissipated power of a point; None where it has no power."""
+    if "actuator_power" not in point:
+        return None
+    return energy_balance(
+        actuator_power=float(point["actuator_power"]), dissipated_power=float(point["dissipated_power"])
+    )
+
+
+_ROWS: "dict[str, Callable[[xr.Dataset], Named]]" = {
+    "voltage": _level_rows,
+    "amplitude": _level_rows,
+    "speed": _speed_rows,
+    "frequency": _frequency_rows,
+    "power": _power_rows,
+    "waveform": _waveform_rows,
+    "load": _load_rows,
+}
+
+
+def rows(study: "xr.Dataset", of: str) -> list[tuple[str, str]]:
+    """Main results of a study over a quantity such as "voltage", and how its powers compare."""
+    return [*_ROWS[of](study), *_energy_rows(study)]
+
+
+def best_objects(study: "xr.Dataset") -> list[dict[str, Any]]:
+    """Point of least friction of each curve, for JSON."""
+    return list(map(_point_object, _best_points(study)))
+
+
+def _best_points(study: "xr.Dataset") -> "Iterator[xr.Dataset]":
+    """Point of least friction of each curve that has a result."""
+    dims = study["friction_ratio"].dims
+    curves = [study] if len(dims) == 1 else [study.isel({dims[0]: i}) for i in range(study.sizes[dims[0]])]
+    for curve in curves:
+        best = extreme_point(curve, outcome="friction_ratio")
+        if best is not None:
+            yield best
+
+
+def _point_object(point: "xr.Dataset") -> dict[str, Any]:
+    """Coordinates and outcomes of a point, for JSON."""
+    known = dict.fromkeys([*point.coords, *(name for name in OUTCOMES if name in point)])
+    names = [str(name) for name in known if point[name].ndim == 0 and not _missing(point, name)]
+    waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
+    balance = power_balance(point)
+    return (
+        waveform
+        | si({name: float(point[name]) for name in names if name != "waveform"})
+        | ({} if balance is None else {"energy_balance": balance})
+    )
+
+
+def _missing(point: "xr.Dataset", name: Any) -> bool:
+    """Whether a number of a point is not known, as heat of a sine that no structure gives."""
+    return bool(point[name].dtype.kind == "f" and np.isnan(point[name]))
+
+
+def _text(point: "xr.Dataset", name: str, *, digits: int = 3) -> str:
+    """Quantity of a point with its unit."""
+    return format_si(float(point[name]), quantity(name).unit, digits=digits)
+
+
+def status_tables(points: "xr.Dataset", failures: Mapping[str, int]) -> list[PageTable]:
+    """Number of points of each status, and of those without a result by reason, where there are any."""
+    tables = [count_table("Points by status", "points", status_counts(points))]
+    if failures:
+        rows = tuple((reason, f"{count}") for reason, count in failures.items())
+        tables.append(PageTable(title="Points without a result", heads=("reason", "points"), rows=rows))
+    return tables
+
+
+def failure_objects(failures: Mapping[str, int]) -> list[dict[str, Any]]:
+    """Reasons for which points have no result, with their number, for JSON."""
+    return [{"reason": reason, "points": count} for reason, count in failures.items()]
+
+
+def count_table(title: str, counted: str, counts: Mapping[str, int], *, total: int | None = None) -> PageTable:
+    """Counts by status with their fractions."""
+    whole = sum(counts.values()) if total is None else total
+    rows = tuple((name, f"{count}", f"{count / whole:.1%}") for name, count in counts.items())
+    return PageTable(title=title, heads=("status", counted, "share"), rows=rows)
+
 
 _LABELS = {"energy_balance": "energy"}
 

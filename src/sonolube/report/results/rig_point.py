@@ -1,0 +1,174 @@
+"""Rig at its operating point: lubrication regime, published measurements beside it, and the error of its model."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Final
+
+from sonolube.models.wear import WearMechanismAssessment
+from sonolube.report.results.record_object import picked
+from sonolube.rig import LubricationPoint, Rig
+from sonolube.text.units import format_si
+from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
+from sonolube.vocabulary import si
+
+if TYPE_CHECKING:
+    from sonolube.models.friction import FrictionModel
+    from sonolube.prediction.applicability import FrictionInterval
+    from sonolube.rig import ResolvedRig
+    from sonolube.validation.assessment import ErrorStatistics
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BeyondTheModel:
+    """Error of a rig's friction model, which no interval from the rig's inputs holds, and the interval that does.
+
+    Parameters
+    ----------
+    error : ErrorStatistics or None
+        On published tests, each unseen; None where it is not known.
+    interval : FrictionInterval or None
+        None where it is not asked for.
+    """
+
+    error: "ErrorStatistics | None"
+    interval: "FrictionInterval | None"
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Names and texts."""
+        if self.interval is None:
+            return [("left out", "the error of the model, which --interval states")]
+        error = "the error of the model, which with these parameters is not known"
+        if self.error is not None:
+            error = (
+                f"the error of the model: +-{self.error.rms:.2g} in the ratio on {self.error.count} published tests,"
+                " each unseen"
+            )
+        return [("left out", error), ("predicted ratio", self.interval.text)]
+
+    def object(self) -> dict[str, Any]:
+        """Entries for JSON."""
+        if self.interval is None:
+            return {}
+        ends = None if self.interval.low is None else [self.interval.low, self.interval.high]
+        return {
+            "model_error": None if self.error is None else {"rms": self.error.rms, "tests": self.error.count},
+            "predicted_friction_ratio": {"interval_80": ends, "reason": self.interval.reason or None},
+        }
+
+
+def beyond_the_model(rig: "Rig | ResolvedRig", model: "FrictionModel", *, interval: bool) -> BeyondTheModel:
+    """Model error and prediction interval that the friction ratio of a rig by a friction model leaves out."""
+    if not interval:
+        return BeyondTheModel(error=None, interval=None)
+    from sonolube.prediction.friction_interval import friction_interval
+    from sonolube.validation.assessment import unseen_error  # which fits, with scipy.optimize
+
+    return BeyondTheModel(error=unseen_error(model), interval=friction_interval(rig))
+
+
+_OF_BOTH = attrgetter(
+    *("contact.nominal_area", "contact.pair.effective_modulus", "contact.pair.yield_strength"),
+    *("normal_load", "sliding_speed", "friction_coefficient"),
+)
+_OF_TEST = attrgetter("frequency", "vibration_amplitude")
+_SAME = 0.02  # relative difference of conditions that were rounded in print
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measurement:
+    """Measured friction ratio of a published test.
+
+    Parameters
+    ----------
+    test : FrictionTest
+    """
+
+    test: FrictionTest
+
+    @property
+    def label(self) -> str:
+        """Name of the test, such as "A-1"."""
+        return self.test.label
+
+    @property
+    def text(self) -> str:
+        """Friction ratio with its uncertainty, and where it was published."""
+        error = "" if self.test.uncertainty is None else f" +- {self.test.uncertainty:.2g}"
+        return f"friction ratio {self.test.friction_ratio:.3g}{error}: {NORMAL_VIBRATION_SETS[self.test.set_name]}"
+
+    def object(self) -> dict[str, Any]:
+        """Test, set, friction ratio and uncertainty for JSON."""
+        return {
+            "test": self.test.label,
+            "set": NORMAL_VIBRATION_SETS[self.test.set_name],
+            "friction_ratio": self.test.friction_ratio,
+            "uncertainty": self.test.uncertainty,
+        }
+
+
+def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[Measurement, ...]:
+    """Published friction tests under the contact, load, speed, friction, frequency and amplitude of a rig.
+
+    Roughness and asperity law are not compared: they are assumed for most tests.
+    """
+    if rig.drive is None:
+        return ()
+    own = (*_OF_BOTH(rig), rig.drive.frequency, vibration_amplitude)
+    return tuple(Measurement(test=test) for test in friction_tests() if _near(own, (*_OF_BOTH(test), *_OF_TEST(test))))
+
+
+def _near(own: Sequence[float], printed: Sequence[float]) -> bool:
+    """Whether conditions are those of a test as far as print rounds them."""
+    return all(abs(one - other) <= _SAME * abs(other) for one, other in zip(own, printed, strict=True))
+
+
+_QUANTITIES: Final = ("vibration_amplitude", "sliding_speed", "nominal_pressure", "asperity_load_fraction")
+
+
+def method_rows(result: LubricationPoint) -> list[list[str]]:
+    """Coefficient of friction of each method, the best marked."""
+    return [
+        [name, f"{float(value):.3g}", "best" if name == result.best else ""]
+        for name, value in result.coefficients._asdict().items()
+    ]
+
+
+def regime_rows(result: LubricationPoint, wear: WearMechanismAssessment | None) -> list[tuple[str, str]]:
+    """Load on asperities, friction model, amplitude, and the kind of wear."""
+    return [
+        ("on asperities", f"{100 * result.asperity_load_fraction:.3g} % of the load through the lubricant"),
+        ("friction model", result.friction_model),
+        ("amplitude", f"{format_si(result.vibration_amplitude, 'm')}: {result.amplitude_origin}"),
+        *([] if wear is None else _wear_rows(wear)),
+    ]
+
+
+def regime_object(result: LubricationPoint, wear: WearMechanismAssessment | None) -> dict[str, Any]:
+    """Coefficients of friction by method, the best of them, and the kind of wear."""
+    methods = result.coefficients._asdict()
+    return {
+        **picked(result, "best", "friction_model", "amplitude_source", "amplitude_origin"),
+        **si(picked(result, *_QUANTITIES)),
+        "friction_coefficient": si({name: float(value) for name, value in methods.items()}, unit=""),
+        **({} if wear is None else {"wear": _wear_object(wear)}),
+    }
+
+
+def _wear_rows(wear: WearMechanismAssessment) -> list[tuple[str, str]]:
+    """Kind of wear, effect of vibration on it, and their reasons."""
+    return [
+        ("wear", f"{wear.mechanism}; vibration: {wear.vibration_effect} in such pairs (a rule, not a law)"),
+        *(("because", reason) for reason in wear.reasons),
+        *(("evidence", line) for line in wear.evidence),
+    ]
+
+
+def _wear_object(wear: WearMechanismAssessment) -> dict[str, Any]:
+    """Kind of wear, effect of vibration on it, and their reasons."""
+    return {
+        "kind": str(wear.mechanism),
+        "effect": str(wear.vibration_effect),
+        "reasons": list(wear.reasons),
+        "evidence": list(wear.evidence),
+    }
