@@ -4,8 +4,8 @@ import sys
 
 _MODELS = ("surfaces", "contact", "friction", "wear", "thermal", "actuator", "dynamics", "fem")
 _FACTS = ("materials", "published", "metrics", "protocol")
-_TEXT = ("units", "unit_grammar", "common_units", "toml_text", "printable_text", "text_layout")
-_STORAGE = ("files", "growing_files", "targets", "interruption", "input_files")
+_TEXT = ("units", "unit_grammar", "toml_text")
+_STORAGE = ("files", "growing_files", "interruption")
 _EXECUTION = ("threads", "compilation")
 _ROOMS = {
     **{room: f"models.{room}" for room in _MODELS},
@@ -14,6 +14,8 @@ _ROOMS = {
     **{name: f"text.{name}" for name in _TEXT},
     **{name: f"storage.{name}" for name in _STORAGE},
     **{name: f"execution.{name}" for name in _EXECUTION},
+    **{"common_units": "text.units", "printable_text": "text.plain_text", "text_layout": "text.plain_text"},
+    **dict.fromkeys(("targets", "input_files"), "storage.user_files"),
 }
 _FUNCTIONS = {"new_rig": "new", "fit_runs": "fit"}
 

@@ -134,7 +134,7 @@ def test_rows_of_one_published_number_differ_by_their_suffix() -> None:
 
 def test_a_range_has_a_row_for_each_limit() -> None:
     # section 2.3.5: wear reductions from 45.8 to 48.6 %
-    low, high = range_rows("2.3.5-wear-reduction", 0.458, 0.55, "low", kind=FORMULA, high_note="high")
+    low, high = range_rows("2.3.5-wear-reduction", 0.458, 0.55, "low", high_note="high")
     assert (low.published, high.published) == approx((45.8, 48.6))
     assert (low.verdict, high.verdict) == (Verdict.REPRODUCED, Verdict.NOT_REPRODUCED)
     assert (low.note, high.note) == ("low", "high")
