@@ -61,7 +61,7 @@ def beyond_the_model(rig: "Rig | ResolvedRig", model: "FrictionModel", *, interv
     """Model error and prediction interval that the friction ratio of a rig by a friction model leaves out."""
     if not interval:
         return BeyondTheModel(error=None, interval=None)
-    from sonolube.prediction.friction_interval import friction_interval
+    from sonolube.prediction.applicability import friction_interval
     from sonolube.validation.assessment import unseen_error  # which fits, with scipy.optimize
 
     return BeyondTheModel(error=unseen_error(model), interval=friction_interval(rig))

@@ -234,7 +234,7 @@ def forced_response(model: Model, *, load: Output, frequency: float) -> Complexe
 
     See Also
     --------
-    sonolube.models.fem.solver.harmonic_analysis.harmonic_response : Response to a voltage.
+    sonolube.models.fem.solver.response.harmonic_response : Response to a voltage.
     """
     require_non_negative(frequency=frequency)
     if model.is_piezoelectric:
