@@ -44,8 +44,8 @@ def test_each_plot_of_a_fresh_kernel_is_one_picture(inline: bool) -> None:
 
 def test_progress_is_one_line_that_disappears() -> None:
     cell = (
-        "from sonolube.tasks import notebooks\n"
-        "notebooks._SHORT = notebooks._BETWEEN = 0.0\n"
+        "from sonolube.tasks import progress\n"
+        "progress._SHORT = progress._BETWEEN = 0.0\n"
         "import sonolube as sl\n"
         "sl.sweep('tribometer.toml', over={'sliding.sliding_speed': '10mm/s:50mm/s:3'}, chunk=1);"
     )

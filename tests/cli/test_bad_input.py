@@ -316,7 +316,7 @@ def test_heights_beyond_any_surface_are_refused(desk: Path, capsys: CaptureFixtu
 def test_a_run_that_is_killed_leaves_nothing_half_written(desk: Path) -> None:
     program = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a background job ignores it
-        "from sonolube.cli.console import progress; progress.SHORT = progress._BETWEEN_LINES = 0.05\n"
+        "from sonolube.cli.console import options; options.SHORT = options._BETWEEN_LINES = 0.05\n"
         "from sonolube.cli import main; main()"
     )
     command = [sys.executable, "-c", program, "uncertainty", UNCERTAIN, "--samples", "65536"]

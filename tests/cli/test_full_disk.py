@@ -97,7 +97,7 @@ def test_the_program_names_the_file_of_a_sweep_that_a_disk_does_not_hold(tmp_pat
     try:
         words = ["sweep", str(TRIBOMETER), "--over", f"{SPEEDS}=10mm/s:90mm/s:1000", "--chunk", "250"]
         code = (  # without lines of progress, which a slow machine would print
-            "from sonolube.cli import main; from sonolube.cli.console import progress\nprogress.SHORT = 3600.0; main()"
+            "from sonolube.cli import main; from sonolube.cli.console import options\noptions.SHORT = 3600.0; main()"
         )
         (disk / "before").write_bytes(bytes(200_000))
         command = [sys.executable, "-c", code, *words, "--out", str(disk / "out")]
