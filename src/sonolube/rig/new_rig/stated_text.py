@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -126,16 +127,12 @@ def speed_of(
 
 def rotation_of(text: str) -> float | None:
     """Turns per second of a rotational speed, such as "100 rpm"; None for a text of another kind."""
-    try:
+    with suppress(InvalidInput):
         to_si(text, unit="m/s", name="speed")
-    except InvalidInput:
-        pass
-    else:
         return None
-    try:
+    with suppress(InvalidInput):
         return to_si(_TURNS.sub("turn", text), unit="1/s", name="speed")
-    except InvalidInput:
-        return None
+    return None
 
 
 def vibration_of(text: str, *, name: str = "--amplitude") -> Vibration:
