@@ -6,7 +6,6 @@ from typing import TypedDict
 from sonolube.models.contact.rough import contact_count, normal_stiffness, real_contact_area
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
-from sonolube.models.wear import cube_wear_rate
 from sonolube.rig.friction_and_wear import resting_caveats
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
@@ -222,15 +221,10 @@ def _stiffer_along(model: str, ratio: float) -> str:
 
 
 def friction_under(
-    rig: Rig,
-    *,
-    ratio: CheckedRatio,
-    origin: VibrationOrigin,
-    actuator_power: float | None,
-    caveats: tuple[str, ...],
-    others: str = "",
+    resolved: ResolvedRig, *, ratio: CheckedRatio, origin: VibrationOrigin, caveats: tuple[str, ...], others: str = ""
 ) -> FrictionPoint:
     """Friction of a rig at a friction ratio."""
+    rig, power = resolved.rig, resolved.amplifier_power()
     intrinsic, valid = rig.friction_coefficient * rig.normal_load, float(ratio.friction_ratio)
     return FrictionPoint(
         friction_force=valid * intrinsic,
@@ -244,26 +238,6 @@ def friction_under(
         friction_model=rig.friction_model.name,
         citation=rig.friction_model.citation,
         **origin,
-        actuator_power=actuator_power,
-        caveats=caveats,
-    )
-
-
-def wear_under(
-    rig: Rig, *, ratio: float, model: str, origin: VibrationOrigin, caveats: tuple[str, ...], reason: str | None = None
-) -> WearPoint:
-    """Wear of a rig at a wear ratio."""
-    still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
-    valid = float("nan") if reason else ratio
-    return WearPoint(
-        wear_rate=valid * still,
-        intrinsic_wear_rate=still,
-        wear_rate_ratio=valid,
-        raw_wear_rate_ratio=ratio,
-        wear_reduction=1 - valid,
-        status=OUTSIDE_MODEL_RANGE if reason else COMPUTED,
-        reason=reason,
-        wear_model=model,
-        **origin,
+        actuator_power=None if power is None else float(power),
         caveats=caveats,
     )
