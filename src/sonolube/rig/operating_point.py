@@ -5,7 +5,6 @@ from typing import TypedDict
 
 from sonolube.models.contact.rough import contact_count, normal_stiffness, real_contact_area
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
-from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
 from sonolube.rig.friction_and_wear import resting_caveats
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
@@ -217,27 +216,4 @@ def _stiffer_along(model: str, ratio: float) -> str:
     return (
         f"the tangential stiffness by {model} is {ratio:.3g} times the normal one; that of asperities that stick is "
         f"below it, see the model {DEFAULT_TANGENTIAL_STIFFNESS}"
-    )
-
-
-def friction_under(
-    resolved: ResolvedRig, *, ratio: CheckedRatio, origin: VibrationOrigin, caveats: tuple[str, ...], others: str = ""
-) -> FrictionPoint:
-    """Friction of a rig at a friction ratio."""
-    rig, power = resolved.rig, resolved.amplifier_power()
-    intrinsic, valid = rig.friction_coefficient * rig.normal_load, float(ratio.friction_ratio)
-    return FrictionPoint(
-        friction_force=valid * intrinsic,
-        friction_coefficient=valid * rig.friction_coefficient,
-        intrinsic_friction_force=intrinsic,
-        friction_ratio=valid,
-        raw_friction_ratio=float(ratio.raw_friction_ratio),
-        friction_reduction=1 - valid,
-        status=OUTSIDE_MODEL_RANGE if ratio.reason else COMPUTED,
-        reason="; ".join(text for text in (str(ratio.reason), others) if text) or None,
-        friction_model=rig.friction_model.name,
-        citation=rig.friction_model.citation,
-        **origin,
-        actuator_power=None if power is None else float(power),
-        caveats=caveats,
     )
