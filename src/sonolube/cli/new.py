@@ -1,6 +1,7 @@
 """Command `new`: the task with questions on a terminal for what the options leave out, and one file to write."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Final
 
@@ -92,7 +93,7 @@ def _readable_speed(given: Mapping[str, Any]) -> Callable[[str], object]:
 def _delivered(answer: NewRig, typed: Mapping[str, Any]) -> None:
     """Write the rig file, and print the answer."""
     out: Path = typed["out"]
-    deliver(answer.written_to(out), folder=out.parent, as_json=typed["json"])
+    deliver(replace(answer, target=out), folder=out.parent, as_json=typed["json"])
 
 
 _OUT: Final = Annotated[Path, typer.Argument(metavar="[OUT.toml]", help="File to write."), OutputFile()]
