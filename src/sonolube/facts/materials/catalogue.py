@@ -28,7 +28,9 @@ def read_property_file(file_name: str) -> Mapping[str, Mapping[str, Any]]:
 
 def _cited(table: Mapping[str, Any], sources: Mapping[str, str]) -> dict[str, Any]:
     """Table with its sources in full, and those of the tables in it."""
-    full = {key: _cited(value, sources) if isinstance(value, dict) else value for key, value in table.items()}
+    full: dict[str, Any] = {
+        key: _cited(value, sources) if isinstance(value, dict) else value for key, value in table.items()
+    }
     return full | {"source": sources[full["source"]]} if "source" in full else full
 
 
