@@ -1,8 +1,11 @@
 """Errors and warnings of sonolube, each with one line that names the cause and the remedy."""
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from typing import TypeVar
+
+_Entry = TypeVar("_Entry")
 
 
 class SonolubeError(Exception):
@@ -105,6 +108,13 @@ class GpuUnused(UserWarning):
 def warn_of_range(message: str, *, stacklevel: int = 2) -> None:
     """Issue a ModelRangeWarning; by default at the caller of the function that calls this one."""
     warnings.warn(message, ModelRangeWarning, stacklevel=stacklevel + 1)
+
+
+def entry_named(known: Mapping[str, _Entry], name: str, *, kind: str) -> _Entry:
+    """Entry of a table by its name; UnknownName, with the closest name of the table, where it has none."""
+    if name not in known:
+        raise UnknownName.among(known, kind=kind, name=name)
+    return known[name]
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
 from typing import Any, Generic, TypeVar
 
-from sonolube.errors import UnknownName
+from sonolube.errors import entry_named
 
 Variant = TypeVar("Variant")
 
@@ -63,6 +63,4 @@ class VariantTable(Mapping[str, Variant], Generic[Variant]):
         UnknownName
             If the name is not in the table; the closest one is suggested.
         """
-        if name not in self:
-            raise UnknownName.among(self, kind=self.kind, name=name)
-        return self[name]
+        return entry_named(self, name, kind=self.kind)

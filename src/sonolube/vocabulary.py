@@ -12,7 +12,7 @@ from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
-from sonolube.errors import UnknownName
+from sonolube.errors import entry_named
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,10 +69,7 @@ def quantity(name: str) -> Quantity:
     >>> quantity("sliding_speed").axis_label
     'Sliding speed [m/s]'
     """
-    try:
-        return quantities()[name]
-    except KeyError:
-        raise UnknownName.among(quantities(), kind="quantity", name=name) from None
+    return entry_named(quantities(), name, kind="quantity")
 
 
 def unit_of(name: str) -> str:

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.browser.places import Places
 from sonolube.charts import chart_object, chart_tables
-from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError, UnknownName
+from sonolube.errors import InvalidInput, SeveralFaults, UnknownName
 from sonolube.example_files import example_file
 from sonolube.tasks.answer import Answer, Block, Rows, Table, Verbatim
-from sonolube.tasks.files import NamedBytes, file_path, private_files, with_names_only
+from sonolube.tasks.files import NamedBytes, file_path, private_files
 from sonolube.tasks.parameters import DoorParameter, File, KeyValues, Mark, OwnFolder, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
@@ -53,13 +53,9 @@ def answered(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[s
 
 def called(task: Task, given: Mapping[str, Any]) -> Answer:
     """Answer of a task; refusals of rigs from texts have no folder."""
-    try:
-        by_place = [name for name in positional(task) if name in given]
-        named = {name: value for name, value in given.items() if name not in by_place}
-        return task.function(*(given[name] for name in by_place), **named)
-    except SonolubeError as failure:
-        failure.args = tuple(with_names_only(each) if isinstance(each, str) else each for each in failure.args)
-        raise
+    by_place = [name for name in positional(task) if name in given]
+    named = {name: value for name, value in given.items() if name not in by_place}
+    return task.function(*(given[name] for name in by_place), **named)
 
 
 def answer_object(answer: Answer) -> dict[str, Any]:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass, field
 from typing import Any, Final
 
 from sonolube.browser.answers import names_only, requested_file
@@ -34,43 +33,6 @@ _READABLE: Final = (1e-5, 1e7)  # sizes of the numbers along an axis
 _STEPS: Final = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RigField:
-    """Entry of a rig file as a field.
-
-    Parameters
-    ----------
-    key : str
-        Dotted, as in the file.
-    label : str
-    text : str
-        Value as it is written.
-    unit : str
-        As it is written; empty for a pure number or a word.
-    lowest, highest : float or None
-        Ends of a slider, in this unit; None for what is no number.
-    assumed : str
-        Reason for a value without a source.
-    help : str
-        How the number is obtained.
-    is_first : bool
-        Whether it belongs to the operating point.
-    numbers : mapping of str to float
-        Its number in each unit that the axis of a figure may have.
-    """
-
-    key: str
-    label: str
-    text: str
-    unit: str = ""
-    lowest: float | None = None
-    highest: float | None = None
-    assumed: str = ""
-    help: str = ""
-    is_first: bool = False
-    numbers: Mapping[str, float] = field(default_factory=dict)
-
-
 def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Rig of a request as an object for JSON.
 
@@ -82,11 +44,12 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         with names_only(path):
             original, content = rig_contents(path, (), changes)
             rig = rig_of_file(path, content, changes=changes)
-    fields = list(rig_fields(content, original, rig.assumptions))
+    fields = rig_fields(content, original, rig.assumptions)
+    first = {key: place for place, key in enumerate(_FIRST)}
     return {
         "title": rig.title,
         "source": rig.source,
-        "fields": [asdict(field) for field in sorted(fields, key=_order)],
+        "fields": sorted(fields, key=lambda each: first.get(each["key"], len(first))),
         "drawing": _drawing(rig),
         "assumptions": dict(rig.assumptions),
         "studies": studies_of(rig),
@@ -97,29 +60,29 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
 
 def rig_fields(
     content: Mapping[str, Any], original: Mapping[str, Any], assumptions: Mapping[str, str]
-) -> Iterator[RigField]:
-    """Entries of a rig file as fields."""
+) -> Iterator[dict[str, Any]]:
+    """Entries of a rig file as fields, each with its number in every unit that the axis of a figure may have."""
     before = dict(_entries(original))
     for key, value in _entries(content):
         name = key.rpartition(".")[2]
         known = quantities().get(name)
-        label = known.meaning if known is not None else name.replace("_", " ").capitalize()
         text = value if isinstance(value, str) else f"{value:.6g}"
         number, unit = _number_and_unit(text)
         ends = _ends(before.get(key, value), text)
+        low, high = (None, None) if number is None or ends is None else ends
         advice = guidance().get(name)
-        yield RigField(
-            key=key,
-            label=label,
-            text=text,
-            unit=unit,
-            lowest=None if number is None or ends is None else ends[0],
-            highest=None if number is None or ends is None else ends[1],
-            assumed=assumptions.get(key, ""),
-            help="" if advice is None else advice.text,
-            is_first=key in _FIRST,
-            numbers={} if known is None or number is None else _numbers(text, known.unit),
-        )
+        yield {
+            "key": key,
+            "label": known.meaning if known is not None else name.replace("_", " ").capitalize(),
+            "text": text,
+            "unit": unit,  # as it is written; empty for a pure number or a word
+            "lowest": low,  # of a slider, in this unit; None for what is no number
+            "highest": high,
+            "assumed": assumptions.get(key, ""),
+            "help": "" if advice is None else advice.text,
+            "is_first": key in _FIRST,
+            "numbers": {} if known is None or number is None else _numbers(text, known.unit),
+        }
 
 
 def _entries(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str | float]]:
@@ -132,11 +95,6 @@ def _entries(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str
             yield from _entries(value, f"{key}.")
         elif isinstance(value, str | int | float) and not isinstance(value, bool):
             yield key, value
-
-
-def _order(field: RigField) -> int:
-    """Place of a field: those of the operating point first, the others as in the file."""
-    return _FIRST.index(field.key) if field.is_first else len(_FIRST)
 
 
 def _number_and_unit(text: str) -> tuple[float | None, str]:

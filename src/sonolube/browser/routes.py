@@ -6,7 +6,7 @@ Scripts, styles and drawings are kept in memory as they are sent: compressed and
 import gzip
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cache
 from hashlib import sha256
 from importlib.resources import files
@@ -42,28 +42,18 @@ _PLAIN: Final = "text/plain; charset=utf-8"
 _LEVEL: Final = 6  # of the compression, once a file
 
 
-@dataclass(frozen=True, slots=True)
-class _Kept:
-    """File as it is sent."""
-
-    content: bytes
-    compressed: bytes
-    kind: str
-    tag: str
-
-
 async def static_file(request: Request) -> Response:
     """File below `static` of a request, by its path; 404 where there is none, 304 where the browser has it."""
     name = request.path_params["name"]
     if name not in _names():
         return Response("There is no such file.", status_code=404, media_type="text/plain")
-    kept = _kept(name)
-    headers = {"cache-control": "no-cache", "etag": kept.tag, "vary": "Accept-Encoding"}
-    if request.headers.get("if-none-match") == kept.tag:
+    content, compressed, kind, tag = _kept(name)
+    headers = {"cache-control": "no-cache", "etag": tag, "vary": "Accept-Encoding"}
+    if request.headers.get("if-none-match") == tag:
         return Response(status_code=304, headers=headers)
     if "gzip" not in request.headers.get("accept-encoding", ""):
-        return Response(kept.content, media_type=kept.kind, headers=headers)
-    return Response(kept.compressed, media_type=kept.kind, headers=headers | {"content-encoding": "gzip"})
+        return Response(content, media_type=kind, headers=headers)
+    return Response(compressed, media_type=kind, headers=headers | {"content-encoding": "gzip"})
 
 
 @cache
@@ -73,12 +63,12 @@ def _names() -> frozenset[str]:
 
 
 @cache
-def _kept(name: str) -> _Kept:
+def _kept(name: str) -> tuple[bytes, bytes, str, str]:
     """Content of a file, read and compressed once."""
     content = (_FOLDER / name).read_bytes()
     kind = _KINDS.get(PurePosixPath(name).suffix, _PLAIN)
     compressed = gzip.compress(content, _LEVEL, mtime=0)
-    return _Kept(content, compressed, kind, f'"{sha256(content).hexdigest()[:16]}"')
+    return content, compressed, kind, f'"{sha256(content).hexdigest()[:16]}"'
 
 
 _LARGEST_REQUEST: Final = 4 * 2**20  # bytes of JSON

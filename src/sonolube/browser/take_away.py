@@ -13,7 +13,7 @@ from sonolube import __version__
 from sonolube.browser.answers import called, given_arguments, offered_task, positional, rig_path
 from sonolube.browser.places import Places
 from sonolube.charts import chart_tables
-from sonolube.errors import InvalidInput, UnknownName
+from sonolube.errors import InvalidInput, entry_named
 from sonolube.operating_system import quoted
 from sonolube.report.page import Page, PageTable, rendered_files
 from sonolube.tasks.answer import Answer, Rows, Table, Verbatim
@@ -30,9 +30,7 @@ def taken(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     Its name, kind of content, and text. Command line and Python name the files that have to lie beside them.
     """
     task, form = offered_task(str(payload.get("task", ""))), str(payload.get("form", ""))
-    if form not in _FORMS:
-        raise UnknownName.among(_FORMS, kind="form", name=form)
-    return _FORMS[form](task, payload.get("arguments") or {}, places)
+    return entry_named(_FORMS, form, kind="form")(task, payload.get("arguments") or {}, places)
 
 
 def _file(name: str, kind: str, text: str) -> dict[str, Any]:

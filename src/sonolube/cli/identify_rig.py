@@ -1,6 +1,7 @@
 """Command `identify rig`: the task, and the rig file on standard output or in a file."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Final
 
@@ -20,7 +21,7 @@ def _delivered(answer: IdentificationAnswer, typed: Mapping[str, Any]) -> None:
     """Write the rig file and print what was found, or print the file with that as comments."""
     out: Path | None = typed["out"]
     if out is not None:
-        deliver(answer.written_to(out), folder=out.parent, as_json=typed["json"])
+        deliver(replace(answer, target=out), folder=out.parent, as_json=typed["json"])
     elif typed["json"]:
         deliver(answer, as_json=True)
     else:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from sonolube.cli.console.options import Question, ask, is_terminal
+from sonolube.cli.console.options import ask, is_terminal
 from sonolube.cli.generated import command_of
 from sonolube.errors import InvalidInput
 from sonolube.measurement.run_headings import LEFT_OUT, meaning, samples, stated_columns
@@ -30,12 +30,12 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
 def _asked(label: str, cells: list[str]) -> str:
     """Statement about a column that can be read."""
     holds = "; ".join(cells) or "empty cells"
-    question = Question(
-        option=f"column {label!r}",
-        text=f"Column {label!r} ({holds}): quantity and unit, such as 'friction_force N', or - to leave it out",
-        default=LEFT_OUT,
+    return ask(
+        f"column {label!r}",
+        f"Column {label!r} ({holds}): quantity and unit, such as 'friction_force N', or - to leave it out",
+        LEFT_OUT,
+        lambda text: meaning(text, label),
     )
-    return ask(question, lambda text: meaning(text, label))
 
 
 mapping = command_of(task_named("mapping"), complete=_completed)

@@ -1,13 +1,14 @@
 """Command `new`: the task with questions on a terminal for what the options leave out, and one file to write."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Final
 
 import typer
 
 from sonolube.cli.console.delivery import deliver
-from sonolube.cli.console.options import OutputFile, Question, ask, is_terminal
+from sonolube.cli.console.options import OutputFile, ask, is_terminal
 from sonolube.cli.generated import argument, command_of
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
@@ -15,10 +16,10 @@ from sonolube.rig.new_rig.stated_text import pin_shape, reader, rotation_of, spe
 from sonolube.tasks.predict.new import DEFAULT_FINISH, DEFAULT_SHAPE, NewRig, refuse_two_of_one
 from sonolube.tasks.table import task_named
 
-_TRACK: Final = Question(option="--track-radius", text="Radius of the track, such as 15mm", default="20mm")
+_TRACK: Final = ("--track-radius", "Radius of the track, such as 15mm", "20mm")
 _FINISHES: Final = "such as turned, N7, 'ground N6' or 'Ra 0.4um', or the file of a scan"
 _METAL: Final = "stainless_steel_304"
-_ASKED: Final[tuple[tuple[str, str, str, Callable[[str], object]], ...]] = (
+_QUESTIONS: Final[tuple[tuple[str, str, str, Callable[[str], object]], ...]] = (
     ("pin", "Material of the pin, such as aluminium_2024 or steel", _METAL, material),
     ("disc", "Material of the disc, such as m50 or steel", _METAL, material),
     (
@@ -39,11 +40,7 @@ _ASKED: Final[tuple[tuple[str, str, str, Callable[[str], object]], ...]] = (
     ("pin_finish", f"Finish of the pin, {_FINISHES}", DEFAULT_FINISH, surface_of),
     ("disc_finish", f"Finish of the disc, {_FINISHES}", DEFAULT_FINISH, surface_of),
 )
-_QUESTIONS: Final = {
-    name: (Question(option=f"--{name.replace('_', '-')}", text=text, default=default), read)
-    for name, text, default, read in _ASKED
-}
-"""Question for each argument, in their order, with the reader of its answer."""
+"""Each argument, in their order, with its question, the answer by default and the reader of an answer."""
 
 _NEEDED: Final = ("pin", "disc", "load", "speed", "frequency", "amplitude")
 _INSTEAD: Final = {"amplitude": ("actuator",), "pin_finish": ("finish", "pin_scan"), "disc_finish": ("finish", "scan")}
@@ -57,14 +54,18 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
     refuse_two_of_one(given)
     missing = [name for name in _NEEDED if not _is_known(name, given)]
     if missing and not is_terminal():
-        options = ", ".join(_QUESTIONS[name][0].option for name in missing)
+        options = ", ".join(map(_option, missing))
         raise InvalidInput(f"missing {options}; give them, or answer the questions on a terminal")
-    for name, (question, read) in _QUESTIONS.items():
+    for name, text, default, read in _QUESTIONS:
         if missing and not _is_known(name, given):
-            given[name] = ask(question, _readable_speed(given) if name == "speed" else read)
+            given[name] = ask(_option(name), text, default, _readable_speed(given) if name == "speed" else read)
         if name == "speed" and _needs_track(given):
-            given["track_radius"] = ask(_TRACK, lambda text: speed_of(given["speed"], track_radius=text))
+            given["track_radius"] = ask(*_TRACK, lambda radius: speed_of(given["speed"], track_radius=radius))
     return given
+
+
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
 
 
 def _is_known(name: str, given: Mapping[str, Any]) -> bool:
@@ -92,7 +93,7 @@ def _readable_speed(given: Mapping[str, Any]) -> Callable[[str], object]:
 def _delivered(answer: NewRig, typed: Mapping[str, Any]) -> None:
     """Write the rig file, and print the answer."""
     out: Path = typed["out"]
-    deliver(answer.written_to(out), folder=out.parent, as_json=typed["json"])
+    deliver(replace(answer, target=out), folder=out.parent, as_json=typed["json"])
 
 
 _OUT: Final = Annotated[Path, typer.Argument(metavar="[OUT.toml]", help="File to write."), OutputFile()]

@@ -208,25 +208,10 @@ def _offset(drive: Drive, volts: Floats) -> Floats:
     return volts * drive.offset_ratio if drive.voltage_peak_to_peak else 0 * volts + drive.voltage_offset
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class OperatingConditions:
-    """Drives and loads of a batch, arrays of one axis."""
-
-    voltage_peak_to_peak: Floats
-    voltage_offset: Floats
-    frequency: Floats
-    normal_load: Floats
-
-    @classmethod
-    def of_columns(cls, columns: Floats) -> "OperatingConditions":
-        """Settings from their rows, in the order of the fields."""
-        return cls(**dict(zip(CONDITIONS, columns, strict=True)))
-
-
 def conditions_of(
     rig: Rig, given: Sequence[ArrayLike | None], *, vibration_amplitude: ArrayLike | None = None
 ) -> tuple[Floats, Floats]:
-    """Settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast."""
+    """Settings of points as rows by `CONDITIONS` and sliding speeds, checked and broadcast."""
     voltage, offset, f, load, speed = given
     drive = rig.drive or Drive(frequency=ANY_FREQUENCY)
     if drive.voltage_peak_to_peak is None and not (voltage is None and offset is None):
@@ -286,19 +271,20 @@ VibrationAt = Callable[[int], PointVibration]
 
 def steady_states_of(
     resolved: ResolvedRig,
-    settings: OperatingConditions,
+    columns: Sequence[Floats] | Floats,
     rest: Floats,
     backend: Backend = "cpu",
     relative_tolerance: float = 1e-6,
 ) -> SteadyStates:
-    """Steady vibrations of a rig under drives and loads, given the separations at rest."""
+    """Steady vibrations of a rig under drives and loads, rows by `CONDITIONS`, given the separations at rest."""
+    volts, offset, f, load = columns
     return steady_state(
         resolved.moved.structure,
         resolved.gap_law,
-        normal_load=settings.normal_load,
-        frequency=settings.frequency,
-        voltage_harmonics=resolved.voltage.harmonics(voltage_peak_to_peak=settings.voltage_peak_to_peak),
-        voltage_offset=settings.voltage_offset,
+        normal_load=load,
+        frequency=f,
+        voltage_harmonics=resolved.voltage.harmonics(voltage_peak_to_peak=volts),
+        voltage_offset=offset,
         separation=rest,
         relative_tolerance=relative_tolerance,
         backend=backend,
@@ -307,15 +293,12 @@ def steady_states_of(
 
 def computed_vibrations(resolved: ResolvedRig, distinct: Floats, backend: Backend) -> VibrationAt:
     """Function that gives the vibration of each drive and load, all solved at once."""
-    settings = OperatingConditions.of_columns(distinct)
-    rest = separation(resolved.rig.contact, normal_load=settings.normal_load)
-    refusals = _refusals(resolved, settings, rest)
+    rest = separation(resolved.rig.contact, normal_load=distinct[-1])
+    refusals = _refusals(resolved, distinct, rest)
     possible = np.array([not text for text in refusals], dtype=bool)
     states = None
     if possible.any():
-        states = steady_states_of(
-            resolved, OperatingConditions.of_columns(distinct[:, possible]), rest[possible], backend
-        )
+        states = steady_states_of(resolved, distinct[:, possible], rest[possible], backend)
     place = np.cumsum(possible) - 1
 
     def vibration_at(setting: int) -> PointVibration:
@@ -380,14 +363,12 @@ def _no_separation(load: float) -> str:
     return f"normal_load {load:g} N leaves no separation between the surfaces: lower the load"
 
 
-def _refusals(resolved: ResolvedRig, settings: OperatingConditions, rest: Floats) -> list[str]:
+def _refusals(resolved: ResolvedRig, distinct: Floats, rest: Floats) -> list[str]:
     """Reason against each drive and load that the stack or the contact rules out, else empty text."""
     refusals = []
-    stack = resolved.moved.stack
-    extremes = resolved.voltage.range(
-        voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
-    )
-    for voltages, load, gap in zip(np.transpose(extremes), settings.normal_load, rest, strict=True):
+    stack, (volts, offset, _, loads) = resolved.moved.stack, distinct
+    extremes = resolved.voltage.range(voltage_peak_to_peak=volts, voltage_offset=offset)
+    for voltages, load, gap in zip(np.transpose(extremes), loads, rest, strict=True):
         refusal = ""
         try:
             require_allowed_voltage(stack, stack_voltage=voltages)

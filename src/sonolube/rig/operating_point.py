@@ -5,8 +5,6 @@ from typing import TypedDict
 
 from sonolube.models.contact.rough import contact_count, normal_stiffness, real_contact_area
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
-from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
-from sonolube.models.wear import cube_wear_rate
 from sonolube.rig.friction_and_wear import resting_caveats
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
@@ -218,52 +216,4 @@ def _stiffer_along(model: str, ratio: float) -> str:
     return (
         f"the tangential stiffness by {model} is {ratio:.3g} times the normal one; that of asperities that stick is "
         f"below it, see the model {DEFAULT_TANGENTIAL_STIFFNESS}"
-    )
-
-
-def friction_under(
-    rig: Rig,
-    *,
-    ratio: CheckedRatio,
-    origin: VibrationOrigin,
-    actuator_power: float | None,
-    caveats: tuple[str, ...],
-    others: str = "",
-) -> FrictionPoint:
-    """Friction of a rig at a friction ratio."""
-    intrinsic, valid = rig.friction_coefficient * rig.normal_load, float(ratio.friction_ratio)
-    return FrictionPoint(
-        friction_force=valid * intrinsic,
-        friction_coefficient=valid * rig.friction_coefficient,
-        intrinsic_friction_force=intrinsic,
-        friction_ratio=valid,
-        raw_friction_ratio=float(ratio.raw_friction_ratio),
-        friction_reduction=1 - valid,
-        status=OUTSIDE_MODEL_RANGE if ratio.reason else COMPUTED,
-        reason="; ".join(text for text in (str(ratio.reason), others) if text) or None,
-        friction_model=rig.friction_model.name,
-        citation=rig.friction_model.citation,
-        **origin,
-        actuator_power=actuator_power,
-        caveats=caveats,
-    )
-
-
-def wear_under(
-    rig: Rig, *, ratio: float, model: str, origin: VibrationOrigin, caveats: tuple[str, ...], reason: str | None = None
-) -> WearPoint:
-    """Wear of a rig at a wear ratio."""
-    still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
-    valid = float("nan") if reason else ratio
-    return WearPoint(
-        wear_rate=valid * still,
-        intrinsic_wear_rate=still,
-        wear_rate_ratio=valid,
-        raw_wear_rate_ratio=ratio,
-        wear_reduction=1 - valid,
-        status=OUTSIDE_MODEL_RANGE if reason else COMPUTED,
-        reason=reason,
-        wear_model=model,
-        **origin,
-        caveats=caveats,
     )

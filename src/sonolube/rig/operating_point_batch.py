@@ -138,17 +138,15 @@ def point_batch(
     columns, speeds = conditions.conditions_of(rig, given, vibration_amplitude=vibration_amplitude)
     columns, speeds = columns.reshape(4, -1), speeds.ravel()
     first, which = _distinct(columns)
-    settings = conditions.OperatingConditions.of_columns(columns[:, first])
-    rest = separation(rig.contact, normal_load=settings.normal_load)
-    refusal, reasons = _refusals(resolved, settings, rest)
+    distinct = columns[:, first]
+    rest = separation(rig.contact, normal_load=distinct[-1])
+    refusal, reasons = _refusals(resolved, distinct, rest)
     status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal
     numbers = np.full((5, first.size), np.nan)
     friction = _no_friction(speeds.size)
     possible = np.flatnonzero(refusal == 0)
     if possible.size:
-        states = steady_states_of(
-            resolved, conditions.OperatingConditions.of_columns(columns[:, first[possible]]), rest[possible], backend
-        )
+        states = steady_states_of(resolved, distinct[:, possible], rest[possible], backend)
         status[possible] = states.status
         reason[possible] = states.status
         numbers[:, possible] = _measures(states)
@@ -196,15 +194,11 @@ def _distinct(columns: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return first, which.ravel()
 
 
-def _refusals(
-    resolved: ResolvedRig, settings: conditions.OperatingConditions, rest: Floats
-) -> tuple[NDArray[np.int16], tuple[str, ...]]:
+def _refusals(resolved: ResolvedRig, distinct: Floats, rest: Floats) -> tuple[NDArray[np.int16], tuple[str, ...]]:
     """Number of the reason against each drive and load, from 1, 0 without one; and the reasons."""
     stack = resolved.moved.stack
     low, high = stack.lowest_voltage, stack.highest_voltage
-    lowest, highest = resolved.voltage.range(
-        voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
-    )
+    lowest, highest = resolved.voltage.range(voltage_peak_to_peak=distinct[0], voltage_offset=distinct[1])
     texts = (
         f"the drive goes too low: the lowest admissible voltage is {low} V",
         f"the drive goes too high: the highest admissible voltage is {high} V",

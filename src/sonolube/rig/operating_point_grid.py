@@ -11,12 +11,10 @@ from sonolube.models.contact import separation
 from sonolube.models.dynamics import SteadyStates
 from sonolube.models.dynamics.backend import Backend
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
-from sonolube.rig.driven_rig import actuator_capacitance
 from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.operating_conditions import (
     CONDITIONS,
     REFUSED,
-    OperatingConditions,
     computed_vibrations,
     conditions_of,
     points_by_vibration,
@@ -223,23 +221,15 @@ def friction_and_power(
     """Friction force, coefficient, reduction and amplifier power from friction ratio and settings, by name."""
     u, offset, f, load = columns
     coefficient = resolved.rig.friction_coefficient
+    power = resolved.amplifier_power(voltage_peak_to_peak=u, voltage_offset=offset, frequency=f)
     return {
         "friction_ratio": friction_ratio,
         "raw_friction_ratio": raw_friction_ratio,
         "friction_reduction": 1 - friction_ratio,
         "friction_coefficient": friction_ratio * coefficient,
         "friction_force": friction_ratio * coefficient * load,
-        "actuator_power": _supplied_power(resolved, voltage_peak_to_peak=u, voltage_offset=offset, frequency=f),
+        "actuator_power": np.full(u.shape, np.nan) if power is None else power,
     }
-
-
-def _supplied_power(resolved: ResolvedRig, **drive: Floats) -> Floats:
-    """Power of a linear amplifier, NaN where voltage or capacitance is not known. [W]"""
-    rig = resolved.rig
-    capacitance = actuator_capacitance(rig)
-    if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
-        return np.full(drive["voltage_peak_to_peak"].shape, np.nan)
-    return resolved.voltage.amplifier_power(capacitance=capacitance, **drive)
 
 
 def steady_states(
@@ -273,9 +263,9 @@ def steady_states(
     """
     resolved = resolved_rig(rig)
     columns, _ = conditions_of(resolved.moved, (voltage_peak_to_peak, voltage_offset, None, None, None))
-    settings = OperatingConditions.of_columns(columns.reshape(4, -1))
-    rest = separation(resolved.rig.contact, normal_load=settings.normal_load)
-    return steady_states_of(resolved, settings, rest, relative_tolerance=relative_tolerance)
+    columns = columns.reshape(4, -1)
+    rest = separation(resolved.rig.contact, normal_load=columns[-1])
+    return steady_states_of(resolved, columns, rest, relative_tolerance=relative_tolerance)
 
 
 def friction_status(objection: str) -> str:

@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
 from sonolube.models.contact import ExponentialHeights, RoughContact
 from sonolube.models.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
 from sonolube.models.dynamics import ExponentialGap, GapLaw, StartUpRamp, TabulatedGap
 from sonolube.models.friction.models import FrictionModel
 from sonolube.rig import amplitude_source
-from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, driven_rig
+from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, actuator_capacitance, driven_rig
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, Rig
 from sonolube.text.units import format_si
 
@@ -112,6 +113,13 @@ class ResolvedRig:
     def decay_length(self) -> float:
         """Decay length of the contact force at rest. [m]"""
         return float(decay_length(self.rig.contact, separation=self.separation))
+
+    def amplifier_power(self, **drive: Floats) -> Floats | None:
+        """Power of a linear amplifier at settings of the drive; None where voltage or capacitance is not known. [W]"""
+        rig, capacitance = self.rig, actuator_capacitance(self.rig)
+        if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
+            return None
+        return self.voltage.amplifier_power(capacitance=capacitance, **drive)
 
     def require_separation(self) -> "ResolvedRig":
         """Rig itself, whose load is refused where it leaves no separation between the surfaces."""

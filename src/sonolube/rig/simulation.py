@@ -9,9 +9,9 @@ from sonolube.errors import OutsideRange, SonolubeError
 from sonolube.models.actuator import stack_caveats
 from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
-from sonolube.models.wear import WEAR_MODELS
+from sonolube.models.wear import WEAR_MODELS, cube_wear_rate
 from sonolube.rig.amplitude_source import ResolvedVibration
-from sonolube.rig.driven_rig import actuator_capacitance, energy_balance
+from sonolube.rig.driven_rig import energy_balance
 from sonolube.rig.friction_and_wear import (
     mean_friction,
     mean_wear,
@@ -21,7 +21,7 @@ from sonolube.rig.friction_and_wear import (
     wear_model_of,
     wear_model_that_holds,
 )
-from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
+from sonolube.rig.operating_point import COMPUTED, FrictionPoint, VibrationOrigin, WearPoint
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig, source_caveats
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
@@ -103,19 +103,17 @@ def simulate(rig: Rig | ResolvedRig) -> Simulation:
     """
     resolved = resolved_rig(rig).require_separation()
     vibration = steady_vibration(resolved)
-    origin, caveats = _origin(vibration), _caveats(resolved, vibration)
-    friction = _friction_point(resolved, vibration, origin, caveats)
-    caveats = (*caveats, *ratio_caveats(friction_ratio=friction.friction_ratio))
+    friction = friction_point(resolved)
     return Simulation(
         status=OUTSIDE_MODEL_RANGE if friction.reason else vibration.status,
         reason=friction.reason or vibration.reason,
         vibration=vibration,
         friction=friction,
-        wear=_wear_point(resolved, vibration, wear_model_of(resolved.rig), caveats, friction),
+        wear=_wear_point(resolved, vibration, wear_model_of(resolved.rig), friction.caveats, friction),
         energy_balance=energy_balance(
             actuator_power=friction.actuator_power, dissipated_power=vibration.dissipated_power
         ),
-        caveats=caveats,
+        caveats=friction.caveats,
     )
 
 
@@ -151,21 +149,26 @@ def friction_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> Frict
     resolved = resolved_rig(rig).require_separation()
     if model is not None:
         resolved = resolved.with_friction_model(friction_model_named(resolved.rig, model))
-    used = resolved.vibration
-    try:
-        vibration = steady_vibration(resolved)
-    except OutsideRange as refusal:
-        if used.driven is not None:
-            raise
-        return friction_under(
-            resolved.rig,
-            ratio=_outside(refusal, resolved.rig.sliding_speed),
-            origin=_stated_origin(used),
-            actuator_power=_amplifier_power(resolved),
-            caveats=resting_caveats(resolved),
-            others=_models_that_hold(resolved),
-        )
-    return _friction_point(resolved, vibration, _origin(vibration), _caveats(resolved, vibration))
+    rig = resolved.rig
+    found = vibrated_friction(resolved, sliding_speed=rig.sliding_speed)
+    ratio, power = found.ratio, resolved.amplifier_power()
+    intrinsic, valid = rig.friction_coefficient * rig.normal_load, float(ratio.friction_ratio)
+    others = _models_that_hold(resolved) if ratio.reason else ""
+    return FrictionPoint(
+        friction_force=valid * intrinsic,
+        friction_coefficient=valid * rig.friction_coefficient,
+        intrinsic_friction_force=intrinsic,
+        friction_ratio=valid,
+        raw_friction_ratio=float(ratio.raw_friction_ratio),
+        friction_reduction=1 - valid,
+        status=OUTSIDE_MODEL_RANGE if ratio.reason else COMPUTED,
+        reason="; ".join(text for text in (str(ratio.reason), others) if text) or None,
+        friction_model=rig.friction_model.name,
+        citation=rig.friction_model.citation,
+        **found.origin,
+        actuator_power=None if power is None else float(power),
+        caveats=found.caveats or resting_caveats(resolved),
+    )
 
 
 def wear_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> WearPoint:
@@ -252,21 +255,6 @@ def operating_caveats(rig: Rig | ResolvedRig) -> tuple[str, ...]:
         return ()
 
 
-def _friction_point(
-    resolved: ResolvedRig, vibration: SteadyVibration, origin: VibrationOrigin, caveats: tuple[str, ...]
-) -> FrictionPoint:
-    rig = resolved.rig
-    ratio = mean_friction(rig, vibration.motions, sliding_speed=rig.sliding_speed)
-    return friction_under(
-        rig,
-        ratio=ratio,
-        origin=origin,
-        actuator_power=_amplifier_power(resolved),
-        caveats=(*caveats, *ratio_caveats(friction_ratio=ratio.friction_ratio)),
-        others=_models_that_hold(resolved, vibration) if ratio.reason else "",
-    )
-
-
 def _wear_point(
     resolved: ResolvedRig,
     vibration: SteadyVibration,
@@ -278,12 +266,11 @@ def _wear_point(
 ) -> WearPoint:
     sine = vibration.vibration_amplitude if vibration.prescribed else None
     ratio, reason = mean_wear(resolved, vibration.motions, wear_model=model, vibration_amplitude=sine)
-    other = (
-        None
-        if is_chosen or not reason
-        else wear_model_that_holds(resolved, vibration.motions, vibration_amplitude=sine)
-    )
-    if reason and other:
+    if (
+        reason
+        and not is_chosen
+        and (other := wear_model_that_holds(resolved, vibration.motions, vibration_amplitude=sine))
+    ):
         outside = reason.removeprefix(f"{OUTSIDE_MODEL_RANGE}: ").partition(";")[0]
         caveats = (*caveats, f"{outside}, so that wear model {model} has no meaning; the wear is by {other}")
         model = other
@@ -292,10 +279,23 @@ def _wear_point(
         reason = friction.reason
     if not reason and not vibration.prescribed:
         caveats = (*caveats, *rise_caveats(vibration.motions, wear_model=model))
-    return wear_under(resolved.rig, ratio=ratio, model=model, origin=_origin(vibration), caveats=caveats, reason=reason)
+    still = float(cube_wear_rate(resolved.rig.contact, normal_load=resolved.rig.normal_load))
+    valid = float("nan") if reason else ratio
+    return WearPoint(
+        wear_rate=valid * still,
+        intrinsic_wear_rate=still,
+        wear_rate_ratio=valid,
+        raw_wear_rate_ratio=ratio,
+        wear_reduction=1 - valid,
+        status=OUTSIDE_MODEL_RANGE if reason else COMPUTED,
+        reason=reason,
+        wear_model=model,
+        **_origin(vibration),
+        caveats=caveats,
+    )
 
 
-def _models_that_hold(resolved: ResolvedRig, vibration: SteadyVibration | None = None) -> str:
+def _models_that_hold(resolved: ResolvedRig) -> str:
     """Range of the friction ratio by the other friction models that hold for a rig's vibration."""
     holding, rig = [], resolved.rig
     for name in FRICTION_MODELS:
@@ -303,9 +303,7 @@ def _models_that_hold(resolved: ResolvedRig, vibration: SteadyVibration | None =
             continue
         other = resolved.with_friction_model(friction_model_named(rig, name))
         try:
-            same = vibration is not None and not vibration.prescribed
-            motions = vibration.motions if vibration is not None and same else steady_vibration(other).motions
-            found = mean_friction(other.rig, motions, sliding_speed=rig.sliding_speed)
+            found = mean_friction(other.rig, steady_vibration(other).motions, sliding_speed=rig.sliding_speed)
         except SonolubeError:
             continue
         if not found.reason:
@@ -332,14 +330,6 @@ def _stated_origin(used: ResolvedVibration) -> VibrationOrigin:
     return VibrationOrigin(
         vibration_amplitude=used.sine_amplitude, amplitude_source=used.source, amplitude_origin=used.text
     )
-
-
-def _amplifier_power(resolved: ResolvedRig) -> float | None:
-    rig = resolved.rig
-    capacitance = actuator_capacitance(rig)
-    if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
-        return None
-    return float(resolved.voltage.amplifier_power(capacitance=capacitance))
 
 
 def _caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:

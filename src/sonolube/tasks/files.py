@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 
 from sonolube.errors import InvalidInput
+from sonolube.tasks.progress import within
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +62,5 @@ def with_names_only(text: str) -> str:
 @contextmanager
 def private_files() -> Iterator[None]:
     """Keep bytes of arguments as files inside a `with` block."""
-    with ExitStack() as stack:
-        before = _OPEN.set(stack)
-        try:
-            yield
-        finally:
-            _OPEN.reset(before)
+    with ExitStack() as stack, within(_OPEN, stack):
+        yield

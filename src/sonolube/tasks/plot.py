@@ -1,28 +1,28 @@
 """Figure of an answer, or of a labelled result read again from its file."""
 
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
+from sonolube.charts import Chart
 from sonolube.errors import InvalidInput
 from sonolube.figure import figure_style, shown_in_notebooks
 from sonolube.report import Drawing
 from sonolube.tasks.answer import Answer
+from sonolube.variants import VariantTable
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from sonolube.charts import Chart
-
-_CHARTS: Mapping[str, str] = MappingProxyType(
+_CHARTS: VariantTable[Callable[[Any], Chart]] = VariantTable(
+    "result",
     {
         "comparison": "sonolube.validation.figures:comparison_chart",
         "map": "sonolube.design.map_figures:map_chart",
         "prediction": "sonolube.prediction.figures:prediction_chart",
         "simulation": "sonolube.rig.figures:simulation_chart",
         "sweep": "sonolube.design.sweep_figures:sweep_chart",
-    }
+    },
 )
 """Functions that return the chart of a dataset, by its attribute `result`."""
 
@@ -65,13 +65,4 @@ def plot(result: "Answer | xr.Dataset", *, title: str | None = None, style: str 
     if kind not in _CHARTS:
         raise InvalidInput(f"plot draws answers of tasks, and datasets of {', '.join(_CHARTS)}, got {kind}")
     with figure_style(style):
-        return shown_in_notebooks(Drawing(chart=lambda: _chart_of(kind)(result)).figure())
-
-
-def _chart_of(kind: str) -> "Callable[[xr.Dataset], Chart]":
-    """Function that returns the chart of datasets of a kind."""
-    from importlib import import_module
-
-    module, _, name = _CHARTS[kind].partition(":")
-    chart: Callable[[xr.Dataset], Chart] = getattr(import_module(module), name)
-    return chart
+        return shown_in_notebooks(Drawing(chart=lambda: _CHARTS[kind](result)).figure())

@@ -10,7 +10,7 @@ from sonolube.errors import UnknownName
 from sonolube.facts.materials import Material, material, material_classes, material_families, material_names
 from sonolube.facts.materials.catalogue import read_property_file
 
-ENTRIES = read_property_file("engineering.toml").entries
+ENTRIES = read_property_file("engineering.toml")
 NEEDED_FOR_A_CONTACT = ("youngs_modulus", "poisson_ratio", "density", "hardness", "yield_strength")
 METALS = {
     "aluminium",

@@ -27,12 +27,12 @@ def with_figure_style(command: Callable[..., None]) -> Callable[..., None]:
     def run(*, style: FigureStyleName, **arguments: Any) -> None:
         from sonolube.figure import figure_style
 
-        with figure_style(style.value):
+        with figure_style(style):
             command(**arguments)
 
     hints = get_type_hints(command, include_extras=True)
     given = [each.replace(annotation=hints[name]) for name, each in signature(command).parameters.items()]
-    option = Parameter("style", Parameter.KEYWORD_ONLY, default=FigureStyleName.JOURNAL, annotation=Style)
+    option = Parameter("style", Parameter.KEYWORD_ONLY, default="journal", annotation=Style)
     run.__signature__ = signature(command).replace(parameters=[*given, option])  # type: ignore[attr-defined]
     run.__annotations__ = {**hints, "style": Style}
     return run

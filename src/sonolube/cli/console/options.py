@@ -10,12 +10,11 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import wraps
 from glob import escape
 from pathlib import Path
 from threading import Event, Thread
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_type_hints
 
 import typer
 
@@ -34,21 +33,8 @@ if TYPE_CHECKING:
     from sonolube.rig import Rig
 
 
-class AmplitudeSource(StrEnum):
-    """Where the amplitude of a vibration comes from."""
-
-    MEASURED = "measured"
-    COMPUTED = "computed"
-    WAVEGUIDE = "waveguide"
-    PER_VOLT = "per-volt"
-
-
-class FigureStyleName(StrEnum):
-    """Sizes of figures, and of what is written in them."""
-
-    JOURNAL = "journal"
-    SLIDES = "slides"
-
+AmplitudeSource = Literal["measured", "computed", "waveguide", "per-volt"]
+FigureStyleName = Literal["journal", "slides"]
 
 Changes = Annotated[
     list[str] | None,
@@ -90,7 +76,7 @@ def rig_of_options(
 
     replaced = list(changes or ())
     if amplitude is not None:
-        replaced.append(f"vibration.amplitude_source={amplitude.value}")
+        replaced.append(f"vibration.amplitude_source={amplitude}")
     if load is not None:
         to_si(load, unit="N", name="--load")
         replaced.append(f"contact.normal_load={load}")
@@ -188,39 +174,23 @@ def _stem(value: Any) -> str:
 _POLL = 0.1  # s, between two looks at requests to end while an operator is asked
 
 
-@dataclass(frozen=True, kw_only=True)
-class Question:
-    """Question for what an option gives.
-
-    Parameters
-    ----------
-    option : str
-        As typed, such as "--load".
-    text : str
-        What is asked for, with an example.
-    default : str
-        Answer that an empty line stands for.
-    """
-
-    option: str
-    text: str
-    default: str
-
-
 def is_terminal() -> bool:
     """Whether somebody can answer questions."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
-def ask(question: Question, read: Callable[[str], object]) -> str:
-    """Answer to a question, asked again until it can be read."""
+def ask(option: str, text: str, default: str, read: Callable[[str], object]) -> str:
+    """Answer to a question for what an option gives, asked again until it can be read.
+
+    An empty line stands for the default.
+    """
     while True:
-        typer.echo(f"{question.text} [{question.default}]: ", nl=False, err=True)
+        typer.echo(f"{text} [{default}]: ", nl=False, err=True)
         line = sys.stdin.readline()
         if not line:
             typer.echo(err=True)
-            raise InvalidInput(f"the input ended at {question.option}; nothing is written")
-        answer = line.strip() or question.default
+            raise InvalidInput(f"the input ended at {option}; nothing is written")
+        answer = line.strip() or default
         try:
             read(answer)
         except SonolubeError as refusal:

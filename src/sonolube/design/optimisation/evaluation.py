@@ -15,7 +15,7 @@ from sonolube.models.contact import separation
 from sonolube.models.dynamics import Status, SteadyStates
 from sonolube.rig import point_batch
 from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, driven_rig
-from sonolube.rig.operating_conditions import OperatingConditions, steady_states_of
+from sonolube.rig.operating_conditions import steady_states_of
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import resolved_rig
 
@@ -112,7 +112,7 @@ def evaluate(
     f, volts = np.broadcast_arrays(np.asarray(frequency, dtype=float), np.asarray(voltage_peak_to_peak, dtype=float))
     offset = rig.drive.offset_ratio * volts
     load = np.full(f.shape, rig.normal_load)
-    settings = OperatingConditions(voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f, normal_load=load)
+    settings = (volts, offset, f, load)
     states = steady_states_of(resolved, settings, separation(rig.contact, normal_load=load))
     stack = rig.stack
     power = resolved.voltage.amplifier_power(

@@ -19,33 +19,19 @@ from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PropertyFile:
-    """Content of one property file.
-
-    Parameters
-    ----------
-    sources : mapping of str to str
-        Citations by the short keys that the entries use.
-    entries : mapping of str to mapping
-        Content of the file for each material, by its name.
-    """
-
-    sources: Mapping[str, str]
-    entries: Mapping[str, Mapping[str, Any]]
-
-
 @cache
-def read_property_file(file_name: str) -> PropertyFile:
-    """Content of a property file of this package."""
+def read_property_file(file_name: str) -> Mapping[str, Mapping[str, Any]]:
+    """Entries of a property file of this package by name, each source in full where the file has its short key."""
     content = tomllib.loads(files("sonolube.facts.materials").joinpath(file_name).read_text(encoding="utf-8"))
-    sources = content.pop("sources")
-    return PropertyFile(sources=sources, entries=content)
+    return _cited(content, content.pop("sources"))
 
 
-def cited(entry: Mapping[str, Any], sources: Mapping[str, str]) -> dict[str, Any]:
-    """Entry with the key of its source replaced by the citation."""
-    return {**entry, "source": sources[entry["source"]]}
+def _cited(table: Mapping[str, Any], sources: Mapping[str, str]) -> dict[str, Any]:
+    """Table with its sources in full, and those of the tables in it."""
+    full: dict[str, Any] = {
+        key: _cited(value, sources) if isinstance(value, dict) else value for key, value in table.items()
+    }
+    return full | {"source": sources[full["source"]]} if "source" in full else full
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -189,18 +175,13 @@ def classes_of(materials: Mapping[str, Material]) -> Mapping[str, Material]:
     strength of a metal vary at least as those of one alloy over its tempers. A range that is cited instead is taken to
     hold 95 of 100: its median is the geometric middle, its standard deviation a quarter of the logarithm of its ratio.
     """
-    content = read_property_file("classes.toml")
-    entries = dict(content.entries)
-    tempers = cited(entries.pop("tempers"), content.sources)
-    return {name: _class(name, entry, content.sources, tempers, materials) for name, entry in entries.items()}
+    entries = dict(read_property_file("classes.toml"))
+    tempers = entries.pop("tempers")
+    return {name: _class(name, entry, tempers, materials) for name, entry in entries.items()}
 
 
 def _class(
-    name: str,
-    entry: Mapping[str, Any],
-    sources: Mapping[str, str],
-    tempers: Mapping[str, Any],
-    materials: Mapping[str, Material],
+    name: str, entry: Mapping[str, Any], tempers: Mapping[str, Any], materials: Mapping[str, Material]
 ) -> Material:
     """Class of one entry: properties of its members, and those that the entry cites."""
     family = entry.get("family", name)
@@ -209,7 +190,7 @@ def _class(
     properties = {key: _over(key, members) for key in sorted({key for each in members for key in each.properties})}
     if entry.get("tempered", False):
         properties |= {key: _tempered(properties[key], tempers) for key in tempers["quantities"]}
-    stated = {key: _ranged(cited(value, sources)) for key, value in entry.get("properties", {}).items()}
+    stated = {key: _ranged(value) for key, value in entry.get("properties", {}).items()}
     return Material(
         name=name,
         title=entry["title"],
@@ -309,8 +290,8 @@ _FILES = ("engineering.toml", "piezo.toml")
 @cache
 def _materials() -> Mapping[str, Material]:
     """All materials of the property files by name."""
-    tables = [read_property_file(file_name) for file_name in _FILES]
-    return {name: _material(name, entry, table.sources) for table in tables for name, entry in table.entries.items()}
+    entries = (each for file_name in _FILES for each in read_property_file(file_name).items())
+    return {name: _material(name, entry) for name, entry in entries}
 
 
 @cache
@@ -336,16 +317,14 @@ def _key(name: str) -> str:
     return re.sub(r"[\W_]+", "", name.lower())
 
 
-def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -> Material:
+def _material(name: str, entry: Mapping[str, Any]) -> Material:
     """Material of one entry of a property file."""
     structure = entry.get("crystal_structure")
     return Material(
         name=name,
         title=entry["title"],
         family=entry["family"],
-        properties=MappingProxyType(
-            {key: SourcedValue(**cited(value, sources)) for key, value in entry["properties"].items()}
-        ),
-        crystal_structure=SourcedText(**cited(structure, sources)) if structure else None,
+        properties=MappingProxyType({key: SourcedValue(**value) for key, value in entry["properties"].items()}),
+        crystal_structure=SourcedText(**structure) if structure else None,
         aliases=tuple(entry.get("aliases", ())),
     )

@@ -233,26 +233,24 @@ def piezo_ceramic(name: str) -> PiezoCeramic:
     >>> piezo_ceramic("pzt4").charge_constants[2, 2].item()  # C/N
     2.89e-10
     """
-    table = read_property_file("piezo.toml")
+    entries = read_property_file("piezo.toml")
     try:
         scalars = catalogue_material(name)
-        entry = table.entries[scalars.name]
+        entry = entries[scalars.name]
     except LookupError:
-        raise UnknownName.among(table.entries, kind="piezoelectric ceramic", name=name) from None
+        raise UnknownName.among(entries, kind="piezoelectric ceramic", name=name) from None
     if "constants" not in entry:
         raise MissingProperty(
             f"{scalars.name} has no complete set of constants: {entry['missing_constants']}; "
             f"take one of {', '.join(piezo_ceramic_names())}, or give the ten constants"
         )
-    constants: dict[str, Any] = {**entry["constants"], "source": table.sources[entry["constants"]["source"]]}
+    constants = dict(entry["constants"])
     return _CONSTRUCTORS[constants.pop("form")](material=scalars, **constants)
 
 
 def piezo_ceramic_names() -> tuple[str, ...]:
     """Names of the ceramics with a complete set of constants, in alphabetical order."""
-    return tuple(
-        sorted(name for name, entry in read_property_file("piezo.toml").entries.items() if "constants" in entry)
-    )
+    return tuple(sorted(name for name, entry in read_property_file("piezo.toml").items() if "constants" in entry))
 
 
 def _constants(kind: str, constants: Mapping[str, float], *indices: str) -> list[float]:

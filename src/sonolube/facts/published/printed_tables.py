@@ -13,7 +13,7 @@ from importlib.resources import files
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
-from sonolube.errors import InvalidInput, UnknownName
+from sonolube.errors import InvalidInput, UnknownName, entry_named
 from sonolube.text.units import convert
 from sonolube.vocabulary import unit_of
 
@@ -217,9 +217,7 @@ def erratum(id: str) -> Erratum:  # noqa: A002 - the field's own word
     'Table 4.2'
     """
     known = {entry.id: entry for entry in errata()}
-    if id not in known:
-        raise UnknownName.among(known, kind="erratum", name=id)
-    return known[id]
+    return entry_named(known, id, kind="erratum")
 
 
 Role = Literal["given", "measured", "derived", "modelled"]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from sonolube.errors import UnknownName
+from sonolube.errors import UnknownName, entry_named
 from sonolube.facts.published.printed_tables import PrintedNumber, parse_printed, published_content
 
 _PARTS = ("abstract", "chapter1", "chapter2", "chapter3", "chapter4", "chapter5", "appendix")
@@ -101,9 +101,7 @@ def statement(id: str) -> Statement:  # noqa: A002 - the field's own word
     UnknownName
         If no statement has that id.
     """
-    if id not in _by_id():
-        raise UnknownName.among(_by_id(), kind="statement", name=id)
-    return _by_id()[id]
+    return entry_named(_by_id(), id, kind="statement")
 
 
 @cache
@@ -179,9 +177,7 @@ def figure(number: str) -> FigureCaption:
         If no figure has that number.
     """
     known = {entry.number: entry for entry in figures()}
-    if number not in known:
-        raise UnknownName.among(known, kind="figure", name=number)
-    return known[number]
+    return entry_named(known, number, kind="figure")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

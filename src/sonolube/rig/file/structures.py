@@ -1,8 +1,8 @@
 """Structures of a rig file: the pin-on-disc chain, any chain of masses, springs and dampers, and modes."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
-from typing import Annotated, Any, Literal, Self
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
@@ -58,6 +58,12 @@ class DamperSection(Section):
     viscous_damping: float
 
 
+_ELEMENTS: Final = (
+    ("springs", "spring_stiffness"),
+    ("dampers", "viscous_damping"),
+)  # tables of a chain, by their number
+
+
 class ChainSection(Section):
     """Any chain of masses, springs and dampers along the normal of the contact, with the stack between two of them."""
 
@@ -78,46 +84,40 @@ class ChainSection(Section):
 
     def entries(self) -> dict[str, float]:
         """Masses, stiffnesses and dampings in SI: "masses.tip", "springs.0.spring_stiffness" and so on."""
-        return {
-            **{f"masses.{name}": mass for name, mass in self.masses.items()},
-            **{f"springs.{index}.spring_stiffness": each.spring_stiffness for index, each in enumerate(self.springs)},
-            **{f"dampers.{index}.viscous_damping": each.viscous_damping for index, each in enumerate(self.dampers)},
+        masses = {f"masses.{name}": mass for name, mass in self.masses.items()}
+        return masses | {
+            f"{table}.{index}.{name}": getattr(each, name)
+            for table, name in _ELEMENTS
+            for index, each in enumerate(getattr(self, table))
         }
 
     def with_entries(self, values: Mapping[str, float]) -> Self:
         """Section with some of its entries replaced, in SI."""
         known = {**self.entries(), **values}
-        return self.model_copy(
-            update={
-                "masses": {name: known[f"masses.{name}"] for name in self.masses},
-                "springs": [
-                    each.model_copy(update={"spring_stiffness": known[f"springs.{index}.spring_stiffness"]})
-                    for index, each in enumerate(self.springs)
-                ],
-                "dampers": [
-                    each.model_copy(update={"viscous_damping": known[f"dampers.{index}.viscous_damping"]})
-                    for index, each in enumerate(self.dampers)
-                ],
-            }
-        )
+        masses = {name: known[f"masses.{name}"] for name in self.masses}
+        elements = {
+            table: [
+                each.model_copy(update={name: known[f"{table}.{index}.{name}"]})
+                for index, each in enumerate(getattr(self, table))
+            ]
+            for table, name in _ELEMENTS
+        }
+        return self.model_copy(update={"masses": masses, **elements})
 
     def lines(self, entry: EntryText) -> list[str]:
         """Table as lines of TOML."""
 
-        def elements(key: str, each_key: str, ends: Sequence[Sequence[str]]) -> list[str]:
-            rows = ((json.dumps(list(pair)), *entry(f"{key}.{index}.{each_key}")) for index, pair in enumerate(ends))
-            return [
-                f"{key} = [",
-                *(f"  {{ between = {pair}, {each_key} = {value} }},{comment}" for pair, value, comment in rows),
-                "]",
-            ]
+        def elements(table: str, name: str) -> list[str]:
+            pairs = enumerate(json.dumps(each.between) for each in getattr(self, table))
+            rows = ((pair, *entry(f"{table}.{index}.{name}")) for index, pair in pairs)
+            written = (f"  {{ between = {pair}, {name} = {value} }},{comment}" for pair, value, comment in rows)
+            return [f"{table} = [", *written, "]"]
 
         masses = ((name if name.isidentifier() else json.dumps(name), *entry(f"masses.{name}")) for name in self.masses)
         return [
             'kind = "chain"',
             *(f"masses.{name} = {value}{comment}" for name, value, comment in masses),
-            *elements("springs", "spring_stiffness", [each.between for each in self.springs]),
-            *elements("dampers", "viscous_damping", [each.between for each in self.dampers]),
+            *(line for each in _ELEMENTS for line in elements(*each)),
             f"stack_between = {json.dumps(self.stack_between)}",
             f"contact = {json.dumps(self.contact)}",
             *([f"loaded = {json.dumps(self.loaded)}"] if self.loaded else []),
@@ -125,7 +125,6 @@ class ChainSection(Section):
 
     def structure(self, stack: PiezoStack) -> Structure:
         """Structure with a stack in it."""
-        (near, behind) = self.stack_between
         return chain.chain_structure(
             chain.LumpedChain(
                 masses=self.masses,
@@ -138,7 +137,7 @@ class ChainSection(Section):
                     for each in self.dampers
                 ),
                 stack=stack,
-                stack_between=(near, behind),
+                stack_between=_ends(self.stack_between),
                 contact=self.contact,
                 loaded=self.loaded,
             )

@@ -6,7 +6,7 @@ or a scan.
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import exp, hypot, log, pi
 from pathlib import Path
 from typing import Final
@@ -249,6 +249,19 @@ class KnownSurface:
     height_reason: str
     summit_reason: str
 
+    def entries(self, place: str) -> Entries:
+        """Table of the roughness."""
+        rows = (
+            ("rms_height", "m", self.height_deviation, self.height_reason),
+            ("summit_radius", "m", self.radius_deviation, self.summit_reason),
+            ("summit_density", "1/m2", self.density_deviation, self.summit_reason),
+        )
+        return Entries(
+            tables={place: {name: toml_text(getattr(self.roughness, name), unit) for name, unit, _, _ in rows}},
+            assumptions={f"{place}.{name}": reason for name, _, _, reason in rows},
+            uncertainty={f"{place}.{name}": lognormal_text(deviation) for name, _, deviation, _ in rows},
+        )
+
 
 def finished_surface(finish: str) -> KnownSurface:
     """Surface by its process, its ISO grade or both, or by Ra, Rz or Rq."""
@@ -276,11 +289,7 @@ def scanned_surface(path: str | Path) -> KnownSurface:
     summits = surfaces.contact_roughness(levelled)
     name = Path(path).name
     return KnownSurface(
-        roughness=surfaces.Roughness(
-            rms_height=surfaces.height_parameters(levelled).rms_height,
-            summit_radius=summits.summit_radius,
-            summit_density=summits.summit_density,
-        ),
+        roughness=replace(summits, rms_height=surfaces.height_parameters(levelled).rms_height),
         height_deviation=_SCAN_DEVIATION,
         radius_deviation=_SCANNED_SUMMITS_DEVIATION,
         density_deviation=_SCANNED_SUMMITS_DEVIATION,
@@ -301,11 +310,8 @@ def surfaces_in_contact(pin: KnownSurface, disc: KnownSurface) -> KnownSurface:
     heights = [each.roughness.rms_height for each in (pin, disc)]
     height = hypot(*heights)
     shares = [(each / height) ** 2 for each in heights]
-    summits = surfaces.combined_roughness(pin.roughness, disc.roughness)
     return KnownSurface(
-        roughness=surfaces.Roughness(
-            rms_height=height, summit_radius=summits.summit_radius, summit_density=summits.summit_density
-        ),
+        roughness=replace(surfaces.combined_roughness(pin.roughness, disc.roughness), rms_height=height),
         height_deviation=hypot(shares[0] * pin.height_deviation, shares[1] * disc.height_deviation),
         radius_deviation=max(pin.radius_deviation, disc.radius_deviation),
         density_deviation=max(pin.density_deviation, disc.density_deviation),

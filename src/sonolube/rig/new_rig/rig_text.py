@@ -115,13 +115,14 @@ class KnownBody:
             reason="; ".join(filter(None, (reason, origin))),
         )
 
-    def entries(self, place: str, *, role: str) -> Entries:
-        """Table of the body as the softer or the harder one, without its strength.
+    def entries(self, place: str, *, role: str, strength: YieldStrength | None = None) -> Entries:
+        """Table of the body as the softer one, with its strength, or as the harder one.
 
         Properties that the catalogue lacks, and the modulus of a class with its spread, are stated.
         """
         table = {"material": json.dumps(self.material.name), "role": json.dumps(role)}
-        reasons, laws = {}, {}
+        reasons = {} if strength is None else {f"{place}.yield_strength": strength.reason}
+        laws = {} if strength is None else {f"{place}.yield_strength": lognormal_text(strength.deviation)}
         modulus = self._property("youngs_modulus")
         if "youngs_modulus" not in self.material.properties or modulus.deviation:
             table["youngs_modulus"] = toml_text(modulus.value, "Pa")
@@ -131,6 +132,8 @@ class KnownBody:
         if "poisson_ratio" not in self.material.properties:
             table["poisson_ratio"] = f"{_POISSON_RATIO:g}"
             reasons[f"{place}.poisson_ratio"] = _POISSON_REASON
+        if strength is not None:
+            table["yield_strength"] = toml_text(strength.yield_strength, "Pa")
         return Entries(tables={place: table}, assumptions=reasons, uncertainty=laws)
 
     def _property(self, key: str) -> materials.SourcedValue:
@@ -231,13 +234,13 @@ def new_rig_text(known: KnownRig) -> str:
 
     Entries that nobody measured are in its table `uncertainty`, each with its reason in `assumptions`.
     """
-    parts = [_contact(known), _friction(known), known.vibration.entries(known.frequency)]
+    parts = [*_contact(known), _friction(known), known.vibration.entries(known.frequency)]
     pin, disc = materials.material(known.pin), materials.material(known.disc)
     tables: dict[str, Mapping[str, str]] = {
         "": {"title": json.dumps(f"{pin.title} pin on {disc.title} disc"), "source": '"what was known before a test"'}
     }
     for part in parts:
-        tables |= part.tables
+        tables |= {name: {**tables.get(name, {}), **table} for name, table in part.tables.items()}
     tables["uncertainty"] = _quoted([part.uncertainty for part in parts])
     tables["assumptions"] = _quoted([part.assumptions for part in parts])
     text = "\n".join([_HEAD, *(_table(name, entries) for name, entries in tables.items())])
@@ -279,57 +282,22 @@ def _moves_friction(rig: Rig, key: str, low: float, high: float) -> bool:
     return not isclose(*forces, rel_tol=_SAME_FORCE)
 
 
-def _contact(known: KnownRig) -> Entries:
+def _contact(known: KnownRig) -> list[Entries]:
     """Tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
     pin, disc = (KnownBody(material=materials.material(name)) for name in (known.pin, known.disc))
     softer, harder = (disc, pin) if disc.hardness < pin.hardness else (pin, disc)
+    softer_role, harder_role = ("pin", "disc") if softer is pin else ("disc", "pin")
     strength = softer.strength
     pair = contact_pair(softer=softer.elastic, harder=harder.elastic, yield_strength=strength.yield_strength)
     area = known.shape.nominal_area(effective_modulus=pair.effective_modulus, normal_load=known.normal_load)
-    surface = surfaces_in_contact(known.pin_surface, known.disc_surface)
-    roughness, place = surface.roughness, "contact.roughness"
-    softer_role, harder_role = ("pin", "disc") if softer is pin else ("disc", "pin")
-    softer_entries = softer.entries("contact.softer", role=softer_role)
-    harder_entries = harder.entries("contact.harder", role=harder_role)
-    compliance = compliance_entries(decay_length=known.decay_length, normal_stiffness=known.normal_stiffness)
-    return Entries(
-        tables={
-            "contact": {
-                "normal_load": toml_text(known.normal_load, "N"),
-                "nominal_area": toml_text(area, "m2"),
-                **compliance.tables["contact"],
-            },
-            place: {
-                "rms_height": toml_text(roughness.rms_height, "m"),
-                "summit_radius": toml_text(roughness.summit_radius, "m"),
-                "summit_density": toml_text(roughness.summit_density, "1/m2"),
-            },
-            "contact.softer": {
-                **softer_entries.tables["contact.softer"],
-                "yield_strength": toml_text(strength.yield_strength, "Pa"),
-            },
-            **harder_entries.tables,
-        },
-        assumptions={
-            "contact.nominal_area": known.shape.text,
-            **compliance.assumptions,
-            f"{place}.rms_height": surface.height_reason,
-            f"{place}.summit_radius": surface.summit_reason,
-            f"{place}.summit_density": surface.summit_reason,
-            "contact.softer.yield_strength": strength.reason,
-            **softer_entries.assumptions,
-            **harder_entries.assumptions,
-        },
-        uncertainty={
-            **compliance.uncertainty,
-            f"{place}.rms_height": lognormal_text(surface.height_deviation),
-            f"{place}.summit_radius": lognormal_text(surface.radius_deviation),
-            f"{place}.summit_density": lognormal_text(surface.density_deviation),
-            "contact.softer.yield_strength": lognormal_text(strength.deviation),
-            **softer_entries.uncertainty,
-            **harder_entries.uncertainty,
-        },
-    )
+    pressed = {"normal_load": toml_text(known.normal_load, "N"), "nominal_area": toml_text(area, "m2")}
+    return [
+        Entries(tables={"contact": pressed}, assumptions={"contact.nominal_area": known.shape.text}),
+        compliance_entries(decay_length=known.decay_length, normal_stiffness=known.normal_stiffness),
+        surfaces_in_contact(known.pin_surface, known.disc_surface).entries("contact.roughness"),
+        softer.entries("contact.softer", role=softer_role, strength=strength),
+        harder.entries("contact.harder", role=harder_role),
+    ]
 
 
 def _friction(known: KnownRig) -> Entries:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import suppress
 from math import pi
 from pathlib import Path
 from typing import Final
@@ -38,22 +38,6 @@ _SHAPE: Final = re.compile(
     r"(?:(?P<measure>radius|diameter|dia|r|d|ø|⌀)[ .:=]*)?(?P<size>[-+.\d].*)",
     re.IGNORECASE,
 )
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class StatedSpeed:
-    """Sliding speed as it was stated.
-
-    Parameters
-    ----------
-    sliding_speed : float
-        Mean sliding speed. [m/s]
-    reason : str
-        How it follows from a rotational speed; empty where it was stated itself.
-    """
-
-    sliding_speed: float
-    reason: str = ""
 
 
 def reader(unit: str, *, name: str) -> Callable[[str], float]:
@@ -92,10 +76,12 @@ def speed_of(
     name: str = "--speed",
     radius_name: str = "--track-radius",
     diameter_name: str = "--track-diameter",
-) -> StatedSpeed:
+) -> tuple[float, str]:
     r"""Sliding speed as stated, such as "0.2m/s", or by the rotation of the disc, such as "100 rpm", and the track.
 
     .. math:: v = 2 \pi r n
+
+    With how it follows from the rotation; empty where the speed itself is stated. [m/s]
     """
     turns = rotation_of(text)
     given = {radius_name: track_radius, diameter_name: track_diameter}
@@ -106,7 +92,7 @@ def speed_of(
         speed = reader("m/s", name=name)(text)
         if stated:
             raise InvalidInput(f"{next(iter(stated))} belongs to a speed in rpm; {name} {text} needs none")
-        return StatedSpeed(sliding_speed=speed)
+        return speed, ""
     if not turns > 0:
         raise InvalidInput(f"{name} {text} must be positive")
     if not stated:
@@ -118,24 +104,17 @@ def speed_of(
     length = reader("m", name=key)(size)
     radius = length if key == radius_name else length / 2
     value = require_plausible(2 * pi * radius * turns, unit="m/s", text=f"{name} {text} at a radius of {size}")
-    return StatedSpeed(
-        sliding_speed=value,
-        reason=f"2 pi r n, with {60 * turns:.6g} rpm and a track of {format_si(radius, 'm', digits=4)} in radius",
-    )
+    return value, f"2 pi r n, with {60 * turns:.6g} rpm and a track of {format_si(radius, 'm', digits=4)} in radius"
 
 
 def rotation_of(text: str) -> float | None:
     """Turns per second of a rotational speed, such as "100 rpm"; None for a text of another kind."""
-    try:
+    with suppress(InvalidInput):
         to_si(text, unit="m/s", name="speed")
-    except InvalidInput:
-        pass
-    else:
         return None
-    try:
+    with suppress(InvalidInput):
         return to_si(_TURNS.sub("turn", text), unit="1/s", name="speed")
-    except InvalidInput:
-        return None
+    return None
 
 
 def vibration_of(text: str, *, name: str = "--amplitude") -> Vibration:

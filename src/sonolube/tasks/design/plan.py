@@ -11,7 +11,7 @@ from sonolube.design.test_plan.comparison import BLOCKINGS, COMPARISONS
 from sonolube.design.test_plan.plan import Procedure, Question, TestPlan, plan_tests, published_distances
 from sonolube.design.test_plan.run_protocols import has_results, plan_chart, run_protocols, run_table
 from sonolube.errors import InvalidInput
-from sonolube.facts.protocol import Protocol, protocol_text
+from sonolube.facts.protocol import protocol_text
 from sonolube.prediction.inputs import RigInputs, rig_inputs
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.report.measurement import pin_on_disc_checklist
@@ -61,12 +61,12 @@ class PlanAnswer(Answer):
         """Table of the runs to be filled, and the protocol of each."""
         return {
             f"{self._name}-runs.csv": run_table(self.plan),
-            **{f"{self._name}/{name}.toml": protocol_text(each) for name, each in self._protocols().items()},
+            **{f"{self._name}/{name}.toml": protocol_text(each) for name, each in run_protocols(self.plan).items()},
         }
 
     def page(self) -> Page:
         """Sheet to print: points, runs with empty cells, what to report, limits."""
-        plan, limits = self.plan, next(iter(self._protocols().values())).limits
+        plan, limits = self.plan, next(iter(run_protocols(self.plan).values())).limits
         known = results.known_items(self.rig, plan)
         heads = tuple(map(str.capitalize, results.POINT_HEADS))
         facts = [(name.capitalize(), text) for name, text in results.facts(self.plan)]
@@ -94,10 +94,6 @@ class PlanAnswer(Answer):
     @property
     def _name(self) -> str:
         return f"{self.rig.name}-plan"
-
-    def _protocols(self) -> dict[str, Protocol]:
-        """Protocol of each run by its name."""
-        return run_protocols(self.plan)
 
 
 _SPEEDS, _AMPLITUDES = 7, 5  # values of a range without a count

@@ -119,8 +119,9 @@ class UncertaintyAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
-        facts = [*self._outcome_rows(), *self._error_rows()]
-        return results.uncertainty_blocks(self.rig, self.result, self.structure, ranking=self._ranking, facts=facts)
+        return results.uncertainty_blocks(
+            self.rig, self.result, self.structure, ranking=self._ranking, facts=self._facts()
+        )
 
     def object(self) -> dict[str, Any]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
@@ -171,8 +172,9 @@ class UncertaintyAnswer(Answer):
 
     def page(self) -> Page:
         """Page `uncertainty.html`."""
-        facts = [*self._outcome_rows(), *self._error_rows()]
-        return results.uncertainty_page(self.rig, self.result, self.structure, ranking=self._ranking, facts=facts)
+        return results.uncertainty_page(
+            self.rig, self.result, self.structure, ranking=self._ranking, facts=self._facts()
+        )
 
     def failures(self) -> dict[str, int]:
         """Number of samples without a result, by the reason."""
@@ -198,11 +200,12 @@ class UncertaintyAnswer(Answer):
         """Name of the files, without ending."""
         return f"{self.rig.name}-uncertainty-{self._of}"
 
-    def _outcome_rows(self) -> list[tuple[str, str]]:
-        """Statistics of the outcome, or its band."""
+    def _facts(self) -> list[tuple[str, str]]:
+        """Statistics of the outcome, or its band, and the error of the friction model."""
+        of_model = self._beyond.rows() if self._of in _OF_THE_MODEL else []
         if self._swept:
-            return results.band_rows(self._band, self._of)
-        return results.statistics_rows(self._statistics, self._of)
+            return [*results.band_rows(self._band, self._of), *of_model]
+        return [*results.statistics_rows(self._statistics, self._of), *of_model]
 
     @cached_property
     def _resolved(self) -> ResolvedRig:
@@ -223,10 +226,6 @@ class UncertaintyAnswer(Answer):
     def _beyond(self) -> BeyondTheModel:
         """Uncertainty of the friction ratio that the samples leave out."""
         return beyond_the_model(self._resolved, self.rig.friction_model, interval=self.interval)
-
-    def _error_rows(self) -> list[tuple[str, str]]:
-        """The same as names and texts."""
-        return self._beyond.rows() if self._of in _OF_THE_MODEL else []
 
     @cached_property
     def _ranking(self) -> list[RankedEntry]:

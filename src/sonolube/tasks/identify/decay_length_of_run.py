@@ -73,18 +73,12 @@ def decay_length(
     )
     path, columns = file_path(file), mapping_of(mapping)
     with stage("weighing"):
-        if path.is_dir():
-            table = identification.recorded_switches(
-                switched_recording(path),
-                sliding_speed=conditions.sliding_speed,
-                rotation_speed=in_si("rotation_speed", rotation_speed),
-            )
-        elif is_switch_table(path, columns):
+        if not path.is_dir() and is_switch_table(path, columns):
             refuse_unused("rotation_speed", because="for a table of switches; it is for recordings")
             table = identification.switch_table(read_runs(path, mapping=columns))
         else:
             table = identification.recorded_switches(
-                read_recording(path, mapping=columns),
+                switched_recording(path) if path.is_dir() else read_recording(path, mapping=columns),
                 sliding_speed=conditions.sliding_speed,
                 rotation_speed=in_si("rotation_speed", rotation_speed),
             )

@@ -1,7 +1,6 @@
 """Task `identify rig`: entries of a rig's stack and structure from ranked facts, as tables of a rig file."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Unpack
 
@@ -71,10 +70,6 @@ class IdentificationAnswer(Answer):
         """Rig file, with the findings as comments before it."""
         comments = text_lines(self.blocks())
         return "\n".join([*(f"# {line}".rstrip() for line in comments), self.rig_text])
-
-    def written_to(self, target: Path) -> "IdentificationAnswer":
-        """Answer for a file."""
-        return replace(self, target=target)
 
     def object(self) -> dict[str, Any]:
         """Stack, parameters with their ranges, facts with their misses, conflicts and free directions."""

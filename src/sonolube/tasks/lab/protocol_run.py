@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Annotated, Any, Final, Literal, Unpack
 
 import sonolube.laboratory.dry_run as dry_runs
-from sonolube.errors import InvalidInput, UnknownName
+from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, flattened, protocol_at, protocol_by_name_or_file
 from sonolube.laboratory import RunControl, RunResult, require_possible, run_protocol
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
-from sonolube.laboratory.records import EXPORT_FORMATS, Run, export_run, read_run
+from sonolube.laboratory.records import Run, export_run, read_run
 from sonolube.laboratory.reservation import require_free
 from sonolube.laboratory.run_plan import RunPlan, begin_record
 from sonolube.laboratory.runner import Operator
@@ -285,8 +285,6 @@ def virtual(
 
     Example: sonolube lab virtual examples/rigs/power_map.toml --protocol map_test
     """
-    if file_format not in EXPORT_FORMATS:
-        raise UnknownName.among(EXPORT_FORMATS, kind="format", name=file_format)
     known = rig_of(rig)
     path = _OWN_TEST if protocol is None else str(file_path(protocol))
     read = protocol_by_name_or_file(path)

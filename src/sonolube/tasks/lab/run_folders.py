@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -15,7 +14,6 @@ from sonolube.tasks.parameters import File, KeyValues, OwnFolder, Parameter
 from sonolube.tasks.task import refuse_unused, shown, task
 
 if TYPE_CHECKING:
-    from sonolube.charts import Chart
     from sonolube.report import Drawing
 
 RUNS = "runs"
@@ -153,7 +151,8 @@ class ShownRun(Answer):
         name = f"{self.run.folder.resolve().name}-channels"
         of_clocks = {
             f"{name}-{clock}": Drawing(
-                chart=partial(_chart_of_clock, self.run, clock), caption=f"{caption[:-1]}, by the clock {clock}."
+                chart=lambda clock=clock: channels_chart(self.run.dataset(clock=clock)),  # type: ignore[misc]
+                caption=f"{caption[:-1]}, by the clock {clock}.",
             )
             for clock in self.run.clocks
         }
@@ -162,13 +161,6 @@ class ShownRun(Answer):
     def dataset(self) -> Dataset:
         """Recording, where there is one."""
         return self.run.dataset().assign_attrs(self.notes()) if self.run.recordings else super().dataset()
-
-
-def _chart_of_clock(run: Run, clock: str) -> "Chart":
-    """Chart of the channels of another clock."""
-    from sonolube.laboratory.records.recording_views import channels_chart
-
-    return channels_chart(run.dataset(clock=clock))
 
 
 @task

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from sonolube import report as pages
 from sonolube.errors import SonolubeError
@@ -14,12 +14,8 @@ from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
 from sonolube.tasks.own_tables import mapping_of
-from sonolube.tasks.parameters import File, Parameter
-from sonolube.tasks.progress import stage
-
-if TYPE_CHECKING:
-    from sonolube.tasks.parameters import Mark
-    from sonolube.tasks.progress import Advance
+from sonolube.tasks.parameters import File, Mark, Parameter
+from sonolube.tasks.progress import Advance, stage
 
 Files = Annotated[Sequence[InputFile] | InputFile, File("Files, or folders whose files are taken.", "FILES...")]
 Group = Annotated[str | None, Parameter("Of the channels, in TDMS, HDF5 and MATLAB files.", "GROUP")]
@@ -164,7 +160,7 @@ class MeasuredFiles(Answer):
             for figure in sheet.figures
         }
 
-    def report(self, advance: "Advance") -> str:
+    def report(self, advance: Advance) -> str:
         """Page with the figures of all sheets."""
         return pages.measurement_page(self._measurement(), advance=advance)
 
@@ -199,7 +195,7 @@ def _file_name(file: InputFile) -> str:
     return file.name if isinstance(file, NamedBytes) else Path(file).name
 
 
-def _setting(value: object, mark: "Mark") -> str:
+def _setting(value: object, mark: Mark) -> str:
     """Value of an argument as text: of several files their names, of a number in SI its unit too."""
     if isinstance(value, list | tuple):
         is_file = isinstance(mark, File)

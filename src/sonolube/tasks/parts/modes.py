@@ -9,10 +9,9 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.models.fem import ConvergedModes
 from sonolube.models.fem.results import part_modes as mode_files
 from sonolube.models.fem.results.figures import ShapedSurface, mode_figure, shaped_surface
-from sonolube.models.fem.results.part_modes import PartModes, SupportedPart, modes_dataset, part_modes
+from sonolube.models.fem.results.part_modes import PartModes, modes_dataset, part_modes
 from sonolube.operating_system import quoted
 from sonolube.report import Drawing
 from sonolube.report.results.parts import modes_and_impedance as results
@@ -178,21 +177,6 @@ class ModesAnswer(Answer):
     with_animations: bool
     structure: str | None
 
-    @property
-    def part(self) -> SupportedPart:
-        """Part with its materials and supports."""
-        return self.solved.part
-
-    @property
-    def found(self) -> ConvergedModes:
-        """Modes on the last mesh."""
-        return self.solved.found
-
-    @property
-    def names(self) -> Sequence[str]:
-        """Names of all modes."""
-        return self.solved.names
-
     def blocks(self) -> Sequence[Block]:
         """Name and natural frequency with its error of every elastic mode."""
         return results.modes_blocks(self.solved)
@@ -203,7 +187,7 @@ class ModesAnswer(Answer):
 
     def assumptions(self) -> Mapping[str, str]:
         """Dimensions of a transducer that no source prints."""
-        return self.part.assumptions
+        return self.solved.part.assumptions
 
     def figures(self) -> Mapping[str, Drawing]:
         """Picture of every elastic mode."""
@@ -212,18 +196,18 @@ class ModesAnswer(Answer):
     def files(self) -> Mapping[str, str | bytes]:
         """Shapes at points, structure for a rig file, grid and animations, as far as they are wanted."""
         files: dict[str, str | bytes] = {}
-        stem = Path(self.part.name).stem
+        stem = Path(self.solved.part.name).stem
         if self.points is not None:
-            table = mode_files.shapes_table(self.found, self.names, self.points, direction=self.direction)
+            table = mode_files.shapes_table(self.solved.found, self.solved.names, self.points, direction=self.direction)
             files[f"{stem}-shapes.csv"] = table
         if self.structure is not None:
             files[f"{stem}-modes.toml"] = self.structure
         if self.with_grid:
-            files[f"{stem}-modes.vtu"] = mode_files.modes_grid(self.found, self.names)
+            files[f"{stem}-modes.vtu"] = mode_files.modes_grid(self.solved.found, self.solved.names)
         if self.with_animations:
             with stage("animating") as advance:
                 for done, row in enumerate(self._rows()):
-                    advance(self.names[row], done, len(self._rows()))
+                    advance(self.solved.names[row], done, len(self._rows()))
                     animation = mode_files.mode_animation(self._surface(row), title=self._title(row))
                     files[f"{self._file_name(row)}.gif"] = animation
         return files
@@ -234,11 +218,11 @@ class ModesAnswer(Answer):
 
     def _rows(self) -> range:
         """Indices of the elastic modes."""
-        return mode_files.elastic_rows(self.found)
+        return mode_files.elastic_rows(self.solved.found)
 
     def _surface(self, row: int) -> ShapedSurface:
         """Surface of the part with the shape of a mode."""
-        return shaped_surface(self.found.model.mesh, self.found.modes.shapes[row])
+        return shaped_surface(self.solved.found.model.mesh, self.solved.found.modes.shapes[row])
 
     def _figure(self, row: int) -> "Figure":
         """Picture of a mode."""
@@ -246,9 +230,9 @@ class ModesAnswer(Answer):
 
     def _title(self, row: int) -> str:
         """Name and natural frequency of a mode."""
-        return mode_files.mode_title(self.found, self.names, row)
+        return mode_files.mode_title(self.solved.found, self.solved.names, row)
 
     def _file_name(self, row: int) -> str:
         """Name of the picture of a mode: part, number among the elastic modes, and name of the mode."""
-        number = row - self.found.modes.rigid_body_count + 1
-        return f"{Path(self.part.name).stem}-{number}-{self.names[row].replace(' ', '-')}"
+        number = row - self.solved.found.modes.rigid_body_count + 1
+        return f"{Path(self.solved.part.name).stem}-{number}-{self.solved.names[row].replace(' ', '-')}"

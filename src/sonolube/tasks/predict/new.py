@@ -1,7 +1,6 @@
 """Task `new`: a first rig from what is known before a test."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -108,7 +107,7 @@ def new(
     refuse_two_of_one({"decay_length": decay_length, "stiffness": stiffness})
     if amplitude is None and actuator is None:
         raise InvalidInput(f"give {shown('amplitude')}, or {shown('actuator')} with its {shown('voltage')}")
-    sliding = speed_of(
+    sliding_speed, speed_reason = speed_of(
         _text(speed, "m/s") or "",
         track_radius=_text(track_radius, "m"),
         track_diameter=_text(track_diameter, "m"),
@@ -121,8 +120,8 @@ def new(
         disc=material(disc).name,
         shape=pin_shape(shape or DEFAULT_SHAPE, name=shown("shape")),
         normal_load=_read("load", load, "N"),
-        sliding_speed=sliding.sliding_speed,
-        speed_reason=sliding.reason,
+        sliding_speed=sliding_speed,
+        speed_reason=speed_reason,
         frequency=_read("frequency", frequency, "Hz"),
         vibration=vibration_of(stated_vibration(amplitude, actuator, voltage), name=shown("amplitude")),
         pin_surface=_surface(pin_scan, pin_finish or finish),
@@ -150,10 +149,6 @@ class NewRig(Answer):
         rows = [(one.key, one.text, one.remedy) for one in self.least_known]
         following = [] if self.target is None else [Verbatim(f"  next: sonolube predict {quoted(str(self.target))}")]
         return [self.rig.title, Table(heads, rows), *following]
-
-    def written_to(self, target: Path) -> "NewRig":
-        """Answer for a file."""
-        return replace(self, target=target)
 
     def object(self) -> dict[str, Any]:
         """Title, text of the file and the inputs known least."""
