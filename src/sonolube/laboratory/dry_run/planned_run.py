@@ -249,15 +249,7 @@ def _heating(
     except SonolubeError as refusal:
         notes.caveats.append(f"temperature of the contact is left out: {refusal}")
         bodies = None
-    power = np.array([point.load.capacitive_power if point.load else 0.0 for point in points])
-    return heating_over(
-        duration=np.array([point.duration for point in points]),
-        friction_force=np.array([point.friction_force or 0.0 for point in points]),
-        sliding_speed=np.array([point.sliding_speed or 0.0 for point in points]),
-        actuator_heat_rate=assumed.loss_factor * power,
-        bodies=bodies,
-        assumed=assumed,
-    )
+    return heating_over(points, bodies=bodies, assumed=assumed)
 
 
 def _material(known: str | None, of_protocol: str, role: str) -> str:
