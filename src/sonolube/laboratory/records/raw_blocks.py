@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.run_folder import CLOCK_NAME
+from sonolube.measurement.measured_files import refuse_unreadable
 from sonolube.vocabulary import quantities
 
 
@@ -237,20 +238,17 @@ def latest_samples(path: Path, *, duration: float) -> tuple[RawPart, Block | Non
     InvalidInput
         If the file cannot be read, or its header is damaged or not written yet.
     """
-    try:
-        with path.open("rb") as stream:
-            part = _header(stream, path)
-            size = stream.seek(0, SEEK_END)
-            wanted = max(ceil(duration * part.sample_rate), 1)
-            reach = min(2 * wanted * (8 * len(part.channels) + _RECORD_BYTES) + _SEARCHED, _MAX_READ)
-            start = replace(part, whole_bytes=max(part.header_bytes, size - reach))
-            blocks: list[Block] = []
-            for _, block in _records(stream, size, start):
-                if blocks and block.first_sample != blocks[-1].next_sample:
-                    blocks.clear()
-                blocks.append(block)
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+    with refuse_unreadable(path), path.open("rb") as stream:
+        part = _header(stream, path)
+        size = stream.seek(0, SEEK_END)
+        wanted = max(ceil(duration * part.sample_rate), 1)
+        reach = min(2 * wanted * (8 * len(part.channels) + _RECORD_BYTES) + _SEARCHED, _MAX_READ)
+        start = replace(part, whole_bytes=max(part.header_bytes, size - reach))
+        blocks: list[Block] = []
+        for _, block in _records(stream, size, start):
+            if blocks and block.first_sample != blocks[-1].next_sample:
+                blocks.clear()
+            blocks.append(block)
     if not blocks:
         return part, None
     values = np.concatenate([block.values for block in blocks])[-wanted:]
@@ -260,14 +258,11 @@ def latest_samples(path: Path, *, duration: float) -> tuple[RawPart, Block | Non
 
 def _walk(path: Path) -> Iterator[tuple[RawPart, Block | None]]:
     """Yield what a file holds up to each of its blocks, after the header without one."""
-    try:
-        with path.open("rb") as stream:
-            size = path.stat().st_size
-            part = _header(stream, path)
-            yield part, None
-            yield from _records(stream, size, part)
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+    with refuse_unreadable(path), path.open("rb") as stream:
+        size = path.stat().st_size
+        part = _header(stream, path)
+        yield part, None
+        yield from _records(stream, size, part)
 
 
 def _records(stream: BinaryIO, size: int, part: RawPart) -> Iterator[tuple[RawPart, Block]]:
