@@ -11,7 +11,7 @@ import json
 import struct
 import zlib
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from math import ceil
 from os import SEEK_END
@@ -105,7 +105,7 @@ class RawPart:
     begun : float
         In s since 1970.
     header_bytes : int
-        Length of the header.
+        Length of the header; 0 where the file is not written yet.
     samples : int
         Whole samples of each channel in the file.
     first_sample : int
@@ -127,7 +127,7 @@ class RawPart:
     channels: tuple[Channel, ...]
     sample_rate: float
     begun: float
-    header_bytes: int
+    header_bytes: int = 0
     samples: int = 0
     first_sample: int = 0
     gaps: tuple[Gap, ...] = ()
@@ -142,16 +142,19 @@ class RawPart:
         """Time from the first sample to the end of the last one, gaps included. [s]"""
         return (self.samples + self.missing) / self.sample_rate
 
+    @property
+    def clock_name(self) -> str:
+        """Name of its clock; empty for that of the run."""
+        return "" if self.clock is None else self.clock.name
 
-def raw_header(
-    channels: Sequence[Channel], *, sample_rate: float, begun: float, clock: PartClock | None = None
-) -> bytes:
+
+def raw_header(part: RawPart) -> bytes:
     """Header of a file of raw blocks."""
-    names = [channel.name for channel in channels]
+    names = [channel.name for channel in part.channels]
     if not names or len(set(names)) < len(names):
         raise InvalidInput(f"channels of a recording must be one or more, each once, got {', '.join(names) or 'none'}")
-    if not 0 < sample_rate < np.inf:
-        raise InvalidInput(f"sample_rate must be positive, got {sample_rate:g} Hz")
+    if not 0 < part.sample_rate < np.inf:
+        raise InvalidInput(f"sample_rate must be positive, got {part.sample_rate:g} Hz")
     listed = [
         {
             "name": channel.name,
@@ -160,11 +163,11 @@ def raw_header(
             "lowest": _finite_or_none(channel.lowest),
             "highest": _finite_or_none(channel.highest),
         }
-        for channel in channels
+        for channel in part.channels
     ]
-    content = {"payload": "<f8", "sample_rate": float(sample_rate), "begun": begun, "channels": listed}
-    if clock is not None:
-        content["clock"] = asdict(clock)
+    content = {"payload": "<f8", "sample_rate": float(part.sample_rate), "begun": part.begun, "channels": listed}
+    if part.clock is not None:
+        content["clock"] = asdict(part.clock)
     text = json.dumps(content, allow_nan=False).encode()
     return _MAGIC + _LENGTH.pack(len(text)) + text + _LENGTH.pack(zlib.crc32(text))
 
