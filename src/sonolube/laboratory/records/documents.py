@@ -20,6 +20,7 @@ EXIT_STATUS: Final = {"completed": "success", "stopped": "abort", "interrupted":
 _NAMES: Final = ("start", "descriptor", "event", "stream_resource", "stream_datum", "stop")
 _NOTES: Final = "notes"
 _MIME: Final = "application/x-sonolube-blocks"
+_FLOATS: Final = {"dtype": "number", "dtype_numpy": "<f8", "shape": []}  # of a channel
 _LARGEST_LINE: Final = 1 << 24
 _MAX_SAMPLES: Final = 1 << 53
 
@@ -121,14 +122,7 @@ class DocumentLog:
         """Write the description of a part of the recording, and where its blocks are; its clock, if not the run's."""
         uid = str(uuid4())
         keys: dict[str, dict[str, Any]] = {
-            channel.name: {
-                "dtype": "number",
-                "dtype_numpy": "<f8",
-                "shape": [],
-                "source": channel.quantity,
-                "units": channel.unit or None,
-                "external": "STREAM:",
-            }
+            channel.name: {**_FLOATS, "source": channel.quantity, "units": channel.unit or None, "external": "STREAM:"}
             for channel in part.channels
         }
         self._describe(part_name(number), uid, part.begun, keys)

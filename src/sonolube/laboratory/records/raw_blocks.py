@@ -156,13 +156,8 @@ def raw_header(part: RawPart) -> bytes:
     if not 0 < part.sample_rate < np.inf:
         raise InvalidInput(f"sample_rate must be positive, got {part.sample_rate:g} Hz")
     listed = [
-        {
-            "name": channel.name,
-            "quantity": channel.quantity,
-            "unit": channel.unit,
-            "lowest": _finite_or_none(channel.lowest),
-            "highest": _finite_or_none(channel.highest),
-        }
+        {name: getattr(channel, name) for name in ("name", "quantity", "unit")}
+        | {name: _finite_or_none(getattr(channel, name)) for name in ("lowest", "highest")}
         for channel in part.channels
     ]
     content = {"payload": "<f8", "sample_rate": float(part.sample_rate), "begun": part.begun, "channels": listed}
