@@ -200,7 +200,8 @@ def analyse_voltage_steps(
         raise InvalidInput("give either rotation, from the pulses, or a constant rotation_speed")
     revolutions = None if rotation is None else revolutions_at(rotation, time=t)
     return friction_at_voltage_steps(
-        **_channels(recording, "friction_force"),
+        time=t,
+        friction_force=channel_values(recording, "friction_force"),
         voltage_peak_to_peak=_voltage(recording),
         shortest_step=shortest_step,
         settling_time=settling_time,
@@ -225,7 +226,9 @@ def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:
     if speed_changes(recording):
         return None
     return rotation_speed_at_voltage_steps(
-        **_channels(recording, "friction_force"), voltage_peak_to_peak=_voltage(recording)
+        time=channel_values(recording, "time"),
+        friction_force=channel_values(recording, "friction_force"),
+        voltage_peak_to_peak=_voltage(recording),
     )
 
 
