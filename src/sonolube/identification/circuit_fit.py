@@ -43,6 +43,7 @@ _CORRELATED = 3.0  # residuals over independent ones, from which on a warning is
 _POINTS_PER_BRANCH = 4
 _MOSTLY = 0.5  # of the points
 _LARGEST_LOGARITHM = 300.0  # of a parameter, so that its square does not overflow
+_OF_RESONANCES = ("series_frequency", "parallel_frequency", "mechanical_quality_factor", "coupling_factor")
 _LARGEST_ERROR = 0.5  # standard error of the logarithm of a parameter
 
 
@@ -313,15 +314,8 @@ def _quantities(logarithms: Floats) -> dict[str, float]:
     found = circuit_resonances(circuit)
     named = {"parallel_capacitance": circuit.parallel_capacitance}
     for index, branch in enumerate(circuit.branches):
-        named |= {
-            f"resistance_{index + 1}": branch.resistance,
-            f"inductance_{index + 1}": branch.inductance,
-            f"capacitance_{index + 1}": branch.capacitance,
-            f"series_frequency_{index + 1}": float(found.series_frequency[index]),
-            f"parallel_frequency_{index + 1}": float(found.parallel_frequency[index]),
-            f"mechanical_quality_factor_{index + 1}": float(found.mechanical_quality_factor[index]),
-            f"coupling_factor_{index + 1}": float(found.coupling_factor[index]),
-        }
+        named |= {f"{name}_{index + 1}": getattr(branch, name) for name in ("resistance", "inductance", "capacitance")}
+        named |= {f"{name}_{index + 1}": float(getattr(found, name)[index]) for name in _OF_RESONANCES}
     return named
 
 

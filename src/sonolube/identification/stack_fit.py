@@ -310,15 +310,9 @@ def _stack(template: PiezoStack, logarithms: Floats) -> PiezoStack:
 
 def _quantities(stack: PiezoStack) -> dict[str, float]:
     """Quantities of a stack whose confidence intervals are reported."""
-    return {
-        "free_capacitance": stack.free_capacitance,
-        "free_stroke_per_volt": stack.free_stroke_per_volt,
-        "stack_stiffness": stack.stack_stiffness,
-        "stack_damping": stack.stack_damping,
-        "clamped_capacitance": stack.clamped_capacitance,
-        "coupling_factor": stack.derived_coupling_factor,
-        "charge_per_elongation": stack.charge_per_elongation,
-    }
+    fitted = ("free_capacitance", "free_stroke_per_volt", "stack_stiffness", "stack_damping", "clamped_capacitance")
+    derived = {"coupling_factor": stack.derived_coupling_factor, "charge_per_elongation": stack.charge_per_elongation}
+    return {name: getattr(stack, name) for name in fitted} | derived
 
 
 def _caveats(converged: bool, correlation: float, stiffness: ConfidenceInterval) -> tuple[str, ...]:

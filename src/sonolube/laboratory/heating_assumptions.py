@@ -6,6 +6,7 @@ from math import pi
 import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive
+from sonolube.laboratory.devices import DriveSetting
 from sonolube.models.actuator import AmplifierRequirements, Drive, amplifier_requirements
 from sonolube.rig.driven_rig import DriveVoltage
 
@@ -58,11 +59,10 @@ class HeatingAssumptions:
         require_non_negative(loss_factor=self.loss_factor)
 
 
-def capacitive_load(
-    *, capacitance: float, frequency: float, voltage_peak_to_peak: float, waveform: str
-) -> AmplifierRequirements:
-    """Current, slew rate and power of a waveform on a capacitance, summed over its harmonics."""
-    drive = Drive(frequency=frequency, voltage_peak_to_peak=voltage_peak_to_peak, waveform=waveform)
+def capacitive_load(setting: DriveSetting, *, capacitance: float) -> AmplifierRequirements:
+    """Current, slew rate and power of a drive on a capacitance, summed over its harmonics."""
+    f = setting.frequency
+    drive = Drive(frequency=f, voltage_peak_to_peak=setting.voltage_peak_to_peak, waveform=setting.waveform)
     harmonics = np.atleast_1d(DriveVoltage(drive=drive).harmonics())
-    admittance = 2j * pi * frequency * capacitance * np.arange(1, harmonics.size + 1)
-    return amplifier_requirements(admittance=admittance, voltage_amplitude=harmonics, frequency=frequency)
+    admittance = 2j * pi * f * capacitance * np.arange(1, harmonics.size + 1)
+    return amplifier_requirements(admittance=admittance, voltage_amplitude=harmonics, frequency=f)

@@ -98,6 +98,11 @@ def channel_values(recording: "xr.Dataset", name: str) -> Floats:
     return values
 
 
+def _channels(recording: "xr.Dataset", *names: str) -> dict[str, Floats]:
+    """Values of channels by their names, and the time."""
+    return {name: channel_values(recording, name) for name in ("time", *names)}
+
+
 def analyse_windows(
     recording: "xr.Dataset", *, of: str = "friction_force", window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> WindowStatistics:
@@ -249,13 +254,10 @@ def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
     ----------
     .. [1] D 4.5.4, figure 4.57.
     """
-    time, force = channel_values(recording, "time"), channel_values(recording, "friction_force")
-    velocity = channel_values(recording, "relative_velocity")
-    loops = None
+    signals, loops = _channels(recording, "friction_force", "relative_velocity"), None
     with suppress(InvalidInput):  # of a single stroke, such as a rod pulled through a ring
-        loops = friction_loops(time=time, friction_force=force, relative_velocity=velocity)
-    work = friction_work(time=time, friction_force=force, relative_velocity=velocity)
-    return FrictionCycles(work=work, loops=loops)
+        loops = friction_loops(**signals)
+    return FrictionCycles(work=friction_work(**signals), loops=loops)
 
 
 def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = None) -> StickSlipEstimate:
@@ -281,8 +283,7 @@ def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = 
     ----------
     .. [1] D 2.3.2 to 2.3.4.
     """
-    time, force = channel_values(recording, "time"), channel_values(recording, "friction_force")
-    return estimate_stick_slip(time=time, friction_force=force, minimum_drop=minimum_drop)
+    return estimate_stick_slip(**_channels(recording, "friction_force"), minimum_drop=minimum_drop)
 
 
 def analyse_rotation(
@@ -313,8 +314,7 @@ def analyse_rotation(
     ----------
     .. [1] D 4.1.1.
     """
-    time, field = channel_values(recording, "time"), channel_values(recording, "magnetic_flux_density")
-    pulses = hall_pulse_times(time=time, magnetic_flux_density=field, prominence=prominence)
+    pulses = hall_pulse_times(**_channels(recording, "magnetic_flux_density"), prominence=prominence)
     return disc_rotation(time=pulses, groove_diameter=groove_diameter, magnets=magnets)
 
 

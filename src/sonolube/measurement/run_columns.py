@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class RunColumn:
     """Column of a table of runs.
 
@@ -39,21 +39,17 @@ class RunColumn:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
-def _setting(name: str, unit: str, meaning: str, needed: str) -> RunColumn:
-    """Column of a quantity that is set."""
-    return RunColumn(name=name, unit=unit, meaning=meaning, needed=needed)
-
-
 def _result(name: str, unit: str, meaning: str, needed: str) -> RunColumn:
     """Column of a quantity that is measured."""
-    return RunColumn(name=name, unit=unit, meaning=meaning, needed=needed, is_result=True)
+    return RunColumn(name, unit, meaning, needed, is_result=True)
 
 
 def _text(name: str, meaning: str, needed: str = "never", *, also: tuple[str, ...] = ()) -> RunColumn:
     """Column of free text."""
-    return RunColumn(name=name, unit="", meaning=meaning, needed=needed, is_text=True, also=also)
+    return RunColumn(name, "", meaning, needed, is_text=True, also=also)
 
 
+_setting: Final = RunColumn  # of a quantity that is set
 _RIGS: Final = "where it is not the rig's, and without a rig file"
 RUN_COLUMNS: Final = (
     _text(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from sonolube.errors import InvalidInput
 from sonolube.operating_system import ON_WINDOWS, lock_file, replace_file
 from sonolube.storage.interruption import undone_at_signal
-from sonolube.storage.user_files import expect_target, refusal, resolved_target
+from sonolube.storage.user_files import expect_target, refusal, refused_as, resolved_target
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -68,7 +68,7 @@ class UnfinishedFile(io.FileIO):
     def complete(self) -> None:
         """Replace the target, whose permissions are kept."""
         self.check()
-        with _refused_as(self._path):
+        with refused_as(self._path):
             os.fsync(self.fileno())  # network file systems refuse here what did not fit
             target = resolved_target(self._path)
             with suppress(FileNotFoundError):
@@ -94,7 +94,7 @@ def unfinished_file(path: Path) -> Iterator[UnfinishedFile]:
     Open for writing and reading; libraries that write to a file object take it.
     """
     target = resolved_target(path)
-    with _refused_as(path):
+    with refused_as(path):
         target.parent.mkdir(parents=True, exist_ok=True)
         mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else 0o666
     with _unfinished(path, target.parent, mode) as file:
@@ -130,7 +130,7 @@ def clear_unfinished(folder: Path, *patterns: str) -> None:
 def locked_folder(folder: Path, *, purpose: str) -> Iterator[None]:
     """Keep other processes from working in a folder inside a `with` block; a dead process keeps nobody out."""
     place = folder / _LOCK
-    with _refused_as(folder):
+    with refused_as(folder):
         folder.mkdir(parents=True, exist_ok=True)
         handle = _lock_handle(place)
     if handle is None:
@@ -169,7 +169,7 @@ def _unfinished(path: Path, folder: Path, mode: int) -> Iterator[UnfinishedFile]
     name = folder / f"{_UNFINISHED}{os.urandom(8).hex()}"
     with undone_at_signal(partial(_remove_quietly, name)):
         try:
-            with _refused_as(path):
+            with refused_as(path):
                 file = UnfinishedFile(path, name, mode)
             with file:
                 yield file
@@ -177,18 +177,9 @@ def _unfinished(path: Path, folder: Path, mode: int) -> Iterator[UnfinishedFile]
             _remove_quietly(name)
 
 
-@contextmanager
-def _refused_as(path: Path) -> Iterator[None]:
-    """Turn errors of the system into refusals of a path."""
-    try:
-        yield
-    except OSError as failure:
-        raise refusal(path, failure.strerror) from None
-
-
 def _require_writable(folder: Path, path: Path) -> None:
     """Raise if no file can be made in a folder or its missing parents; remove what a dead process left there."""
-    with _refused_as(path):
+    with refused_as(path):
         missing = [path.name] if path != folder else []
         while not folder.exists():
             if folder.is_symlink():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from sonolube.errors import InvalidInput
 from sonolube.operating_system import replace_file
-from sonolube.storage.user_files import expect_target, refusal
+from sonolube.storage.user_files import expect_target, refusal, refused_as
 
 if TYPE_CHECKING:
     from sqlite3 import Connection as Connection
@@ -45,12 +45,10 @@ class AppendedFile:
     def __init__(self, path: Path, *, keep: int | None = None) -> None:
         self._path = path
         target = expect_target(path)
-        try:
+        with refused_as(path):
             self._handle = os.open(target, _FLAGS | (os.O_CREAT | os.O_EXCL if keep is None else 0), 0o666)
             if keep is not None:
                 os.ftruncate(self._handle, keep)
-        except OSError as failure:
-            raise refusal(path, failure.strerror) from None
         self.length = os.lseek(self._handle, 0, os.SEEK_END)
         self._syncing: Future[None] | None = None
         self._synced = time.monotonic()
@@ -77,11 +75,10 @@ class AppendedFile:
         handle, self._handle = self._handle, -1
         self._worker.shutdown()
         try:
-            if self._syncing is not None:
-                self._syncing.result()
-            os.fsync(handle)
-        except OSError as failure:
-            raise refusal(self._path, failure.strerror) from None
+            with refused_as(self._path):
+                if self._syncing is not None:
+                    self._syncing.result()
+                os.fsync(handle)
         finally:
             os.close(handle)
 
@@ -135,9 +132,7 @@ def database(path: Path | None) -> "Iterator[Connection]":
 
 def set_database_aside(path: Path) -> None:
     """Rename a damaged database, and remove its log."""
-    try:
+    with refused_as(path):
         replace_file(path, path.with_name(f"{path.name}.damaged"))
         for ending in ("-wal", "-shm"):
             path.with_name(path.name + ending).unlink(missing_ok=True)
-    except OSError as failure:
-        raise refusal(path, failure.strerror) from None

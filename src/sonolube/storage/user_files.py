@@ -187,6 +187,15 @@ def refusal(path: Path, reason: str | None) -> InvalidInput:
     return InvalidInput(f"{path}: cannot be written: {reason}")
 
 
+@contextmanager
+def refused_as(path: Path) -> Iterator[None]:
+    """Turn errors of the system into refusals of a path."""
+    try:
+        yield
+    except OSError as failure:
+        raise refusal(path, failure.strerror) from None
+
+
 def _input_refused(path: Path, read: Path) -> InvalidInput:
     """Error of an output that is an input."""
     same = "it is" if _entry(path) == _entry(read) else f"it is {read},"

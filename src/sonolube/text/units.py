@@ -246,13 +246,7 @@ def _converted(number: float, written_unit: str, unit: str, *, name: str, text: 
     except pint.DimensionalityError:
         kind = _kind_of_dimension(written)
         raise InvalidInput(f"{name} {text} is {kind}; expected {unit_description(unit)}") from None
-    except (
-        ArithmeticError,
-        AssertionError,
-        pint.PintError,
-        TypeError,
-        ValueError,
-    ):  # products of offset scales, overflow
+    except (ArithmeticError, AssertionError, pint.PintError, TypeError, ValueError):  # offset scales, overflow
         raise InvalidInput(f"{name} {text} has no value in {unit or 'pure numbers'}") from None
     if target.dimensionality != {"[time]": -1}:
         return value

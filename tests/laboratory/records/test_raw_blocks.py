@@ -9,9 +9,9 @@ from tests.laboratory.records.recorded import CHANNELS, RATE, block_of, values_o
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.records import read_raw_blocks, scan_raw
-from sonolube.laboratory.records.raw_blocks import raw_header, raw_record
+from sonolube.laboratory.records.raw_blocks import RawPart, raw_header, raw_record
 
-HEADER = raw_header(CHANNELS, sample_rate=RATE, begun=1.8e9)
+HEADER = raw_header(RawPart(channels=CHANNELS, sample_rate=RATE, begun=1.8e9))
 SIZES = (3, 1, 7, 2)
 FIRSTS = (0, 3, 4, 11)
 RECORDS = [
@@ -112,4 +112,4 @@ def test_a_gap_in_the_sample_counter_is_told(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("channels", "rate"), [((), RATE), (CHANNELS[:1] * 2, RATE), (CHANNELS, 0.0)])
 def test_a_recording_without_channels_or_rate_is_refused(channels: tuple[()], rate: float) -> None:
     with pytest.raises(InvalidInput):
-        raw_header(channels, sample_rate=rate, begun=0.0)
+        raw_header(RawPart(channels=channels, sample_rate=rate, begun=0.0))

@@ -194,24 +194,20 @@ class Combination:
 
     Parameters
     ----------
-    grows, falls, off : bool
-        Whether the decay length grows, the amplitude falls, and the zero is off.
-    drifts : bool
-        Whether the friction ratio changes by itself.
-    follows : bool
-        Whether the amplitude at large drive falls with that of the vibration.
+    changes : Changes
+        Those on which the readings beside the zero depend.
+    off : bool
+        Whether the zero is off.
     """
 
-    grows: bool
-    falls: bool
+    changes: Changes
     off: bool
-    drifts: bool
-    follows: bool
 
     @property
     def parts(self) -> tuple[str, ...]:
         """Names of the hypotheses whose changes it has."""
-        flags = {"long_sliding": self.grows, "zero_error": self.off, "detuning": self.falls, "other": self.drifts}
+        grows, falls, drifts, _ = self.changes
+        flags = {"long_sliding": grows, "zero_error": self.off, "detuning": falls, "other": drifts}
         return tuple(name for name, flag in flags.items() if flag)
 
     @property
@@ -223,23 +219,18 @@ class Combination:
     @property
     def prior(self) -> float:
         """Prior probability."""
-        alone = _OTHER if self.drifts else (1 - _SEVERAL - _OTHER) / 4
+        alone = _OTHER if self.changes.drifts else (1 - _SEVERAL - _OTHER) / 4
         own = _SEVERAL / 4 if len(self.parts) > 1 else alone
-        return own / 2 if self.falls else own
-
-    @property
-    def changes(self) -> Changes:
-        """Changes on which the readings beside the zero depend."""
-        return Changes(self.grows, self.falls, self.drifts, self.follows)
+        return own / 2 if self.changes.falls else own
 
 
 COMBINATIONS: Final = (
     *(
-        Combination(grows, falls, off, False, follows)
+        Combination(Changes(grows, falls, False, follows), off)
         for grows, falls, off, follows in product((False, True), repeat=4)
         if falls or follows
     ),
-    Combination(False, False, False, True, True),
+    Combination(Changes(False, False, True, True), False),
 )
 """All combinations of changes; where the amplitude does not fall, that at large drive follows it by convention."""
 
@@ -290,7 +281,7 @@ class RunPosterior:
     def _log_evidence(self, combination: Combination) -> float:
         """Logarithm of the evidence; a friction ratio that changes by itself has a moment prior."""
         found = self.fit_of(combination)[1]
-        moment = float(found.weights @ found.draws[:, _DRIFT] ** 2) if combination.drifts else 1.0
+        moment = float(found.weights @ found.draws[:, _DRIFT] ** 2) if combination.changes.drifts else 1.0
         return found.log_evidence + float(np.log(moment))
 
     @property

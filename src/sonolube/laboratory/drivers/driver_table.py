@@ -108,13 +108,9 @@ class DriverTable(VariantTable[type[DriverEntry]]):
         return driver
 
 
+_BASES: Final = {"acquisition": AcquisitionEntry, "drive": DriveEntry, "motor": MotorEntry, "guard": GuardEntry}
 DRIVERS: Final[Mapping[str, DriverTable]] = MappingProxyType(
-    {
-        "acquisition": DriverTable("acquisition", AcquisitionEntry),
-        "drive": DriverTable("drive", DriveEntry),
-        "motor": DriverTable("motor", MotorEntry),
-        "guard": DriverTable("guard", GuardEntry),
-    }
+    {role: DriverTable(role, base) for role, base in _BASES.items()}
 )
 """Tables of drivers by the role of their devices."""
 

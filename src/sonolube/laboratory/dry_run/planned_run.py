@@ -188,21 +188,11 @@ def _with_vibration(
 def _vibrated(points: Sequence[PlannedPoint], rig: Rig, load: float) -> tuple[OperatingPoints, Sequence[int]]:
     """Operating points of the distinct settings, and that of each point."""
     at_rest = rig.sliding_speed  # the amplitude is the same, and friction is not asked for
-    settings = [
-        (each.setting.voltage_peak_to_peak, each.setting.voltage_offset, each.setting.frequency, speed)
-        for each in points
-        for speed in [each.sliding_speed or at_rest]
-    ]
+    names = ("voltage_peak_to_peak", "voltage_offset", "frequency")
+    settings = [(*(getattr(each.setting, name) for name in names), each.sliding_speed or at_rest) for each in points]
     distinct, rows = np.unique(np.array(settings, dtype=np.float64), axis=0, return_inverse=True)
-    volts, offset, frequency, speed = distinct.T
-    found = operating_points(
-        rig,
-        voltage_peak_to_peak=volts,
-        voltage_offset=offset,
-        frequency=frequency,
-        normal_load=load,
-        sliding_speed=speed,
-    )
+    columns = dict(zip((*names, "sliding_speed"), distinct.T, strict=True))
+    found = operating_points(rig, normal_load=load, **columns)
     return found, rows.ravel().tolist()
 
 
@@ -249,15 +239,7 @@ def _heating(
     except SonolubeError as refusal:
         notes.caveats.append(f"temperature of the contact is left out: {refusal}")
         bodies = None
-    power = np.array([point.load.capacitive_power if point.load else 0.0 for point in points])
-    return heating_over(
-        duration=np.array([point.duration for point in points]),
-        friction_force=np.array([point.friction_force or 0.0 for point in points]),
-        sliding_speed=np.array([point.sliding_speed or 0.0 for point in points]),
-        actuator_heat_rate=assumed.loss_factor * power,
-        bodies=bodies,
-        assumed=assumed,
-    )
+    return heating_over(points, bodies=bodies, assumed=assumed)
 
 
 def _material(known: str | None, of_protocol: str, role: str) -> str:

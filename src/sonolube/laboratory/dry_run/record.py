@@ -3,7 +3,7 @@
 The actuator is a capacitance to the amplifier; temperatures follow by lumped bodies and the flash rise.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final
@@ -13,6 +13,7 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.facts.protocol import Protocol, SetPoint
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions, capacitive_load
+from sonolube.laboratory.set_points import drive_setting
 from sonolube.models.actuator import linear_amplifier_power
 from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
 from sonolube.models.thermal.bulk import network_rise
@@ -75,19 +76,15 @@ def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
     The current of the motion, largest at resonance, comes on top.
     """
     require_positive(capacitance=capacitance)
-    if point.frequency is None or point.voltage_peak_to_peak == 0:
+    setting = drive_setting(point)
+    if setting is None:
         return OFF
-    need = capacitive_load(
-        capacitance=capacitance,
-        frequency=point.frequency,
-        voltage_peak_to_peak=point.voltage_peak_to_peak,
-        waveform=point.waveform,
-    )
+    need = capacitive_load(setting, capacitance=capacitance)
     power = linear_amplifier_power(
         capacitance=capacitance,
         voltage_maximum=point.voltage_maximum,
-        voltage_peak_to_peak=point.voltage_peak_to_peak,
-        frequency=point.frequency,
+        voltage_peak_to_peak=setting.voltage_peak_to_peak,
+        frequency=setting.frequency,
     )
     return DriveLoad(
         peak_current=need.peak_current,
@@ -95,10 +92,6 @@ def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
         actuator_power=float(power),
         capacitive_power=need.apparent_power,
     )
-
-
-_POINTS = 400  # of the time line, at least
-_MAX_PARTS = 200  # of one interval between set points
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -130,55 +123,6 @@ class Heating:
     frictional_heat: float
     actuator_heat: float
     ambient_temperature: float
-
-
-def heating_over(
-    *,
-    duration: Floats,
-    friction_force: Floats,
-    sliding_speed: Floats,
-    actuator_heat_rate: Floats,
-    bodies: HeatedContact | None,
-    assumed: HeatingAssumptions,
-) -> Heating | None:
-    """Temperature rises over successive intervals of constant heat, from ambient temperature.
-
-    None where no time passes.
-    """
-    lasts = duration > 0
-    if not lasts.any():
-        return None
-    longest = sum(duration[lasts].tolist()) / _POINTS
-    parts = np.clip(np.ceil(duration[lasts] / longest), 1, _MAX_PARTS).astype(int)
-    steps = np.repeat(duration[lasts] / parts, parts)
-    time = np.concatenate([[0.0], np.cumsum(steps)])
-    speed, force, heat = (np.repeat(each[lasts], parts) for each in (sliding_speed, friction_force, actuator_heat_rate))
-    actuator = ThermalNetwork(
-        heat_capacity=(assumed.actuator_heat_capacity,), links=(), losses=(assumed.actuator_conductance,)
-    )
-    contact_rise = pin_rise = None
-    if bodies is not None:
-        history = contact_temperature_history(bodies, time=time, friction_force=force, sliding_speed=speed)
-        contact_rise, pin_rise = history.temperature_rise, history.bulk_rise
-    return Heating(
-        time=time,
-        contact_rise=contact_rise,
-        pin_rise=pin_rise,
-        actuator_rise=network_rise(actuator, time=time, heat_rate=heat[:, np.newaxis])[:, 0],
-        frictional_heat=float(np.sum(force * speed * steps)),
-        actuator_heat=float(np.sum(heat * steps)),
-        ambient_temperature=assumed.ambient_temperature,
-    )
-
-
-def rubbed_contact(
-    pin: ThermalSolid, disc: ThermalSolid, *, nominal_area: float, assumed: HeatingAssumptions
-) -> HeatedContact:
-    """Contact of pin and disc, taken as circular."""
-    radius = float(np.sqrt(nominal_area / np.pi))
-    network = ThermalNetwork(heat_capacity=(assumed.pin_heat_capacity,), links=(), losses=(assumed.pin_conductance,))
-    source = EllipticSource(half_length=radius, half_width=radius)
-    return HeatedContact(pin=pin, disc=disc, source=source, network=network)
 
 
 SAMPLE_SIZE: Final = 8
@@ -296,3 +240,55 @@ class DryRun:
         if any(load is None for load, _ in loads):
             return None
         return sum(load.actuator_power * lasts for load, lasts in loads if load is not None)
+
+
+_POINTS = 400  # of the time line, at least
+_MAX_PARTS = 200  # of one interval between set points
+
+
+def heating_over(
+    points: Sequence[PlannedPoint], *, bodies: HeatedContact | None, assumed: HeatingAssumptions
+) -> Heating | None:
+    """Temperature rises over successive points of constant heat, from ambient temperature.
+
+    None where no time passes.
+    """
+    lasting = [point for point in points if point.duration > 0]
+    if not lasting:
+        return None
+    duration = np.array([point.duration for point in lasting])
+    parts = np.clip(np.ceil(duration / (sum(duration.tolist()) / _POINTS)), 1, _MAX_PARTS).astype(int)
+    steps = np.repeat(duration / parts, parts)
+    time = np.concatenate([[0.0], np.cumsum(steps)])
+    powers = [point.load.capacitive_power if point.load else 0.0 for point in lasting]
+    heat = np.repeat(assumed.loss_factor * np.array(powers), parts)
+    speed, force = (
+        np.repeat([getattr(point, name) or 0.0 for point in lasting], parts)
+        for name in ("sliding_speed", "friction_force")
+    )
+    actuator = ThermalNetwork(
+        heat_capacity=(assumed.actuator_heat_capacity,), links=(), losses=(assumed.actuator_conductance,)
+    )
+    contact_rise = pin_rise = None
+    if bodies is not None:
+        history = contact_temperature_history(bodies, time=time, friction_force=force, sliding_speed=speed)
+        contact_rise, pin_rise = history.temperature_rise, history.bulk_rise
+    return Heating(
+        time=time,
+        contact_rise=contact_rise,
+        pin_rise=pin_rise,
+        actuator_rise=network_rise(actuator, time=time, heat_rate=heat[:, np.newaxis])[:, 0],
+        frictional_heat=float(np.sum(force * speed * steps)),
+        actuator_heat=float(np.sum(heat * steps)),
+        ambient_temperature=assumed.ambient_temperature,
+    )
+
+
+def rubbed_contact(
+    pin: ThermalSolid, disc: ThermalSolid, *, nominal_area: float, assumed: HeatingAssumptions
+) -> HeatedContact:
+    """Contact of pin and disc, taken as circular."""
+    radius = float(np.sqrt(nominal_area / np.pi))
+    network = ThermalNetwork(heat_capacity=(assumed.pin_heat_capacity,), links=(), losses=(assumed.pin_conductance,))
+    source = EllipticSource(half_length=radius, half_width=radius)
+    return HeatedContact(pin=pin, disc=disc, source=source, network=network)

@@ -34,11 +34,6 @@ def refusals_of(found: DryRun, amplifier: Amplifier | None) -> tuple[str, ...]:
     return (*lines, *_beyond_limits(found))
 
 
-def caveats_of(found: DryRun) -> tuple[str, ...]:
-    """Findings before a test, each in one line."""
-    return tuple(_caveats(found))
-
-
 def _beyond_amplifier(found: DryRun, amplifier: Amplifier) -> Iterator[str]:
     """Steps whose drive is beyond the amplifier."""
 
@@ -100,8 +95,8 @@ def _beyond(found: DryRun, quantity: Callable[[PlannedPoint], float], most: floa
         yield f"step {', '.join(steps)}: ", value
 
 
-def _caveats(found: DryRun) -> Iterator[str]:
-    """Findings without those of the rig."""
+def caveats_of(found: DryRun) -> Iterator[str]:
+    """Findings before a test, each in one line."""
     yield SAFETY
     limits = found.protocol.limits
     if limits.friction_force_maximum is not None:

@@ -1,13 +1,14 @@
 """Documents of a run in the event model of the Bluesky project, a line of JSON each: ["name", document]."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 from uuid import uuid4
 
-from sonolube.laboratory.block import CHANNEL_QUANTITIES, Channel
+from sonolube.laboratory.block import CHANNEL_QUANTITIES
+from sonolube.laboratory.records.raw_blocks import RawPart
 from sonolube.laboratory.records.run_folder import CLOCK_NAME, DOCUMENTS, RunFacts, raw_path
 from sonolube.storage.growing_files import AppendedFile
 
@@ -19,6 +20,7 @@ EXIT_STATUS: Final = {"completed": "success", "stopped": "abort", "interrupted":
 _NAMES: Final = ("start", "descriptor", "event", "stream_resource", "stream_datum", "stop")
 _NOTES: Final = "notes"
 _MIME: Final = "application/x-sonolube-blocks"
+_FLOATS: Final = {"dtype": "number", "dtype_numpy": "<f8", "shape": []}  # of a channel
 _LARGEST_LINE: Final = 1 << 24
 _MAX_SAMPLES: Final = 1 << 53
 
@@ -116,40 +118,32 @@ class DocumentLog:
         )
         self._counts[_NOTES] = number
 
-    def part(self, part: int, channels: Sequence[Channel], *, sample_rate: float, time: float, clock: str = "") -> None:
+    def part(self, number: int, part: RawPart) -> None:
         """Write the description of a part of the recording, and where its blocks are; its clock, if not the run's."""
-        name = part_name(part)
         uid = str(uuid4())
         keys: dict[str, dict[str, Any]] = {
-            channel.name: {
-                "dtype": "number",
-                "dtype_numpy": "<f8",
-                "shape": [],
-                "source": channel.quantity,
-                "units": channel.unit or None,
-                "external": "STREAM:",
-            }
-            for channel in channels
+            channel.name: {**_FLOATS, "source": channel.quantity, "units": channel.unit or None, "external": "STREAM:"}
+            for channel in part.channels
         }
-        self._describe(name, uid, time, keys)
-        for column, channel in enumerate(channels):
-            self._locate(part, f"{uid}-{column}", column, channel.name, sample_rate, clock)
+        self._describe(part_name(number), uid, part.begun, keys)
+        for column, channel in enumerate(part.channels):
+            self._locate(number, part, f"{uid}-{column}", column, channel.name)
 
-    def end_part(self, earlier: ReadDocuments, part: int, *, samples: int, sample_rate: float, clock: str = "") -> None:
+    def end_part(self, earlier: ReadDocuments, number: int, part: RawPart) -> None:
         """Write how many samples of a part there are, and where, unless `earlier` tells it already."""
-        name = part_name(part)
+        name = part_name(number)
         described = [each for each in earlier.of("descriptor") if each.get("name") == name]
-        if not described or not samples:
+        if not described or not part.samples:
             return
         uid = str(described[0]["uid"])
         known = {each["uid"] for kind in ("stream_resource", "stream_datum") for each in earlier.of(kind)}
         for column, channel in enumerate(described[0]["data_keys"]):
             resource = f"{uid}-{column}"
             if resource not in known:
-                self._locate(part, resource, column, channel, sample_rate, clock)
+                self._locate(number, part, resource, column, channel)
             if f"{resource}/0" not in known:
-                self._count(uid, resource, samples)
-        self._counts[name] = samples
+                self._count(uid, resource, part.samples)
+        self._counts[name] = part.samples
 
     def stop(self, outcome: str, *, reason: str, time: float) -> None:
         """Write the last document."""
@@ -168,11 +162,11 @@ class DocumentLog:
         """Close the file."""
         self._file.close()
 
-    def _locate(self, part: int, uid: str, column: int, channel: str, sample_rate: float, clock: str) -> None:
+    def _locate(self, number: int, part: RawPart, uid: str, column: int, channel: str) -> None:
         """Write where the samples of a channel are."""
-        path = raw_path(self._folder, part)
-        place = {"file": path.relative_to(self._folder).as_posix(), "column": column, "sample_rate": sample_rate}
-        place |= {"part": part, "clock": clock} if clock else {}
+        path = raw_path(self._folder, number)
+        place = {"file": path.relative_to(self._folder).as_posix(), "column": column, "sample_rate": part.sample_rate}
+        place |= {} if part.clock is None else {"part": number, "clock": part.clock.name}
         self._write(
             "stream_resource",
             uid=uid,

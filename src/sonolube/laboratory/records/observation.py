@@ -163,7 +163,8 @@ class RunObserver:
         if documents.of("stop"):
             ended = run_summary(folder)
             outcome, reason = ended.outcome, ended.reason
-        latest = self._latest(documents) if outcome == RUNNING else None
+        parts = main_parts(documents)
+        latest = self._latest(parts[-1], documents) if parts and outcome == RUNNING else None
         told = self._progress
         at = self._time(latest and latest[1], now, is_running=outcome == RUNNING and told.state == "running")
         point = self._point(at)
@@ -192,12 +193,7 @@ class RunObserver:
             self._progress.take(note_of(event))
         self._events = len(events)
 
-    def _latest(self, documents: ReadDocuments) -> tuple[RawPart, Block] | None:
-        """Last samples of the part that is being recorded; None where none is, or nothing of it is whole."""
-        parts = main_parts(documents)
-        return self._latest_of(parts[-1], documents) if parts else None
-
-    def _latest_of(self, part: int, documents: ReadDocuments) -> tuple[RawPart, Block] | None:
+    def _latest(self, part: int, documents: ReadDocuments) -> tuple[RawPart, Block] | None:
         """Last samples of a part; None where it has ended, or nothing of it is whole."""
         described = {str(each.get("name")): str(each.get("uid")) for each in documents.of("descriptor")}
         uid = described[part_name(part)]
@@ -214,7 +210,7 @@ class RunObserver:
         last = {clock: part for part, clock in sorted(part_clocks(documents).items())}
         found: dict[str, tuple[float | None, str]] = {}
         for number in last.values():
-            latest = self._latest_of(number, documents)
+            latest = self._latest(number, documents)
             found |= {} if latest is None else _means(*latest)
         return found
 

@@ -1,15 +1,16 @@
 """Parts of a recording that are being written, and the clock of their run, which does not jump."""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from sonolube.errors import InvalidInput
-from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.block import Block
 from sonolube.laboratory.records.documents import DocumentLog, ReadDocuments
-from sonolube.laboratory.records.raw_blocks import PartClock, raw_header, raw_record
+from sonolube.laboratory.records.raw_blocks import RawPart, raw_header, raw_record
 from sonolube.laboratory.records.run_folder import raw_path
 from sonolube.storage.growing_files import AppendedFile
 
@@ -51,14 +52,9 @@ class OpenPart:
         Of the run.
     number : int
         From 1.
-    channels : sequence of Channel
+    part : RawPart
+        Without samples.
     log : DocumentLog
-    sample_rate : float
-        [Hz]
-    begun : float
-        In s since 1970.
-    clock : PartClock, optional
-        Where it is not that of the run.
 
     Raises
     ------
@@ -66,26 +62,14 @@ class OpenPart:
         If the channels are no channels, or the disk is full.
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        number: int,
-        channels: Sequence[Channel],
-        log: DocumentLog,
-        *,
-        sample_rate: float,
-        begun: float,
-        clock: PartClock | None = None,
-    ) -> None:
-        self.number, self.begun, self.clock, self.samples = number, begun, clock, 0
-        self._channels, self._rate, self._log = len(channels), sample_rate, log
-        self._blocks, self._next = 0, None if clock is None else clock.first_sample
-        header = raw_header(channels, sample_rate=sample_rate, begun=begun, clock=clock)
+    def __init__(self, folder: Path, number: int, part: RawPart, log: DocumentLog) -> None:
+        self.number, self.part, self._log = number, part, log
+        self._next = None if part.clock is None else part.clock.first_sample
+        header = raw_header(part)
         self._file: AppendedFile | None = AppendedFile(raw_path(folder, number))
         try:
             self._file.append(header)
-            name = "" if clock is None else clock.name
-            log.part(number, channels, sample_rate=sample_rate, time=begun, clock=name)
+            log.part(number, part)
         except InvalidInput:
             with suppress(InvalidInput):
                 self.close()
@@ -93,8 +77,9 @@ class OpenPart:
 
     def require_fitting(self, block: Block) -> None:
         """Raise where a block has another shape, or the sample counter goes back."""
-        if block.values.ndim != 2 or block.values.shape[1] != self._channels or not block.samples:
-            raise InvalidInput(f"block has the shape {block.values.shape}, but {self._channels} channels are recorded")
+        channels = len(self.part.channels)
+        if block.values.ndim != 2 or block.values.shape[1] != channels or not block.samples:
+            raise InvalidInput(f"block has the shape {block.values.shape}, but {channels} channels are recorded")
         if block.first_sample < (self._next or 0):
             raise InvalidInput(f"block begins at sample {block.first_sample}, but {self._next} was expected")
 
@@ -103,9 +88,8 @@ class OpenPart:
         assert self._file is not None
         if self._next is not None and block.first_sample > self._next:
             note_gap(self._next, {"missing": block.first_sample - self._next})
-        self._file.append(raw_record(block, sequence=self._blocks))
-        self._blocks += 1
-        self.samples += block.samples
+        self._file.append(raw_record(block, sequence=self.part.blocks))
+        self.part = replace(self.part, blocks=self.part.blocks + 1, samples=self.part.samples + block.samples)
         self._next = block.next_sample
 
     def close(self) -> None:
@@ -116,5 +100,4 @@ class OpenPart:
 
     def describe(self, earlier: ReadDocuments) -> None:
         """Write how many samples it has, unless `earlier` tells that."""
-        name = "" if self.clock is None else self.clock.name
-        self._log.end_part(earlier, self.number, samples=self.samples, sample_rate=self._rate, clock=name)
+        self._log.end_part(earlier, self.number, self.part)

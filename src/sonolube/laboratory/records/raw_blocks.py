@@ -11,7 +11,7 @@ import json
 import struct
 import zlib
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from math import ceil
 from os import SEEK_END
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.run_folder import CLOCK_NAME
+from sonolube.measurement.measured_files import refuse_unreadable
 from sonolube.vocabulary import quantities
 
 
@@ -104,7 +105,7 @@ class RawPart:
     begun : float
         In s since 1970.
     header_bytes : int
-        Length of the header.
+        Length of the header; 0 where the file is not written yet.
     samples : int
         Whole samples of each channel in the file.
     first_sample : int
@@ -126,7 +127,7 @@ class RawPart:
     channels: tuple[Channel, ...]
     sample_rate: float
     begun: float
-    header_bytes: int
+    header_bytes: int = 0
     samples: int = 0
     first_sample: int = 0
     gaps: tuple[Gap, ...] = ()
@@ -141,29 +142,27 @@ class RawPart:
         """Time from the first sample to the end of the last one, gaps included. [s]"""
         return (self.samples + self.missing) / self.sample_rate
 
+    @property
+    def clock_name(self) -> str:
+        """Name of its clock; empty for that of the run."""
+        return "" if self.clock is None else self.clock.name
 
-def raw_header(
-    channels: Sequence[Channel], *, sample_rate: float, begun: float, clock: PartClock | None = None
-) -> bytes:
+
+def raw_header(part: RawPart) -> bytes:
     """Header of a file of raw blocks."""
-    names = [channel.name for channel in channels]
+    names = [channel.name for channel in part.channels]
     if not names or len(set(names)) < len(names):
         raise InvalidInput(f"channels of a recording must be one or more, each once, got {', '.join(names) or 'none'}")
-    if not 0 < sample_rate < np.inf:
-        raise InvalidInput(f"sample_rate must be positive, got {sample_rate:g} Hz")
+    if not 0 < part.sample_rate < np.inf:
+        raise InvalidInput(f"sample_rate must be positive, got {part.sample_rate:g} Hz")
     listed = [
-        {
-            "name": channel.name,
-            "quantity": channel.quantity,
-            "unit": channel.unit,
-            "lowest": _finite_or_none(channel.lowest),
-            "highest": _finite_or_none(channel.highest),
-        }
-        for channel in channels
+        {name: getattr(channel, name) for name in ("name", "quantity", "unit")}
+        | {name: _finite_or_none(getattr(channel, name)) for name in ("lowest", "highest")}
+        for channel in part.channels
     ]
-    content = {"payload": "<f8", "sample_rate": float(sample_rate), "begun": begun, "channels": listed}
-    if clock is not None:
-        content["clock"] = asdict(clock)
+    content = {"payload": "<f8", "sample_rate": float(part.sample_rate), "begun": part.begun, "channels": listed}
+    if part.clock is not None:
+        content["clock"] = asdict(part.clock)
     text = json.dumps(content, allow_nan=False).encode()
     return _MAGIC + _LENGTH.pack(len(text)) + text + _LENGTH.pack(zlib.crc32(text))
 
@@ -237,20 +236,17 @@ def latest_samples(path: Path, *, duration: float) -> tuple[RawPart, Block | Non
     InvalidInput
         If the file cannot be read, or its header is damaged or not written yet.
     """
-    try:
-        with path.open("rb") as stream:
-            part = _header(stream, path)
-            size = stream.seek(0, SEEK_END)
-            wanted = max(ceil(duration * part.sample_rate), 1)
-            reach = min(2 * wanted * (8 * len(part.channels) + _RECORD_BYTES) + _SEARCHED, _MAX_READ)
-            start = replace(part, whole_bytes=max(part.header_bytes, size - reach))
-            blocks: list[Block] = []
-            for _, block in _records(stream, size, start):
-                if blocks and block.first_sample != blocks[-1].next_sample:
-                    blocks.clear()
-                blocks.append(block)
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+    with refuse_unreadable(path), path.open("rb") as stream:
+        part = _header(stream, path)
+        size = stream.seek(0, SEEK_END)
+        wanted = max(ceil(duration * part.sample_rate), 1)
+        reach = min(2 * wanted * (8 * len(part.channels) + _RECORD_BYTES) + _SEARCHED, _MAX_READ)
+        start = replace(part, whole_bytes=max(part.header_bytes, size - reach))
+        blocks: list[Block] = []
+        for _, block in _records(stream, size, start):
+            if blocks and block.first_sample != blocks[-1].next_sample:
+                blocks.clear()
+            blocks.append(block)
     if not blocks:
         return part, None
     values = np.concatenate([block.values for block in blocks])[-wanted:]
@@ -260,14 +256,11 @@ def latest_samples(path: Path, *, duration: float) -> tuple[RawPart, Block | Non
 
 def _walk(path: Path) -> Iterator[tuple[RawPart, Block | None]]:
     """Yield what a file holds up to each of its blocks, after the header without one."""
-    try:
-        with path.open("rb") as stream:
-            size = path.stat().st_size
-            part = _header(stream, path)
-            yield part, None
-            yield from _records(stream, size, part)
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+    with refuse_unreadable(path), path.open("rb") as stream:
+        size = path.stat().st_size
+        part = _header(stream, path)
+        yield part, None
+        yield from _records(stream, size, part)
 
 
 def _records(stream: BinaryIO, size: int, part: RawPart) -> Iterator[tuple[RawPart, Block]]:

@@ -116,7 +116,7 @@ def recorded_part(
         units={name: free.get(name, "") for name, of in variables.items() if of not in quantities()},
         clock=found.clock,
         set_points=tuple(name for name in variables if name in steps.names),
-        lubricants=steps.lubricants,
+        lubricants=tuple(steps.lubricants),
         caveats=_caveats(found, steps),
         pieces=partial(_pieces, path, found, steps, list(variables)[len(found.channels) :]),
         damaged=found.damaged,

@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
 from sonolube.laboratory.records.open_part import OpenPart, RunClock
-from sonolube.laboratory.records.raw_blocks import PartClock, raw_header
+from sonolube.laboratory.records.raw_blocks import PartClock, RawPart, raw_header
 from sonolube.laboratory.records.recorded_part import recorded_part
 from sonolube.laboratory.records.recording_files import write_netcdf_recording
 from sonolube.laboratory.records.run import RunSummary, run_summary
@@ -111,7 +111,7 @@ class RunRecorder:
         self._require_running()
         if self._main is not None:
             raise InvalidInput("a part of the recording has begun already; end it first")
-        self._main = self._begun(channels, sample_rate=sample_rate, begun=self._clock.now())
+        self._main = self._begun(RawPart(channels=tuple(channels), sample_rate=sample_rate, begun=self._clock.now()))
 
     def begin_beside(
         self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
@@ -141,9 +141,10 @@ class RunRecorder:
         if self._main is None or clock in self._beside or not CLOCK_NAME.fullmatch(clock):
             raise InvalidInput(f"a part of the clock {clock!r} needs one of the run, and no other of its own")
         begun = self._clock.now() - ago
-        offset = begun - self._main.begun
+        offset = begun - self._main.part.begun
         told = PartClock(name=clock, part=self._main.number, offset=offset, uncertainty=uncertainty, first_sample=first)
-        self._beside[clock] = self._begun(channels, sample_rate=sample_rate, begun=begun, clock=told)
+        part = RawPart(channels=tuple(channels), sample_rate=sample_rate, begun=begun, clock=told)
+        self._beside[clock] = self._begun(part)
 
     def append(self, block: Block) -> None:
         """Keep a block; it is in the hands of the operating system when this returns.
@@ -256,16 +257,12 @@ class RunRecorder:
         self._summary = run_summary(self.folder)
         return self._summary
 
-    def _begun(
-        self, channels: Sequence[Channel], *, sample_rate: float, begun: float, clock: PartClock | None = None
-    ) -> OpenPart:
+    def _begun(self, part: RawPart) -> OpenPart:
         """Part that has begun."""
-        number = len(self._parts) + 1
-        raw_header(channels, sample_rate=sample_rate, begun=begun)  # refuses what is no part, which is no failure
+        raw_header(part)  # refuses what is no part, which is no failure
         with self._failing():
-            part = OpenPart(self.folder, number, channels, self._log, sample_rate=sample_rate, begun=begun, clock=clock)
-        self._parts.append(part)
-        return part
+            self._parts.append(OpenPart(self.folder, len(self._parts) + 1, part, self._log))
+        return self._parts[-1]
 
     def _append(self, part: OpenPart | None, block: Block, told: Mapping[str, str | float]) -> None:
         """Keep a block of a part."""

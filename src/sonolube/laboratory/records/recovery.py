@@ -138,10 +138,9 @@ def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -
             log.start(known)
         described = {str(each.get("name")) for each in earlier.of("descriptor")}
         for number, part in parts.items():
-            rate, clock = part.sample_rate, "" if part.clock is None else part.clock.name
             if f"recording-{number}" not in described:
-                log.part(number, part.channels, sample_rate=rate, time=part.begun, clock=clock)
-            log.end_part(read_documents(folder), number, samples=part.samples, sample_rate=rate, clock=clock)
+                log.part(number, part)
+            log.end_part(read_documents(folder), number, part)
         last = max((part.begun + part.duration for part in parts.values()), default=known.begun)
         log.stop("interrupted", reason="the program ended before the run", time=last)
     finally:
@@ -153,7 +152,7 @@ def _write_missing(folder: Path, known: RunFacts, parts: dict[int, RawPart], don
     """Write the parts of the recording that were not written."""
     documents, paths = read_documents(folder), list[Path]()
     for number, raw in parts.items():
-        path = recording_path(folder, number, "" if raw.clock is None else raw.clock.name)
+        path = recording_path(folder, number, raw.clock_name)
         paths.append(path)
         if raw.samples and not path.is_file():
             part = recorded_part(folder, number, documents, facts=known.facts, raw=raw)

@@ -34,6 +34,7 @@ from sonolube.laboratory.records.run_folder import (
     read_run_facts,
     recording_path,
 )
+from sonolube.measurement.measured_files import refuse_unreadable
 from sonolube.storage.files import is_locked
 
 if TYPE_CHECKING:
@@ -242,10 +243,8 @@ def read_run(folder: Path) -> Run:
 
 def run_folders(parent: Path) -> list[Path]:
     """Folders of runs in a folder, by name, which is by time."""
-    try:
+    with refuse_unreadable(parent):
         return sorted(path for path in parent.iterdir() if is_run_folder(path))
-    except OSError as failure:
-        raise InvalidInput(f"{parent}: cannot be read: {failure.strerror}") from None
 
 
 def run_summary(folder: Path) -> RunSummary:

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from math import ceil
 from typing import Any, Final
 
@@ -22,38 +21,6 @@ _MOTOR: Final = ("sliding_speed_set", "motor_on")
 _DRIVE: Final = ("voltage_peak_to_peak_set", "frequency_set")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SetPointSteps:
-    """Set points of a part of a recording.
-
-    Parameters
-    ----------
-    samples : tuple of int
-        By the counter of the hardware, ascending: from each on the set points of its row hold.
-    rows : tuple of mapping of str to float
-        Value of each channel, in SI, NaN where it is not known; the same channels in every row.
-    lubricants : tuple of str
-        Names of the lubricants 1, 2, ...
-    drives : bool
-        Whether the drive was used in the run before the end of the part.
-    """
-
-    samples: tuple[int, ...]
-    rows: tuple[Mapping[str, float], ...]
-    lubricants: tuple[str, ...]
-    drives: bool
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Channels of which any value is known."""
-        return tuple(name for name in SET_POINT_CHANNELS if any(row[name] == row[name] for row in self.rows))
-
-    def at(self, name: str, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Values of a channel at samples by their numbers."""
-        values = np.array([row[name] for row in self.rows])
-        return values[np.maximum(np.searchsorted(self.samples, numbers, side="right") - 1, 0)]
-
-
 def set_point_steps(
     documents: ReadDocuments,
     part: int,
@@ -61,9 +28,9 @@ def set_point_steps(
     first_sample: int,
     facts: Facts,
     own_clock: tuple[float, float] | None = None,
-) -> SetPointSteps:
+) -> "SetPointSteps":
     """Set points of a part of a recording, those before it at its first sample."""
-    found = _Steps(first_sample, facts)
+    found = SetPointSteps(first_sample, facts)
     uid = ""
     for name, document in documents.documents:
         if name == "descriptor" and document.get("name") == part_name(part):
@@ -73,7 +40,8 @@ def set_point_steps(
             break  # the part has ended
         elif name == "event":
             found.take(document["data"] if own_clock is None else _timed(document, first_sample, *own_clock))
-    return found.steps(part)
+    found.end(part)
+    return found
 
 
 def _timed(document: Mapping[str, Any], first_sample: int, begun: float, sample_rate: float) -> Mapping[str, Any]:
@@ -84,17 +52,34 @@ def _timed(document: Mapping[str, Any], first_sample: int, begun: float, sample_
     return {**document["data"], "sample": first_sample + max(ceil((time - begun) * sample_rate), 0)}
 
 
-class _Steps:
-    """Steps while the notes of a run are followed."""
+class SetPointSteps:
+    """Set points of a part of a recording, as the notes of its run are followed.
+
+    Attributes
+    ----------
+    lubricants : list of str
+        Names of the lubricants 1, 2, ...
+    drives : bool
+        Whether the drive was used in the run before the end of the part.
+    """
 
     def __init__(self, first_sample: int, facts: Facts) -> None:
         load = number_of(facts, "normal_load")
         self._state = dict.fromkeys(SET_POINT_CHANNELS, 0.0)
         self._state |= dict.fromkeys((*_MOTOR, *_DRIVE), float("nan"))
         self._state["normal_load_set"] = float("nan") if load is None else load
-        self._first, self._lubricants = first_sample, list[str]()
-        self._samples, self._rows = list[int](), list[dict[str, float]]()
-        self._drives = False
+        self._first, self.lubricants, self.drives = first_sample, list[str](), False
+        self._samples, self._rows = list[int](), list[dict[str, float]]()  # set points hold from each sample on
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Channels of which any value is known."""
+        return tuple(name for name in SET_POINT_CHANNELS if any(row[name] == row[name] for row in self._rows))
+
+    def at(self, name: str, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Values of a channel, in SI, at samples by their numbers; NaN where they are not known."""
+        values = np.array([row[name] for row in self._rows])
+        return values[np.maximum(np.searchsorted(self._samples, numbers, side="right") - 1, 0)]
 
     def begin(self) -> None:
         """Begin the part."""
@@ -113,16 +98,14 @@ class _Steps:
             self._samples.append(sample)
             self._rows.append(dict(self._state))
 
-    def steps(self, part: int) -> SetPointSteps:
-        """Steps of the part."""
+    def end(self, part: int) -> None:
+        """End the part, whose number is known now."""
         if not self._samples:
             self.begin()
-        rows = tuple(row | {"recording_part": float(part)} for row in self._rows)
-        if self._drives:  # before its first note the drive was off
-            rows = tuple(row | {name: 0.0 for name in _DRIVE if row[name] != row[name]} for row in rows)
-        return SetPointSteps(
-            samples=tuple(self._samples), rows=rows, lubricants=tuple(self._lubricants), drives=self._drives
-        )
+        for row in self._rows:
+            row["recording_part"] = float(part)
+            if self.drives:  # before its first note the drive was off
+                row.update({name: 0.0 for name in _DRIVE if row[name] != row[name]})
 
     def _changes(self, kind: str, data: Mapping[str, Any]) -> dict[str, float]:
         """Set points that a note changes."""
@@ -144,7 +127,7 @@ class _Steps:
             volts = number_of(facts, "voltage_peak_to_peak")
             if volts is None:
                 return {}
-            self._drives = True
+            self.drives = True
             frequency = number_of(facts, "frequency") or 0.0
             return {"voltage_peak_to_peak_set": volts, "frequency_set": frequency if volts else 0.0}
         if kind == "motor":
@@ -163,6 +146,6 @@ class _Steps:
         """Number of a lubricant."""
         if not lubricant:
             return 0.0
-        if lubricant not in self._lubricants:
-            self._lubricants.append(lubricant)
-        return 1.0 + self._lubricants.index(lubricant)
+        if lubricant not in self.lubricants:
+            self.lubricants.append(lubricant)
+        return 1.0 + self.lubricants.index(lubricant)

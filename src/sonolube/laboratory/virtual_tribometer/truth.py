@@ -3,7 +3,7 @@
 from bisect import bisect
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import asdict, astuple, dataclass, replace
 from math import pi, sqrt
 from typing import TYPE_CHECKING, Final
 
@@ -155,14 +155,7 @@ class FrictionDraw:
         drive = self._rig.drive
         if drive is None:
             raise InvalidInput(f"{self._rig.title}: a virtual tribometer needs a drive; give the table drive")
-        changed = replace(
-            drive,
-            voltage_peak_to_peak=setting.voltage_peak_to_peak,
-            voltage_offset=setting.voltage_offset,
-            frequency=setting.frequency,
-            waveform=setting.waveform,
-        )
-        return replace(self._rig, drive=changed, sliding_speed=sliding_speed)
+        return replace(self._rig, drive=replace(drive, **asdict(setting)), sliding_speed=sliding_speed)
 
 
 _AT_ONCE = 1e-6  # s, in which the flash rise follows the heat
@@ -202,21 +195,12 @@ class Temperatures:
     def set(self, time: float, *, setting: DriveSetting | None, friction_force: float, sliding_speed: float) -> float:
         """Steady flash rise of a setting, whose heat counts from a time on; NaN where it is unknown. [K]"""
         assumed, heat = self._assumed, friction_force * sliding_speed
-        loss = 0.0 if setting is None else assumed.loss_factor * self._capacitive_power(setting)
+        power = 0.0 if setting is None else capacitive_load(setting, capacitance=self._capacitance).apparent_power
         partition, flash = self._contact(heat, sliding_speed)
-        self._actuator = self._actuator.towards(loss / assumed.actuator_conductance, time=time)
+        self._actuator = self._actuator.towards(assumed.loss_factor * power / assumed.actuator_conductance, time=time)
         self._pin = self._pin.towards(partition * heat / assumed.pin_conductance, time=time)
         self._flash = self._flash.towards(0.0 if np.isnan(flash) else flash, time=time)
         return flash
-
-    def _capacitive_power(self, setting: DriveSetting) -> float:
-        """Root-mean-square alternating voltage times root-mean-square current of the actuator as a capacitance. [W]"""
-        return capacitive_load(
-            capacitance=self._capacitance,
-            frequency=setting.frequency,
-            voltage_peak_to_peak=setting.voltage_peak_to_peak,
-            waveform=setting.waveform,
-        ).apparent_power
 
     def reading(self, time: Floats) -> Floats:
         """Temperature that the thermocouple reads. [K]"""

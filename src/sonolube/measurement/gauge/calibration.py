@@ -1,6 +1,7 @@
 """Calibration of a displacement sensor as a force gauge: polynomial branches, and Preisach's model of hysteresis."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -162,21 +163,15 @@ def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: i
     if not 1 <= degree <= 7:
         raise InvalidInput(f"degree must lie between 1 and 7, got {degree}")
     rising = loading_mask(x)
-    branches = {}
+    branches: dict[str, Any] = {}
     for name, branch in (("loading", rising), ("unloading", ~rising)):
         if np.unique(x[branch]).size <= degree + 1:
             raise InvalidInput(f"{name} has {int(branch.sum())} samples, too few for a polynomial of degree {degree}")
         polynomial = Polynomial.fit(x[branch], force[branch], degree)
         residual = force[branch] - polynomial(x[branch])
-        branches[name] = polynomial, float(np.sqrt(np.sum(residual**2) / (residual.size - degree - 1)))
-    return BranchCalibration(
-        loading=branches["loading"][0],
-        unloading=branches["unloading"][0],
-        loading_deviation=branches["loading"][1],
-        unloading_deviation=branches["unloading"][1],
-        lowest=float(x.min()),
-        highest=float(x.max()),
-    )
+        deviation = float(np.sqrt(np.sum(residual**2) / (residual.size - degree - 1)))
+        branches |= {name: polynomial, f"{name}_deviation": deviation}
+    return BranchCalibration(**branches, lowest=float(x.min()), highest=float(x.max()))
 
 
 def force_from_branches(

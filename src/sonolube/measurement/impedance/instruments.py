@@ -10,11 +10,10 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.named_columns import (
-    MAGNITUDES,
     ColumnHeading,
-    impedance_from_parts,
     parse_heading,
     sweep_from_columns,
+    sweep_of_parts,
 )
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
 from sonolube.measurement.measured_files import first_lines, parse_number, require_channels, require_points
@@ -78,11 +77,7 @@ class Hp4294A:
                 with np.errstate(all="ignore"):
                     columns = {"f": first.rows[:, 0], one: first.rows[:, column], two: scale * second.rows[:, column]}
                 if sweep == "data" or np.any(columns[one] != 0):
-                    sweeps[sweep] = ImpedanceSweep(
-                        frequency=columns["f"],
-                        impedance=impedance_from_parts(columns, (one, two)),
-                        lines=np.array(first.lines),
-                    )
+                    sweeps[sweep] = sweep_of_parts(columns, (one, two), lines=np.array(first.lines))
         return sweeps
 
 
@@ -240,12 +235,7 @@ def _chunk_sweep(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]]) 
         raise InvalidInput(f"{path}: line {at}: chunk {chunk[:20]!r} holds no finished point")
     parts = _IMPEDANCE_FIELDS[pair]
     columns = {"f": f[measured], parts[0]: one[measured], parts[1]: two[measured]}
-    return ImpedanceSweep(
-        frequency=columns["f"],
-        impedance=impedance_from_parts(columns, parts),
-        lines=np.full(int(measured.sum()), at),
-        has_phase=parts not in MAGNITUDES,
-    )
+    return sweep_of_parts(columns, parts, lines=np.full(int(measured.sum()), at))
 
 
 def _values(path: Path, line: int, cells: Iterable[str]) -> Floats:

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import ClassVar, NamedTuple, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
@@ -96,10 +97,10 @@ def is_phase_without_unit(text: str) -> bool:
     return names_phase and parse_heading(text) is None
 
 
-def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -> Complexes:
-    r"""Complex impedance from two real parts of impedance, admittance or an equivalent circuit, in ohm.
+def sweep_of_parts(columns: Mapping[str, Floats], pair: tuple[str, str], *, lines: NDArray[np.int64]) -> ImpedanceSweep:
+    r"""Sweep over the column f from two real parts of impedance, admittance or an equivalent circuit.
 
-    Not finite where the parts define no finite impedance.
+    Its impedance is not finite where the parts define no finite one.
 
     With :math:`\omega = 2\pi f`: :math:`R + jX`, :math:`|Z| e^{j\theta}`, :math:`1/(G + jB)`, the series circuits
     :math:`R_s + j\omega L_s` and :math:`R_s + 1/(j\omega C_s)`, and the parallel circuits
@@ -108,7 +109,8 @@ def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -
     first, second = pair
     with np.errstate(all="ignore"):
         omega = 2 * np.pi * columns["f"]
-        return np.asarray(_IMPEDANCE[pair](omega, columns[first], columns[second]), dtype=np.complex128)
+        impedance = np.asarray(_IMPEDANCE[pair](omega, columns[first], columns[second]), dtype=np.complex128)
+    return ImpedanceSweep(frequency=columns["f"], impedance=impedance, lines=lines, has_phase=pair not in MAGNITUDES)
 
 
 def _unit_scale(unit: str, dimension: str) -> float | None:
@@ -192,12 +194,7 @@ def sweep_from_columns(
             raise InvalidInput(
                 f"{path}: line {heading_line}: columns {numbers} are all of {symbol} and differ; keep one of them"
             )
-    return ImpedanceSweep(
-        frequency=columns["f"],
-        impedance=impedance_from_parts(columns, pair),
-        lines=np.array([line for line, _ in rows]),
-        has_phase=pair not in MAGNITUDES,
-    )
+    return sweep_of_parts(columns, pair, lines=np.array([line for line, _ in rows]))
 
 
 def _column(path: Path, rows: list[NumberedCells], at: int, heading: ColumnHeading, decimal_sign: str) -> Floats:

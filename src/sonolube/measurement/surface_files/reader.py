@@ -111,15 +111,13 @@ _LARGEST_FIELD = 0.5  # m, which no profilometer scans
 _SMALLEST_FIELD = 1e-6  # m, below which only force microscopes scan
 
 
-def size_caveats(*, height: Floats, spacing_x: float, spacing_y: float, unit: str) -> tuple[str, ...]:
+def _size_caveats(height_map: HeightMap, *, unit: str) -> tuple[str, ...]:
     """Caveats of an implausible size of a field or range of its heights, one line each.
-
-    `height` has shape (rows, columns).
 
     Empty for a field from 1 um to 0.5 m along its longer side with a range of heights below that side.
     """
-    rows, columns = height.shape
-    sides = (columns * spacing_x,) if rows == 1 else (columns * spacing_x, rows * spacing_y)
+    height, (rows, columns) = height_map.height, height_map.height.shape
+    sides = (columns * height_map.spacing_x, *([] if rows == 1 else [rows * height_map.spacing_y]))
     field = " x ".join(format_si(side, "m", digits=4) for side in sides)
     check = f"check the lateral unit ({unit})"
     found = []
@@ -218,9 +216,6 @@ def read_surface_file(
         reading = file_format.read(stream, place)
     height_map = _height_map(reading, place, spacing_x=spacing_x, spacing_y=spacing_y, length_unit=length_unit)
     unit = _lateral_unit(reading, length_unit, spacing_x)
-    sizes = size_caveats(
-        height=height_map.height, spacing_x=height_map.spacing_x, spacing_y=height_map.spacing_y, unit=unit
-    )
     return SurfaceFile(
         height_map=height_map,
         path=place,
@@ -230,7 +225,7 @@ def read_surface_file(
         instrument=reading.instrument,
         measured_at=reading.measured_at,
         lateral_unit=unit,
-        caveats=(*reading.notes, *sizes),
+        caveats=(*reading.notes, *_size_caveats(height_map, unit=unit)),
     )
 
 
