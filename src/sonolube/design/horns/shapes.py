@@ -3,7 +3,6 @@
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 from scipy.optimize import brentq
 
@@ -105,16 +104,11 @@ def body_from_geometry(geometry: Geometry, *, axis: str) -> TunableBody:
     low, high = extent_along(geometry, axis=axis)
     return TunableBody(
         name=geometry.regions[0],
-        geometry_at=partial(_with_length, geometry, axis),
+        geometry_at=lambda length: adjust_length(geometry, axis=axis, length=length),
         length=high - low,
         axis=axis,
         sizes={},
     )
-
-
-def _with_length(geometry: Geometry, axis: str, length: float) -> Geometry:
-    """Geometry cut off or extended to a length along an axis."""
-    return adjust_length(geometry, axis=axis, length=length)
 
 
 def _end_radius(

@@ -75,39 +75,22 @@ _OF_TEST = attrgetter("frequency", "vibration_amplitude")
 _SAME = 0.02  # relative difference of conditions that were rounded in print
 
 
-@dataclass(frozen=True, kw_only=True)
-class Measurement:
-    """Measured friction ratio of a published test.
-
-    Parameters
-    ----------
-    test : FrictionTest
-    """
-
-    test: FrictionTest
-
-    @property
-    def label(self) -> str:
-        """Name of the test, such as "A-1"."""
-        return self.test.label
-
-    @property
-    def text(self) -> str:
-        """Friction ratio with its uncertainty, and where it was published."""
-        error = "" if self.test.uncertainty is None else f" +- {self.test.uncertainty:.2g}"
-        return f"friction ratio {self.test.friction_ratio:.3g}{error}: {NORMAL_VIBRATION_SETS[self.test.set_name]}"
-
-    def object(self) -> dict[str, Any]:
-        """Test, set, friction ratio and uncertainty for JSON."""
-        return {
-            "test": self.test.label,
-            "set": NORMAL_VIBRATION_SETS[self.test.set_name],
-            "friction_ratio": self.test.friction_ratio,
-            "uncertainty": self.test.uncertainty,
-        }
+def measured_text(test: FrictionTest) -> str:
+    """Measured friction ratio of a published test with its uncertainty, and where it was published."""
+    error = "" if test.uncertainty is None else f" +- {test.uncertainty:.2g}"
+    return f"friction ratio {test.friction_ratio:.3g}{error}: {NORMAL_VIBRATION_SETS[test.set_name]}"
 
 
-def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[Measurement, ...]:
+def measured_object(test: FrictionTest) -> dict[str, Any]:
+    """Test, set, measured friction ratio and uncertainty for JSON."""
+    return {
+        "test": test.label,
+        "set": NORMAL_VIBRATION_SETS[test.set_name],
+        **picked(test, "friction_ratio", "uncertainty"),
+    }
+
+
+def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[FrictionTest, ...]:
     """Published friction tests under the contact, load, speed, friction, frequency and amplitude of a rig.
 
     Roughness and asperity law are not compared: they are assumed for most tests.
@@ -115,7 +98,7 @@ def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[Measurement, .
     if rig.drive is None:
         return ()
     own = (*_OF_BOTH(rig), rig.drive.frequency, vibration_amplitude)
-    return tuple(Measurement(test=test) for test in friction_tests() if _near(own, (*_OF_BOTH(test), *_OF_TEST(test))))
+    return tuple(test for test in friction_tests() if _near(own, (*_OF_BOTH(test), *_OF_TEST(test))))
 
 
 def _near(own: Sequence[float], printed: Sequence[float]) -> bool:

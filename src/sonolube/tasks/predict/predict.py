@@ -9,7 +9,7 @@ from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.predictive import DRAWS
 from sonolube.report import Drawing
 from sonolube.report.results import prediction as results
-from sonolube.report.results.rig_point import Measurement, measured_on
+from sonolube.report.results.rig_point import measured_object, measured_on, measured_text
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
@@ -17,6 +17,7 @@ from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, File, KeyValues, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
 from sonolube.tasks.task import task
 from sonolube.text.units import format_si
+from sonolube.validation.published_tests import FrictionTest
 
 Laboratory: TypeAlias = "Mapping[RigSource, RunsSource] | Sequence[tuple[RigSource, RunsSource]] | None"
 
@@ -80,7 +81,7 @@ class PredictionAnswer(Answer):
 
     rig: Rig
     prediction: LabelledArrays
-    measured: Sequence[Measurement]
+    measured: Sequence[FrictionTest]
 
     def blocks(self) -> Sequence[Block]:
         """Statement in words, a table of quantities with their intervals, and the inputs."""
@@ -97,7 +98,7 @@ class PredictionAnswer(Answer):
             *(f"  {line}" for line in self._probes()),
             Table(results.INPUT_HEADS, results.input_rows(self.prediction)),
             *about,
-            *(f"  measured {one.label}: {one.text}" for one in self.measured),
+            *(f"  measured {one.label}: {measured_text(one)}" for one in self.measured),
         ]
 
     def object(self) -> dict[str, Any]:
@@ -111,7 +112,7 @@ class PredictionAnswer(Answer):
             "inputs": results.column(found, "input_text"),
             "share_left_by_measurement": results.measurement_shares(found),
             "stiffness_probes": self._probes(),
-            "measured": [one.object() for one in self.measured],
+            "measured": [measured_object(one) for one in self.measured],
             "interval_share_left": dict(zip(results.column(found, "input"), shares, strict=True)),
             **{name: found.attrs.get(name) for name in ("runs", "actuator_power")},
             "operating_point": results.operating_texts(found),

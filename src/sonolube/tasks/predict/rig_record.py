@@ -14,7 +14,7 @@ from sonolube.models.friction import FRICTION_MODELS, FrictionModel
 from sonolube.models.thermal.flash import FLASH_MODELS
 from sonolube.prediction.evidence import large_amplitude_caveats
 from sonolube.report import Drawing
-from sonolube.report.results.rig_point import Measurement, beyond_the_model, measured_on
+from sonolube.report.results.rig_point import beyond_the_model, measured_object, measured_on, measured_text
 from sonolube.rig import Rig, contact_point, friction_point, temperature_point, thermal_solid, wear_point
 from sonolube.rig.datasets import LabelledArrays, result_quantities, result_texts
 from sonolube.rig.figures import simulation_chart, temperature_chart
@@ -26,6 +26,7 @@ from sonolube.tasks.parameters import Interval, Number, Parameter, Quantity, Res
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, plausible, shown, task
 from sonolube.text.units import format_quantity, format_si
+from sonolube.validation.published_tests import FrictionTest
 from sonolube.vocabulary import quantities
 
 _UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
@@ -43,7 +44,7 @@ class RigRecord(Answer):
     result : dataclass
         Its fields named in the vocabulary, and those of records within it, are the quantities; None is left out, NaN
         stands for a value outside the range of a model, null in JSON.
-    measured : sequence of Measurement
+    measured : sequence of FrictionTest
         What was measured on the rig under the same conditions.
     leading : sequence of str
         Caveats that stand above the result.
@@ -57,7 +58,7 @@ class RigRecord(Answer):
 
     rig: Rig
     result: Any
-    measured: Sequence[Measurement] = ()
+    measured: Sequence[FrictionTest] = ()
     leading: Sequence[str] = ()
     rows: Sequence[tuple[str, str]] = ()
     entries: Mapping[str, Any] = field(default_factory=dict)
@@ -77,14 +78,14 @@ class RigRecord(Answer):
             for name, text in result_texts(self.result).items()
             if name not in _UNPRINTED
         ]
-        rows += [(f"measured {one.label}", one.text) for one in self.measured]
+        rows += [(f"measured {one.label}", measured_text(one)) for one in self.measured]
         return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", Rows([*rows, *self.rows])]
 
     def object(self) -> dict[str, Any]:
         """Title of the rig, text and quantities."""
         content = {"rig": self.rig.title, **result_texts(self.result), **si(result_quantities(self.result))}
         content |= self.entries
-        return content | {"measured": [one.object() for one in self.measured]} if self.measured else content
+        return content | {"measured": [measured_object(one) for one in self.measured]} if self.measured else content
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the record."""
