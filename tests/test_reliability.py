@@ -3,7 +3,7 @@
 from collections import Counter
 
 from pytest import mark
-from reliability.mutation import ROOMS
+from reliability.mutation import ROOMS, SOURCE
 from reliability.page import PAGE, page
 from reliability.studies import NAMES, mutants_of_models, study
 from reliability.study import attempt, judged
@@ -15,6 +15,11 @@ def test_the_first_trials_of_a_study_meet_its_bars(name: str) -> None:
     records = [attempt(chosen, seed) for seed in range(chosen.sample)]
     missed = [measure for measure in judged(chosen, records, sample=True) if not measure.holds]
     assert not missed
+
+
+@mark.parametrize("name", NAMES)
+def test_the_sources_of_a_study_are_there(name: str) -> None:
+    assert [source for source in study(name).sources if not list(SOURCE.glob(source))] == []
 
 
 def test_the_page_of_reliability_is_that_of_its_data() -> None:

@@ -125,7 +125,7 @@ STUDY = Study(
     " known within 10 % and an amplitude known within 5 %.",
     sources=(
         "measurement/contact_stiffness/*.py",
-        "dynamics/contact_spring.py",
+        "models/dynamics/contact_spring.py",
         "measurement/statistics/autocorrelation.py",
     ),
     trials=100,

@@ -131,7 +131,7 @@ STUDY = Study(
     title="Full disk",
     question="A page, a dataset, a recording or a sweep is written over its earlier self where files end at a random"
     " size. One line says so; nothing that stood before is lost, nothing unfinished stays.",
-    sources=("storage/files.py", "design/sweep_dataset.py", "design/sweep_dataset.py", "rig/datasets.py"),
+    sources=("storage/files.py", "design/sweep_dataset.py", "rig/datasets.py"),
     trials=500,
     sample=10,
     trial=_trial,

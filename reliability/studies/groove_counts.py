@@ -106,7 +106,7 @@ STUDY = Study(
     title="Tracks in a field, and marks along them",
     question="Fields with none to three wear tracks, short scratches, and marks on some: the number of tracks is found,"
     " and a spacing of marks is given only where there are marks.",
-    sources=("surfaces/grooves/*.py",),
+    sources=("models/surfaces/grooves/*.py",),
     trials=800,
     sample=5,
     trial=_trial,

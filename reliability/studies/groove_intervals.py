@@ -124,7 +124,7 @@ STUDY = Study(
     title="Intervals of wear grooves",
     question="Width, depth and volume of generated grooves on rough surfaces of many spectra; an interval fails where"
     " it misses the groove as generated more often than once in twenty, or is wider than the scatter of repeats.",
-    sources=("surfaces/grooves/*.py",),
+    sources=("models/surfaces/grooves/*.py",),
     trials=2000,
     sample=3,
     trial=_trial,

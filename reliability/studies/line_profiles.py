@@ -75,7 +75,11 @@ STUDY = Study(
     title="Parameters of line profiles",
     question="Sines of random height, length, tilt and noise have the parameters of their closed form after the filter"
     " of ISO 16610-21, and those of a second computation by plain sums.",
-    sources=("surfaces/profile_evaluation.py", "surfaces/roughness_profile.py", "surfaces/gaussian_filter.py"),
+    sources=(
+        "models/surfaces/profile_evaluation.py",
+        "models/surfaces/roughness_profile.py",
+        "models/surfaces/gaussian_filter.py",
+    ),
     trials=1000,
     sample=15,
     trial=_trial,

@@ -140,7 +140,7 @@ STUDY = Study(
     title="Range of validity of friction models",
     question="Every friction model at random loads, amplitudes, speeds and roughnesses of every example rig: a failure"
     " is a friction beyond what the model can mean that passes as a result.",
-    sources=("friction/models/*.py", "rig/friction_and_wear.py", "rig/operating_point*.py"),
+    sources=("models/friction/models/*.py", "rig/friction_and_wear.py", "rig/operating_point*.py"),
     trials=2000,
     sample=22,
     trial=_trial,

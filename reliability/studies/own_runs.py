@@ -183,8 +183,7 @@ def _sample_measures(records: Sequence[Record]) -> list[Measure]:
 
 
 SOURCES = tuple(
-    f"prediction/{name}"
-    for name in ("closures.py", "hierarchy.py", "learned.json", "predictive.py", "rig_draws.py", "run_check.py")
+    f"prediction/{name}" for name in ("evidence.py", "hierarchy.py", "learned.json", "posterior.py", "predictive.py")
 )
 """Code that predictions after own runs rest on."""
 

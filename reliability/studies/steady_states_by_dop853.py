@@ -264,7 +264,7 @@ STUDY = Study(
     title="Steady states against their equations of motion",
     question="Random rigs, drives and loads, half of them hard: does the periodic motion obey the equations of motion,"
     " written apart from the program and integrated by DOP853, and are stability, lost contact and power right?",
-    sources=("dynamics/**/*.py", "rig/**/*.py", "contact/**/*.py", "friction/**/*.py"),
+    sources=("models/dynamics/**/*.py", "rig/**/*.py", "models/contact/**/*.py", "models/friction/**/*.py"),
     trials=400,
     sample=4,
     trial=_trial,

@@ -81,7 +81,7 @@ STUDY = Study(
     title="Virtual tests through the analysis",
     question="The map test of the dissertation on the virtual tribometer, with wobble, run-in, ringing, noise, drift"
     " and hysteresis, through the analysis of voltage steps: is friction within its uncertainty of what was given?",
-    sources=("lab/virtual_tribometer/*.py", "measurement/friction/*.py"),
+    sources=("laboratory/virtual_tribometer/*.py", "measurement/friction/*.py"),
     trials=100,
     sample=6,
     trial=_trial,

@@ -67,11 +67,11 @@ def test_the_reference_shows_the_table_of_formats(table: str) -> None:
 def test_a_format_is_added_by_one_file_and_one_line_of_the_table(copied_package: Path, tmp_path: Path) -> None:
     recordings = copied_package / "measurement" / "recordings"
     (recordings / "toy.py").write_text(TOY_FORMAT)
-    table = (recordings / "formats.py").read_text()
+    table = (recordings / "reader.py").read_text()
     line = '        "TDMS": "sonolube.measurement.recordings.tdms:Tdms",\n'
     assert line in table
     table = table.replace(line, line + '        "toy": "sonolube.measurement.recordings.toy:Toy",\n')
-    (recordings / "formats.py").write_text(table)
+    (recordings / "reader.py").write_text(table)
     recording = tmp_path / "test.dat"
     recording.write_text("TOY\n400\n" + "\n".join(f"{1 + 0.25 * (-1) ** n}" for n in range(4000)))
     environment = {**os.environ, "PYTHONPATH": str(tmp_path), "OPENBLAS_NUM_THREADS": "1"}
