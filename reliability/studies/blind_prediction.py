@@ -130,9 +130,7 @@ STUDY = Study(
     title="Blind predictions of the published tests",
     question="Each published set is predicted from the others, with no roughness or one as printed: every way that was"
     " tried, with its score. The shipped one was chosen after these scores were known.",
-    sources=tuple(
-        f"prediction/{name}.py" for name in ("calibration", "closures", "evidence", "hierarchy", "posterior")
-    ),
+    sources=tuple(f"prediction/{name}.py" for name in ("calibration", "evidence", "hierarchy", "posterior")),
     trials=len(WAYS),
     sample=2,
     trial=_trial,

@@ -105,21 +105,7 @@ STUDY = Study(
     "turn (long sliding, a zero error of the load cell, detuning), under none, under two at once, with a change of 15 "
     "to 30 %, and with friction that changes by itself: the analysis names the right one, and decides nothing where it "
     "must not. One run in four is a recording, the others are tables of their switches.",
-    sources=tuple(
-        f"identification/decay_length/{name}.py"
-        for name in (
-            "channel_noise",
-            "conditions",
-            "decision",
-            "evidence",
-            "posterior",
-            "recorded_switches",
-            "run_model",
-            "stick_slip_table",
-            "switch_table",
-            "zero_error",
-        )
-    ),
+    sources=("identification/decay_length/*.py",),
     trials=700,
     sample=3,
     trial=_trial,

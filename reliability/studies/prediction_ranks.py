@@ -94,10 +94,7 @@ STUDY = Study(
     title="Ranks in posteriors of generated friction tests",
     question="Hyperparameters are drawn from the prior and friction tests generated at the published conditions."
     " The rank of each true value in its posterior, and of an unseen test in its prediction, fails where not uniform.",
-    sources=tuple(
-        f"prediction/{name}.py"
-        for name in ("closures", "evidence", "hierarchy", "posterior", "predictive", "rig_draws")
-    ),
+    sources=tuple(f"prediction/{name}.py" for name in ("evidence", "hierarchy", "posterior", "predictive")),
     trials=300,
     sample=1,
     trial=_trial,
