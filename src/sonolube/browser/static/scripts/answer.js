@@ -3,6 +3,7 @@ import {html, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {askAgain} from './api.js';
 import {focusField} from './fields.js';
 import {Button, Warning} from './parts.js';
+/** @typedef {{kind: string, rows?: string[][], heads?: string[], text?: string}} Block */
 
 const MOST = 100; // rows shown before all are asked for
 
@@ -33,7 +34,7 @@ const BLOCKS = {
   text: ({text}) => html`<p>${text}</p>`,
 };
 
-/** All blocks, or some of them. */
+/** All blocks, or some of them. @param {{blocks: Block[]}} properties */
 export const Blocks = ({blocks}) => blocks.map((block, place) => html`<${BLOCKS[block.kind]} key=${place} ...${block} />`);
 
 /** Lines of now that were not there when the page last rested; `of` names what is answered at rest. */
@@ -65,7 +66,7 @@ export function Caveats({answer, isMoving, of, hasFields = true}) {
       ${changed.has(line) && html`<span class="tag is-new">changed</span> `}${shown}</li>`)}</ul>`)}</div>`;
 }
 
-/** What a failed request shows, beside the last answer; `shown` are keys whose faults stand under their fields. */
+/** What a failed request shows, beside the last answer; `shown` are keys whose faults stand under their fields. @param {{failure: import('./api.js').Failure, shown?: string[]}} properties */
 export function Failure({failure, shown = []}) {
   if (!failure || failure.kind === 'offline' || failure.kind === 'link') return null;
   const faults = failure.faults.filter((fault) => !shown.includes(fault.key));
@@ -77,7 +78,7 @@ export function Failure({failure, shown = []}) {
     ${!isBelow && failure.kind === 'busy' && html`<${Button} onClick=${askAgain}>Ask again<//>`}<//>`;
 }
 
-/** Note that some entries are refused, while the numbers are those of the last accepted ones. */
+/** Note that some entries are refused, while the numbers are those of the last accepted ones. @param {{refused: import('./api.js').Fault[]}} properties */
 export function RefusedNote({refused}) {
   if (!refused.length) return null;
   return html`<p class="notice is-warning" role="status" data-test="left-out">The numbers leave out what is refused:${' '}

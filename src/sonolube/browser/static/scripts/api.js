@@ -82,8 +82,9 @@ export async function ask(path, {method, body, raw, signal} = {}) {
   return {failure: {kind, text: content.text ?? '', faults: content.faults ?? []}};
 }
 
-/** Answer of a task, such as "measure friction", to arguments by Python's names. */
+/** Answer of a task, such as "measure friction", to arguments by Python's names. @param {string} name @param {object} args @returns {Promise<Reply>} */
 export const callTask = (name, args) => ask(taskPath(name), {body: args});
+/** @param {string} name @returns {string} */
 export const taskPath = (name) => `api/tasks/${name.replaceAll(' ', '/')}`;
 
 const waiting = new Map();
@@ -104,7 +105,10 @@ async function run() {
 /** Stop the request in flight; the workbench then stops computing its answer. */
 export const cancelRequest = () => inFlight?.abort();
 
-/** Do requests one after the other; a newer one of the same slot replaces one that waits, whose reply is then null. */
+/**
+ * Do requests one after the other; a newer one of the same slot replaces one that waits, whose reply is then null.
+ * @param {string} slot @param {(signal: AbortSignal) => Promise<Reply>} work @returns {Promise<Reply|null>}
+ */
 export const inTurn = (slot, work) => new Promise((done) => {
   waiting.get(slot)?.done(null);
   waiting.set(slot, {work, done});
@@ -171,13 +175,13 @@ export function useReply(slot, path, body) {
   return {...found, isWaiting: path !== null && found.text !== text};
 }
 
-/** Whether the workbench answers, and how often it came back. */
+/** Whether the workbench answers, and how often it came back. @returns {{connection: 'ok'|'offline'|'link', generation: number}} */
 export function useConnection() {
   useListening(listeners);
   return {connection, generation};
 }
 
-/** Let this page in by a new link, as it was printed, without leaving it; false where it is of another workbench. */
+/** Let this page in by a new link, as it was printed, without leaving it; false where it is of another workbench. @param {string} link @returns {Promise<boolean>} */
 export async function enter(link) {
   const token = /[?&]token=([\w-]+)/.exec(link)?.[1] ?? link.trim();
   await fetch(`./?token=${encodeURIComponent(token)}`, {headers: STATED}).catch(() => null);
@@ -185,7 +189,7 @@ export async function enter(link) {
   return connection === 'ok';
 }
 
-/** Whether something has been so for a while, such as waiting for an answer, so that what is short does not flicker. */
+/** Whether something has been so for a while, such as waiting for an answer, so that what is short does not flicker. @param {boolean} isSo @returns {boolean} */
 export function useLate(isSo) {
   const [isLate, setLate] = useState(false);
   useEffect(() => {

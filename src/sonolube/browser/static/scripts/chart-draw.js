@@ -1,6 +1,7 @@
 /** Parts of a panel drawn on its canvas, in the order in which they are given. */
 import {colourAt, drawField, readField, scaleOf} from './chart-field.js';
 import {along, css, dash, errors, extent, fieldOf, flat, short, withUnit} from './chart-scale.js';
+/** @typedef {import('./chart-scale.js').Panel} Panel @typedef {import('./chart-scale.js').Part} Part */
 
 const LINE = 1.7; // px
 const MARKER = 3.6; // px, half of its width
@@ -15,7 +16,7 @@ export const MARKERS = [
   'M-1.1 0 .9-1V1Z', 'M1.1 0-.9-1V1Z', 'M0-1.4.33-.45 1.33-.43.53.17.82 1.13 0 .56-.82 1.13-.53.17-1.33-.43-.33-.45Z',
 ];
 
-/** Places of values on a canvas and back; `box` in its pixels. */
+/** Places of values on a canvas and back; `box` in its pixels. @param {Panel} panel @param {object} ranges @param {object} box */
 export const mapping = (panel, ranges, box) => ({
   box, x: along(panel.x, ranges.x, box.left, box.width), y: along(panel.y, ranges.y, box.top + box.height, -box.height),
 });
@@ -208,10 +209,10 @@ function shadeOf(part, panel) {
   return (value) => colourAt('viridis', (value - low) / (high - low || 1));
 }
 
-/** Ends of the scale of shaded points. */
+/** Ends of the scale of shaded points. @param {Part} part @returns {number[]} */
 export const ownEnds = (part) => part.scale_ends ?? extent(part.shades);
 
-/** Points and ends of bars of a panel by x, each with its part and number. */
+/** Points and ends of bars of a panel by x, each with its part and number. @param {Panel} panel @returns {{part: Part, at: number, x: number, y: number}[]} */
 export function pointsOf(panel) {
   const shown = panel.parts.filter((part) => part.kind === 'points' || part.kind === 'bars').map((part) => {
     if (part.kind === 'points') return part;
@@ -225,7 +226,7 @@ export function pointsOf(panel) {
 /** A value with the label of its axis. */
 const said = (axis, value) => `${flat(axis.label)}: ${withUnit(value, axis)}`;
 
-/** What is said of a point. */
+/** What is said of a point. @param {Panel} panel @param {{part: Part, at: number}} point @returns {string[]} */
 export function pointText(panel, {part, at}) {
   const error = errors(part.y_error, at);
   const spread = error && (error[0] === error[1] ? ` ± ${short(error[0], 2)}` : ` −${short(error[0], 2)} +${short(error[1], 2)}`);
@@ -245,14 +246,17 @@ function onCurve(x, values, at, isStepped) {
 
 const ascends = (x) => x.every((value, at) => !at || value === null || x[at - 1] === null || value >= x[at - 1]);
 
-/** What is said of a place of a panel in pixels: of the nearest point, else of the values there. */
+/**
+ * What is said of a place of a panel in pixels: of the nearest point, else of the values there.
+ * @param {Panel} panel @param {object} map @param {number} left @param {number} top @param {number} scale @returns {string[]}
+ */
 export function readAt(panel, map, left, top, scale) {
   const near = pointsOf(panel).map((point) => [Math.hypot(map.x.to(point.x) - left, map.y.to(point.y) - top), point])
     .filter(([distance]) => distance < NEAR * scale).sort(([one], [other]) => one - other)[0];
   return near ? pointText(panel, near[1]) : valuesAt(panel, map.x.back(left), map.y.back(top));
 }
 
-/** Values of the parts of a panel at a place of its axes. */
+/** Values of the parts of a panel at a place of its axes. @param {Panel} panel @param {number} x @param {number} y @returns {string[]} */
 export function valuesAt(panel, x, y) {
   const place = [said(panel.x, x), said(panel.y, y)];
   const field = fieldOf(panel);

@@ -11,7 +11,7 @@ const CATEGORIES = ['#bfbfbf', '#9ecae1', '#fdd0a2', '#c7e9c0', '#dadaeb'];
 const MIN_PIECES = 4; // of a contour line that gets a label
 const MARGIN = 0.06; // of width and height, in which no label stands
 
-/** Colour of a share of a scale. */
+/** Colour of a share of a scale. @param {string} name @param {number} share @returns {number[]} */
 export function colourAt(name, share) {
   const stops = STOPS[name] ?? STOPS.cividis;
   const place = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
@@ -19,6 +19,7 @@ export function colourAt(name, share) {
   return mix(rgb(stops[low]), rgb(stops[low + 1]), place - low);
 }
 
+/** @param {number} number @returns {string} */
 export const categoryColour = (number) => CATEGORIES[number % CATEGORIES.length];
 
 /** Ends of the scale of a field. */
@@ -28,7 +29,7 @@ function endsOf({levels, lowest, highest, values}) {
   return [lowest ?? low, highest ?? high];
 }
 
-/** Colours of a field: of a value, and the ends of the scale. */
+/** Colours of a field: of a value, and the ends of the scale. @param {object} field */
 export function scaleOf(field) {
   const {levels, scale, words} = field;
   if (words) return {ends: [0, words.length - 1], colour: (value) => rgb(categoryColour(Math.round(value)))};
@@ -64,7 +65,7 @@ function valueAt(field, column, row) {
   return (1 - above) * ((1 - right) * corners[0] + right * corners[1]) + above * ((1 - right) * corners[2] + right * corners[3]);
 }
 
-/** Value of a field over the axes; null where it is not known. */
+/** Value of a field over the axes; null where it is not known. @param {object} field @param {number} x @param {number} y @returns {number|null} */
 export const readField = (field, x, y) => valueAt(field, placeOn(field.x, x, !field.levels), placeOn(field.y, y, !field.levels));
 
 const images = new WeakMap();
@@ -119,7 +120,7 @@ function pieces({x, y, values}, level, map) {
   return found;
 }
 
-/** Draw a field between the axes. */
+/** Draw a field between the axes. @param {CanvasRenderingContext2D} context @param {object} field @param {object} map @param {object} scale */
 export function drawField(context, field, map, scale) {
   context.drawImage(imageOf(field, map), map.box.left, map.box.top);
   if (!field.levels || !field.lines) return;
@@ -157,7 +158,7 @@ function labelOf(found, {left, top, width, height}) {
   return [(x + nextX) / 2, (y + nextY) / 2, angle];
 }
 
-/** Scale of colours with its text, as high as a panel. */
+/** Scale of colours with its text, as high as a panel. @param {{field: object, height: number}} properties */
 export function ColourScale({field, height}) {
   const {ends: [low, high], colour} = scaleOf(field);
   const [top, room] = [8, Math.max(height - 16, 60)];

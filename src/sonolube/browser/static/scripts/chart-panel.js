@@ -14,6 +14,7 @@ const MOVED = 4; // px beyond which a press is no click
 /** What must be made anew, rather than given new data. */
 const structureOf = ({x, y}) => JSON.stringify([x, y].map((axis) => [axis.text, axis.logarithmic, axis.words, axis.reciprocal, axis.proportional, axis.lowest > axis.highest]));
 
+/** @param {object} panel @returns {string} */
 export const panelName = (panel) => [panel.title, `${flat(panel.y.text)} over ${flat(panel.x.text)}`].filter(Boolean).join(': ');
 
 /** Options of uPlot; everything that changes is read from `latest`. */

@@ -1,4 +1,7 @@
 /** Ends, ticks, numbers and colours of charts, as Matplotlib gives them to the same chart. */
+/** @typedef {{label?: string, text?: string, unit?: string, logarithmic?: boolean, words?: string[], ticks?: number[]}} Axis */
+/** @typedef {{kind: string, label?: string, [name: string]: any}} Part */
+/** @typedef {{x: Axis, y: Axis, parts: Part[], title?: string}} Panel */
 
 const SUPERSCRIPTS = '⁻⁰¹²³⁴⁵⁶⁷⁸⁹';
 const MARGIN = 0.05; // of the range of the data, at both ends
@@ -6,9 +9,10 @@ const LOG_RATIO = 3; // of the ends of a logarithmic axis, below which its ticks
 const MIN_CONTRAST = {light: 3, dark: 4.5}; // of a curve against what it is drawn on
 const DASHES = [[], [7, 4], [8, 3, 2, 3], [2, 3], [9, 2], [5, 2, 2, 2, 2, 2], [1.5, 1.5]];
 
+/** @param {number} [number] @returns {number[]} */
 export const dash = (number) => DASHES[(number ?? 0) % DASHES.length];
 
-/** Number as a short text. */
+/** Number as a short text. @param {number|null} value @param {number} [digits] @returns {string} */
 export function short(value, digits = 4) {
   if (value == null || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
@@ -23,26 +27,26 @@ export function short(value, digits = 4) {
 /** Word that stands for a value on an axis; undefined where numbers stand. */
 const wordAt = ({words, ticks}, value) => words?.[ticks ? ticks.indexOf(value) : Math.round(value)];
 
-/** Number of an axis or field with its unit, or the word that stands there. */
+/** Number of an axis or field with its unit, or the word that stands there. @param {number} value @param {Axis} axis @returns {string} */
 export const withUnit = (value, axis) => wordAt(axis, value) ?? (axis.unit ? `${short(value)} ${axis.unit}` : short(value));
 
-/** Errors of points or bars below and above a place; undefined where there are none. */
+/** Errors of points or bars below and above a place; undefined where there are none. @param {any[]|undefined} error @param {number} place @returns {number[]|undefined} */
 export const errors = (error, place) => error && (Array.isArray(error[0]) ? error.map((ends) => ends[place]) : [error[place], error[place]]);
 
-/** Label on one line. */
+/** Label on one line. @param {string} [text] @returns {string} */
 export const flat = (text = '') => text.replaceAll('\n', ' ');
 
-/** Field of a panel; undefined where it has none. */
+/** Field of a panel; undefined where it has none. @param {Panel} panel @returns {Part|undefined} */
 export const fieldOf = (panel) => panel.parts.find((part) => part.kind === 'field');
 
-/** Lowest and highest of some values, without those that are not known. */
+/** Lowest and highest of some values, without those that are not known. @param {(number|null)[]} values @returns {number[]} */
 export const extent = (values) => values.filter((value) => value !== null)
   .reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
 
 /** Way from values of an axis to a scale on which they lie evenly, and back. */
 const evenly = (axis) => (axis.logarithmic ? [Math.log10, (value) => 10 ** value] : [(value) => value, (value) => value]);
 
-/** Places of values along an axis that begins at `start`, and back; by default as shares of its length. */
+/** Places of values along an axis that begins at `start`, and back; by default as shares of its length. @param {Axis} axis @param {number[]} ends @param {number} [start] @param {number} [length] */
 export function along(axis, ends, start = 0, length = 1) {
   const [to, from] = evenly(axis);
   const [low, high] = ends.map(to);
@@ -90,7 +94,7 @@ function ends(panels, name) {
   return found;
 }
 
-/** Ends of x and y of each panel, common where the chart shares them; `kept` are charts drawn behind. */
+/** Ends of x and y of each panel, common where the chart shares them; `kept` are charts drawn behind. @param {object} chart @param {object[]} kept @returns {object[]} */
 export function rangesOf(chart, kept) {
   const {columns} = chart;
   const joined = chart.panels.map((panel, place) => {
@@ -104,7 +108,7 @@ export function rangesOf(chart, kept) {
   return joined.map((_, place) => ({x: x[place], y: y[place]}));
 }
 
-/** Round numbers within a range, at most `most`. */
+/** Round numbers within a range, at most `most`. @param {number} low @param {number} high @param {number} most @returns {number[]} */
 export function roundTicks(low, high, most) {
   const rough = (high - low) / Math.max(1, most);
   const decade = 10 ** Math.floor(Math.log10(rough));
@@ -113,7 +117,7 @@ export function roundTicks(low, high, most) {
   return Array.from({length: Math.max(last - first + 1, 0)}, (_, at) => Number(((first + at) * step).toPrecision(12)));
 }
 
-/** Ticks of an axis with room for so many numbers. */
+/** Ticks of an axis with room for so many numbers. @param {Axis} axis @param {number[]} ends @param {number} room @returns {number[]} */
 export function ticksOf(axis, ends, room) {
   const [low, high] = [...ends].sort((one, other) => one - other);
   if (axis.ticks) return axis.ticks;
@@ -133,14 +137,16 @@ export function ticksOf(axis, ends, room) {
   return within;
 }
 
-/** Texts at ticks. */
+/** Texts at ticks. @param {Axis} axis @param {number[]} ticks @returns {string[]} */
 export const tickTexts = (axis, ticks) => ticks.map((value) => wordAt(axis, value) ?? short(value, 5));
 
-/** Red, green and blue of "#rrggbb" or "rgb(…)". */
+/** Red, green and blue of "#rrggbb" or "rgb(…)". @param {string} text @returns {number[]} */
 export const rgb = (text) => (text.startsWith('#') ? [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16))
   : (text.match(/[\d.]+/g) ?? [0, 0, 0]).slice(0, 3).map(Number));
 
+/** @param {number[]} colour @returns {string} */
 export const css = (colour) => `rgb(${colour.map(Math.round).join(' ')})`;
+/** @param {number[]} one @param {number[]} other @param {number} share @returns {number[]} */
 export const mix = (one, other, share) => one.map((value, place) => value + share * (other[place] - value));
 
 function luminance(colour) {
@@ -154,7 +160,7 @@ function contrast(one, other) {
   return (high + 0.05) / (low + 0.05);
 }
 
-/** Colours of a theme, read from the style of an element; `stroke` and `fill` give those that stand for a colour of a chart. */
+/** Colours of a theme, read from the style of an element; `stroke` and `fill` give those that stand for a colour of a chart. @param {Element} element */
 export function themeOf(element) {
   const style = getComputedStyle(element);
   const [ink, surface] = [rgb(style.color), rgb(style.backgroundColor)];

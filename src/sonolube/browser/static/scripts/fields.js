@@ -11,10 +11,12 @@ const BODIES = [['pin', 'Material of the pin'], ['disc', 'Material of the disc']
 export const NOTHING = {};
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
+/** @param {string} key @returns {string} */
 export const fieldId = (key) => `field-${key.replaceAll(/[^\w]/g, '-')}`;
+/** @param {string} key @returns {string} */
 export const spreadKey = (key) => `uncertainty.${key}`;
 
-/** Show the field of an entry, or the first of a table, open what it lies in, and put the cursor into it; false where there is none. */
+/** Show the field of an entry, or the first of a table, open what it lies in, and put the cursor into it; false where there is none. @param {string} key @returns {boolean} */
 export function focusField(key) {
   const field = document.getElementById(fieldId(key)) ?? document.querySelector(`input[id^="${fieldId(key)}-"]`);
   if (!field) return false;
@@ -25,14 +27,14 @@ export function focusField(key) {
   return true;
 }
 
-/** Number at the beginning of a text and what follows; null where there is none. */
+/** Number at the beginning of a text and what follows; null where there is none. @param {string} text @returns {{number: number, rest: string, digits: string}|null} */
 export function split(text) {
   const found = NUMBER.exec(text);
   const number = found ? Number(found[1]) : NaN;
   return Number.isFinite(number) ? {number, rest: found[2], digits: found[1]} : null;
 }
 
-/** Number as it is typed, with three significant digits, and its unit. */
+/** Number as it is typed, with three significant digits, and its unit. @param {number} number @param {string} unit @returns {string} */
 export const typed = (number, unit) => [String(Number(number.toPrecision(3))), unit].filter(Boolean).join(' ');
 
 /** Text with its number one step up or down: one in its second digit, or ten of these. */
@@ -113,17 +115,14 @@ function Slider({field, text, onText, onSettle}) {
     aria-label=${`${label}, slider`} aria-valuetext=${text} data-test=${`slider:${key}`} />`;
 }
 
-/** Field below its label, with its refusal. */
+/** Field below its label, with its refusal. @param {{id: string, label: string, refusal?: string, children: any}} properties */
 export const Labelled = ({id, label, refusal, children}) => html`<div class="field"><label for=${id}>${label}</label>${children}
   <${Refusal} text=${refusal} id=${`${id}-refusal`} /></div>`;
 
-/** What a field says of its refusal, which stands below it by the id of the field. */
+/** What a field says of its refusal, which stands below it by the id of the field. @param {string} id @param {string} [refusal] @returns {object} */
 export const refusedBy = (id, refusal) => (refusal ? {'aria-invalid': 'true', 'aria-describedby': `${id}-refusal`} : {});
 
-/**
- * Entry of a rig, with its spread.
- * @param {{onText: (key: string, text: string|null, isMoving: boolean) => void}} props `onText` with null takes a change back
- */
+/** Entry of a rig, with its spread. @param {{onText: (key: string, text: string|null, isMoving: boolean) => void}} props `onText` with null takes a change back */
 export function Field({field, text, spread, isChanged, refusal, spreadRefusal, onText, onSettle}) {
   const id = fieldId(field.key);
   const [isSpread, setSpread] = useState(false);
@@ -161,10 +160,10 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
   </div>`;
 }
 
-/** Argument of a task by the text of a view that names an upload, which lasts as long as the workbench. */
+/** Argument of a task by the text of a view that names an upload, which lasts as long as the workbench. @param {string} text @returns {{name: string, upload: string}} */
 export const uploadOf = (text) => ({name: text.slice(text.indexOf(' ') + 1), upload: text.split(' ')[0]});
 
-/** Upload of a file that an entry of the view then names: what was refused of the last one, and what takes one. */
+/** Upload of a file that an entry of the view then names: what was refused of the last one, and what takes one. @param {string} entry */
 export function useFile(entry) {
   const [note, setNote] = useState('');
   const take = async (file) => {

@@ -2,18 +2,21 @@
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useConnection} from './api.js';
 import {Button, capital, Warning} from './parts.js';
+/** @typedef {{id: string, task: string, label: string, state: string, created: number, seconds: number, reason?: string,
+ * done?: number, total?: number, stage?: string}} Job */
 
 const BETWEEN = 400; // ms from one look at a job to the next
 const MAX_COMPARED = 12; // latest jobs of a task whose arguments are compared
 
+/** @param {Job} [job] @returns {boolean} */
 export const isActive = (job) => ['waiting', 'running', 'running elsewhere'].includes(job?.state);
-/** Whether this workbench runs it, and so can stop it. */
+/** Whether this workbench runs it, and so can stop it. @param {Job} job @returns {boolean} */
 export const isOwn = (job) => job.state !== 'running elsewhere';
 
-/** Seconds that a job has taken. */
+/** Seconds that a job has taken. @param {Job} job @returns {number} */
 export const secondsOf = (job) => (isActive(job) ? Math.max(0, Date.now() / 1000 - job.created) : job.seconds);
 
-/** Seconds as text. */
+/** Seconds as text. @param {number} seconds @returns {string} */
 export function duration(seconds) {
   if (seconds < 60) return `${seconds < 9.95 ? seconds.toFixed(1) : Math.round(seconds)} s`;
   return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
@@ -68,7 +71,7 @@ export function useJob(task, args) {
   };
 }
 
-/** What is said of the progress of a job. */
+/** What is said of the progress of a job. @param {Job} job @returns {string} */
 export function progressText(job) {
   if (job.state === 'waiting') return 'Waits until a running job has ended';
   if (!isActive(job)) return capital(job.state);
@@ -76,7 +79,7 @@ export function progressText(job) {
   return `${capital((job.total && job.stage) || 'running')}${parts}${isOwn(job) ? '' : ', in another workbench'}`;
 }
 
-/** Progress of a job with what stops it; the reason where it failed. */
+/** Progress of a job with what stops it; the reason where it failed. @param {{job: Job, cancel?: any}} properties */
 export function JobState({job, cancel}) {
   if (!isActive(job)) {
     return job.reason ? html`<${Warning} data-test="job-failed"><strong>${progressText(job)}.</strong><p>${job.reason}</p><//>` : null;
@@ -86,4 +89,5 @@ export function JobState({job, cancel}) {
     ${isOwn(job) && html`<${Button} onClick=${cancel} data-test="cancel-job">Cancel<//>`}</div>`;
 }
 
+/** @param {{job: Job}} properties */
 export const JobProgress = ({job}) => html`<progress ...${job.total && {max: job.total, value: job.done}} aria-label="Progress" />`;

@@ -1,37 +1,39 @@
 /** What several pages draw: buttons, choices, cards, notices; and texts and events that they have in common. */
 import {html, useEffect, useRef} from '../vendor/htm-preact-3.1.1.js';
 
+/** @param {string} name @returns {string} */
 export const words = (name) => String(name).replaceAll('_', ' ');
+/** @param {string} text @returns {string} */
 export const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
-/** Class of an element, with those that hold now. */
+/** Class of an element, with those that hold now. @param {string} kind @param {Object<string, any>} more @returns {string} */
 export const classes = (kind, more) => [kind, ...Object.keys(more).filter((name) => more[name])].join(' ');
 
-/** Button; further properties go to the element. */
+/** Button; further properties go to the element. @param {{kind?: string, children: any, [name: string]: any}} properties */
 export const Button = ({kind = 'button', children, ...rest}) => html`<button type="button" class=${kind} ...${rest}>${children}</button>`;
 
-/** Choice among names, each with its title. */
+/** Choice among names, each with its title. @param {{choices: [string, string][], value: string, [name: string]: any}} properties */
 export const Select = ({choices, value, ...rest}) => html`<select value=${value} ...${rest}>${choices.map(([name, title]) => html`
   <option key=${name} value=${name} selected=${name === value}>${title}</option>`)}</select>`;
 
-/** Page without the rig beside it. */
+/** Page without the rig beside it. @param {{title: string, children: any}} properties */
 export const Sheet = ({title, children}) => html`<div class="page" id="answer" tabindex="-1"><h1>${title}</h1>${children}</div>`;
 
-/** Section under a title. */
+/** Section under a title. @param {{id: string, title: any, kind?: string, isTitleHidden?: boolean, children: any, [name: string]: any}} properties */
 export const Section = ({id, title, kind, isTitleHidden, children, ...rest}) => html`<section class=${kind} aria-labelledby=${id} ...${rest}>
   <h2 id=${id} class=${isTitleHidden ? 'hidden' : undefined}>${title}</h2>${children}</section>`;
 
-/** Section as a card; dimmed while it is of another state. */
+/** Section as a card; dimmed while it is of another state. @param {{isDim?: boolean, [name: string]: any}} properties */
 export const Card = ({isDim, ...rest}) => html`<${Section} kind=${classes('card', {'is-dim': isDim})} ...${rest} />`;
 
 export const Loading = ({children}) => html`<p class="loading" role="status">${children}</p>`;
 
 export const Warning = ({children, ...rest}) => html`<div class="notice is-warning" role="alert" ...${rest}>${children}</div>`;
 
-/** Why something is refused; nothing where it is not. */
+/** Why something is refused; nothing where it is not. @param {{text?: string, [name: string]: any}} properties */
 export const Refusal = ({text, ...rest}) => (text ? html`<p class="refusal" ...${rest}>${text}</p>` : null);
 
-/** Button that asks for a file of this computer. */
+/** Button that asks for a file of this computer. @param {{accept: string, label: string, onFile: (file: File) => void, children: any, [name: string]: any}} properties */
 export function FileButton({accept, label, onFile, test, children, ...rest}) {
   const chooser = useRef(null);
   const take = (event) => event.target.files.length && onFile(event.target.files[0]);
@@ -39,7 +41,7 @@ export function FileButton({accept, label, onFile, test, children, ...rest}) {
     <input type="file" accept=${accept} class="hidden" tabindex="-1" aria-label=${label} ref=${chooser} onChange=${take} data-test=${test} />`;
 }
 
-/** Listen to events of the window while a component is shown. */
+/** Listen to events of the window while a component is shown. @param {string[]} kinds @param {(event: any) => void} listener */
 export function useEvents(kinds, listener) {
   const latest = useRef(listener);
   latest.current = listener;
@@ -50,5 +52,5 @@ export function useEvents(kinds, listener) {
   }, []);
 }
 
-/** Address of a file of a job. */
+/** Address of a file of a job. @param {string} id @param {string} name @returns {string} */
 export const fileOf = (id, name) => `api/jobs/${id}/files/${name.split('/').map(encodeURIComponent).join('/')}`;

@@ -92,7 +92,10 @@ const Schematic = ({drawing, fields, rig}) => html`<svg class="schematic" viewBo
     ${fields.filter(({key}) => key in PLACES).map((field) => html`<${Value} key=${field.key} field=${field} text=${textOf(rig, field)} />`)}
   </svg>`;
 
-/** Make the text of a rig file the rig of the state, and go to a page; returns a note where a link cannot hold it. */
+/**
+ * Make the text of a rig file the rig of the state, and go to a page; returns a note where a link cannot hold it.
+ * @param {string} name @param {string} text @param {string} [page] @returns {Promise<string>}
+ */
 export async function openRigText(name, text, page = undefined) {
   const {fits} = await pack(text);
   change({...(page && {page}), rig: {name, text, changes: {}}, view: {lost: null}});

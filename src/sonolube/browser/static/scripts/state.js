@@ -25,7 +25,7 @@ const packed = new Map();
 
 const tell = () => listeners.forEach((listener) => listener());
 
-/** Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more. */
+/** Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more. @param {string} store @param {string} name @param {string} [value] @returns {string|null} */
 export function stored(store, name, value) {
   try {
     if (value !== undefined) globalThis[store].setItem(name, value);
@@ -38,7 +38,7 @@ export function stored(store, name, value) {
 let [past, future] = JSON.parse(stored('sessionStorage', 'history') ?? '[[], []]');
 const keep = () => stored('sessionStorage', 'history', JSON.stringify([past, future]));
 
-/** Draw a component again whenever a set of listeners is told. */
+/** Draw a component again whenever a set of listeners is told. @param {Set<() => void>} to */
 export function useListening(to) {
   const [, draw] = useState({});
   useLayoutEffect(() => {
@@ -51,7 +51,7 @@ export function useListening(to) {
 /** Text as bytes through a stream of the browser, as base64url or back. */
 const through = async (stream, bytes) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
-/** Compress the text of a rig so that a link can hold it; `fits` is false where only this tab can keep it. */
+/** Compress the text of a rig so that a link can hold it; `fits` is false where only this tab can keep it. @param {string} text @returns {Promise<{code: string, fits: boolean}>} */
 export async function pack(text) {
   const bytes = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(text));
   const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('');
@@ -76,7 +76,7 @@ async function unpack(code) {
 
 const quoted = (text) => encodeURIComponent(text).replaceAll('%20', '+').replaceAll('%3A', ':').replaceAll('%2F', '/');
 
-/** Fragment of a state, without its hash. */
+/** Fragment of a state, without its hash. @param {object} of @returns {string} */
 export function encode(of) {
   const parts = [
     ...(of.rig.name ? [['rig', of.rig.name]] : []),
@@ -88,7 +88,7 @@ export function encode(of) {
   return `/${of.page}${query && `?${query}`}`;
 }
 
-/** State of a fragment; what it lacks is empty. */
+/** State of a fragment; what it lacks is empty. @param {string} of @returns {Promise<object>} */
 export async function decode(of) {
   const [path, query = ''] = of.replace(/^#/, '').split(/\?(.*)/s);
   const page = path.replace(/^\//, '');
@@ -105,7 +105,7 @@ export async function decode(of) {
   return found;
 }
 
-/** Entries of a record that are not null. */
+/** Entries of a record that are not null. @param {object} entries @returns {object} */
 export const present = (entries) => Object.fromEntries(Object.entries(entries).filter(([, value]) => value != null));
 
 /**
@@ -144,7 +144,7 @@ function enter(to) {
   return true;
 }
 
-/** Set an entry of the rig, or take its change back with null; options as of `change`. */
+/** Set an entry of the rig, or take its change back with null; options as of `change`. @param {string} key @param {string|null} text @param {object} [options] */
 export const setEntry = (key, text, options) => change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
 
 async function step(from, onto) {
@@ -162,10 +162,10 @@ async function step(from, onto) {
 export const undo = () => step(past, future);
 export const redo = () => step(future, past);
 
-/** Address of a page with the rig of now, for a link. */
+/** Address of a page with the rig of now, for a link. @param {string} page @param {object} [view] @returns {string} */
 export const addressOf = (page, view = {}) => `#${encode({page, rig: state.rig, view})}`;
 
-/** Read the state from the address, and follow it; an address without a rig gets the one that was opened. */
+/** Read the state from the address, and follow it; an address without a rig gets the one that was opened. @param {string} opened @returns {Promise<void>} */
 export async function followAddress(opened) {
   const read = async () => {
     const found = await decode(location.hash);

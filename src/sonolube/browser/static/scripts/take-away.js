@@ -11,7 +11,7 @@ const FORMS = [
 /** @type {{task: string, args: Object}|null} What the page shows. */
 let offered = null;
 
-/** State the task and arguments whose answer a page shows; call it in an effect, whose end takes it back. */
+/** State the task and arguments whose answer a page shows; call it in an effect, whose end takes it back. @param {string} task @param {object} args @returns {() => void} */
 export function offer(task, args) {
   const mine = {task, args};
   offered = mine;
