@@ -1,7 +1,7 @@
-"""What only a terminal has: options of rig, figures and JSON, checked outputs, questions, and progress.
+"""Options, checked outputs, questions and progress of the terminal.
 
-Outputs are checked before anything is computed. Progress is a bar with stage and time left, plain lines where standard
-error is no terminal.
+Options are those of rigs, figures and JSON. Outputs are checked before anything is computed. Progress is a bar with
+stage and time left, plain lines where standard error is no terminal.
 """
 
 import os
