@@ -60,6 +60,13 @@ def test_charts_come_with_their_tables() -> None:
     assert chart["tables"][0]["heads"][0] == "Vibration amplitude [µm]"
 
 
+def test_a_moving_slider_may_leave_out_the_tables() -> None:
+    asked = {"task": "predict", "arguments": {"rig": rig(), "draws": 200}}
+    (whole, less) = (KINDS["task"](asked | more, NOWHERE) for more in ({}, {"tables": False}))
+    (chart,) = whole["charts"]
+    assert less == whole | {"charts": [{name: value for name, value in chart.items() if name != "tables"}]}
+
+
 @pytest.mark.parametrize(
     ("changes", "key", "words"),
     [

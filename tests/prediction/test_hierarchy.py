@@ -11,7 +11,7 @@ from scipy.stats import chi2, multivariate_normal
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 
 from sonolube.prediction.evidence import CLOSURES, Closure, Conditions, distance_from_tests, published_rigs
-from sonolube.prediction.hierarchy import RigLikelihood, discrepancy_deviation, squared_distances
+from sonolube.prediction.hierarchy import RigLikelihood, discrepancy_deviation, sorted_quantiles, squared_distances
 from sonolube.prediction.learning import sampled_hyperparameters
 from sonolube.prediction.posterior import Population, evidence_fingerprint, learned, published_population
 from sonolube.rig.friction_and_wear import PUBLISHED_DECAY_LENGTH
@@ -100,3 +100,11 @@ def test_leaving_rigs_out_weighs_draws_by_the_likelihoods_of_the_others() -> Non
     two = replace(two, draws=np.tile(two.draws, (500, 1)))
     assert two.posterior(without=(1,)).hyperparameters[:, 0].mean() == approx(0.75, abs=0.05)
     assert two.posterior().hyperparameters[:, 0].mean() == approx(21 / 26, abs=0.05)
+
+
+@mark.parametrize("shape", [(100,), (1000,), (4001,), (257, 5)])
+def test_quantiles_of_sorted_draws_are_those_of_numpy(shape: tuple[int, ...]) -> None:
+    ordered = np.sort(np.random.default_rng(1).lognormal(size=shape), axis=0)
+    probabilities = [0.0, 0.025, 0.1, 0.5, 0.9, 0.975, 1.0]
+    found = sorted_quantiles(ordered, probabilities)
+    assert found == approx(np.quantile(ordered, probabilities, axis=0), rel=1e-14)

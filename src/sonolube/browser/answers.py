@@ -42,13 +42,13 @@ def offered_task(name: str) -> Task:
     return found
 
 
-def answered(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+def answered(task: Task, arguments: Mapping[str, Any], places: Places, *, has_tables: bool = True) -> dict[str, Any]:
     """Answer of a task as an object for JSON.
 
     The answer's JSON, blocks of text, charts, caveats, assumptions and reasons of refused inputs.
     """
     with given_arguments(task, arguments, places) as given:
-        return answer_object(called(task, given))
+        return answer_object(called(task, given), has_tables=has_tables)
 
 
 def called(task: Task, given: Mapping[str, Any]) -> Answer:
@@ -58,8 +58,8 @@ def called(task: Task, given: Mapping[str, Any]) -> Answer:
     return task.function(*(given[name] for name in by_place), **named)
 
 
-def answer_object(answer: Answer) -> dict[str, Any]:
-    """Answer as an object for JSON, with its text and charts beside the numbers."""
+def answer_object(answer: Answer, *, has_tables: bool = True) -> dict[str, Any]:
+    """Answer as an object for JSON, with its text and charts beside the numbers, and the tables of the charts."""
     drawings = answer.figures()
     return {
         "answer": answer.json_object(),
@@ -69,7 +69,11 @@ def answer_object(answer: Answer) -> dict[str, Any]:
         "assumptions": dict(answer.assumptions()),
         "refusals": dict(answer.refusals()),
         "charts": [
-            {"name": name, "caption": drawing.caption, **({} if drawing.chart is None else _charted(drawing.chart()))}
+            {
+                "name": name,
+                "caption": drawing.caption,
+                **({} if drawing.chart is None else _charted(drawing.chart(), has_tables)),
+            }
             for name, drawing in drawings.items()
         ],
     }
@@ -251,9 +255,9 @@ def _is_offered(task: Task) -> bool:
     return not any(isinstance(mark, OwnFolder) for mark in marks_of(task.function).values())
 
 
-def _charted(chart: Any) -> dict[str, Any]:
-    """Chart and its tables."""
-    return {"chart": chart_object(chart), "tables": chart_tables(chart)}
+def _charted(chart: Any, has_tables: bool) -> dict[str, Any]:
+    """Chart and, where they are asked for, its tables."""
+    return {"chart": chart_object(chart), **({"tables": chart_tables(chart)} if has_tables else {})}
 
 
 def _block_object(block: Block) -> dict[str, Any]:

@@ -10,7 +10,8 @@ from sonolube.variants import VariantTable
 
 def task_answer(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Answer of a task."""
-    return answered(offered_task(str(payload.get("task", ""))), payload.get("arguments") or {}, places)
+    task, arguments = offered_task(str(payload.get("task", ""))), payload.get("arguments") or {}
+    return answered(task, arguments, places, has_tables=payload.get("tables", True))
 
 
 def description(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:

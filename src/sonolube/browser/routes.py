@@ -141,9 +141,10 @@ class Workbench:
         return await self._ask("take", await _content(request), request)
 
     async def _task(self, request: Request) -> Response:
-        """Answer of a task."""
+        """Answer of a task; `?tables=no` leaves out the tables of its charts, as while a slider moves."""
         name = request.path_params["name"].replace("/", " ")
-        return await self._ask("task", {"task": name, "arguments": await _content(request)}, request)
+        less = {"tables": False} if request.query_params.get("tables") == "no" else {}
+        return await self._ask("task", {"task": name, "arguments": await _content(request)} | less, request)
 
     async def _ask(self, kind: str, payload: Mapping[str, Any], request: Request | None = None) -> Response:
         """Answer of a worker, which is ended where it computes long and the page waits no more.

@@ -3,6 +3,7 @@
 Access is checked by token and cookie, Host, Origin and sizes; every answer has headers of its own.
 """
 
+import asyncio
 import hmac
 import os
 import secrets
@@ -195,18 +196,22 @@ async def _refuse(send: Send, status: int, *, is_page: bool = False) -> None:
     await send({"type": "http.response.body", "body": body})
 
 
-class _Server(uvicorn.Server):
-    """Server that prints the link once it listens."""
+_HEAD_START: Final = 0.35  # seconds of the first page in the browser before the first worker
 
-    def __init__(self, config: uvicorn.Config, *, link: str, opens_browser: bool) -> None:
+
+class _Server(uvicorn.Server):
+    """Server that prints the link once it listens, and starts the first worker a moment later."""
+
+    def __init__(self, config: uvicorn.Config, *, link: str, opens_browser: bool, pool: Pool) -> None:
         super().__init__(config)
-        self._link, self._opens = link, opens_browser
+        self._link, self._opens, self._pool = link, opens_browser, pool
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Listen, and print the link."""
         await super().startup(sockets)
         sys.stdout.write(f"The workbench is at {self._link}\nCtrl-C ends it.\n")
         sys.stdout.flush()
+        asyncio.get_running_loop().call_later(_HEAD_START, self._pool.start)
         if self._opens:
             webbrowser.open(self._link)
 
@@ -262,6 +267,7 @@ def run(
             ),
             link=link,
             opens_browser=opens_browser,
+            pool=workbench.pool,
         )
         server.run(sockets=[listening])
     finally:

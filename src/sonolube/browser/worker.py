@@ -147,8 +147,8 @@ class _Worker:
 class Pool:
     """Workers that answer requests in the order in which they come.
 
-    The first one starts alone, so that it and the first page in the browser share the processors; the others start when
-    it has.
+    The first one starts at the first request, or as `start` says, so that the first page in the browser has the
+    processors before; the others start when it has.
 
     Parameters
     ----------
@@ -159,7 +159,8 @@ class Pool:
     def __init__(self, count: int) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="sonolube-work-")
         self._threads = ThreadPoolExecutor(count, thread_name_prefix="worker")
-        self._count, self._workers = count, [_Worker(self._folder.name)]
+        self._count = count
+        self._workers: list[_Worker] = []
         self._free: asyncio.Queue[int] = asyncio.Queue()
         self._free.put_nowait(0)
         self._starting: list[int] = []
@@ -167,7 +168,12 @@ class Pool:
     @property
     def is_warm(self) -> bool:
         """Whether the first worker has imported what most requests need."""
-        return self._workers[0].is_warm
+        return bool(self._workers) and self._workers[0].is_warm
+
+    def start(self) -> None:
+        """Start the first worker, where it has not started yet."""
+        if not self._workers:
+            self._workers.append(_Worker(self._folder.name))
 
     def _widen(self) -> None:
         """Start the other workers once the first is warm, and let in those that are."""
@@ -188,6 +194,7 @@ class Pool:
         is_gone: Callable[[], Awaitable[bool]] | None = None,
     ) -> tuple[int, bytes]:
         """Status and JSON of the answer to a request."""
+        self.start()
         self._widen()
         place = await self._free.get()
         try:

@@ -15,7 +15,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import Structure, modes, with_contact_spring
 from sonolube.prediction.evidence import Conditions
-from sonolube.prediction.hierarchy import central_interval, discrepancy_correlation
+from sonolube.prediction.hierarchy import discrepancy_correlation, sorted_quantiles
 from sonolube.prediction.inputs import RigInputs
 from sonolube.prediction.predictive import RigPrediction
 from sonolube.text.units import format_si
@@ -252,7 +252,7 @@ class Target:
     def __init__(self, draws: Floats) -> None:
         self._order = np.argsort(draws)
         self._values = draws[self._order]
-        low, high = central_interval(draws, 0.8)
+        low, high = sorted_quantiles(self._values, _TAILS)
         self._width = max(float(high - low), _NARROWEST)
 
     def share_left(self, *, observed: Floats, noise: float) -> float:
@@ -260,7 +260,7 @@ class Target:
 
         Draws are weighed by the normal density of each of 24 evenly probable outcomes of the measurement.
         """
-        outcomes = np.quantile(observed + noise * _deviates(observed.size), _PROBABILITIES)
+        outcomes = sorted_quantiles(np.sort(observed + noise * _deviates(observed.size)), _PROBABILITIES)
         deviations = outcomes[:, None] / noise - observed[self._order] / noise
         logs = np.multiply(deviations, -0.5 * deviations, out=deviations)
         logs -= logs.max(axis=1, keepdims=True)

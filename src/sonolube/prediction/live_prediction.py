@@ -23,7 +23,7 @@ from sonolube.prediction.further_measurements import (
     stiffness_probes,
     told_probes,
 )
-from sonolube.prediction.hierarchy import LEVELS
+from sonolube.prediction.hierarchy import LEVELS, sorted_quantiles
 from sonolube.prediction.inputs import Input, OwnRuns, RigInputs, decay_length_of, own_runs, rig_inputs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, Laboratory, RigPrediction, laboratory, rig_prediction
@@ -152,10 +152,7 @@ class LivePrediction:
             },
             **{
                 f"friction_ratio_over_{name}": LabelledArray(
-                    dims=("level", f"curve_{name}"),
-                    values=np.quantile(
-                        np.sort(each, axis=0), LEVELS, axis=0
-                    ),  # of sorted draws in a quarter of the time
+                    dims=("level", f"curve_{name}"), values=sorted_quantiles(np.sort(each, axis=0), LEVELS)
                 )
                 for name, each in curves.items()
             },

@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability, extrapolation_caveats
 from sonolube.prediction.bodies import pair_of, wear_statement, worn_body
-from sonolube.prediction.hierarchy import PROBABILITIES, central_interval
+from sonolube.prediction.hierarchy import PROBABILITIES, central_interval, sorted_quantiles
 from sonolube.prediction.inputs import OwnRuns, RigInputs
 from sonolube.prediction.predictive import Laboratory, RigPrediction, RunCheck
 from sonolube.rig import Rig
@@ -49,7 +49,7 @@ def interval(prediction: "xr.Dataset | LabelledArrays", name: str, probability: 
 def _intervals(values: LabelledArray) -> dict[float, tuple[float, float]]:
     """Intervals of the draws of a quantity by their probability, which sentences, rows and JSON ask for in turn."""
     ends = [end for probability in PROBABILITIES for end in ((1 - probability) / 2, (1 + probability) / 2)]
-    found = np.quantile(values.to_numpy(), ends).tolist()
+    found = sorted_quantiles(np.sort(values.to_numpy()), ends).tolist()
     return {probability: (found[2 * at], found[2 * at + 1]) for at, probability in enumerate(PROBABILITIES)}
 
 

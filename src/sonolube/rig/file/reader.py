@@ -225,8 +225,10 @@ def rig_from(content: Mapping[str, Any]) -> Rig:
         In one line that names the key and the value.
     """
     refuse_former_names(content)
-    content = with_derived(content, validated(RigFile, content))
     file = validated(RigFile, content)
+    derived = with_derived(content, file)
+    if derived != content:
+        content, file = derived, validated(RigFile, derived)
     _require_known_assumptions(file, content)
     return with_entries(_rig(file), FileEntries(content, rig_from))
 

@@ -108,11 +108,14 @@ function layoutOf({panels, columns: wanted, size: [inchWide, inchHigh], widths, 
   return {columns, isWhole, sizeOf};
 }
 
-/** Numbers of a chart as tables, below it. */
-function ChartTables({tables, name}) {
+/** Numbers of a chart as tables, below it; the last ones, dim, where an answer has none since a slider moves. */
+function ChartTables({tables: latest, name}) {
   const [isOpen, setOpen] = useState(false);
+  const last = useRef(latest);
+  if (latest) last.current = latest;
+  const tables = last.current;
   if (!tables?.length) return null;
-  return html`<details class="chart-numbers" onToggle=${(event) => setOpen(event.target.open)} data-test=${`numbers:${name}`}>
+  return html`<details class=${classes('chart-numbers', {'is-dim': !latest})} onToggle=${(event) => setOpen(event.target.open)} data-test=${`numbers:${name}`}>
     <summary>Numbers</summary>
     ${isOpen && tables.map((table, at) => html`<${TextTable} key=${at} caption=${table.title || 'Numbers'}
       heads=${table.heads} rows=${table.rows} kind="chart-table" hasRowHeads=${false} />`)}

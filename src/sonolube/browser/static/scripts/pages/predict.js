@@ -161,7 +161,7 @@ export default function Predict() {
   const {view} = useRig();
   const [note, onFile] = useFile('runs');
   const body = argumentsOf(state, isMoving);
-  const reply = useReply('predict', state.rig.name ? 'api/tasks/predict' : null, body);
+  const reply = useReply('predict', state.rig.name ? `api/tasks/predict${isMoving ? '?tables=no' : ''}` : null, body);
   const {content, failure, refused, isWaiting} = reply;
   const {kept, keep, remove} = useKept(state, content);
   useEffect(() => offer('predict', argumentsOf(state, false)), [JSON.stringify(body)]);
