@@ -226,10 +226,12 @@ def response_curve_chart(rig: Rig, result: RigResponseCurve) -> Chart:
 def _branch(x: Floats, y: Floats, result: RigResponseCurve) -> list[Part]:
     """Stable and unstable parts of the branch, and what slow ramps jump over."""
     stable = result.stable
-    after_stable = ~stable | np.concatenate([~stable[1:], [False]])  # with the point before, so that no gap is left
+    unstable = ~stable
+    unstable[:-1] |= ~stable[1:]  # with its stable neighbours, so that no gap is left
+    unstable[1:] |= ~stable[:-1]
     parts: list[Part] = [Line(x=x, y=np.where(stable, y, np.nan), label="stable")]
     if not stable.all():
-        parts.append(Line(x=x, y=np.where(after_stable, y, np.nan), label="unstable", colour=0, dash=1))
+        parts.append(Line(x=x, y=np.where(unstable, y, np.nan), label="unstable", colour=0, dash=1))
     ramps = (result.rising, "slow ramp up"), (result.falling[::-1], "slow ramp down")
     for place, (passed, label) in enumerate(ramps):
         left = np.flatnonzero(np.abs(np.diff(passed)) > 1)
