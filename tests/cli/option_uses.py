@@ -185,6 +185,11 @@ MODES = {
     "wear": Mode("wear", (RIG,), VIBRATED),
     "simulate": Mode("simulate", (RIG,), VIBRATED),
     "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", **LOADED}),
+    "response along the voltage": Mode(
+        "response",
+        (RIG, "--curve", "voltage"),
+        {"--curve": "frequency", "--from-voltage": "2V", "--to-voltage": "20V", **LOADED},
+    ),
     "transient": Mode(
         "transient", (RIG, "--duration", "0.02s"), {"--duration": "0.03s", "--amplitude": "computed", **LOADED}
     ),

@@ -75,6 +75,7 @@ from .record import (
     Rig as Rig,
 )
 from .resolved_rig import ResolvedRig as ResolvedRig, amplitude_labels as amplitude_labels
+from .response_curve import Jump as Jump, RigResponseCurve as RigResponseCurve, rig_response_curve as rig_response_curve
 from .responses import (
     FrequencyResponse as FrequencyResponse,
     StartUp as StartUp,

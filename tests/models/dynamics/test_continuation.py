@@ -118,6 +118,16 @@ def test_the_response_curve_on_a_linear_contact_is_that_of_a_spring() -> None:
     assert curve.stable.all()
 
 
+def test_a_narrow_resonance_is_not_stepped_over() -> None:
+    light = replace(BLOCKS, damping_matrix=0.01 * BLOCKS.damping_matrix)
+    spring = LinearGap(normal_stiffness=1.3e7)
+    curve = response_curve(light, spring, normal_load=20.0, voltage_amplitude=0.05, frequency=(600.0, 1400.0), orders=2)
+    sprung = with_contact_spring(light, normal_stiffness=1.3e7)
+    dense = np.linspace(600.0, 1400.0, 200_001)
+    highest = float(np.abs(drive_receptance(sprung, frequency=dense)).max()) * 0.05
+    assert curve.vibration_amplitude.max() == approx(highest, rel=0.05)
+
+
 def test_a_curve_without_a_range_is_refused() -> None:
     with raises(InvalidInput, match="give a pair, start and end of the curve,"):
         response_curve(BLOCKS, BALL, normal_load=20.0, voltage_amplitude=50.0, frequency=700.0)

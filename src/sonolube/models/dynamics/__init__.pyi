@@ -22,6 +22,7 @@ from .continuation import (
     response_curve as response_curve,
     solutions_at as solutions_at,
 )
+from .free_vibration import Backbone as Backbone, backbone as backbone
 from .gap_laws.closed_form import (
     ExponentialGap as ExponentialGap,
     GapLaw as GapLaw,

@@ -13,13 +13,16 @@ from sonolube.models.dynamics.gap_laws.closed_form import GapLaw, force_decay_le
 from sonolube.models.dynamics.harmonic_balance.equations import HarmonicBalanceEquations, pole_residue_model
 from sonolube.models.dynamics.harmonic_balance.extrema import response_measures
 from sonolube.models.dynamics.harmonic_balance.floquet_exponent import STABILITY_THRESHOLD, floquet_exponents
+from sonolube.models.dynamics.linear import modes
 from sonolube.models.dynamics.motions import Status
 from sonolube.models.dynamics.steady_state_response import steady_state
-from sonolube.models.dynamics.structure import Structure
+from sonolube.models.dynamics.structure import Structure, with_contact_spring
 
 _CORRECTOR_TOLERANCE = 1e-10  # last corrector step, in decay lengths of the contact
 _CORRECTOR_STEPS = 8
-_SHORTEST, _LONGEST = 1e-7, 0.1  # arclength steps, in fractions of the parameter's range and decay lengths
+_SHORTEST, _LONGEST = 1e-7, 0.1  # arclength steps, in decay lengths and units of the parameter
+_WIDEST = 0.5  # of the parameter in one step, in its units
+_UNITS = 4, 2000  # fewest and most units in the range of the parameter
 _LARGEST_TURN, _SMALL_TURN = 0.95, 0.99  # cosines between successive tangents: shorten below, lengthen above
 
 
@@ -152,9 +155,23 @@ def response_curve(
         first=first,
         last=last,
         length=float(force_decay_length(gap_law, load)),
+        unit=_unit(structure, gap_law, load, (first, last)) if along == "frequency" else (last - first) / _UNITS[0],
     )
     rows = list(path.follow(equations.stack(float(start.mean_displacement), start.harmonics), most_points))
-    return _curve(path, np.array(rows), complete=abs(rows[-1][-1] - 0.5) == 0.5)
+    ends = abs(rows[-1][-1]), abs(rows[-1][-1] - path.end)
+    return _curve(path, np.array(rows), complete=len(rows) > 1 and bool(min(ends) < 1e-9 * path.end))
+
+
+def _unit(structure: Structure, gap_law: GapLaw, load: float, ends: tuple[float, float]) -> float:
+    """Half of the narrowest bandwidth of the modes in contact near a range of frequency, signed as the range. [Hz]"""
+    first, last = ends
+    spring = load / float(force_decay_length(gap_law, load))
+    found = modes(with_contact_spring(structure, normal_stiffness=spring))
+    frequency, width = found.natural_frequency, found.natural_frequency * found.damping_ratio
+    near = width[(frequency > min(ends) / 2) & (frequency < 2 * max(ends))]
+    few, many = _UNITS
+    span = abs(last - first)
+    return float(np.copysign(np.clip(near.min(initial=span), span / many, span / few), last - first))
 
 
 def solutions_at(curve: ResponseCurve, *, at: float) -> ResponseCurve:
@@ -178,9 +195,9 @@ def solutions_at(curve: ResponseCurve, *, at: float) -> ResponseCurve:
     path = _path_of(curve)
     before, after = curve.parameter[:-1] - at, curve.parameter[1:] - at
     passed = np.flatnonzero((before * after < 0) | (before == 0))
-    rows = [path.solve_at(_interpolated(curve, int(i), at), path.fraction(at)) for i in passed]
+    rows = [path.solve_at(_interpolated(curve, int(i), at), path.units(at)) for i in passed]
     if curve.parameter[-1] == at:
-        rows.append(path.solve_at(_row(curve, -1), path.fraction(at)))
+        rows.append(path.solve_at(_row(curve, -1), path.units(at)))
     found = [row for row in rows if row is not None]
     return _curve(path, np.array(found).reshape(len(found), 2 * curve.equations.orders + 2), complete=curve.complete)
 
@@ -225,7 +242,7 @@ def reached_by_ramp(curve: ResponseCurve, *, at: float, backward: bool = False) 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _Path:
-    """Solution curve in dimensionless form: unknowns over the decay length, and the fraction of the range passed."""
+    """Solution curve in dimensionless form: unknowns over the decay length, the parameter from its begin in units."""
 
     equations: HarmonicBalanceEquations
     along: Literal["voltage", "frequency"]
@@ -233,22 +250,28 @@ class _Path:
     first: float
     last: float
     length: float
+    unit: float
 
-    def fraction(self, parameter: float) -> float:
-        return (parameter - self.first) / (self.last - self.first)
+    @property
+    def end(self) -> float:
+        """Units from the begin to the end of the range."""
+        return self.units(self.last)
 
-    def parameter(self, fraction: Floats) -> Floats:
-        return self.first + fraction * (self.last - self.first)
+    def units(self, parameter: float) -> float:
+        return (parameter - self.first) / self.unit
+
+    def parameter(self, units: Floats) -> Floats:
+        return self.first + units * self.unit
 
     def linearise(self, y: Floats) -> tuple[Floats, Floats]:
-        """Residual and its derivatives, the last column by the fraction of the range."""
+        """Residual and its derivatives, the last column by the parameter."""
         value = float(self.parameter(y[-1]))
         volts, hertz = (value, self.fixed) if self.along == "voltage" else (self.fixed, value)
         balance = self.equations.at(y[:-1] * self.length, omega=2 * np.pi * hertz, scale=volts)
         rate = balance.by_scale if self.along == "voltage" else 2 * np.pi * balance.by_omega
         unit = np.full(y.size - 1, self.length)
         unit[0] = self.equations.normal_load
-        matrix = np.column_stack([balance.jacobian * self.length, rate * (self.last - self.first)])
+        matrix = np.column_stack([balance.jacobian * self.length, rate * self.unit])
         return balance.residual / unit, matrix / unit[:, np.newaxis]
 
     def correct(self, y: Floats, normal: Floats, offset: float) -> Floats | None:
@@ -263,9 +286,9 @@ class _Path:
                 return y
         return None
 
-    def solve_at(self, y: Floats, fraction: float) -> Floats | None:
-        """Nearby point of the curve at a fraction of the range, or None if Newton's method fails."""
-        return self.correct(y, np.eye(y.size)[-1], fraction)
+    def solve_at(self, y: Floats, units: float) -> Floats | None:
+        """Nearby point of the curve at a value of the parameter, or None if Newton's method fails."""
+        return self.correct(y, np.eye(y.size)[-1], units)
 
     def tangent(self, y: Floats, previous: Floats) -> Floats:
         """Unit tangent at a point, in the direction of the previous one."""
@@ -274,7 +297,7 @@ class _Path:
         return np.asarray(direction / np.linalg.norm(direction))
 
     def follow(self, start: Floats, most_points: int) -> Iterator[Floats]:
-        """Yield the points of the curve, from fraction 0 until it leaves the range."""
+        """Yield the points of the curve, from the begin until it leaves the range."""
         y = self.solve_at(np.append(start / self.length, 0.0), 0.0)
         if y is None:
             raise InvalidInput("orders are too few for the vibration at the start of the curve; take more")
@@ -284,8 +307,8 @@ class _Path:
             found, turned, step = self._next(y, tangent, step)
             if found is None:
                 return
-            if not 0.0 <= found[-1] <= 1.0:
-                edge = 1.0 if found[-1] > 1.0 else 0.0
+            if not 0.0 <= found[-1] <= self.end:
+                edge = self.end if found[-1] > self.end else 0.0
                 weight = (edge - y[-1]) / (found[-1] - y[-1])
                 final = self.solve_at(y + weight * (found - y), edge)
                 if final is not None:
@@ -296,14 +319,20 @@ class _Path:
 
     def _next(self, y: Floats, tangent: Floats, step: float) -> tuple[Floats | None, Floats, float]:
         """Next point, its tangent and the arclength step to try from there."""
+        step = min(step, _WIDEST / max(abs(float(tangent[-1])), _WIDEST))
         while step > _SHORTEST:
             found = self.correct(y + step * tangent, tangent, float(tangent @ y) + step)
             if found is not None:
                 turned = self.tangent(found, tangent)
                 if turned @ tangent > _LARGEST_TURN:
-                    return found, turned, min(1.5 * step, _LONGEST) if turned @ tangent > _SMALL_TURN else step
+                    return found, turned, self._longer(step, turned) if turned @ tangent > _SMALL_TURN else step
             step /= 2
         return None, tangent, step
+
+    def _longer(self, step: float, tangent: Floats) -> float:
+        """Longer step that neither the vibration nor the parameter changes too much in."""
+        along, vibration = abs(float(tangent[-1])), float(np.linalg.norm(tangent[:-1]))
+        return min(1.5 * step, _LONGEST / max(vibration, _LONGEST), _WIDEST / max(along, _WIDEST))
 
 
 def _path_of(curve: ResponseCurve) -> _Path:
@@ -316,6 +345,7 @@ def _path_of(curve: ResponseCurve) -> _Path:
         first=float(curve.parameter[0]),
         last=float(curve.parameter[-1]),
         length=float(force_decay_length(curve.equations.gap_law, curve.equations.normal_load)),
+        unit=float(curve.parameter[-1] - curve.parameter[0]) or 1.0,
     )
 
 
@@ -323,7 +353,7 @@ def _row(curve: ResponseCurve, index: int) -> Floats:
     """One point of a response curve in dimensionless form."""
     path = _path_of(curve)
     unknowns = curve.equations.stack(float(curve.mean_displacement[index]), curve.harmonics[index])
-    return np.append(unknowns / path.length, path.fraction(float(curve.parameter[index])))
+    return np.append(unknowns / path.length, path.units(float(curve.parameter[index])))
 
 
 def _interpolated(curve: ResponseCurve, index: int, at: float) -> Floats:

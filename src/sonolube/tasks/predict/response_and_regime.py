@@ -1,7 +1,7 @@
 """Tasks `response`, `transient` and `regime`: linear response, start-up from rest, and lubrication regime of a rig."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, Unpack
+from typing import Annotated, Any, Literal, Unpack
 
 from sonolube import rig as rigs
 from sonolube.checks import Floats
@@ -18,8 +18,9 @@ from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import response_arrays, start_up_arrays
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer, si
 from sonolube.tasks.parameters import Number, Parameter, Quantity, RestingRig, RigFile, Watched, rig_of
+from sonolube.tasks.predict.response_curve import ResponseCurveAnswer, followed_curve, rising_range
 from sonolube.tasks.progress import stage
-from sonolube.tasks.task import in_si, plausible, shown, task
+from sonolube.tasks.task import in_si, plausible, refuse_unused, shown, task
 from sonolube.text.units import format_si
 
 
@@ -27,10 +28,23 @@ from sonolube.text.units import format_si
 def response(
     rig: RestingRig,
     *,
-    lowest: Annotated[Number, Quantity("Lowest frequency.", "Hz", option="--from")] = "1kHz",
-    highest: Annotated[Number, Quantity("Highest frequency.", "Hz", option="--to")] = "100kHz",
-) -> "ResponseAnswer":
-    """Linear response: tip amplitude per volt and electrical impedance over frequency.
+    lowest: Annotated[Number | None, Quantity("Lowest frequency.", "Hz", option="--from")] = None,
+    highest: Annotated[Number | None, Quantity("Highest frequency.", "Hz", option="--to")] = None,
+    curve: Annotated[
+        Literal["frequency", "voltage"] | None,
+        Parameter("Steady vibration of the whole contact along this, through folds, in place of small motions."),
+    ] = None,
+    lowest_voltage: Annotated[
+        Number | None, Quantity("Lowest voltage peak to peak of --curve voltage.", "V", option="--from-voltage")
+    ] = None,
+    highest_voltage: Annotated[
+        Number | None, Quantity("Highest voltage peak to peak of --curve voltage.", "V", option="--to-voltage")
+    ] = None,
+) -> "ResponseAnswer | ResponseCurveAnswer":
+    """Linear response over frequency: tip amplitude per volt and electrical impedance; or the steady vibration.
+
+    Frequencies are from 1 kHz to 100 kHz where none is given, along a curve a sixth about the drive's; voltages along
+    a curve are to twice the drive's.
 
     Example: sonolube response examples/rigs/tribometer.toml --from 15kHz --to 35kHz
 
@@ -42,11 +56,13 @@ def response(
     >>> format_si(float(answer["amplitude_per_volt"].idxmax()), "Hz")  # the resonance
     '22 kHz'
     """
-    low, high = in_si("lowest", lowest), in_si("highest", highest)
-    if not 0 < low < high:
-        raise InvalidInput(f"{shown('lowest')} {lowest} must lie above 0 Hz and below {shown('highest')} {highest}")
     known = rig_of(rig)
     resolved = resolved_rig(known)
+    voltages = {"lowest_voltage": lowest_voltage, "highest_voltage": highest_voltage}
+    if curve is not None:
+        return followed_curve(resolved, along=curve, lowest=lowest, highest=highest, **voltages)
+    refuse_unused(*voltages, because="without --curve voltage")
+    low, high = rising_range("lowest", lowest or "1kHz", "highest", highest or "100kHz")
     result = rigs.frequency_response(resolved, frequency=rigs.frequency_grid(resolved, lowest=low, highest=high))
     natural = modes(rigs.structure_in_contact(resolved))
     return ResponseAnswer(rig=known, result=result, natural_frequency=natural.natural_frequency[~natural.rigid])

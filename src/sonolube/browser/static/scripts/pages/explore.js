@@ -18,6 +18,9 @@ const STUDIES = {
   period: {title: 'One period', task: 'simulate'},
   start: {title: 'Start-up', task: 'transient', texts: [['duration', 'duration', 'Duration']], isLong: true, needsStructure: true},
   response: {title: 'Impedance', task: 'response', texts: ENDS, needsStructure: true},
+  folds: {title: 'Folds over frequency', task: 'response', args: {curve: 'frequency'}, texts: ENDS, needsStructure: true},
+  foldsOfVoltage: {title: 'Folds over voltage', task: 'response', args: {curve: 'voltage'}, needsStructure: true,
+    texts: [['from', 'lowest_voltage', 'From'], ['to', 'highest_voltage', 'To']]},
   map: {title: 'Map', task: 'map', kinds: true, runs: true},
   heat: {title: 'Temperature', task: 'thermal', texts: [['duration', 'duration', 'Duration']], hasBodies: true},
 };
