@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from hypothesis import given, strategies as st
-from pytest import approx, raises
+from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.actuator import (
@@ -75,6 +75,13 @@ def test_a_lossless_network_transmits_the_power_at_the_voltage_of_its_gain() -> 
 
 def test_an_actuator_that_is_the_resistance_of_the_amplifier_needs_no_element() -> None:
     assert l_match(admittance=1 / 64, frequency=F, source_resistance=64.0) == MatchingNetwork()
+
+
+@mark.parametrize("g", [1e-3, 3e-3, 7e-3, 0.013, 0.1, 0.7])
+def test_an_actuator_of_the_parallel_resistance_of_the_amplifier_needs_one_element(g: float) -> None:
+    for r in (1 / g, math.nextafter(1 / g, 1e9), math.nextafter(1 / g, 0.0)):
+        network = l_match(admittance=complex(g, 2e-3), frequency=F, source_resistance=r)
+        assert complex(input_admittance(network, admittance=complex(g, 2e-3), frequency=F)) == approx(g, rel=1e-6)
 
 
 def test_the_bandwidth_of_a_parallel_resonant_circuit_follows_from_its_quality_factor() -> None:

@@ -163,11 +163,11 @@ def l_match(*, admittance: complex, frequency: float, source_resistance: float) 
         raise InvalidInput(f"admittance must have a positive real part to be matched, got {y:.4g} S")
     if y.real * r <= 1:
         # the positive root leaves a capacitive reactance, which a series inductor cancels
-        susceptance = math.sqrt(y.real / r - y.real**2)
+        susceptance = math.sqrt(max(y.real / r - y.real**2, 0.0))  # 0 but for rounding where 1/G is R
         rest = 1 / complex(y.real, susceptance)
         return MatchingNetwork(**_series(-rest.imag, omega), **_shunt(susceptance - y.imag, omega))
     z = 1 / y
-    reactance = math.sqrt(z.real * r - z.real**2)  # the positive root, of a series inductor
+    reactance = math.sqrt(max(z.real * r - z.real**2, 0.0))  # the positive root, of a series inductor
     across = -(1 / complex(z.real, reactance)).imag
     return MatchingNetwork(**_series(reactance - z.imag, omega), **_shunt(across, omega), shunt_at_source=True)
 
